@@ -28,14 +28,14 @@ IN_PAIRS := --numprocesses $(if $(filter 1,$(WORKERS)),1,2) --dist loadfile --no
 help: ## Show what can be made.
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 16
 
-$(VENV)/installed: pyproject.toml $(LOCK)
+$(VENV)/installed: pyproject.toml research/pyproject.toml $(LOCK)
 	$(PYTHON) -m venv $(VENV)
 	$(CONSTRAIN) $(BIN)/pip install --quiet --disable-pip-version-check uv
-	$(INSTALL) --editable .
+	$(INSTALL) --editable '.[train]' --editable research
 	@touch $@
 
 $(VENV)/installed-dev: $(VENV)/installed
-	$(INSTALL) --editable '.[dev]'
+	$(INSTALL) --editable '.[dev]' --editable 'research[cluster]'
 	@touch $@
 
 # Node comes with the dev extra, TypeScript from npm: both check the page's JavaScript, and neither reaches the browser.
@@ -86,7 +86,7 @@ bench: $(VENV)/installed ## The online step and the batched fit, as ratios in on
 	$(BIN)/latentarm bench
 
 docs: $(VENV)/installed ## The documentation as a site, in site/; any warning is an error.
-	$(INSTALL) --editable '.[docs]'
+	$(INSTALL) --editable '.[docs]' --editable research
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet --site-dir site
 
 lock: $(VENV)/installed ## Pin the newest version of every package, direct or not, in constraints.txt.

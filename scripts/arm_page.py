@@ -28,10 +28,10 @@ from playwright.sync_api import Browser, Page
 from websockets.sync.client import connect
 
 import franka_endurance as franka
-from latentarm.kinematics.stillness import STILL_RAD_S
+from latentarm.core.types import FloatArray
+from latentarm.robots.kinematics.stillness import STILL_RAD_S
 from latentarm.robots.panda import panda
 from latentarm.robots.robot import Robot
-from latentarm.types import FloatArray
 from ros2_endurance import ServerProcess, Setup
 from teleop_page import NO_GL, VIEWPORT, chromium, enable, served, tell
 from teleop_throttled import Watcher, wait

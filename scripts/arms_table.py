@@ -27,7 +27,7 @@ def measure(path: Path, end_effector: str | None) -> None:
     """The child: load one arm and print what came of it."""
     import mujoco
 
-    from latentarm.errors import UserError
+    from latentarm.core.errors import UserError
     from latentarm.robots.catalogue import load_robot
     from latentarm.robots.limits import QUANTITIES
 

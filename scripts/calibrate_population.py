@@ -4,7 +4,7 @@ The variation of pushes is fitted to Fitts's law for movements along one axis: o
 r² whose slope is in the range of published ones. The time of a mode switch is fitted to the share of time
 that goes into mode switches. Both are done with end-effector modes alone. For example:
 
-    python scripts/calibrate_population.py --out src/latentarm/operators/calibration.json
+    python scripts/calibrate_population.py --out research/src/latentarm_research/people/calibration.json
 """
 
 import argparse
@@ -19,15 +19,15 @@ from typing import Any, Final
 
 import numpy as np
 
-from latentarm.controllers.end_effector import EndEffectorController
-from latentarm.metrics.mode_switching import switching
-from latentarm.operators.calibration import BEFORE, CALIBRATED, Calibration
-from latentarm.operators.population import draw_people
-from latentarm.operators.traits import Traits
+from latentarm.assistance.controllers.end_effector import EndEffectorController
 from latentarm.robots.catalogue import load_robot
-from latentarm.simulation.pointing import FittsLaw, OneMode, Pointing, point
-from latentarm.simulation.task_drive import TaskSetup, drive_task
 from latentarm.tasks.catalogue import SCENE_TASKS
+from latentarm_research.drives.pointing import FittsLaw, OneMode, Pointing, point
+from latentarm_research.drives.task_drive import TaskSetup, drive_task
+from latentarm_research.metrics.mode_switching import switching
+from latentarm_research.people.calibration import BEFORE, CALIBRATED, Calibration
+from latentarm_research.people.population import draw_people
+from latentarm_research.people.traits import Traits
 
 TASKS: Final = ("marshmallows", "avoid")
 PRACTICE_S: Final = 300.0

@@ -22,15 +22,15 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from latentarm.control.controller import Controller
-from latentarm.control.safety.config import SafetyConfig
+from latentarm.assistance.controllers.contract import Controller
 from latentarm.control.step import Step
-from latentarm.kinematics.distances import segment_distance
-from latentarm.kinematics.obstacles import Box, Capsule, HalfSpace, Obstacle, Sphere
-from latentarm.kinematics.reader import read
+from latentarm.core.types import Context, FloatArray, GripperReading, Input, Reading
 from latentarm.robots.catalogue import load_robot
+from latentarm.robots.kinematics.distances import segment_distance
+from latentarm.robots.kinematics.obstacles import Box, Capsule, HalfSpace, Obstacle, Sphere
+from latentarm.robots.kinematics.reader import read
 from latentarm.robots.robot import Robot
-from latentarm.types import Context, FloatArray, GripperReading, Input, Reading
+from latentarm.safety.config import SafetyConfig
 
 CLEARANCE_M = SafetyConfig().clearance
 ROUNDING_M = 1e-5

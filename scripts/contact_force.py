@@ -21,17 +21,17 @@ from rich.table import Table
 
 from enabled_arm import enabled
 from latentarm.arms.mujoco import MujocoArm
+from latentarm.assistance.controllers.end_effector import EndEffectorController
 from latentarm.control.clock import SimulatedClock
-from latentarm.control.safety.config import SafetyConfig
-from latentarm.control.safety.zones import Zone
 from latentarm.control.step import Step
-from latentarm.controllers.end_effector import EndEffectorController
-from latentarm.kinematics.obstacles import HalfSpace
+from latentarm.core.types import FloatArray, Input, Pose
+from latentarm.robots.kinematics.obstacles import HalfSpace
 from latentarm.robots.panda import panda
 from latentarm.robots.robot import Robot
-from latentarm.scene.scene import TABLE, TOOL, Scene
+from latentarm.robots.scene.scene import TABLE, TOOL, Scene
+from latentarm.safety.config import SafetyConfig
+from latentarm.safety.zones import Zone
 from latentarm.tasks.inverse_kinematics import solve
-from latentarm.types import FloatArray, Input, Pose
 from physics_safety import LATE_TICKS, PERIOD_S, imperfect
 
 PRESSED_TICKS: Final = 400

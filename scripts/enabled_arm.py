@@ -6,7 +6,7 @@ from latentarm.arms.kinematic import KinematicArm
 from latentarm.arms.mujoco import MujocoArm
 from latentarm.control.clock import SimulatedClock
 from latentarm.control.step import Step
-from latentarm.types import Input
+from latentarm.core.types import Input
 
 
 def enabled(

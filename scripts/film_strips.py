@@ -11,24 +11,24 @@ from pathlib import Path
 
 os.environ.setdefault("MUJOCO_GL", "egl")  # before MuJoCo is imported
 
-from latentarm.errors import UserError
-from latentarm.metrics.looks import look_of
+from latentarm.core.errors import UserError
+from latentarm.core.parallel.grid import run_grid
+from latentarm.core.style import save_figure
+from latentarm.core.untrusted.documents import read_object
+from latentarm.evaluation.looks import look_of
 from latentarm.models.saving import read_model
-from latentarm.operators.catalogue import PEOPLE
-from latentarm.parallel.grid import run_grid
 from latentarm.runs.results_folder import CONFIG
-from latentarm.simulation.film import Camera, Film, strip
-from latentarm.simulation.task_drive import TaskSetup, drive_task
-from latentarm.studies.streams import generator
-from latentarm.studies.tasks.cell import ShownCell, TrainingCell, show, train, training_set
-from latentarm.studies.tasks.condition import Condition
-from latentarm.studies.tasks.kept import MODELS
-from latentarm.studies.tasks.preset import PRESETS, Preset, Stream
-from latentarm.studies.tasks.rows import STUDY
-from latentarm.studies.tasks.runs import Driver, choice_of, decoders_of, kept_in
-from latentarm.style import save_figure
 from latentarm.tasks.catalogue import SCENE_TASKS, make_scene_task
-from latentarm.untrusted.documents import read_object
+from latentarm_research.drives.film import Camera, Film, strip
+from latentarm_research.drives.task_drive import TaskSetup, drive_task
+from latentarm_research.people.catalogue import PEOPLE
+from latentarm_research.studies.streams import generator
+from latentarm_research.studies.tasks.cell import ShownCell, TrainingCell, show, train, training_set
+from latentarm_research.studies.tasks.condition import Condition
+from latentarm_research.studies.tasks.kept import MODELS
+from latentarm_research.studies.tasks.preset import PRESETS, Preset, Stream
+from latentarm_research.studies.tasks.rows import STUDY
+from latentarm_research.studies.tasks.runs import Driver, choice_of, decoders_of, kept_in
 
 FIGURES = Path(__file__).resolve().parents[1] / "docs" / "figures" / "tasks"
 

@@ -26,12 +26,12 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "stand_ins"))
 
 from franka_server import DAMPING, START, STIFFNESS, part_forearm
 
-from latentarm.control.safety.body import Body, Placement
-from latentarm.control.safety.config import SafetyConfig
-from latentarm.control.safety.proximity import Proximity
-from latentarm.kinematics.obstacles import HalfSpace
+from latentarm.core.types import FloatArray
+from latentarm.robots.kinematics.obstacles import HalfSpace
 from latentarm.robots.panda import fr3
-from latentarm.types import FloatArray
+from latentarm.safety.body import Body, Placement
+from latentarm.safety.config import SafetyConfig
+from latentarm.safety.proximity import Proximity
 
 FLOOR: Final = HalfSpace("floor", np.zeros(3), np.array([0.0, 0.0, 1.0]))
 MARGIN_RAD: Final = SafetyConfig().joint_margin

@@ -31,15 +31,15 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "stand_ins"))
 from franka_server import FrankaStandIn
 
 from latentarm.arms.real_catalogue import make_real_arm
+from latentarm.assistance.controllers.end_effector import EndEffectorController
 from latentarm.control.clock import Clock
 from latentarm.control.input_port import InputSource
 from latentarm.control.loop import ControlLoop
-from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
-from latentarm.controllers.end_effector import EndEffectorController
-from latentarm.punctuality import ask_for_priority, short_collections
+from latentarm.core.punctuality import ask_for_priority, short_collections
+from latentarm.core.types import FloatArray, Input, StepRecord
 from latentarm.robots.panda import fr3
-from latentarm.types import FloatArray, Input, StepRecord
+from latentarm.safety.config import SafetyConfig
 
 HOST: Final = "127.0.9.1"
 ADDRESS: Final = f"franka://{HOST}?realtime=ignore"

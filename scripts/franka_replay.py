@@ -25,11 +25,11 @@ import ruckig
 
 from clearance_drives import Pusher
 from latentarm.arms.franka.limits import FR3, SHARE
-from latentarm.control.safety.config import SafetyConfig
+from latentarm.assistance.controllers.end_effector import EndEffectorController
 from latentarm.control.step import Step
-from latentarm.controllers.end_effector import EndEffectorController
+from latentarm.core.types import FloatArray, GripperAsk, GripperReading, Input, Reading, Stop
 from latentarm.robots.panda import fr3
-from latentarm.types import FloatArray, GripperAsk, GripperReading, Input, Reading, Stop
+from latentarm.safety.config import SafetyConfig
 
 CYCLES: Final = 10
 """Of 1 ms in a tick of the loop."""

@@ -13,16 +13,16 @@ from typing import Final, final
 import numpy as np
 
 from latentarm.assistance.blending import Arbitration, ConfidenceAlpha, FixedAlpha
+from latentarm.assistance.controllers.latent import latent_controller
 from latentarm.assistance.goal_blending import blending
-from latentarm.controllers.latent import latent_controller
-from latentarm.kinematics.obstacles import Obstacle
-from latentarm.operators.catalogue import PEOPLE, OperatorName
+from latentarm.core.types import Demonstrations, FloatArray, Goal, Pose
+from latentarm.robots.kinematics.obstacles import Obstacle
 from latentarm.robots.robot import Robot
-from latentarm.simulation.drive import Setup, Trace, simulate
-from latentarm.simulation.drives import drive_plan
 from latentarm.tasks.table_top import TableTop
 from latentarm.tasks.task import Task
-from latentarm.types import Demonstrations, FloatArray, Goal, Pose
+from latentarm_research.drives.drive import Setup, Trace, simulate
+from latentarm_research.drives.drives import drive_plan
+from latentarm_research.people.catalogue import PEOPLE, OperatorName
 
 DRIVES: Final = 8
 LIMIT_S: Final = 40.0

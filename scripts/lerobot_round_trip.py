@@ -41,14 +41,14 @@ from lerobot.datasets import LeRobotDataset
 from lerobot.scripts import lerobot_dataset_viz, lerobot_edit_dataset, lerobot_record, lerobot_replay
 
 from latentarm.cli import main as latentarm
+from latentarm.core.errors import UserError
+from latentarm.core.types import FloatArray
 from latentarm.demonstrations.dataset import read_dataset
 from latentarm.demonstrations.importing import import_demonstrations
-from latentarm.errors import UserError
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.limits_file import read_limits
 from latentarm.robots.robot import Robot
 from latentarm.tasks.reach import Reach
-from latentarm.types import FloatArray
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 from arms.feetech_bus import FeetechBus

@@ -29,8 +29,8 @@ import numpy as np
 from latentarm.arms.address import parse_address
 from latentarm.arms.lerobot.arm import LerobotArm
 from latentarm.control.clock import MonotonicClock
+from latentarm.core.types import Command
 from latentarm.robots.catalogue import load_robot
-from latentarm.types import Command
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 from arms.feetech_bus import GOAL, FeetechBus

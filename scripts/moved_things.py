@@ -13,7 +13,8 @@ from unittest.mock import patch
 
 import numpy as np
 
-from latentarm.context import OBJECTS_IN_TOOL, ContextLayout, context_vector
+from latentarm.core.context import OBJECTS_IN_TOOL, ContextLayout, context_vector
+from latentarm.core.types import Context, Demonstrations, Episode, FloatArray
 from latentarm.demonstrations.things import ENVIRONMENT
 from latentarm.models import prepared
 from latentarm.models.catalogue import MODELS
@@ -26,7 +27,6 @@ from latentarm.models.scaling import (
     feature_normaliser,
 )
 from latentarm.robots.panda import panda
-from latentarm.types import Context, Demonstrations, Episode, FloatArray
 
 ARM: Final = panda()
 CHAIN: Final = ARM.chain

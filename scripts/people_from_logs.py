@@ -18,7 +18,7 @@ from typing import Any, Final
 import numpy as np
 from scipy.stats import norm
 
-from latentarm.types import FloatArray
+from latentarm.core.types import FloatArray
 from ring_movements import (
     CORRECTIONS,
     ERROR,

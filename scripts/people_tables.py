@@ -8,8 +8,8 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, Final
 
-from latentarm.operators.calibration import PROVENANCE
-from latentarm.operators.population import MIRRORED, TRAITS
+from latentarm_research.people.calibration import PROVENANCE
+from latentarm_research.people.population import MIRRORED, TRAITS
 
 PAGE: Final = Path(__file__).parents[1] / "docs" / "simulated_people.md"
 LOGS: Final = Path(__file__).with_name("people_from_logs.json")

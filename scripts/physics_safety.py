@@ -23,11 +23,11 @@ from clearance_drives import HARMS, Pusher, scene
 from enabled_arm import enabled
 from latentarm.arms.mujoco import Imperfections, MujocoArm
 from latentarm.control.clock import SimulatedClock
-from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
+from latentarm.core.types import FloatArray, Input
 from latentarm.robots.panda import panda
 from latentarm.robots.robot import Robot
-from latentarm.types import FloatArray, Input
+from latentarm.safety.config import SafetyConfig
 
 PERIOD_S: Final = 0.01
 PUSH_TICKS: Final = 200

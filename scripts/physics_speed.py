@@ -15,12 +15,12 @@ import numpy as np
 
 from latentarm.arms.mujoco import STEP_S, MujocoArm
 from latentarm.control.clock import SimulatedClock
+from latentarm.core.types import Command, FloatArray, Pose
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.robot import Robot
-from latentarm.scene.containers import bowl, cup, packed, plate
-from latentarm.scene.scene import Scene
-from latentarm.scene.thing import Food, Grains, Part, Thing
-from latentarm.types import Command, FloatArray, Pose
+from latentarm.robots.scene.containers import bowl, cup, packed, plate
+from latentarm.robots.scene.scene import Scene
+from latentarm.robots.scene.thing import Food, Grains, Part, Thing
 
 TICK_S: Final = 0.01
 SETTLE_S: Final = 2.0

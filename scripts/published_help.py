@@ -13,12 +13,12 @@ from typing import Final
 import numpy as np
 
 from latentarm.assistance.catalogue import AssistanceName, published_assistance, published_belief
-from latentarm.controllers.end_effector import EndEffectorController
-from latentarm.operators.catalogue import PEOPLE
-from latentarm.operators.person import Person
-from latentarm.simulation.task_drive import TaskSetup, TaskTrace
-from latentarm.simulation.task_drives import Series, drive_series
+from latentarm.assistance.controllers.end_effector import EndEffectorController
 from latentarm.tasks.eating.over_marshmallow import OverMarshmallow
+from latentarm_research.drives.task_drive import TaskSetup, TaskTrace
+from latentarm_research.drives.task_drives import Series, drive_series
+from latentarm_research.people.catalogue import PEOPLE
+from latentarm_research.people.person import Person
 
 SPEED_M_S: Final = 0.2
 TURN_RAD_S: Final = 0.4

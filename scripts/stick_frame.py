@@ -23,30 +23,30 @@ from latentarm.alignment.error import relative_alignment_error
 from latentarm.alignment.frame import fit_frame, right_and_up, view
 from latentarm.alignment.meaning import Meaning
 from latentarm.alignment.posterior import fit_meaning
+from latentarm.alignment.preference import Imprecise
 from latentarm.alignment.queries import order_of_questions
 from latentarm.alignment.surroundings import Surroundings
 from latentarm.alignment.tool_space import ToolSpace
 from latentarm.alignment.twists import motion_twists
-from latentarm.controllers.latent import LatentController
+from latentarm.assistance.controllers.latent import LatentController
 from latentarm.demonstrations.dataset import read_dataset, write_dataset
 from latentarm.demonstrations.split import select_episodes
-from latentarm.kinematics.chain import Chain
 from latentarm.models.decoder import Decoder
 from latentarm.models.saving import load_decoder
-from latentarm.operators.own_directions import InOwnDirections
-from latentarm.operators.population import draw_people
-from latentarm.operators.preference import Imprecise
-from latentarm.operators.traits import Traits
+from latentarm.robots.kinematics.chain import Chain
+from latentarm.runs.asking import FASTEST
 from latentarm.runs.folder import read_run
 from latentarm.runs.samples import load_samples
 from latentarm.runs.training import TrainConfig, train_run
-from latentarm.simulation.asking import FASTEST
-from latentarm.simulation.drive import STATE_NOISE_RAD, Setup, simulate
-from latentarm.simulation.drives import drive_plan
-from latentarm.studies.alignment.preset import PRESETS
-from latentarm.studies.alignment.scene import DecoderCell, learn_decoder, scene_of
 from latentarm.tasks.table_top import TableTop
-from latentarm.user_studies.alignments import MainMotions
+from latentarm_research.drives.drive import STATE_NOISE_RAD, Setup, simulate
+from latentarm_research.drives.drives import drive_plan
+from latentarm_research.people.own_directions import InOwnDirections
+from latentarm_research.people.population import draw_people
+from latentarm_research.people.traits import Traits
+from latentarm_research.studies.alignment.preset import PRESETS
+from latentarm_research.studies.alignment.scene import DecoderCell, learn_decoder, scene_of
+from latentarm_research.user_studies.alignments import MainMotions
 
 TABLE: Final = "table_top"
 EPISODES: Final = 60

@@ -18,13 +18,13 @@ import numpy as np
 from statsmodels.stats.power import TTestIndPower, TTestPower
 
 from latentarm.runs.results_folder import write_json
-from latentarm.studies.statistics import LEVEL
-from latentarm.user_studies.analysis.claims import claims_tested, sides_of
-from latentarm.user_studies.catalogue import load_definition
-from latentarm.user_studies.definition import Definition, Factor
-from latentarm.user_studies.designs.catalogue import design_of
-from latentarm.user_studies.hypothesis import Claim, Hypothesis
-from latentarm.user_studies.record import Trial
+from latentarm_research.studies.statistics import LEVEL
+from latentarm_research.user_studies.analysis.claims import claims_tested, sides_of
+from latentarm_research.user_studies.catalogue import load_definition
+from latentarm_research.user_studies.definition import Definition, Factor
+from latentarm_research.user_studies.designs.catalogue import design_of
+from latentarm_research.user_studies.hypothesis import Claim, Hypothesis
+from latentarm_research.user_studies.record import Trial
 
 PEOPLE = {"within": 12, "between": 40}
 EFFECT = 0.8

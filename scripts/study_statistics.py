@@ -9,14 +9,14 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from latentarm.files import write_text
-from latentarm.metrics.table import ABSENT
+from latentarm.core.files import write_text
+from latentarm.core.untrusted.documents import read_object
+from latentarm.evaluation.table import ABSENT
 from latentarm.runs.results_folder import CONFIG
-from latentarm.studies.page import listed, markdown_table
-from latentarm.untrusted.documents import read_object
-from latentarm.user_studies.catalogue import NAMES, load_definition
-from latentarm.user_studies.definition import Definition
-from latentarm.user_studies.report.words import yes_no
+from latentarm_research.studies.page import listed, markdown_table
+from latentarm_research.user_studies.catalogue import NAMES, load_definition
+from latentarm_research.user_studies.definition import Definition
+from latentarm_research.user_studies.report.words import yes_no
 
 PAGE = Path(__file__).parents[1] / "docs" / "studies.md"
 NOT_RUN = "not run yet"

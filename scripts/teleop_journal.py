@@ -18,7 +18,7 @@ import numpy as np
 
 from latentarm.control.journal import JournalEpisode, read_journal
 from latentarm.control.recorder import EpisodeHeader, Recorder
-from latentarm.types import BoolArray, Command, FloatArray, StepRecord
+from latentarm.core.types import BoolArray, Command, FloatArray, StepRecord
 
 STILL_RAD_S = 0.01
 

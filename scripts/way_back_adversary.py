@@ -15,15 +15,15 @@ from typing import Any, Final
 import numpy as np
 from scipy.spatial import KDTree
 
-from latentarm.control.safety.config import SafetyConfig
-from latentarm.control.safety.stack import SafetyStack
+from latentarm.core.types import FloatArray
 from latentarm.models.catalogue import KINDS, MODELS
 from latentarm.models.decoder import Decoder
 from latentarm.models.saved_chain import chain_tensors
 from latentarm.models.tool_contexts import ROTATION_WEIGHT_M
 from latentarm.models.way_back.runtime import NETWORK
+from latentarm.safety.config import SafetyConfig
+from latentarm.safety.stack import SafetyStack
 from latentarm.tasks.table_top import TABLE_HEIGHT, TableTop
-from latentarm.types import FloatArray
 
 STARTS: Final = 64
 STEPS: Final = 1000

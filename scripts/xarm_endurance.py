@@ -32,16 +32,16 @@ import numpy as np
 from latentarm.arms.address import parse_address
 from latentarm.arms.xarm.arm import XArm
 from latentarm.arms.xarm.sdk import load_sdk
+from latentarm.assistance.controllers.end_effector import EndEffectorController
 from latentarm.control.clock import MonotonicClock
 from latentarm.control.input_port import InputSource
 from latentarm.control.loop import ControlLoop
-from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
-from latentarm.controllers.end_effector import EndEffectorController
-from latentarm.kinematics.stillness import STILL_RAD_S
-from latentarm.punctuality import ask_for_priority, short_collections
+from latentarm.core.punctuality import ask_for_priority, short_collections
+from latentarm.core.types import Input, StepRecord
+from latentarm.robots.kinematics.stillness import STILL_RAD_S
 from latentarm.robots.robot import Robot
-from latentarm.types import Input, StepRecord
+from latentarm.safety.config import SafetyConfig
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 from arms.xarm_rig import xarm7

@@ -24,14 +24,14 @@ from enabled_arm import enabled
 from latentarm.arms.kinematic import KinematicArm
 from latentarm.arms.mujoco import MujocoArm
 from latentarm.control.clock import SimulatedClock
-from latentarm.control.safety.config import SafetyConfig
-from latentarm.control.safety.zones import Zone
 from latentarm.control.step import Step
-from latentarm.kinematics.distances import segment_distance
-from latentarm.kinematics.obstacles import Sphere
+from latentarm.core.types import FloatArray, Input
+from latentarm.robots.kinematics.distances import segment_distance
+from latentarm.robots.kinematics.obstacles import Sphere
 from latentarm.robots.panda import panda
 from latentarm.robots.robot import Robot
-from latentarm.types import FloatArray, Input
+from latentarm.safety.config import SafetyConfig
+from latentarm.safety.zones import Zone
 from physics_safety import PERIOD_S, imperfect
 
 SPEEDS: Final = (0.03, 0.1)

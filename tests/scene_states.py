@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from latentarm.scene.scene import SceneState
-from latentarm.types import Pose
+from latentarm.core.types import Pose
+from latentarm.robots.scene.scene import SceneState
 
 UPRIGHT = np.eye(3)
 

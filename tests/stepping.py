@@ -4,7 +4,7 @@ from itertools import count
 
 import numpy as np
 
-from latentarm.types import GripperReading, Reading
+from latentarm.core.types import GripperReading, Reading
 
 _numbers = count()
 

@@ -8,116 +8,21 @@ import os
 import sys
 import warnings
 from collections.abc import Sequence
-from importlib import import_module
+from typing import Final
 
 import tyro
 from tyro.extras import SubcommandApp
 
 from latentarm import __version__
-from latentarm.commands.configuration import Command, configurable, file_named_in, read_options
-from latentarm.errors import UserError
-from latentarm.studies.catalogue import STUDIES
-from latentarm.untrusted.terminal import one_line
+from latentarm.commands.catalogue import COMMAND_SETS, all_commands
+from latentarm.commands.configuration import configurable, file_named_in, read_options
+from latentarm.core.errors import UserError
+from latentarm.core.untrusted.terminal import one_line
 
-COMMANDS: dict[str, tuple[str, str]] = {
-    "demo": (
-        "demo:demo",
-        "Learn latent actions and stab marshmallows with a 7-DoF Panda in physics, against mode switching.",
-    ),
-    "import": (
-        "import_demonstrations:import_demonstrations",
-        "Turn recorded demonstrations into a native dataset (LeRobotDataset v3.0).",
-    ),
-    "inspect": (
-        "inspect:inspect",
-        "Show a dataset: episodes, rates, ranges, and a figure of the joints.",
-    ),
-    "train": (
-        "train:train",
-        "Learn a latent action model from a dataset.",
-    ),
-    "evaluate": (
-        "evaluate:evaluate",
-        "Measure a trained model on held-out episodes: four properties, drift, reversal, and a verdict.",
-    ),
-    "compare": (
-        "compare:compare",
-        "Compare all models on recorded demonstrations, with every episode held out once.",
-    ),
-    "align": (
-        "align:align",
-        "Ask what a person means by their input, and keep it as their profile (section 6 of the paper).",
-    ),
-    "drive": (
-        "drive:drive",
-        "Drive an arm in simulation with a simulated operator, through Algorithm 1 and its safety filters.",
-    ),
-    "teleop": (
-        "teleop:teleop",
-        "Drive an arm from a web page, simulated or real: stick, buttons, keyboard, gamepad or switches.",
-    ),
-    "export": (
-        "export:export",
-        "List what was recorded, and export it to a native dataset (LeRobotDataset v3.0).",
-    ),
-    "replay": (
-        "replay:replay",
-        "Decide again what an arm was commanded on the page, and compare every command to the bit.",
-    ),
-    **{f"reproduce {name}": (f"reproduce:{name}", entry.summary) for name, entry in STUDIES.items()},
-    "study list": (
-        "study:list_studies",
-        "List the paper's user studies.",
-    ),
-    "study show": (
-        "study:show_study",
-        "Show a study's definition: conditions, tasks, hypotheses with their tests, and its hash.",
-    ),
-    "study run": (
-        "study:run_study",
-        "Send simulated people through a study, analyse their trials, and write the report.",
-    ),
-    "study power": (
-        "study:power_of_study",
-        "Find how many people a study needs: studies drawn from simulated people, through its own analysis.",
-    ),
-    "study questions": (
-        "study_answers:questions",
-        "Write a study's questionnaire: after each condition all items, in a random order for each person.",
-    ),
-    "study analyse": (
-        "study_answers:analyse_study",
-        "Analyse recorded trials, with the answers of real people, and write the report.",
-    ),
-    "bench": (
-        "bench:bench",
-        "Time the online step, and training ten seeds in one fit and one after the other.",
-    ),
-    "arms list": (
-        "arms:list_arms",
-        "List what `--arm` takes: simulated arms by name, real ones by the scheme of their address.",
-    ),
-    "arms check": (
-        "arms:check",
-        "Look at a real arm without moving it: what it is, whether it can be driven, and if not, why.",
-    ),
-    "robots": (
-        "robots:robots",
-        "List the robots, or show one: joints, limits and end-effector.",
-    ),
-}
-"""Every command by the words that run it, in the order of the help.
+TRAINING: Final = ("torch", "sklearn", "joblib")
+"""What only the extra ``train`` brings."""
 
-Its module and function in `latentarm.commands`, or its study, and the first line of its help; only the
-module of the command that runs is imported.
-"""
-
-GROUPS = {
-    "arms": "List what can be driven, and look at a real arm before it moves; `arms --help` lists how.",
-    "reproduce": "Reproduce a study of the paper; `reproduce --help` lists them.",
-    "study": "Send simulated people through the paper's user studies; `study --help` lists how.",
-}
-"""Words that have commands under them, and their help."""
+RESEARCH: Final = "pip install 'latentarm[research]'"
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -140,8 +45,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             warnings.showwarning = _warn
             code = _app(words).cli(
                 prog="latentarm",
-                description="Steer a high-DoF assistive arm with a low-DoF input, by latent actions. "
-                "`latentarm --version` prints the version.",
+                description=_description(),
                 args=words,
                 config=(tyro.conf.FlagCreatePairsOff,),
             )
@@ -149,6 +53,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
             return code
     except UserError as error:
         return _refuse(str(error))
+    except ModuleNotFoundError as error:
+        if error.name not in TRAINING:
+            raise
+        return _refuse(f"This needs {error.name}, which is not installed: pip install 'latentarm[train]'.")
     except BrokenPipeError:
         # The reader closed the pipe, as `head` does; there is nothing left to flush to.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -166,28 +74,34 @@ def _app(words: Sequence[str]) -> SubcommandApp:
     Raises:
         UserError: the file does not hold options of that command.
     """
-    app = SubcommandApp()
+    app, known = SubcommandApp(), all_commands()
     groups: dict[str, SubcommandApp] = {}
-    for name, (place, summary) in COMMANDS.items():
+    for name, entry in known.commands.items():
         group, _, last = name.rpartition(" ")
         if group and group not in groups:
-            groups[group] = app.command(SubcommandApp(), name=group, help=GROUPS[group])
+            groups[group] = app.command(SubcommandApp(), name=group, help=known.groups[group])
         add = (groups[group] if group else app).command
         if list(words[: len(name.split())]) == name.split():
-            command = _load(place)
+            command = entry.load()
             file = file_named_in(words)
             defaults = {} if file is None else read_options(file, command, name)
             add(name=last)(configurable(command, name, defaults))
         else:
-            add(name=last, help=summary)(_never_run)
+            add(name=last, help=entry.summary)(_never_run)
     return app
 
 
-def _load(place: str) -> Command:
-    """The function of a command, from ``module:function``, or from ``reproduce:study``."""
-    module, _, name = place.partition(":")
-    commands = import_module(f"latentarm.commands.{module}")
-    return commands.command_of(name) if module == "reproduce" else getattr(commands, name)
+def _description() -> str:
+    """What the program does, and what is missing."""
+    more = (
+        ""
+        if len(COMMAND_SETS)
+        else f" Demo, simulated drives, the paper's studies and benchmarks: {RESEARCH}."
+    )
+    return (
+        "Steer a high-DoF assistive arm with a low-DoF input, by latent actions. "
+        f"`latentarm --version` prints the version.{more}"
+    )
 
 
 def _never_run() -> int:

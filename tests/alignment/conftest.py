@@ -5,12 +5,12 @@ import pytest
 import torch
 
 from latentarm.alignment.answers import Answers, Motions
+from latentarm.core.types import Demonstrations, Episode
 from latentarm.models.catalogue import MODELS
 from latentarm.models.pca.training import PCA
 from latentarm.robots.assemble import assemble
 from latentarm.robots.limits import JointLimits
 from latentarm.robots.planar import planar
-from latentarm.types import Demonstrations, Episode
 
 SLIDES = """
 <mujoco><worldbody>

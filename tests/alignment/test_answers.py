@@ -7,9 +7,9 @@ from latentarm.alignment.contract import identity
 from latentarm.alignment.error import lengths, outcome, relative_alignment_error
 from latentarm.alignment.poses import ROTATION_WEIGHT_M, pose_vectors
 from latentarm.alignment.transition import TorchPoses
-from latentarm.errors import UserError
-from latentarm.kinematics.rotations import angle_between
+from latentarm.core.errors import UserError
 from latentarm.robots.catalogue import load_robot
+from latentarm.robots.kinematics.rotations import angle_between
 from latentarm.robots.planar import planar
 
 ZERO = np.zeros((3, 4))

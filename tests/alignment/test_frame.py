@@ -16,10 +16,10 @@ from latentarm.alignment.frame import CAMERAS, FLAT, STEEPEST_RAD_M, StickFrame,
 from latentarm.alignment.frame_file import FRAME_NAME, load_frame, save_frames
 from latentarm.alignment.meaning import rotations
 from latentarm.alignment.poses import pose_vectors
-from latentarm.controllers.latent import latent_controller
-from latentarm.errors import UserError
+from latentarm.assistance.controllers.latent import latent_controller
+from latentarm.core.errors import UserError
+from latentarm.core.types import Context
 from latentarm.robots.catalogue import load_robot
-from latentarm.types import Context
 
 SEEN = np.array([[0.0, 1.0, 0.0], [-0.42, 0.0, 1.0] / np.hypot(0.42, 1.0)])
 """Right and up of somebody who faces the arm."""

@@ -10,7 +10,7 @@ import torch
 from latentarm.alignment.loss import ANSWERS_AT_ONCE, AlignmentLoss, Draw
 from latentarm.alignment.priors import NO_PRIORS, Priors
 from latentarm.alignment.runtime import layer_shapes
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 from latentarm.models.catalogue import MODELS
 from latentarm.models.networks import group_layers
 

@@ -13,7 +13,7 @@ from latentarm.alignment.priors import (
     supervised,
 )
 from latentarm.alignment.transition import Place, Push
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 
 RUNS, MANY = 2, 200
 

@@ -8,8 +8,8 @@ import pytest
 from latentarm.alignment.answers import Motions
 from latentarm.alignment.demonstrated import demonstrated_motions, noticeable
 from latentarm.alignment.queries import Design, StoppingRule, next_motion
-from latentarm.errors import UserError
-from latentarm.types import Demonstrations, Episode
+from latentarm.core.errors import UserError
+from latentarm.core.types import Demonstrations, Episode
 
 
 def test_what_was_asked_or_its_opposite_teaches_little_and_another_direction_much(slides):

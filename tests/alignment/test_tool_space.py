@@ -11,7 +11,7 @@ from latentarm.alignment.meaning import Meaning, rotations
 from latentarm.alignment.posterior import fit_meaning
 from latentarm.alignment.surroundings import Surroundings
 from latentarm.alignment.tool_space import ToolSpace
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 
 FAST = 0.3
 """What a full push moves the slides by, m/s."""

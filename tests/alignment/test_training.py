@@ -8,7 +8,7 @@ from latentarm.alignment.contract import identity
 from latentarm.alignment.error import relative_alignment_error
 from latentarm.alignment.priors import NO_PRIORS, Priors
 from latentarm.alignment.training import FitConfig, fit_alignments
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 from latentarm.models.pca.training import PCA
 
 SMALL = FitConfig(hidden=(8, 8), steps=30, batch_size=8)

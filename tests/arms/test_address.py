@@ -4,7 +4,7 @@ import pytest
 
 from latentarm.arms.address import ArmAddress, is_address, parse_address
 from latentarm.arms.real_catalogue import make_real_arm
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 
 
 @pytest.mark.parametrize(

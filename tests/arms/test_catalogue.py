@@ -8,9 +8,9 @@ import pytest
 from latentarm.arms.catalogue import ARMS, DEFAULT_ARM, make_arm, make_simulated_arm
 from latentarm.arms.contract import ArmSpec, check_arm
 from latentarm.arms.kinematic import KinematicArm
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
+from latentarm.core.types import Command
 from latentarm.testing.faults import FaultyArm
-from latentarm.types import Command
 
 
 def now_s():

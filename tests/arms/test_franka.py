@@ -11,12 +11,12 @@ from latentarm.arms.contract import check_arm
 from latentarm.arms.franka.link import has_realtime
 from latentarm.arms.real_catalogue import make_real_arm
 from latentarm.control.clock import MonotonicClock
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
+from latentarm.core.types import Command, FloatArray, GripperCommand
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.panda import fr3
 from latentarm.robots.robot import Robot
 from latentarm.testing.real_arms import RealArmContract, StandIn
-from latentarm.types import Command, FloatArray, GripperCommand
 
 pytest.importorskip("franky", reason="franky-control is not installed")
 pytest.importorskip("franky_sim", reason="franky-sim is not installed: latentarm[franka-sim]")

@@ -8,7 +8,7 @@ from latentarm.arms.address import parse_address
 from latentarm.arms.franka.limits import FR3, PANDA, SHARE, limits_of
 from latentarm.arms.franka.options import FrankaOptions, read_options
 from latentarm.arms.franka.words import fault
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 from latentarm.robots.panda import fr3, panda
 
 shares = arrays(np.float64, 7, elements=st.floats(0.0, 1.0))

@@ -10,14 +10,14 @@ import numpy as np
 import pytest
 
 from latentarm.arms.mujoco import MujocoArm
+from latentarm.assistance.controllers.end_effector import EndEffectorController
 from latentarm.control.clock import SimulatedClock
-from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
-from latentarm.controllers.end_effector import EndEffectorController
+from latentarm.core.types import Input, Pose
 from latentarm.robots.catalogue import load_robot
-from latentarm.scene.scene import Scene
-from latentarm.scene.thing import Part, Thing
-from latentarm.types import Input, Pose
+from latentarm.robots.scene.scene import Scene
+from latentarm.robots.scene.thing import Part, Thing
+from latentarm.safety.config import SafetyConfig
 
 THICK_M = 0.016
 SOFT = (-500.0, -2.0 * np.sqrt(500.0))

@@ -3,9 +3,9 @@ import pytest
 
 from latentarm.arms.kinematic import KinematicArm
 from latentarm.control.clock import SimulatedClock
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
+from latentarm.core.types import Command, GripperCommand, GripperReading
 from latentarm.robots.planar import planar
-from latentarm.types import Command, GripperCommand, GripperReading
 
 
 def test_a_joint_ends_at_its_hard_stop(the_panda):

@@ -22,13 +22,13 @@ from latentarm.arms.address import parse_address
 from latentarm.arms.contract import check_arm
 from latentarm.arms.lerobot.arm import STOPS_AFTER_S, LerobotArm
 from latentarm.arms.lerobot.keeper import now_s
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
+from latentarm.core.types import Command, GripperCommand
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.gripper import Gripper
 from latentarm.robots.limits_file import parse_limits
 from latentarm.robots.robot import Robot
 from latentarm.testing.real_arms import RealArmContract, StandIn
-from latentarm.types import Command, GripperCommand
 from lerobot_environment import lerobot_python, plugin_environment
 
 pytestmark = pytest.mark.slow
@@ -296,7 +296,7 @@ from arms.test_lerobot import VELOCITY, MOTORS, _address, _enabled, _xml
 from latentarm.arms.lerobot.arm import LerobotArm
 from latentarm.arms.lerobot.keeper import now_s
 from latentarm.robots.catalogue import load_robot
-from latentarm.types import Command
+from latentarm.core.types import Command
 arm = _enabled(LerobotArm(load_robot(sys.argv[2]), _address(sys.argv[3], sys.argv[4]), now_s))
 print("driving", flush=True)
 while True:

@@ -12,7 +12,7 @@ from latentarm.arms.address import parse_address
 from latentarm.arms.lerobot.jaw import Jaw
 from latentarm.arms.lerobot.options import Options
 from latentarm.arms.lerobot.targets import LEAD_RAD, LONGEST_STEP_S, STOP_LEAD_RAD, Targets
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 
 LOWER, UPPER, SPEED = np.array([-1.0, -0.5]), np.array([1.0, 0.5]), np.array([1.0, 2.0])
 

@@ -5,11 +5,11 @@ import pytest
 
 from latentarm.arms.mujoco import Imperfections, MujocoArm
 from latentarm.control.clock import SimulatedClock
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
+from latentarm.core.types import Command
 from latentarm.robots.model_file import load_model_file
 from latentarm.robots.panda import TORQUE_LIMIT
 from latentarm.robots.planar import planar
-from latentarm.types import Command
 
 SLIDER = """<mujoco><worldbody><body name="stand"><geom size="0.1" mass="5"/>
 <body name="arm"><joint name="turn" axis="0 0 1" range="-115 115" {turn}/>

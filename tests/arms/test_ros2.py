@@ -21,12 +21,12 @@ from latentarm.arms.ros2.joint_states import ClockJumpedError, JointStates, Stam
 from latentarm.arms.ros2.options import read_options
 from latentarm.arms.ros2.watchdog_state import parse_state
 from latentarm.control.clock import MonotonicClock
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
+from latentarm.core.types import Command, GripperCommand
 from latentarm.robots.panda import panda
 from latentarm.robots.planar import planar
 from latentarm.robots.robot import Robot
 from latentarm.testing.real_arms import RealArmContract
-from latentarm.types import Command, GripperCommand
 
 WHOLE = f"ros2://arm?controller=c&gripper_joint={GRIPPER_JOINT}"
 

@@ -13,14 +13,14 @@ from hypothesis import strategies as st
 from latentarm.arms.catalogue import make_scene_arm
 from latentarm.arms.mujoco import MujocoArm
 from latentarm.control.clock import SimulatedClock
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
+from latentarm.core.types import Command, GripperCommand, Pose
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.panda import HOME
-from latentarm.scene.containers import WALL_M, bowl, cup, packed
-from latentarm.scene.scene import Scene
-from latentarm.scene.thing import Bond, Food, Grains, Part, Thing
+from latentarm.robots.scene.containers import WALL_M, bowl, cup, packed
+from latentarm.robots.scene.scene import Scene
+from latentarm.robots.scene.thing import Bond, Food, Grains, Part, Thing
 from latentarm.tasks.inverse_kinematics import solve
-from latentarm.types import Command, GripperCommand, Pose
 
 DOWN = np.diag([1.0, -1.0, -1.0])
 SOFT = Food(pierce_n=2.0, depth_m=0.008, grip_n=1.5)

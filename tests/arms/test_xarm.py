@@ -16,8 +16,8 @@ from arms.xarm_server import CONTROL, PLAIN, STATUS, TIMED, XArmServer, serving
 from latentarm.arms.real import RealArm
 from latentarm.arms.real_catalogue import make_real_arm
 from latentarm.control.clock import MonotonicClock
-from latentarm.errors import UserError
-from latentarm.types import Command
+from latentarm.core.errors import UserError
+from latentarm.core.types import Command
 
 pytestmark = pytest.mark.clock
 

@@ -10,9 +10,9 @@ from arms.xarm_server import XArmServer, serving
 from latentarm.arms.real import RealArm
 from latentarm.arms.real_catalogue import make_real_arm
 from latentarm.control.clock import MonotonicClock
+from latentarm.core.types import FloatArray
 from latentarm.robots.robot import Robot
 from latentarm.testing.real_arms import RealArmContract, StandIn
-from latentarm.types import FloatArray
 
 
 class _Controller(StandIn):

@@ -22,7 +22,7 @@ from latentarm.arms.xarm.sdk import load_sdk
 from latentarm.arms.xarm.session import read_options
 from latentarm.arms.xarm.watch import Watch
 from latentarm.arms.xarm.words import controller_error, emergency_stop
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 
 GRIPPER = xarm7().gripper
 

@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 
 from latentarm.arms.real import RealArm
+from latentarm.core.types import Command, FloatArray
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.gripper import Gripper
 from latentarm.robots.limits_file import read_limits
 from latentarm.robots.robot import Robot
-from latentarm.types import Command, FloatArray
 
 HERE = Path(__file__).parent
 

@@ -3,8 +3,8 @@ import pytest
 
 from latentarm.assistance.annotation import annotate
 from latentarm.assistance.boltzmann import BoltzmannBelief
-from latentarm.errors import UserError
-from latentarm.types import Demonstrations, Episode, Goal, Pose
+from latentarm.core.errors import UserError
+from latentarm.core.types import Demonstrations, Episode, Goal, Pose
 
 NOWHERE = Pose(np.zeros(3), np.eye(3))
 GOALS = np.array([[1.5, 0.0, 0.0], [-1.5, 0.5, 0.0]])

@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from latentarm.assistance.blending import ConfidenceAlpha, FixedAlpha, Unprompted, confidence
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 
 FULL = np.array([1.0, 0.0])
 arbitrations = st.one_of(

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from latentarm.assistance.belief import log_choice
 from latentarm.assistance.catalogue import BELIEFS
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 from latentarm.testing.beliefs import (
     COUNT,
     GOALS,

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from latentarm.assistance import bound
 from latentarm.assistance.blending import assistive_action, blend
 from latentarm.assistance.bound import furthest, known_help, weighted
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 from latentarm.models.enclosure import linear_enclosure
 
 MOMENTS = 100_000

@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 
 from latentarm.assistance.cost_to_go import ROTATION, TRANSLATION, GoalPoses
 from latentarm.assistance.goal_poses import turned_about_vertical
-from latentarm.errors import UserError
-from latentarm.types import Pose
+from latentarm.core.errors import UserError
+from latentarm.core.types import Pose
 
 
 def turned(angle, axis=2):

@@ -10,13 +10,13 @@ from latentarm.assistance.entropy import (
     goal_probabilities,
     goal_progress,
 )
-from latentarm.errors import UserError
-from latentarm.kinematics.torch_chain import TorchChain
+from latentarm.core.errors import UserError
+from latentarm.core.types import Demonstrations, Episode
 from latentarm.models.autoencoders.training import CAE
 from latentarm.models.pca.training import PCA
 from latentarm.models.term import Situation
+from latentarm.robots.kinematics.torch_chain import TorchChain
 from latentarm.robots.planar import planar
-from latentarm.types import Demonstrations, Episode
 
 GOALS = np.array([[1.0, 0.0], [-1.0, 0.0]])
 speeds = st.floats(-2, 2)

@@ -12,9 +12,9 @@ from latentarm.assistance.hindsight import HindsightOptimisation
 from latentarm.assistance.hindsight_belief import TICK_S, HindsightBelief
 from latentarm.assistance.interpolation import WEIGHTS, Interpolation
 from latentarm.assistance.policy_blending import PolicyBlending
-from latentarm.errors import UserError
-from latentarm.kinematics.resolved_rates import Damping
+from latentarm.core.errors import UserError
 from latentarm.robots.catalogue import load_robot
+from latentarm.robots.kinematics.resolved_rates import Damping
 
 PANDA = load_robot("panda")
 GOALS = PANDA.home + np.array(

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from latentarm.cli import COMMANDS
 from latentarm.commands.configuration import read_options
 from latentarm.commands.train import train
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 
 Run = Callable[..., tuple[int, str, str]]
 

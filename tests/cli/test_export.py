@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from latentarm.control.recorder import EpisodeHeader, Recorder
+from latentarm.core.types import Command, GripperCommand, GripperReading, StepRecord
 from latentarm.demonstrations.dataset import read_dataset
 from latentarm.demonstrations.provenance import provenance_now
-from latentarm.types import Command, GripperCommand, GripperReading, StepRecord
 
 Run = Callable[..., tuple[int, str, str]]
 

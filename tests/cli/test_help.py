@@ -10,16 +10,16 @@ from latentarm.assistance.blending import ConfidenceAlpha, FixedAlpha
 from latentarm.assistance.catalogue import BELIEFS
 from latentarm.cli import COMMANDS as PLACES
 from latentarm.cli import GROUPS, _load, main
-from latentarm.parallel.backends import BACKENDS
-from latentarm.studies.alignment import preset as alignment_preset
-from latentarm.studies.alignment import study as alignment
-from latentarm.studies.catalogue import load_study
-from latentarm.studies.properties.preset import PRESETS
-from latentarm.studies.shared_autonomy import preset as shared_autonomy
-from latentarm.studies.shared_autonomy.cell import TASKS
-from latentarm.studies.tasks import moved
-from latentarm.studies.tasks import preset as tasks_preset
-from latentarm.tasks.planar.catalogue import MOTIONS
+from latentarm.core.parallel.backends import BACKENDS
+from latentarm_research.studies.alignment import preset as alignment_preset
+from latentarm_research.studies.alignment import study as alignment
+from latentarm_research.studies.catalogue import load_study
+from latentarm_research.studies.properties.preset import PRESETS
+from latentarm_research.studies.shared_autonomy import preset as shared_autonomy
+from latentarm_research.studies.shared_autonomy.cell import TASKS
+from latentarm_research.studies.tasks import moved
+from latentarm_research.studies.tasks import preset as tasks_preset
+from latentarm_research.tasks.planar.catalogue import MOTIONS
 
 COMMANDS = [
     "demo",

@@ -3,16 +3,16 @@ from collections.abc import Callable, Sequence
 import numpy as np
 import pytest
 
-from latentarm.control.controller import Controller
-from latentarm.kinematics.distances import segment_distance
-from latentarm.kinematics.obstacles import Box, Capsule, HalfSpace, Obstacle, Sphere
+from latentarm.assistance.controllers.contract import Controller
+from latentarm.core.types import Context, FloatArray
 from latentarm.models.enclosure import linear_enclosure
 from latentarm.robots.assemble import assemble
+from latentarm.robots.kinematics.distances import segment_distance
+from latentarm.robots.kinematics.obstacles import Box, Capsule, HalfSpace, Obstacle, Sphere
 from latentarm.robots.limits import JointLimits
 from latentarm.robots.panda import panda
 from latentarm.robots.planar import planar
 from latentarm.robots.robot import Robot
-from latentarm.types import Context, FloatArray
 
 
 @pytest.fixture(scope="session")

@@ -9,11 +9,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from latentarm.control.safety.config import SafetyConfig, Workspace
-from latentarm.control.safety.obstacles import table
 from latentarm.control.step import Step
-from latentarm.kinematics.obstacles import Sphere
-from latentarm.types import Input
+from latentarm.core.types import Input
+from latentarm.robots.kinematics.obstacles import Sphere
+from latentarm.safety.config import SafetyConfig, Workspace
+from latentarm.safety.obstacles import table
 from stepping import stepped
 
 now_s = itertools.count(step=0.01).__next__

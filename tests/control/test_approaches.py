@@ -6,11 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from latentarm.control.safety.config import SafetyConfig
-from latentarm.control.safety.obstacles import table
 from latentarm.control.step import Step
-from latentarm.kinematics.obstacles import Box, Capsule, Sphere
-from latentarm.types import Input
+from latentarm.core.types import Input
+from latentarm.robots.kinematics.obstacles import Box, Capsule, Sphere
+from latentarm.safety.config import SafetyConfig
+from latentarm.safety.obstacles import table
 from stepping import stepped
 
 now_s = itertools.count(step=0.01).__next__

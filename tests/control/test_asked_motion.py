@@ -12,14 +12,14 @@ from hypothesis import strategies as st
 from latentarm.assistance.blending import FixedAlpha
 from latentarm.assistance.boltzmann import BoltzmannBelief
 from latentarm.assistance.goal_blending import GoalBlending
-from latentarm.control.safety.config import SafetyConfig
-from latentarm.control.safety.obstacles import table
-from latentarm.control.safety.zones import Zone
 from latentarm.control.step import Step
-from latentarm.kinematics.obstacles import Sphere
+from latentarm.core.types import Goal, GripperAsk, GripperReading, Input, Reading, Stop
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.gripper import Gripper
-from latentarm.types import Goal, GripperAsk, GripperReading, Input, Reading, Stop
+from latentarm.robots.kinematics.obstacles import Sphere
+from latentarm.safety.config import SafetyConfig
+from latentarm.safety.obstacles import table
+from latentarm.safety.zones import Zone
 
 DT: Final = 0.01
 HAND: Final = Gripper(("left", "right"), 0.08, 0.1, 70.0)

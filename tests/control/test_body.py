@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from latentarm.control.safety.body import Body, Placement
+from latentarm.safety.body import Body, Placement
 
 
 @pytest.fixture(params=["arm", "two_arms", "gantry"])

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from latentarm.kinematics.distances import box_separation
+from latentarm.robots.kinematics.distances import box_separation
 
 
 def height(normal, start, end, centre, rotation, extents):
@@ -25,7 +25,7 @@ def random_pairs(count, seed, spread):
 
 @pytest.mark.parametrize("spread", [0.3, 1.0])
 def test_the_plane_stands_at_the_distance(oracle, spread):
-    from latentarm.kinematics.obstacles import Box
+    from latentarm.robots.kinematics.obstacles import Box
 
     module = __import__(oracle.__module__, fromlist=["box_distance"])
     for start, end, centre, rotation, extents in random_pairs(300, 1, spread):

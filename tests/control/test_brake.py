@@ -5,7 +5,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from latentarm.control.safety.brake import AT_REST_S, Brake
+from latentarm.safety.brake import AT_REST_S, Brake
 
 A = np.array([12.0, 6.0, 8.0])
 J = np.array([6000.0, 3000.0, 80.0])

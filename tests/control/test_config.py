@@ -7,11 +7,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from latentarm.control.safety.bounds import STOPPED_WITHIN_S, Bounds
-from latentarm.control.safety.config import SafetyConfig, Workspace
-from latentarm.control.safety.obstacles import table
-from latentarm.errors import UserError
-from latentarm.kinematics.obstacles import Box, Capsule, HalfSpace, Sphere
+from latentarm.core.errors import UserError
+from latentarm.robots.kinematics.obstacles import Box, Capsule, HalfSpace, Sphere
+from latentarm.safety.bounds import STOPPED_WITHIN_S, Bounds
+from latentarm.safety.config import SafetyConfig, Workspace
+from latentarm.safety.obstacles import table
 
 FIGURES = [field.name for field in fields(SafetyConfig) if field.name not in ("workspace", "obstacles")]
 

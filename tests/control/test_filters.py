@@ -8,11 +8,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from latentarm.control.safety.barriers import past_barriers
-from latentarm.control.safety.body import Body, Placement
-from latentarm.control.safety.bounds import Bounds
-from latentarm.control.safety.config import SafetyConfig, Workspace
-from latentarm.control.safety.filter import (
+from latentarm.core.types import Stop
+from latentarm.robots.kinematics.obstacles import Sphere
+from latentarm.safety.barriers import past_barriers
+from latentarm.safety.body import Body, Placement
+from latentarm.safety.bounds import Bounds
+from latentarm.safety.config import SafetyConfig, Workspace
+from latentarm.safety.filter import (
     Finite,
     Freshness,
     JointVelocity,
@@ -20,11 +22,9 @@ from latentarm.control.safety.filter import (
     Situation,
     Surroundings,
 )
-from latentarm.control.safety.halfspaces import slide
-from latentarm.control.safety.obstacles import table
-from latentarm.control.safety.ramp import Ramp
-from latentarm.kinematics.obstacles import Sphere
-from latentarm.types import Stop
+from latentarm.safety.halfspaces import slide
+from latentarm.safety.obstacles import table
+from latentarm.safety.ramp import Ramp
 
 any_velocity = arrays(np.float64, 7, elements=st.floats(width=64))
 finite_velocity = arrays(

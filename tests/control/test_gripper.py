@@ -10,16 +10,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from latentarm.assistance.controllers.end_effector import EndEffectorController
 from latentarm.control.export import demonstrations_of
 from latentarm.control.journal import JournalEpisode
 from latentarm.control.recorder import EpisodeHeader
-from latentarm.control.safety.config import SafetyConfig
-from latentarm.control.safety.gripper import GripperFilter
 from latentarm.control.step import Step
-from latentarm.controllers.end_effector import EndEffectorController
-from latentarm.robots.catalogue import load_robot
-from latentarm.robots.gripper import Gripper
-from latentarm.types import (
+from latentarm.core.types import (
     GripperAsk,
     GripperCommand,
     GripperReading,
@@ -27,6 +23,10 @@ from latentarm.types import (
     Reading,
     StepRecord,
 )
+from latentarm.robots.catalogue import load_robot
+from latentarm.robots.gripper import Gripper
+from latentarm.safety.config import SafetyConfig
+from latentarm.safety.gripper import GripperFilter
 
 WIDE: Final = 0.08
 HAND: Final = Gripper(("left", "right"), WIDE, 0.1, 70.0)

@@ -7,12 +7,12 @@ import pytest
 from hypothesis import assume, event, given, settings
 from hypothesis import strategies as st
 
-from latentarm.control.safety.body import Body, Placement
-from latentarm.control.safety.bounds import Bounds
-from latentarm.control.safety.config import SafetyConfig, Workspace
-from latentarm.control.safety.filter import Situation, Surroundings
-from latentarm.control.safety.guard import Guard, Path
-from latentarm.kinematics.obstacles import Box, Capsule, HalfSpace, Sphere
+from latentarm.robots.kinematics.obstacles import Box, Capsule, HalfSpace, Sphere
+from latentarm.safety.body import Body, Placement
+from latentarm.safety.bounds import Bounds
+from latentarm.safety.config import SafetyConfig, Workspace
+from latentarm.safety.filter import Situation, Surroundings
+from latentarm.safety.guard import Guard, Path
 
 
 def beside(robot, q, rng, oracle):

@@ -12,13 +12,13 @@ from latentarm.arms.kinematic import KinematicArm
 from latentarm.control.clock import SimulatedClock
 from latentarm.control.input_port import InputPort, InputSource
 from latentarm.control.loop import ControlLoop
-from latentarm.control.safety.bounds import Bounds
-from latentarm.control.safety.config import SafetyConfig, Workspace
-from latentarm.control.safety.ramp import Ramp
 from latentarm.control.step import Step
-from latentarm.errors import UserError
-from latentarm.kinematics.obstacles import Sphere
-from latentarm.types import Input, Stop
+from latentarm.core.errors import UserError
+from latentarm.core.types import Input, Stop
+from latentarm.robots.kinematics.obstacles import Sphere
+from latentarm.safety.bounds import Bounds
+from latentarm.safety.config import SafetyConfig, Workspace
+from latentarm.safety.ramp import Ramp
 from stepping import stepped
 
 now_s = itertools.count(step=0.01).__next__

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from latentarm.control.clock import Clock, MonotonicClock, SimulatedClock
 from latentarm.control.input_port import InputPort
-from latentarm.types import Input
+from latentarm.core.types import Input
 
 
 def push(value, *, switch_mode=False):

@@ -5,9 +5,9 @@ import itertools
 import numpy as np
 import pytest
 
-from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
-from latentarm.types import Input
+from latentarm.core.types import Input
+from latentarm.safety.config import SafetyConfig
 from stepping import stepped
 
 now_s = itertools.count(step=0.01).__next__

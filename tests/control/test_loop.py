@@ -10,10 +10,10 @@ from latentarm.arms.kinematic import KinematicArm
 from latentarm.control.clock import Clock, MonotonicClock, SimulatedClock
 from latentarm.control.input_port import InputSource
 from latentarm.control.loop import ControlLoop, DeadlineLog
-from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
-from latentarm.errors import UserError
-from latentarm.types import Input
+from latentarm.core.errors import UserError
+from latentarm.core.types import Input
+from latentarm.safety.config import SafetyConfig
 
 MATRIX = np.full((1, 7), 0.2)
 

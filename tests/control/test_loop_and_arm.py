@@ -10,11 +10,11 @@ from latentarm.arms.kinematic import KinematicArm
 from latentarm.control.clock import SimulatedClock
 from latentarm.control.input_port import InputSource
 from latentarm.control.loop import ENABLING_S, ControlLoop
-from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
+from latentarm.core.types import Input
+from latentarm.safety.config import SafetyConfig
 from latentarm.testing.faults import FaultyArm
-from latentarm.types import Input
 
 
 class Stick(InputSource):

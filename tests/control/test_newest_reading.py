@@ -5,11 +5,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from latentarm.control.safety.bounds import STOPPED_WITHIN_S, Bounds
-from latentarm.control.safety.config import SafetyConfig
-from latentarm.control.safety.newest_reading import NewestReading
 from latentarm.control.step import Step
-from latentarm.types import GripperReading, Input, Reading
+from latentarm.core.types import GripperReading, Input, Reading
+from latentarm.safety.bounds import STOPPED_WITHIN_S, Bounds
+from latentarm.safety.config import SafetyConfig
+from latentarm.safety.newest_reading import NewestReading
 
 PUSH, NEUTRAL = Input(np.array([1.0, 0.0])), Input(np.zeros(2))
 

@@ -5,11 +5,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from latentarm.control.safety.bounds import Bounds
-from latentarm.control.safety.config import SafetyConfig
-from latentarm.control.safety.plausibility import Plausibility
 from latentarm.control.step import STEADY_S, Step
-from latentarm.types import Input
+from latentarm.core.types import Input
+from latentarm.safety.bounds import Bounds
+from latentarm.safety.config import SafetyConfig
+from latentarm.safety.plausibility import Plausibility
 from stepping import stepped
 
 NOISE_RAD = 1e-3

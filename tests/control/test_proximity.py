@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from latentarm.control.safety.body import Body, Placement
-from latentarm.control.safety.proximity import Proximity
-from latentarm.kinematics.obstacles import Box, Capsule, HalfSpace, Sphere
+from latentarm.robots.kinematics.obstacles import Box, Capsule, HalfSpace, Sphere
+from latentarm.safety.body import Body, Placement
+from latentarm.safety.proximity import Proximity
 
 OBSTACLES = (
     HalfSpace("floor", np.array([0.0, 0.0, -0.4]), np.array([0.0, 0.0, 1.0])),

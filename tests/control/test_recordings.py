@@ -11,10 +11,10 @@ from latentarm.control.export import demonstrations_of
 from latentarm.control.journal import list_journal, read_journal
 from latentarm.control.recorder import EpisodeHeader, Recorder
 from latentarm.control.recordings import list_recordings, read_recordings
+from latentarm.core.errors import UserError
+from latentarm.core.types import Command, Provenance, StepRecord
 from latentarm.demonstrations.dataset import append_episode, read_dataset, write_dataset
 from latentarm.demonstrations.provenance import BY_HAND, provenance_now
-from latentarm.errors import UserError
-from latentarm.types import Command, Provenance, StepRecord
 
 NAMES = ("shoulder", "elbow")
 

@@ -20,10 +20,10 @@ from latentarm.assistance.hindsight_belief import HindsightBelief
 from latentarm.control.export import demonstrations_of, export_journal
 from latentarm.control.journal import read_journal
 from latentarm.control.recorder import EpisodeHeader, Recorder
-from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.shared_autonomy import Choices
 from latentarm.control.step import Step
-from latentarm.types import Context, Goal, Input
+from latentarm.core.types import Context, Goal, Input
+from latentarm.safety.config import SafetyConfig
 from stepping import stepped
 
 now_s = itertools.count(step=0.01).__next__

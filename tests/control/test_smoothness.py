@@ -13,11 +13,11 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from latentarm.control.safety.config import SafetyConfig
-from latentarm.control.safety.obstacles import table
 from latentarm.control.step import Step
-from latentarm.kinematics.obstacles import Sphere
-from latentarm.types import Input
+from latentarm.core.types import Input
+from latentarm.robots.kinematics.obstacles import Sphere
+from latentarm.safety.config import SafetyConfig
+from latentarm.safety.obstacles import table
 from stepping import stepped
 
 ROUNDING_RAD_S = 3e-9

@@ -8,10 +8,10 @@ import pytest
 from latentarm.assistance.blending import FixedAlpha
 from latentarm.assistance.boltzmann import BoltzmannBelief
 from latentarm.assistance.goal_blending import GoalBlending
-from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
-from latentarm.errors import UserError
-from latentarm.types import Goal, Input, Stop
+from latentarm.core.errors import UserError
+from latentarm.core.types import Goal, Input, Stop
+from latentarm.safety.config import SafetyConfig
 from stepping import stepped
 
 now_s = itertools.count(step=0.01).__next__

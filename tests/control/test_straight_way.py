@@ -4,12 +4,12 @@ import numpy as np
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from latentarm.control.safety.body import Body, Placement
-from latentarm.control.safety.config import SafetyConfig
-from latentarm.control.safety.obstacles import table
-from latentarm.control.safety.proximity import Proximity
-from latentarm.control.safety.straight_way import StraightWay
-from latentarm.kinematics.obstacles import Sphere
+from latentarm.robots.kinematics.obstacles import Sphere
+from latentarm.safety.body import Body, Placement
+from latentarm.safety.config import SafetyConfig
+from latentarm.safety.obstacles import table
+from latentarm.safety.proximity import Proximity
+from latentarm.safety.straight_way import StraightWay
 
 LONG = 100_000
 

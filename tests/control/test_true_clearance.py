@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from latentarm.kinematics.obstacles import Box, Capsule, HalfSpace, Sphere
-from latentarm.kinematics.reader import read
 from latentarm.robots.assemble import assemble
+from latentarm.robots.kinematics.obstacles import Box, Capsule, HalfSpace, Sphere
+from latentarm.robots.kinematics.reader import read
 from latentarm.robots.limits import JointLimits
 
 SCRIPT = Path(__file__).parents[2] / "scripts" / "clearance_drives.py"

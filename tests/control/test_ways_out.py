@@ -6,15 +6,15 @@ from hypothesis import event, example, given, settings
 from hypothesis import strategies as st
 from scipy.optimize import linprog
 
-from latentarm.control.safety.body import Body
-from latentarm.control.safety.bounds import BUFFER_M, BUFFER_RAD, Bounds
-from latentarm.control.safety.config import SafetyConfig, Workspace
-from latentarm.control.safety.filter import Situation, Surroundings
-from latentarm.control.safety.halfspaces import slide
-from latentarm.control.safety.stack import SafetyStack
-from latentarm.control.safety.zones import Zone
-from latentarm.kinematics.obstacles import Box, Capsule, HalfSpace, Sphere
+from latentarm.robots.kinematics.obstacles import Box, Capsule, HalfSpace, Sphere
 from latentarm.robots.planar import planar
+from latentarm.safety.body import Body
+from latentarm.safety.bounds import BUFFER_M, BUFFER_RAD, Bounds
+from latentarm.safety.config import SafetyConfig, Workspace
+from latentarm.safety.filter import Situation, Surroundings
+from latentarm.safety.halfspaces import slide
+from latentarm.safety.stack import SafetyStack
+from latentarm.safety.zones import Zone
 
 TICKS = 20
 

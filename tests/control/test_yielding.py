@@ -9,14 +9,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from latentarm.arms.mujoco import Imperfections, MujocoArm
+from latentarm.assistance.controllers.end_effector import EndEffectorController
 from latentarm.control.clock import SimulatedClock
-from latentarm.control.safety.config import SafetyConfig
-from latentarm.control.safety.yielding import FARTHEST_M, LONGEST_S, LOOK_S, PACE, YIELDING
 from latentarm.control.step import Step
-from latentarm.controllers.end_effector import EndEffectorController
-from latentarm.scene.scene import Scene
+from latentarm.core.types import Input, Pose, Reading
+from latentarm.robots.scene.scene import Scene
+from latentarm.safety.config import SafetyConfig
+from latentarm.safety.yielding import FARTHEST_M, LONGEST_S, LOOK_S, PACE, YIELDING
 from latentarm.tasks.inverse_kinematics import solve
-from latentarm.types import Input, Pose, Reading
 
 PERIODS_S = st.sampled_from([0.005, 0.01, 0.02])
 SEEDS = st.integers(0, 2**32 - 1)

@@ -7,12 +7,12 @@ import pytest
 from hypothesis import event, example, given, settings
 from hypothesis import strategies as st
 
-from latentarm.control.safety.bounds import Bounds
-from latentarm.control.safety.config import SafetyConfig
-from latentarm.control.safety.stack import SafetyStack
-from latentarm.control.safety.zones import MOST_ZONES, Zone, zone_of_filter
-from latentarm.errors import UserError
-from latentarm.kinematics.obstacles import Box, Capsule, HalfSpace, Sphere
+from latentarm.core.errors import UserError
+from latentarm.robots.kinematics.obstacles import Box, Capsule, HalfSpace, Sphere
+from latentarm.safety.bounds import Bounds
+from latentarm.safety.config import SafetyConfig
+from latentarm.safety.stack import SafetyStack
+from latentarm.safety.zones import MOST_ZONES, Zone, zone_of_filter
 
 DT = 0.01
 ROUNDING_M_S = 1e-6

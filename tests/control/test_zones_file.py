@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from latentarm.control.safety.bounds import Bounds
-from latentarm.control.safety.config import SafetyConfig
-from latentarm.control.safety.zones_file import read_zones
+from latentarm.assistance.controllers.end_effector import EndEffectorController
 from latentarm.control.step import Step
-from latentarm.controllers.end_effector import EndEffectorController
-from latentarm.errors import UserError
-from latentarm.kinematics.obstacles import Box, Capsule, HalfSpace, Sphere
-from latentarm.types import Input
+from latentarm.core.errors import UserError
+from latentarm.core.types import Input
+from latentarm.robots.kinematics.obstacles import Box, Capsule, HalfSpace, Sphere
+from latentarm.safety.bounds import Bounds
+from latentarm.safety.config import SafetyConfig
+from latentarm.safety.zones_file import read_zones
 from stepping import stepped
 
 EXAMPLE = Path(__file__).parents[2] / "docs" / "your-arm" / "zones.toml"

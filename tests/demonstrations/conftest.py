@@ -4,10 +4,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from latentarm.core.types import Demonstrations, Episode, Goal, Pose
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.limits import JointLimits
 from latentarm.robots.robot import Robot
-from latentarm.types import Demonstrations, Episode, Goal, Pose
 
 SO101 = """
 <mujoco model="so101_new_calib"><compiler angle="radian"/><worldbody>

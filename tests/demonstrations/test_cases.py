@@ -11,12 +11,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bags import joint_state_bag
+from latentarm.core.errors import UserError
+from latentarm.core.types import Demonstrations
 from latentarm.demonstrations.importing import import_demonstrations, import_to
-from latentarm.errors import UserError
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.panda import panda
 from latentarm.robots.robot import Robot
-from latentarm.types import Demonstrations
 
 SHARED = Path(__file__).resolve().parents[3] / "shared" / "cases"
 
@@ -345,8 +345,8 @@ turns = st.lists(st.integers(-50, 50), min_size=2, max_size=2)
 def test_unwrapping_undoes_any_wrapping(
     tmp_path_factory: pytest.TempPathFactory, spinner: Robot, begin: list[int], way: list[float], wraps: bool
 ) -> None:
+    from latentarm.core.types import Episode
     from latentarm.demonstrations.turns import unwrapped
-    from latentarm.types import Episode
 
     path = np.cumsum(way)[:, None] * [1, 0, -1]
     episodes = [

@@ -11,6 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as npst
 
+from latentarm.core.errors import UserError
+from latentarm.core.types import Demonstrations, Episode, Goal, Pose
 from latentarm.demonstrations.dataset import (
     LOCK_FILE,
     append_episode,
@@ -19,8 +21,6 @@ from latentarm.demonstrations.dataset import (
 )
 from latentarm.demonstrations.folders import locked, staged_folder
 from latentarm.demonstrations.validation import RESERVED_FEATURES
-from latentarm.errors import UserError
-from latentarm.types import Demonstrations, Episode, Goal, Pose
 
 Equal = Callable[[Demonstrations, Demonstrations], bool]
 MakeEpisode = Callable[..., Episode]

@@ -3,8 +3,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from latentarm.core.errors import UserError
 from latentarm.demonstrations.split import make_folds
-from latentarm.errors import UserError
 
 
 @given(st.integers(2, 40), st.integers(2, 8), st.integers(0, 99))

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 import yaml
 
+from latentarm.core.errors import UserError
 from latentarm.demonstrations.dataset import read_dataset, write_dataset
 from latentarm.demonstrations.harmonic import JOINTS, MORSELS, read_harmonic
 from latentarm.demonstrations.importing import import_demonstrations
-from latentarm.errors import UserError
 from latentarm.robots.catalogue import load_robot
 
 START_S = 1_530_000_000.0

@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from latentarm.context import OBJECT
+from latentarm.core.context import OBJECT
+from latentarm.core.types import Demonstrations, Episode, Pose
 from latentarm.demonstrations.contexts import context_layout
 from latentarm.demonstrations.held import moved_to
 from latentarm.demonstrations.pairs import make_pairs
 from latentarm.demonstrations.things import ENVIRONMENT
-from latentarm.kinematics.pose_rows import moved_along, pose_rows, stored_rows
+from latentarm.robots.kinematics.pose_rows import moved_along, pose_rows, stored_rows
 from latentarm.robots.planar import planar
-from latentarm.types import Demonstrations, Episode, Pose
 
 ARM = planar(3)
 FEATURES = ("joints", "objects")

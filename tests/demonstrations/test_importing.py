@@ -6,16 +6,16 @@ import h5py
 import numpy as np
 import pytest
 
+from latentarm.core.errors import UserError
+from latentarm.core.types import Demonstrations, Episode
 from latentarm.demonstrations.dataset import read_dataset, write_dataset
 from latentarm.demonstrations.importing import import_demonstrations, import_to
 from latentarm.demonstrations.info import INFO_PATH
 from latentarm.demonstrations.npz_file import read_npz
 from latentarm.demonstrations.validation import LIMIT_TOLERANCE_RAD, validate
-from latentarm.errors import UserError
 from latentarm.robots.limits import JointLimits
 from latentarm.robots.panda import panda
 from latentarm.robots.planar import planar
-from latentarm.types import Demonstrations, Episode
 
 Equal = Callable[[Demonstrations, Demonstrations], bool]
 

@@ -12,8 +12,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from latentarm.core.types import Demonstrations, Episode
 from latentarm.demonstrations.dataset import append_episode, read_dataset, write_dataset
-from latentarm.types import Demonstrations, Episode
 
 MakeEpisode = Callable[..., Episode]
 
@@ -22,7 +22,7 @@ import json, os, sys
 from pathlib import Path
 import numpy as np
 from latentarm.demonstrations.dataset import append_episode, read_dataset
-from latentarm.types import Episode
+from latentarm.core.types import Episode
 
 renames = 0
 rename = Path.replace

@@ -16,11 +16,11 @@ import numpy as np
 import pytest
 
 from latentarm.cli import main
+from latentarm.core.errors import UserError
+from latentarm.core.types import Demonstrations, Episode
 from latentarm.demonstrations.dataset import append_episode, read_dataset, write_dataset
 from latentarm.demonstrations.importing import import_demonstrations, import_to
-from latentarm.errors import UserError
 from latentarm.robots.robot import Robot
-from latentarm.types import Demonstrations, Episode
 
 pytestmark = pytest.mark.slow
 

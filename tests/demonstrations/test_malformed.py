@@ -19,13 +19,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bags import joint_state_bag
+from latentarm.core.errors import UserError
+from latentarm.core.types import Demonstrations, Episode
 from latentarm.demonstrations import csv_lines
 from latentarm.demonstrations.dataset import read_dataset, write_dataset
 from latentarm.demonstrations.importing import import_demonstrations, import_to
-from latentarm.errors import UserError
 from latentarm.robots.panda import panda
 from latentarm.robots.robot import Robot
-from latentarm.types import Demonstrations, Episode
 
 HOME = np.array([0.0, -0.5, 0.0, -2.0, 0.0, 1.6, 0.8])
 N = 12

@@ -6,10 +6,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from latentarm.core.errors import UserError
+from latentarm.core.types import Demonstrations, Episode, FloatArray
 from latentarm.demonstrations.pairs import make_pairs
-from latentarm.errors import UserError
-from latentarm.kinematics.stillness import moving_range
-from latentarm.types import Demonstrations, Episode, FloatArray
+from latentarm.robots.kinematics.stillness import moving_range
 
 
 def one_joint(state: list[float], timestamp: list[float], **more: object) -> Demonstrations:

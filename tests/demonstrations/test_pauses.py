@@ -5,10 +5,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from latentarm.core.errors import UserError
+from latentarm.core.types import Demonstrations, Episode
 from latentarm.demonstrations.pauses import without_pauses
 from latentarm.demonstrations.validation import validate
-from latentarm.errors import UserError
-from latentarm.types import Demonstrations, Episode
 
 SPEED = np.array([0.2, -0.1])
 

@@ -3,9 +3,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from latentarm.core.errors import UserError
+from latentarm.core.types import Demonstrations, Episode
 from latentarm.demonstrations.split import select_episodes, split_episodes
-from latentarm.errors import UserError
-from latentarm.types import Demonstrations, Episode
 
 
 def some(episodes: int) -> Demonstrations:

@@ -3,14 +3,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from latentarm.core.errors import UserError
+from latentarm.core.types import Demonstrations, Episode
 from latentarm.demonstrations.figure import draw_trajectories
 from latentarm.demonstrations.importing import import_demonstrations
 from latentarm.demonstrations.summary import summarise
 from latentarm.demonstrations.validation import validate
-from latentarm.errors import UserError
 from latentarm.robots.limits import JointLimits
 from latentarm.robots.planar import planar
-from latentarm.types import Demonstrations, Episode
 
 
 def turning() -> Demonstrations:

@@ -13,14 +13,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from latentarm.core.errors import UserError
+from latentarm.core.types import Demonstrations, Episode
 from latentarm.demonstrations.columns import find_columns
 from latentarm.demonstrations.dataset import read_dataset, write_dataset
 from latentarm.demonstrations.importing import import_demonstrations, import_to
 from latentarm.demonstrations.robot_names import may_be
-from latentarm.errors import UserError
 from latentarm.robots.panda import panda
 from latentarm.robots.robot import Robot
-from latentarm.types import Demonstrations, Episode
 
 MOTORS = ("shoulder_pan", "shoulder_lift", "elbow_flex", "wrist_flex", "wrist_roll", "gripper")
 NAMES = tuple(f"{motor}.pos" for motor in MOTORS)

@@ -6,9 +6,7 @@ import numpy as np
 import pytest
 
 from documentation import ROOT
-from latentarm.control.safety.config import SafetyConfig
-from latentarm.simulation.demonstrate import GRASP_N
-from latentarm.simulation.task_drive import REARM_S, STUCK_S
+from latentarm.safety.config import SafetyConfig
 from latentarm.tasks.catalogue import SCENE_TASKS, make_scene_task
 from latentarm.tasks.eating import dessert, entree
 from latentarm.tasks.eating.stabbing import LIFTED_M as STABBED_M
@@ -16,6 +14,8 @@ from latentarm.tasks.eating.table import MARSHMALLOW
 from latentarm.tasks.predicates import Holding, Poured, Pressed, Spilled, Stabbed, Swept
 from latentarm.tasks.serving.cup_steps import LIFTED_M as TAKEN_M
 from latentarm.tasks.steps import FINE_M, FINE_RAD, PATIENCE_S
+from latentarm_research.drives.demonstrate import GRASP_N
+from latentarm_research.drives.task_drive import REARM_S, STUCK_S
 
 PAGE = (ROOT / "docs/tasks.md").read_text()
 FIGURE = re.compile(r"(\d+(?:\.\d+)?) ?(cm|mm|N|%|°|rad|s)(?!\w)")

@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 import torch
 
+from latentarm.core.types import Demonstrations
 from latentarm.robots.planar import planar
 from latentarm.testing.models import FEW, JOINTS, ring
-from latentarm.types import Demonstrations
 
 
 @pytest.fixture(autouse=True, scope="session")

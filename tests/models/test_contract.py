@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from sklearn.base import clone
 
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 from latentarm.models.catalogue import MODELS
 from latentarm.models.saving import load_decoder, load_model
 from latentarm.testing.models import SMALL, ModelContract

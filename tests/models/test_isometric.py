@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from safetensors.numpy import load, save
 
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 from latentarm.models.batches import Batch
 from latentarm.models.catalogue import MODELS
 from latentarm.models.isometric.runtime import DAMPING_M2
@@ -22,7 +22,7 @@ from latentarm.models.scaling import context_normaliser
 from latentarm.models.tool_contexts import ROTATION_WEIGHT_M, ToolContexts
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.planar import planar
-from latentarm.tasks.planar.catalogue import MOTIONS
+from latentarm_research.tasks.planar.catalogue import MOTIONS
 
 SMALL = {"seeds": 2, "epochs": 3, "hidden": (12, 12), "window": 2}
 SCATTERED = {"epochs": 1, "hidden": (12, 12), "window": 2, "bend_weight": 0.0}

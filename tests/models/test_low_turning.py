@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import torch
 
-from latentarm.metrics.turning import turning as measured_turning
+from latentarm.evaluation.turning import turning as measured_turning
 from latentarm.models.batches import Batch
 from latentarm.models.low_turning.training import Around, LowTurning, narrowness, turning
 from latentarm.models.networks import group_layers

@@ -2,14 +2,14 @@
 
 import numpy as np
 
+from latentarm.core.types import Demonstrations, Episode, Pose
 from latentarm.demonstrations.contexts import context_layout
 from latentarm.demonstrations.held import moved_to
 from latentarm.demonstrations.pairs import make_pairs
 from latentarm.demonstrations.things import ENVIRONMENT
-from latentarm.kinematics.pose_rows import stored_rows
 from latentarm.models.prepared import AHEAD_S, Preparation, prepare
+from latentarm.robots.kinematics.pose_rows import stored_rows
 from latentarm.robots.planar import planar
-from latentarm.types import Demonstrations, Episode, Pose
 
 ARM = planar(3)
 FEATURES = ("joints", "objects")

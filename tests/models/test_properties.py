@@ -10,11 +10,11 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from sklearn import decomposition
 
+from latentarm.core.types import Demonstrations, Episode
 from latentarm.demonstrations.pairs import make_pairs
 from latentarm.demonstrations.split import select_episodes
 from latentarm.models.catalogue import MODELS
 from latentarm.models.scaling import CollapseWarning, action_normaliser, context_normaliser
-from latentarm.types import Demonstrations, Episode
 
 TRAINED = {"seeds": 2, "epochs": 5, "hidden": (24, 24), "window": 2}
 SEES_TOOLS = {name: {"epochs": 3} for name in ("isometric", "homogeneous", "low_turning")}

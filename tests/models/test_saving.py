@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from safetensors.numpy import load, save
 
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 from latentarm.models.catalogue import MODELS
 from latentarm.models.saving import load_decoder, load_model, write_model
 

@@ -15,7 +15,7 @@ import pytest
 import torch
 from torch.optim.adam import adam
 
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 from latentarm.models import training
 from latentarm.models.batches import seed_generator
 from latentarm.models.catalogue import MODELS

@@ -8,7 +8,7 @@ import torch
 from hypothesis import given
 from hypothesis import strategies as st
 
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 from latentarm.models.catalogue import MODELS
 from latentarm.models.decoder import Decoder
 from latentarm.models.saved_chain import chain_of_tensors

@@ -9,9 +9,9 @@ import mujoco
 import numpy as np
 import pytest
 
-from latentarm.errors import UserError
-from latentarm.kinematics.reader import reference_positions
+from latentarm.core.errors import UserError
 from latentarm.robots.catalogue import load_robot
+from latentarm.robots.kinematics.reader import reference_positions
 
 DOCUMENT = tomllib.loads((Path(__file__).parents[2] / "scripts" / "arms.toml").read_text(encoding="utf-8"))
 CACHE = Path(os.environ.get("LATENTARM_ARMS") or Path.home() / ".cache" / "latentarm" / "arms")

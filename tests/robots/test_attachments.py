@@ -4,11 +4,11 @@ import mujoco
 import numpy as np
 import pytest
 
-from latentarm.errors import UserError
-from latentarm.kinematics.distances import segment_distance
-from latentarm.kinematics.reader import read
+from latentarm.core.errors import UserError
 from latentarm.robots.attachments import attach
 from latentarm.robots.catalogue import load_robot
+from latentarm.robots.kinematics.distances import segment_distance
+from latentarm.robots.kinematics.reader import read
 from latentarm.robots.planar import planar
 
 NAMES = ("fork", "spoon", "cup")

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 from latentarm.robots.catalogue import ROBOTS, load_robot
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 from latentarm.robots.end_effector import AmbiguousEndEffectorError
 from latentarm.robots.model_file import load_model_file
 from latentarm.robots.notices import notices

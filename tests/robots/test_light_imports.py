@@ -2,9 +2,9 @@ import subprocess
 import sys
 
 LIGHT = [
-    "latentarm.kinematics.chain",
-    "latentarm.kinematics.distances",
-    "latentarm.kinematics.rotations",
+    "latentarm.robots.kinematics.chain",
+    "latentarm.robots.kinematics.distances",
+    "latentarm.robots.kinematics.rotations",
     "latentarm.robots.limits",
     "latentarm.robots.robot",
     "latentarm.arms.contract",

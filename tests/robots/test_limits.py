@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 from latentarm.robots.limits import JointLimits, LimitSources
 
 GOOD = {"lower": [-1.0, -2.0], "upper": [1.0, 2.0], "velocity": [1.0, 1.0]}

@@ -4,10 +4,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
+from latentarm.core.types import StatedJointLimits, StatedLimits
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.limits_file import limits_document, parse_limits, read_limits
-from latentarm.types import StatedJointLimits, StatedLimits
 
 TOML = """
 tool_speed_m_per_s = 0.8

@@ -6,11 +6,11 @@ import pytest
 
 from latentarm.arms.kinematic import KinematicArm
 from latentarm.control.clock import SimulatedClock
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
+from latentarm.core.types import Command
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.model_file import load_model_file
 from latentarm.robots.model_xml import MOST_XML_BYTES
-from latentarm.types import Command
 
 ARM = """
 <mujoco><worldbody><body name="a"><joint name="j" axis="0 0 1" {joint}/><geom size="0.1"/>

@@ -3,7 +3,7 @@ from dataclasses import replace
 import pytest
 
 from latentarm.arms.contract import ArmSpec, check_arm
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 from latentarm.robots.limits import LimitSources
 from latentarm.robots.model_file import load_model_file
 from latentarm.robots.notices import assumed_limits, notices

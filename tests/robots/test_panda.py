@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from latentarm.kinematics.distances import segment_distance
+from latentarm.robots.kinematics.distances import segment_distance
 
 
 def gaps(robot, q):

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 from latentarm.robots.planar import planar
 
 

@@ -7,9 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from latentarm.kinematics.distances import segment_distance
-from latentarm.kinematics.reader import read
 from latentarm.robots.catalogue import load_robot
+from latentarm.robots.kinematics.distances import segment_distance
+from latentarm.robots.kinematics.reader import read
 from latentarm.robots.shapes import bounding_capsule, convex_hull_vertices, read_capsules
 
 

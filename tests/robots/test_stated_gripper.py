@@ -7,11 +7,11 @@ import pytest
 
 from latentarm.arms.mujoco import MujocoArm
 from latentarm.control.clock import SimulatedClock
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
+from latentarm.core.types import Command, GripperCommand
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.limits_file import limits_document, parse_limits
 from latentarm.robots.robot import Robot
-from latentarm.types import Command, GripperCommand
 
 GRIPPER = {"joints": ["gripper"], "width_m": 0.1, "speed_m_per_s": 0.1, "force_n": 5}
 

@@ -3,7 +3,7 @@ import shutil
 import numpy as np
 import pytest
 
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 from latentarm.robots.model_file import load_model_file
 
 URDF = """

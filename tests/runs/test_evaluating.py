@@ -7,14 +7,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from latentarm.core.errors import UserError
+from latentarm.core.types import Episode
 from latentarm.demonstrations.dataset import write_dataset
-from latentarm.errors import UserError
 from latentarm.robots.catalogue import load_robot
 from latentarm.runs.evaluating import OVER_FOLDS, evaluate_run
 from latentarm.runs.folder import read_run
 from latentarm.runs.training import TrainConfig, train_run
 from latentarm.tasks.reach import Reach
-from latentarm.types import Episode
 
 
 @pytest.fixture(scope="module")

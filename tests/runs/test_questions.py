@@ -5,7 +5,7 @@ import pytest
 
 from latentarm.alignment.demonstrated import shown
 from latentarm.alignment.queries import StoppingRule
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 from latentarm.models.pca.training import PCA
 from latentarm.runs.person import Person
 from latentarm.runs.questions import Scene, ask

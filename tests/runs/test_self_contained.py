@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from latentarm.cli import main
+from latentarm.core.errors import UserError
 from latentarm.demonstrations.dataset import write_dataset
-from latentarm.errors import UserError
 from latentarm.robots.catalogue import load_robot
 from latentarm.runs.folder import read_run, robot_of
 from latentarm.runs.tasks import task_of_run

@@ -19,7 +19,7 @@ from pathlib import Path
 
 import numpy as np
 
-from latentarm.punctuality import short_collections
+from latentarm.core.punctuality import short_collections
 
 START = (0.0, -0.785398, 0.0, -2.356194, 0.0, 1.570796, 0.785398)
 """Where the joints are at first, rad."""

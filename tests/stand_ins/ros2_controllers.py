@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from latentarm.types import FloatArray
+from latentarm.core.types import FloatArray
 
 LAG_S: Final = 0.01
 """The hardware's velocity follows its command with this time constant, s."""

@@ -25,10 +25,10 @@ from ros2_controllers import SimulatedController, SimulatedGripper
 from websockets.asyncio.server import ServerConnection, serve
 from websockets.exceptions import ConnectionClosed
 
-from latentarm.punctuality import short_collections
+from latentarm.core.punctuality import short_collections
+from latentarm.core.types import FloatArray
 from latentarm.robots.robot import Robot
 from latentarm.testing.real_arms import StandIn
-from latentarm.types import FloatArray
 
 WATCHDOG_FILE: Final = Path(__file__).parents[2] / "docs" / "your-arm" / "latentarm_watchdog.py"
 GRIPPER_JOINT: Final = "finger_joint"

@@ -14,9 +14,9 @@ from latentarm.arms.address import ArmAddress
 from latentarm.arms.contract import ArmSpec, ArmStatus
 from latentarm.arms.guiding import GuidableArm
 from latentarm.arms.real import Fact, Findings, FoundLimits
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
+from latentarm.core.types import Command, GripperCommand, GripperReading, Reading
 from latentarm.robots.robot import Robot
-from latentarm.types import Command, GripperCommand, GripperReading, Reading
 
 PERIOD_S = 0.005
 OPENING_S = 10.0

@@ -15,11 +15,11 @@ import numpy as np
 
 from latentarm.arms.kinematic import KinematicArm
 from latentarm.control.clock import MonotonicClock
+from latentarm.core.types import Command, FloatArray, GripperCommand
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.robot import Robot
 from latentarm.testing.faults import FaultyArm
 from latentarm.testing.real_arms import StandIn
-from latentarm.types import Command, FloatArray, GripperCommand
 
 
 class WoodenServer(StandIn):

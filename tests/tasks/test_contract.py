@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 from latentarm.robots.catalogue import load_robot
 from latentarm.runs.tasks import make_task
 from latentarm.tasks.catalogue import TASKS

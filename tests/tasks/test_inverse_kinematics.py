@@ -1,11 +1,11 @@
 import numpy as np
 import pytest
 
-from latentarm.errors import UserError
-from latentarm.kinematics.rotations import pose_error
+from latentarm.core.errors import UserError
+from latentarm.core.types import Pose
 from latentarm.robots.catalogue import load_robot
+from latentarm.robots.kinematics.rotations import pose_error
 from latentarm.tasks.inverse_kinematics import solve
-from latentarm.types import Pose
 
 
 @pytest.mark.parametrize("seed", range(5))

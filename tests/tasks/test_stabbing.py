@@ -5,8 +5,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
+from latentarm.core.types import Pose
 from latentarm.tasks.eating.stabbing import INTO_M, carried_over, over
-from latentarm.types import Pose
 from scene_states import at, standing
 
 ASIDE = st.floats(-0.02, 0.02)

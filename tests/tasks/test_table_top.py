@@ -3,11 +3,11 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from latentarm.assistance.annotation import annotate
-from latentarm.errors import UserError
-from latentarm.kinematics.obstacles import HalfSpace
-from latentarm.kinematics.rotations import angle_between
+from latentarm.core.errors import UserError
+from latentarm.core.types import Pose
+from latentarm.robots.kinematics.obstacles import HalfSpace
+from latentarm.robots.kinematics.rotations import angle_between
 from latentarm.tasks.table_top import HOVER, ITEMS, TABLE_HEIGHT
-from latentarm.types import Pose
 
 PAIRS = [(goal, manner) for goal in range(3) for manner in ("stab", "scoop")]
 

@@ -17,10 +17,10 @@ from websockets.sync.client import ClientConnection, connect
 
 from latentarm.arms.catalogue import make_arm
 from latentarm.control.clock import Clock, SimulatedClock
+from latentarm.core.types import GripperAsk
 from latentarm.demonstrations.dataset import write_dataset
 from latentarm.tasks.table_top import TableTop
 from latentarm.testing.faults import FaultyArm
-from latentarm.types import GripperAsk
 from latentarm.web.arm_process.drive import Drive
 from latentarm.web.arm_process.drive_setup import PERIOD_S, DriveSetup, Spec, load_setup
 from latentarm.web.arm_process.process import ControlProcess

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from latentarm.controllers.end_effector import EndEffectorController
-from latentarm.controllers.joined import JoinedController
-from latentarm.controllers.latent import LatentController
+from latentarm.assistance.controllers.end_effector import EndEffectorController
+from latentarm.assistance.controllers.joined import JoinedController
+from latentarm.assistance.controllers.latent import LatentController
 from latentarm.models.pca.training import PCA
 from latentarm.tasks.table_top import TableTop
 from latentarm.web.arm_process.drive import Drive

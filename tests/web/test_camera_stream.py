@@ -8,7 +8,7 @@ from contextlib import suppress
 import pytest
 from aiortc import RTCConfiguration, RTCPeerConnection, RTCRtpReceiver, RTCSessionDescription
 
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 from latentarm.web.cameras.camera import Camera
 from latentarm.web.cameras.clock_pattern import BITS, ROWS
 from latentarm.web.cameras.decoding import open_pictures

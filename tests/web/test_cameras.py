@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 from latentarm.web.cameras.arrival import ArrivalClock
 from latentarm.web.cameras.camera import Camera, check_camera
 from latentarm.web.cameras.clock_pattern import BITS, ROWS, clock_picture

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from latentarm.control.journal import read_journal
-from latentarm.types import Context
+from latentarm.core.types import Context
 from latentarm.web.arm_process.drive import Drive
 from latentarm.web.arm_process.drive_setup import with_profile
 from latentarm.web.arm_process.page_inputs import LATCH_MAX_S

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from latentarm.scene.scene import SceneState
+from latentarm.core.types import Pose
+from latentarm.robots.scene.scene import SceneState
 from latentarm.tasks.catalogue import SCENE_TASKS, make_scene_task
 from latentarm.tasks.predicates import Poured
-from latentarm.types import Pose
 from latentarm.web.arm_process.fills import SETTLES_S, Fills, vessels
 
 NONE = frozenset()

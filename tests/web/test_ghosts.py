@@ -6,8 +6,8 @@ import pytest
 from latentarm.arms.kinematic import KinematicArm
 from latentarm.control.clock import SimulatedClock
 from latentarm.control.stick_ring import DIRECTIONS, STRETCHES, full_pushes
-from latentarm.kinematics.rotations import quaternion
-from latentarm.types import Context, Input
+from latentarm.core.types import Context, Input
+from latentarm.robots.kinematics.rotations import quaternion
 from latentarm.web.arm_process.drive_setup import PERIOD_S
 from latentarm.web.arm_process.ghosts import GhostPaths
 from latentarm.web.protocol.orders import ChooseHelp, ChooseMode

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from latentarm.scene.scene import SceneState
+from latentarm.core.types import Pose
+from latentarm.robots.scene.scene import SceneState
 from latentarm.tasks.steps import TaskStep, Waypoint
-from latentarm.types import Pose
 from latentarm.web.arm_process.guide import Guide
 
 NONE = frozenset()

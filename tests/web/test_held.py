@@ -5,15 +5,15 @@ import pytest
 
 from latentarm.arms.contract import SceneArm
 from latentarm.arms.kinematic import KinematicArm
-from latentarm.scene.scene import SceneState
-from latentarm.simulation.demonstrate import demonstrate_once
+from latentarm.core.types import Pose
+from latentarm.robots.scene.scene import SceneState
 from latentarm.tasks.catalogue import SCENE_TASKS, make_scene_task
 from latentarm.tasks.mishap import Mishap
 from latentarm.tasks.steps import LOST_M, LOST_S, Progress, TaskStep, Waypoint
 from latentarm.tasks.table_top import TableTop
-from latentarm.types import Pose
 from latentarm.web.arm_process.fills import Fills, vessels
 from latentarm.web.arm_process.task_run import TaskRun, Todo
+from latentarm_research.drives.demonstrate import demonstrate_once
 
 NONE = frozenset()
 

@@ -17,20 +17,20 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from latentarm import cli
-from latentarm.control.call_log import CallLog, read_calls
-from latentarm.control.controller import Controller
-from latentarm.control.exact_json import of_json, to_json
-from latentarm.control.journal_limits import JournalLimits
-from latentarm.control.safety.zones import Zone
+from latentarm.assistance.controllers.contract import Controller
+from latentarm.assistance.controllers.end_effector import EndEffectorController
+from latentarm.assistance.controllers.joined import JoinedController
 from latentarm.control.step import Step
-from latentarm.controllers.end_effector import EndEffectorController
-from latentarm.controllers.joined import JoinedController
+from latentarm.core.call_log import CallLog, read_calls
+from latentarm.core.errors import UserError
+from latentarm.core.exact_json import of_json, to_json
+from latentarm.core.journal_limits import JournalLimits
+from latentarm.core.types import GripperReading, Input, Reading, Stop
 from latentarm.demonstrations.dataset import write_dataset
-from latentarm.errors import UserError
-from latentarm.kinematics.obstacles import Box, Sphere
+from latentarm.robots.kinematics.obstacles import Box, Sphere
 from latentarm.runs.training import TrainConfig, train_run
+from latentarm.safety.zones import Zone
 from latentarm.tasks.table_top import TableTop
-from latentarm.types import GripperReading, Input, Reading, Stop
 from latentarm.web.arm_process import incident
 from latentarm.web.arm_process import replay as replaying
 from latentarm.web.arm_process.beginning import RobotOptions

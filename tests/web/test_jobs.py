@@ -10,7 +10,7 @@ from typing import Literal
 
 from pydantic import TypeAdapter
 
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 from latentarm.web.jobs.job import Job, Wire
 from latentarm.web.protocol.notice import Message
 

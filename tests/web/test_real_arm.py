@@ -8,7 +8,7 @@ import pytest
 from wooden_server import wooden_server
 
 from latentarm.control.clock import MonotonicClock
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 from latentarm.robots.panda import panda
 from latentarm.web.arm_process.beginning import RobotOptions
 from latentarm.web.arm_process.drive_setup import Spec, load_setup

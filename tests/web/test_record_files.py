@@ -12,8 +12,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from latentarm.errors import UserError
-from latentarm.untrusted.names import MOST_CHARACTERS, clean_name
+from latentarm.core.errors import UserError
+from latentarm.core.untrusted.names import MOST_CHARACTERS, clean_name
 from latentarm.web.arm_process.drive_setup import Spec, load_setup
 from latentarm.web.protocol.notice import Notice
 from latentarm.web.protocol.report import Report, TaskState

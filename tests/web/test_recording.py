@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from latentarm.control.journal import read_journal
-from latentarm.control.journal_limits import JournalLimits
 from latentarm.control.recorder import EpisodeHeader
-from latentarm.types import Command, StepRecord, Stop
+from latentarm.core.journal_limits import JournalLimits
+from latentarm.core.types import Command, StepRecord, Stop
 from latentarm.web.arm_process import recording
 from latentarm.web.arm_process.recording import EpisodeWriter
 

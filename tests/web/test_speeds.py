@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from latentarm.control.stick_ring import STRETCHES
-from latentarm.errors import UserError
-from latentarm.types import Context
+from latentarm.core.errors import UserError
+from latentarm.core.types import Context
 from latentarm.web.arm_process.beginning import RobotOptions
 from latentarm.web.arm_process.drive_setup import Spec, load_setup
 from latentarm.web.arm_process.ghosts import GhostPaths

@@ -8,14 +8,14 @@ import pytest
 
 from latentarm.arms.contract import Arm, SceneArm
 from latentarm.arms.kinematic import KinematicArm
-from latentarm.errors import UserError
-from latentarm.scene.scene import SceneState
+from latentarm.core.errors import UserError
+from latentarm.core.types import Pose
+from latentarm.robots.scene.scene import SceneState
 from latentarm.tasks.catalogue import SCENE_TASKS, TASKS, make_scene_task
 from latentarm.tasks.mishap import Mishap, MishapKind
 from latentarm.tasks.steps import StepKind, TaskStep, Waypoint
 from latentarm.tasks.table_top import ITEM_HEIGHT, ITEMS, TableTop
 from latentarm.tasks.task import REACHED_DISTANCE
-from latentarm.types import Pose
 from latentarm.web.arm_process.drive_setup import Spec, load_setup
 from latentarm.web.arm_process.task_run import TaskRun, Todo, goal_to_reach
 from latentarm.web.protocol.orders import BeginTask, Enable

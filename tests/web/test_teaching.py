@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from latentarm.control.recorder import EpisodeHeader, Recorder
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
+from latentarm.core.types import Command, StepRecord
 from latentarm.runs.folder import read_run
-from latentarm.types import Command, StepRecord
 from latentarm.web.arm_process.drive_setup import Spec
 from latentarm.web.jobs.training import FEWEST, TrainingJob, TrainingPlan, train_as_planned
 from latentarm.web.protocol.page_messages import parse_message

@@ -12,16 +12,16 @@ from latentarm.arms.kinematic import KinematicArm
 from latentarm.control.clock import SimulatedClock
 from latentarm.control.export import export_journal
 from latentarm.control.journal import read_journal
+from latentarm.core.errors import UserError
+from latentarm.core.types import Pose
 from latentarm.demonstrations.contexts import context_layout
 from latentarm.demonstrations.dataset import read_dataset
 from latentarm.demonstrations.things import ENVIRONMENT
-from latentarm.errors import UserError
 from latentarm.robots.catalogue import load_robot
-from latentarm.scene.scene import Scene, SceneState
-from latentarm.scene.thing import Grains, Part, Thing
+from latentarm.robots.scene.scene import Scene, SceneState
+from latentarm.robots.scene.thing import Grains, Part, Thing
 from latentarm.tasks.eating import dessert
 from latentarm.tasks.place import ScenePlace
-from latentarm.types import Pose
 from latentarm.web.arm_process.drive import Drive
 from latentarm.web.arm_process.drive_setup import Spec, load_setup
 from latentarm.web.arm_process.recording import EpisodeWriter

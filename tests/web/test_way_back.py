@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from latentarm.control.journal import read_journal
-from latentarm.kinematics.obstacles import HalfSpace, Sphere
+from latentarm.robots.kinematics.obstacles import HalfSpace, Sphere
 from latentarm.tasks.place import ScenePlace
 from latentarm.web.arm_process.way_back import ARRIVED_RAD
 from latentarm.web.protocol.orders import ChooseMode, Enable, Paced, Record, Return

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from latentarm.control.safety.zones import Zone
-from latentarm.errors import UserError
-from latentarm.kinematics.obstacles import HalfSpace, Sphere
+from latentarm.core.errors import UserError
+from latentarm.robots.kinematics.obstacles import HalfSpace, Sphere
+from latentarm.safety.zones import Zone
 from latentarm.web.arm_process.drive_setup import Spec, load_setup
 from latentarm.web.protocol.orders import Enable
 from latentarm.web.server.loaded_run import LoadedRun

@@ -6,8 +6,8 @@ from typing import final
 import numpy as np
 
 from latentarm.alignment.answers import Answers
+from latentarm.core.types import FloatArray
 from latentarm.models.model import LatentActionModel
-from latentarm.types import FloatArray
 
 
 @final

@@ -5,8 +5,8 @@ from typing import Self, final
 
 import numpy as np
 
-from latentarm.errors import UserError
-from latentarm.types import FloatArray, IntArray
+from latentarm.core.errors import UserError
+from latentarm.core.types import FloatArray, IntArray
 
 
 @final

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from latentarm.types import FloatArray
+from latentarm.core.types import FloatArray
 
 Alignment = Callable[[FloatArray, FloatArray], FloatArray]
 """``z = f(u, c)`` (equation 4): inputs (..., d) and contexts (..., c), whose leading axes broadcast, to

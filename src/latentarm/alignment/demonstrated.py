@@ -6,12 +6,12 @@ import numpy as np
 
 from latentarm.alignment.answers import Motions
 from latentarm.alignment.error import lengths
-from latentarm.context import JOINTS, Named
+from latentarm.core.context import JOINTS, Named
+from latentarm.core.errors import UserError
+from latentarm.core.types import BoolArray, Demonstrations, Episode, FloatArray
 from latentarm.demonstrations.contexts import episode_contexts
-from latentarm.errors import UserError
-from latentarm.kinematics.chain import Chain
-from latentarm.kinematics.stillness import moving_range
-from latentarm.types import BoolArray, Demonstrations, Episode, FloatArray
+from latentarm.robots.kinematics.chain import Chain
+from latentarm.robots.kinematics.stillness import moving_range
 
 DURATION_S: Final = 0.5
 """How long a shown motion takes, s: long enough to be seen, short enough to be one push of the stick."""

@@ -5,9 +5,9 @@ import numpy as np
 from latentarm.alignment.answers import Answers, Motions
 from latentarm.alignment.contract import Alignment
 from latentarm.alignment.poses import pose_vectors
-from latentarm.kinematics.chain import Chain
+from latentarm.core.types import FloatArray
 from latentarm.models.decoder import Decoder
-from latentarm.types import FloatArray
+from latentarm.robots.kinematics.chain import Chain
 
 
 def outcome(

@@ -13,10 +13,10 @@ from latentarm.alignment.meaning import Meaning, rotations
 from latentarm.alignment.poses import pose_vectors, pose_vectors_at
 from latentarm.alignment.seat import Seat
 from latentarm.alignment.twists import tool_jacobian
-from latentarm.errors import UserError
-from latentarm.kinematics.chain import Chain
+from latentarm.core.errors import UserError
+from latentarm.core.types import FloatArray
 from latentarm.models.decoder import Decoder
-from latentarm.types import FloatArray
+from latentarm.robots.kinematics.chain import Chain
 
 CAMERAS: Final[dict[Seat, tuple[float, float, float]]] = {
     "facing": (1.0, 0.0, 0.42),

@@ -12,13 +12,13 @@ from latentarm.alignment.frame import CENTRES, LENGTH_M, StickFrame, fit_frame
 from latentarm.alignment.meaning import Meaning
 from latentarm.alignment.poses import POSE_SIZE
 from latentarm.alignment.seat import Seat
-from latentarm.errors import UserError
-from latentarm.files import written_whole
-from latentarm.kinematics.chain import Chain
+from latentarm.core.errors import UserError
+from latentarm.core.files import written_whole
+from latentarm.core.types import FloatArray
 from latentarm.models.decoder import Decoder
 from latentarm.models.reading import Section
 from latentarm.models.saving import CONFIG_LIMIT, CONFIG_NAME, read_tensors
-from latentarm.types import FloatArray
+from latentarm.robots.kinematics.chain import Chain
 
 FRAME_NAME: Final = "frame.safetensors"
 SEATS: Final[tuple[Seat, ...]] = get_args(Seat)

@@ -5,7 +5,7 @@ from typing import final
 
 import numpy as np
 
-from latentarm.types import FloatArray
+from latentarm.core.types import FloatArray
 
 
 @final

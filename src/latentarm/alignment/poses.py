@@ -5,8 +5,8 @@ from typing import Final
 
 import numpy as np
 
-from latentarm.kinematics.chain import Chain
-from latentarm.types import FloatArray
+from latentarm.core.types import FloatArray
+from latentarm.robots.kinematics.chain import Chain
 
 ROTATION_WEIGHT_M: Final = 0.2
 """What a turn of a tool by 1 rad counts beside a motion by 1 m: as much as the motion of a point of the hand

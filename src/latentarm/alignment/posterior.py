@@ -23,8 +23,8 @@ from latentarm.alignment.meaning import Meaning, rotations
 from latentarm.alignment.poses import pose_vectors
 from latentarm.alignment.surroundings import Surroundings
 from latentarm.alignment.twists import motion_twists
-from latentarm.kinematics.chain import Chain
-from latentarm.types import BoolArray, FloatArray
+from latentarm.core.types import BoolArray, FloatArray
+from latentarm.robots.kinematics.chain import Chain
 
 RESOLUTION: Final = 0.02
 """SD of an answer that means nothing: as finely as a stick is held."""

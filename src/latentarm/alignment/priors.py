@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final, final
 import torch
 from torch import Tensor
 
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 
 if TYPE_CHECKING:
     from latentarm.alignment.transition import Push

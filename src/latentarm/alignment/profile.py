@@ -21,10 +21,12 @@ from latentarm.alignment.poses import POSE_SIZE
 from latentarm.alignment.runtime import LearnedAlignment, tensor_shapes
 from latentarm.alignment.surroundings import Surroundings
 from latentarm.alignment.tool_space import ToolSpace
+from latentarm.core.errors import UserError
+from latentarm.core.files import sync_folder, write_text, written_whole
+from latentarm.core.types import FloatArray
+from latentarm.core.untrusted.names import clean_name
+from latentarm.core.untrusted.opening import read_bytes
 from latentarm.demonstrations.folders import check_vacant, staged_folder
-from latentarm.errors import UserError
-from latentarm.files import sync_folder, write_text, written_whole
-from latentarm.kinematics.chain import Chain
 from latentarm.models.decoder import Decoder
 from latentarm.models.kind import Shape
 from latentarm.models.reading import Section
@@ -36,9 +38,7 @@ from latentarm.models.saving import (
     WEIGHTS_NAME,
     read_tensors,
 )
-from latentarm.types import FloatArray
-from latentarm.untrusted.names import clean_name
-from latentarm.untrusted.opening import read_bytes
+from latentarm.robots.kinematics.chain import Chain
 
 FOLDER: Final = "profiles"
 ALIGNMENT_NAME: Final = "alignment.safetensors"

@@ -13,9 +13,9 @@ import numpy as np
 from latentarm.alignment.answers import Motions
 from latentarm.alignment.poses import pose_vectors
 from latentarm.alignment.twists import motion_twists
-from latentarm.errors import UserError
-from latentarm.kinematics.chain import Chain
-from latentarm.types import FloatArray
+from latentarm.core.errors import UserError
+from latentarm.core.types import FloatArray
+from latentarm.robots.kinematics.chain import Chain
 
 TOO_FEW: Final = 2
 """Answers after which asking may stop."""

@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from itertools import pairwise
 from typing import Final, final
 
+from latentarm.core.types import FloatArray
 from latentarm.models.kind import Shape
 from latentarm.models.numpy_networks import Layer, halve_hidden, propagate
-from latentarm.types import FloatArray
 
 NETWORK: Final = "alignment"
 """The network's name in ``<network>.<layer>.weight``."""

@@ -8,8 +8,8 @@ import numpy as np
 from latentarm.alignment.answers import Motions
 from latentarm.alignment.poses import pose_vectors
 from latentarm.alignment.twists import motion_twists
-from latentarm.kinematics.chain import Chain
-from latentarm.types import FloatArray
+from latentarm.core.types import FloatArray
+from latentarm.robots.kinematics.chain import Chain
 
 REGIONS: Final = 24
 """Regions that the demonstrated places are divided into, at most."""

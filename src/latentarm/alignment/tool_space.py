@@ -9,10 +9,10 @@ from latentarm.alignment.meaning import Meaning
 from latentarm.alignment.poses import pose_vectors_at
 from latentarm.alignment.surroundings import Surroundings
 from latentarm.alignment.twists import tool_jacobian
-from latentarm.errors import UserError
-from latentarm.kinematics.chain import Chain
+from latentarm.core.errors import UserError
+from latentarm.core.types import FloatArray
 from latentarm.models.decoder import Decoder
-from latentarm.types import FloatArray
+from latentarm.robots.kinematics.chain import Chain
 
 OUTSIDE: Final = 1.0
 """Weight of motion that was not demonstrated in a place, as a share of a full push."""

@@ -12,14 +12,14 @@ from latentarm.alignment.answers import Answers
 from latentarm.alignment.loss import ANSWERS_AT_ONCE, AlignmentLoss, Draw
 from latentarm.alignment.priors import NO_PRIORS, Priors
 from latentarm.alignment.runtime import LearnedAlignment, layer_shapes
-from latentarm.errors import UserError
-from latentarm.kinematics.chain import Chain
+from latentarm.core.errors import UserError
+from latentarm.core.types import FloatArray
 from latentarm.models.batches import seed_generator
 from latentarm.models.model import LatentActionModel
 from latentarm.models.networks import FlatNetworks
 from latentarm.models.optimiser import FlatAdam, falling_rate
 from latentarm.models.training import threads_for
-from latentarm.types import FloatArray
+from latentarm.robots.kinematics.chain import Chain
 
 JUDGED: Final = 512
 """Contexts in which all runs are judged at the end."""

@@ -7,9 +7,9 @@ import torch
 from torch import Tensor
 
 from latentarm.alignment.poses import pose_weights
-from latentarm.kinematics.chain import Chain
-from latentarm.kinematics.torch_chain import TorchChain
 from latentarm.models.torch_decoder import TorchDecoder
+from latentarm.robots.kinematics.chain import Chain
+from latentarm.robots.kinematics.torch_chain import TorchChain
 
 
 @final

@@ -4,9 +4,9 @@ import numpy as np
 
 from latentarm.alignment.answers import Motions
 from latentarm.alignment.poses import ROTATION_WEIGHT_M
-from latentarm.kinematics.chain import Chain
-from latentarm.kinematics.rotations import pose_error
-from latentarm.types import FloatArray
+from latentarm.core.types import FloatArray
+from latentarm.robots.kinematics.chain import Chain
+from latentarm.robots.kinematics.rotations import pose_error
 
 
 def motion_twists(chain: Chain, motions: Motions) -> FloatArray:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Final, final
 from urllib.parse import parse_qsl, urlsplit
 
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 
 MARK: Final = "://"
 """What tells the address of a real arm from the name of a simulated one."""

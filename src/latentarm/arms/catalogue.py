@@ -7,11 +7,11 @@ from typing import Final, Protocol, cast
 from latentarm.arms.address import is_address
 from latentarm.arms.contract import Arm, SceneArm
 from latentarm.arms.real_catalogue import check_address, make_real_arm
-from latentarm.errors import UserError
-from latentarm.plugins import Catalogue
+from latentarm.core.errors import UserError
+from latentarm.core.plugins import Catalogue
+from latentarm.core.types import FloatArray
 from latentarm.robots.robot import Robot
-from latentarm.scene.scene import Scene
-from latentarm.types import FloatArray
+from latentarm.robots.scene.scene import Scene
 
 
 class ArmFactory(Protocol):

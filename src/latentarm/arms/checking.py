@@ -7,7 +7,7 @@ import numpy as np
 
 from latentarm.arms.contract import arm_refusals, check_rate
 from latentarm.arms.real import Fact, Findings, FoundLimits, RealArm
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 from latentarm.robots.robot import Robot
 
 _BEYOND: Final = 1e-3

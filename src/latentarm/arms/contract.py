@@ -6,12 +6,12 @@ from dataclasses import dataclass
 from types import TracebackType
 from typing import Final, Literal, Self, final
 
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
+from latentarm.core.types import Command, GripperCommand, Reading
 from latentarm.robots.gripper import Gripper
 from latentarm.robots.notices import assumed_limits
 from latentarm.robots.robot import Robot
-from latentarm.scene.scene import SceneState
-from latentarm.types import Command, GripperCommand, Reading
+from latentarm.robots.scene.scene import SceneState
 
 ArmPhase = Literal["off", "disabled", "guided", "ready", "moving", "fault", "emergency_stop"]
 """What state an arm is in."""

@@ -10,8 +10,8 @@ import mujoco
 import numpy as np
 
 from latentarm.arms.simulated_gripper import SimulatedGripper
+from latentarm.core.types import FloatArray, GripperReading
 from latentarm.robots.gripper import Gripper
-from latentarm.types import FloatArray, GripperReading
 
 FREQUENCY_RAD_S: Final = 300.0
 """Natural frequency of a finger that only its servo moves, rad/s; it is critically damped."""

@@ -14,7 +14,7 @@ import sys
 from collections.abc import Mapping
 from typing import Any, Final, Self, cast, final
 
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 
 _LARGEST: Final = 1 << 16
 """Bytes of a message."""

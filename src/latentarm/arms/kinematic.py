@@ -8,8 +8,8 @@ import numpy as np
 
 from latentarm.arms.simulated import SimulatedArm
 from latentarm.arms.simulated_gripper import KinematicGripper
+from latentarm.core.types import FloatArray
 from latentarm.robots.robot import Robot
-from latentarm.types import FloatArray
 
 RATE_HZ: Final = 1000.0
 """It takes commands as fast as any loop sends them."""

@@ -15,11 +15,11 @@ from latentarm.arms.scene_watch import SceneWatch
 from latentarm.arms.servo import Servo, add_servos, drop_actuators, hold_still_joints, torque_limits
 from latentarm.arms.simulated import SETTLED_S, SimulatedArm, check_start
 from latentarm.arms.tines import TinesInFood
-from latentarm.errors import UserError
-from latentarm.kinematics.reader import ModelChain, read, reference_positions
+from latentarm.core.errors import UserError
+from latentarm.core.types import FloatArray, IntArray
+from latentarm.robots.kinematics.reader import ModelChain, read, reference_positions
 from latentarm.robots.robot import Robot
-from latentarm.scene.scene import Scene, SceneState
-from latentarm.types import FloatArray, IntArray
+from latentarm.robots.scene.scene import Scene, SceneState
 
 STEP_S: Final = 0.001
 """Time step of the physics and of the servo, s."""

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import final
 
 from latentarm.arms.contract import Arm
-from latentarm.types import FloatArray
+from latentarm.core.types import FloatArray
 
 
 @final

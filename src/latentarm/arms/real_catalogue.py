@@ -5,8 +5,8 @@ from typing import Final, Protocol, cast
 
 from latentarm.arms.address import ArmAddress, parse_address
 from latentarm.arms.real import RealArm
-from latentarm.errors import UserError
-from latentarm.plugins import Catalogue
+from latentarm.core.errors import UserError
+from latentarm.core.plugins import Catalogue
 from latentarm.robots.robot import Robot
 
 

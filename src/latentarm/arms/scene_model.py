@@ -6,11 +6,11 @@ import mujoco
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from latentarm.core.types import FloatArray
 from latentarm.robots.attachment import TINES_BODY, Attachment
 from latentarm.robots.parts import add_parts
-from latentarm.scene.scene import TABLE, Scene
-from latentarm.scene.thing import Bond, Grains, Thing
-from latentarm.types import FloatArray
+from latentarm.robots.scene.scene import TABLE, Scene
+from latentarm.robots.scene.thing import Bond, Grains, Thing
 
 SOLID: Final = 1
 """Bit of what collides with everything solid."""

@@ -7,9 +7,9 @@ import mujoco
 import numpy as np
 
 from latentarm.arms.scene_model import grain_body, rotation_of, thing_body
+from latentarm.core.types import BoolArray, FloatArray, IntArray, Pose
 from latentarm.robots.robot import Robot
-from latentarm.scene.scene import TABLE, TOOL, Scene, SceneState
-from latentarm.types import BoolArray, FloatArray, IntArray, Pose
+from latentarm.robots.scene.scene import TABLE, TOOL, Scene, SceneState
 
 _UNNAMED: Final = -1
 

@@ -6,10 +6,10 @@ from typing import Final, final
 import mujoco
 import numpy as np
 
-from latentarm.errors import UserError
-from latentarm.kinematics.reader import reference_positions
+from latentarm.core.errors import UserError
+from latentarm.core.types import FloatArray, IntArray
+from latentarm.robots.kinematics.reader import reference_positions
 from latentarm.robots.robot import Robot
-from latentarm.types import FloatArray, IntArray
 
 FREQUENCY_RAD_S: Final = 100.0
 """Natural frequency of a joint that only its servo moves, rad/s; it is critically damped."""

@@ -9,10 +9,10 @@ import numpy as np
 
 from latentarm.arms.contract import Arm, ArmPhase, ArmSpec, ArmStatus
 from latentarm.arms.simulated_gripper import SimulatedGripper
-from latentarm.errors import UserError
-from latentarm.kinematics.stillness import STILL_RAD_S
+from latentarm.core.errors import UserError
+from latentarm.core.types import Command, FloatArray, GripperCommand, Reading
+from latentarm.robots.kinematics.stillness import STILL_RAD_S
 from latentarm.robots.robot import Robot
-from latentarm.types import Command, FloatArray, GripperCommand, Reading
 
 _CLOCK_DIGITS: Final = 9
 """Time passes in whole nanoseconds, so that equal periods of a clock are equally long for the arm."""

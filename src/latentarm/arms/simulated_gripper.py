@@ -5,8 +5,8 @@ from typing import final
 
 import numpy as np
 
+from latentarm.core.types import GripperCommand, GripperReading
 from latentarm.robots.gripper import Gripper
-from latentarm.types import GripperCommand, GripperReading
 
 
 class SimulatedGripper(ABC):

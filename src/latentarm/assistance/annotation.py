@@ -7,9 +7,9 @@ import numpy as np
 
 from latentarm.assistance.belief import Belief, Rule
 from latentarm.assistance.boltzmann import BoltzmannBelief
-from latentarm.context import BELIEF, Named, feature_names
-from latentarm.errors import UserError
-from latentarm.types import Demonstrations, Episode, FloatArray
+from latentarm.core.context import BELIEF, Named, feature_names
+from latentarm.core.errors import UserError
+from latentarm.core.types import Demonstrations, Episode, FloatArray
 
 _STANDSTILL = 0.02
 """Joint speed ‖a‖, rad/s, below which a demonstration counts as still and is no evidence."""

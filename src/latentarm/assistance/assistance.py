@@ -4,7 +4,7 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import Protocol, final
 
-from latentarm.types import FloatArray
+from latentarm.core.types import FloatArray
 
 
 @final

@@ -6,8 +6,8 @@ from typing import Protocol, TypedDict, final
 
 import numpy as np
 
-from latentarm.errors import UserError
-from latentarm.types import FloatArray
+from latentarm.core.errors import UserError
+from latentarm.core.types import FloatArray
 
 ActionOf = Callable[[FloatArray], FloatArray]
 """Inputs (..., K, d) to the actions ``a_h`` (..., K, n), rad/s, that they would cause in these states."""

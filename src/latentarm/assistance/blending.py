@@ -6,8 +6,8 @@ from typing import final
 
 import numpy as np
 
-from latentarm.errors import UserError
-from latentarm.types import FloatArray
+from latentarm.core.errors import UserError
+from latentarm.core.types import FloatArray
 
 
 def blend(action_human: FloatArray, action_assist: FloatArray, alpha: float | FloatArray) -> FloatArray:

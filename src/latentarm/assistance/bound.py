@@ -28,8 +28,8 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from latentarm.errors import UserError
-from latentarm.types import BoolArray, FloatArray
+from latentarm.core.errors import UserError
+from latentarm.core.types import BoolArray, FloatArray
 
 Others = Callable[[FloatArray, FloatArray, FloatArray, ArrayLike], FloatArray]
 """``(state, belief, goals, goal)`` to a bound (...,), rad, on what help towards the other goals may do."""

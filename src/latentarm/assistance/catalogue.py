@@ -10,7 +10,7 @@ from latentarm.assistance.hindsight import HindsightOptimisation
 from latentarm.assistance.hindsight_belief import HindsightBelief
 from latentarm.assistance.interpolation import WEIGHTS, Interpolation
 from latentarm.assistance.policy_blending import PolicyBlending
-from latentarm.plugins import Catalogue
+from latentarm.core.plugins import Catalogue
 from latentarm.robots.robot import Robot
 
 

@@ -11,9 +11,9 @@ from typing import Final, final
 
 import numpy as np
 
-from latentarm.errors import UserError
-from latentarm.kinematics.rotations import rotation_vector
-from latentarm.types import FloatArray, Pose
+from latentarm.core.errors import UserError
+from latentarm.core.types import FloatArray, Pose
+from latentarm.robots.kinematics.rotations import rotation_vector
 
 MOST_POSES: Final = 30
 """Of a goal, as published."""

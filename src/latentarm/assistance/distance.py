@@ -9,7 +9,7 @@ from typing import Unpack, final
 import numpy as np
 
 from latentarm.assistance.belief import Belief, BeliefOptions, not_negative
-from latentarm.types import FloatArray
+from latentarm.core.types import FloatArray
 
 
 @final

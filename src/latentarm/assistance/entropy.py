@@ -10,11 +10,11 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from latentarm.errors import UserError
-from latentarm.kinematics.chain import Chain
-from latentarm.kinematics.torch_chain import TorchChain
+from latentarm.core.errors import UserError
+from latentarm.core.types import FloatArray
 from latentarm.models.term import LossTerm, Situation
-from latentarm.types import FloatArray
+from latentarm.robots.kinematics.chain import Chain
+from latentarm.robots.kinematics.torch_chain import TorchChain
 
 CONTEXTS: Final = 4096
 """Contexts that a training draws from."""

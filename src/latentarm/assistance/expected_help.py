@@ -6,9 +6,9 @@ import numpy as np
 
 from latentarm.assistance.cost_to_go import LOOK_AHEAD_S
 from latentarm.assistance.goal_poses import PosesOf, goal_poses, that_pose
-from latentarm.kinematics.resolved_rates import Damping, joint_velocities
+from latentarm.core.types import FloatArray, Pose
+from latentarm.robots.kinematics.resolved_rates import Damping, joint_velocities
 from latentarm.robots.robot import Robot
-from latentarm.types import FloatArray, Pose
 
 
 @final

@@ -8,7 +8,7 @@ import numpy as np
 
 from latentarm.assistance.assistance import Assistance, AssistanceRule, Contribution
 from latentarm.assistance.blending import Arbitration, assistive_action
-from latentarm.types import FloatArray
+from latentarm.core.types import FloatArray
 
 
 @final

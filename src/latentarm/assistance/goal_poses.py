@@ -6,8 +6,8 @@ from functools import partial
 import numpy as np
 
 from latentarm.assistance.cost_to_go import MOST_POSES, GoalPoses
+from latentarm.core.types import FloatArray, Pose
 from latentarm.robots.robot import Robot
-from latentarm.types import FloatArray, Pose
 
 PosesOf = Callable[[Pose], Sequence[Pose]]
 """From the pose of the tool at a goal to all poses at which the goal is reached, 30 at most."""

@@ -5,8 +5,8 @@ from typing import Final, Unpack, final
 from latentarm.assistance.belief import Belief, BeliefOptions
 from latentarm.assistance.cost_to_go import LOOK_AHEAD_S
 from latentarm.assistance.goal_poses import PosesOf, goal_poses, that_pose
+from latentarm.core.types import FloatArray
 from latentarm.robots.robot import Robot
-from latentarm.types import FloatArray
 
 TICK_S: Final = 1.0 / 40.0
 """How often the published belief is updated, s."""

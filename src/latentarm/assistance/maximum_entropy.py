@@ -10,7 +10,7 @@ from typing import Unpack, final
 import numpy as np
 
 from latentarm.assistance.belief import Belief, BeliefOptions, log_choice, not_negative, positive
-from latentarm.types import FloatArray
+from latentarm.core.types import FloatArray
 
 
 @final

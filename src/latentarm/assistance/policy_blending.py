@@ -12,9 +12,9 @@ import numpy as np
 from latentarm.assistance.assistance import Assistance, Contribution
 from latentarm.assistance.expected_help import ExpectedHelp
 from latentarm.assistance.goal_poses import PosesOf, that_pose
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
+from latentarm.core.types import FloatArray
 from latentarm.robots.robot import Robot
-from latentarm.types import FloatArray
 
 
 @final

@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING, Annotated
 import numpy as np
 from tyro.conf import Positional, arg
 
+from latentarm.alignment.preference import AXES, ToolAxes
 from latentarm.alignment.queries import StoppingRule
 from latentarm.commands.configuration import write_options
 from latentarm.commands.options import Json, MovedDataset, Seed
 from latentarm.commands.output import say, show
-from latentarm.operators.preference import AXES, ToolAxes
+from latentarm.core.types import Row
+from latentarm.runs.asking import FASTEST, PersonAtTerminal, SimulatedPerson
 from latentarm.runs.checks import check_count, check_seed
 from latentarm.runs.person import Person, Say
-from latentarm.simulation.asking import FASTEST, PersonAtTerminal, SimulatedPerson
-from latentarm.simulation.stick_line import read_line
-from latentarm.types import Row
+from latentarm.runs.stick_line import read_line
 
 if TYPE_CHECKING:
     from latentarm.runs.questions import Scene

@@ -16,7 +16,7 @@ from latentarm.arms.real_catalogue import REAL_ARMS, address_form, make_real_arm
 from latentarm.commands.options import EndEffector, JointSpeed, Json, LimitsFile, LinkSpeed
 from latentarm.commands.output import print_renderables, refuse, say
 from latentarm.control.clock import MonotonicClock
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 from latentarm.web.arm_process.speeds import Speeds
 
 if TYPE_CHECKING:

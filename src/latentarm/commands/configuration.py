@@ -16,8 +16,8 @@ from typing import Annotated, Any, Final, get_args, get_origin, get_type_hints
 from tyro.conf import arg
 
 from latentarm import __version__
-from latentarm.errors import UserError
-from latentarm.files import write_text
+from latentarm.core.errors import UserError
+from latentarm.core.files import write_text
 
 Command = Callable[..., int]
 

@@ -15,7 +15,8 @@ from tyro.conf import Positional, arg
 from latentarm.commands.configuration import write_options
 from latentarm.commands.options import Jobs, Json, MovedDataset, Seed
 from latentarm.commands.output import print_renderables, say
-from latentarm.metrics.measures import (
+from latentarm.core.types import Row
+from latentarm.evaluation.measures import (
     ARROWS,
     AT_REST,
     ENCODED,
@@ -24,8 +25,7 @@ from latentarm.metrics.measures import (
     label_of,
     measure_of,
 )
-from latentarm.metrics.table import format_figure, measure_name
-from latentarm.types import Row
+from latentarm.evaluation.table import format_figure, measure_name
 
 if TYPE_CHECKING:
     from latentarm.runs.evaluating import Evaluation

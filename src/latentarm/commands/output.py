@@ -5,12 +5,12 @@ import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from latentarm.untrusted.terminal import visible
+from latentarm.core.untrusted.terminal import visible
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-    from latentarm.types import Row
+    from latentarm.core.types import Row
 
 
 def show(rows: "Sequence[Row]", json: bool, *tables: "RenderableType") -> None:
@@ -20,16 +20,16 @@ def show(rows: "Sequence[Row]", json: bool, *tables: "RenderableType") -> None:
     elif tables:
         print_renderables(*tables)
     else:
-        from latentarm.metrics.table import rich_tables
-        from latentarm.untrusted.console import VisibleConsole
+        from latentarm.core.untrusted.console import VisibleConsole
+        from latentarm.evaluation.table import rich_tables
 
         print_renderables(rich_tables(rows, width=VisibleConsole().width))
 
 
 def tables_by_task(rows: "Sequence[Row]") -> "list[RenderableType]":
     """One table per task, of the rows without a condition."""
-    from latentarm.metrics.table import rich_tables
-    from latentarm.untrusted.console import VisibleConsole
+    from latentarm.core.untrusted.console import VisibleConsole
+    from latentarm.evaluation.table import rich_tables
 
     width = VisibleConsole().width
     main_rows = [row for row in rows if row.condition is None]
@@ -67,7 +67,7 @@ def refuse(sentences: "Sequence[str]") -> None:
 
 def print_renderables(*renderables: "RenderableType") -> None:
     """Print tables and other things that rich can draw."""
-    from latentarm.untrusted.console import VisibleConsole
+    from latentarm.core.untrusted.console import VisibleConsole
 
     console = VisibleConsole()
     for renderable in renderables:

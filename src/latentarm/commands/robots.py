@@ -9,11 +9,11 @@ from tyro.conf import Positional, arg
 
 from latentarm.commands.options import EndEffector, Json, LimitsFile
 from latentarm.commands.output import print_renderables
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
+from latentarm.core.types import FloatArray
 from latentarm.robots.limits import QUANTITIES, Quantity, Source
 from latentarm.robots.notices import notices
 from latentarm.robots.robot import Robot
-from latentarm.types import FloatArray
 
 _SOURCES: dict[Source, str] = {
     "model": "from the model",

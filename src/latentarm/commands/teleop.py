@@ -21,7 +21,7 @@ from latentarm.commands.options import (
     Seed,
 )
 from latentarm.commands.output import draws_blocks, say
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 
 
 def teleop(
@@ -84,8 +84,8 @@ def teleop(
 
     Prints the page's address; Ctrl-C ends it. For example: latentarm teleop runs/pour-cae
     """
-    from latentarm.control.journal_limits import JournalLimits
-    from latentarm.control.safety.zones_file import StatedZones, read_zones
+    from latentarm.core.journal_limits import JournalLimits
+    from latentarm.safety.zones_file import StatedZones, read_zones
     from latentarm.web.arm_process.beginning import RobotOptions
     from latentarm.web.arm_process.drive_setup import Spec
     from latentarm.web.arm_process.speeds import Speeds

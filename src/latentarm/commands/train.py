@@ -10,7 +10,7 @@ from latentarm.commands.choices import ModelName, TaskName
 from latentarm.commands.configuration import write_options
 from latentarm.commands.options import Datasets, EndEffector, Json, Seed
 from latentarm.commands.output import note, say, show
-from latentarm.context import FeatureName
+from latentarm.core.context import FeatureName
 from latentarm.models.catalogue import DEFAULT_MODEL
 
 

@@ -3,8 +3,8 @@
 from pathlib import Path
 from typing import Any, Final, cast
 
-from latentarm.errors import UserError
-from latentarm.untrusted.yaml_file import read_yaml
+from latentarm.core.errors import UserError
+from latentarm.core.untrusted.yaml_file import read_yaml
 
 MOST_BYTES: Final = 1 << 16
 """Of a file of options."""

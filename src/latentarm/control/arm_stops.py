@@ -3,7 +3,7 @@
 from typing import Final
 
 from latentarm.arms.contract import ArmPhase, ArmStatus
-from latentarm.types import Stop, StopCode
+from latentarm.core.types import Stop, StopCode
 
 _CODES: Final[dict[ArmPhase, StopCode]] = {
     "off": "arm_off",

@@ -11,13 +11,13 @@ import numpy as np
 from latentarm.control.journal import JournalEpisode, read_journal
 from latentarm.control.recorded_states import first_implausible
 from latentarm.control.recorder import EpisodeHeader
+from latentarm.core.errors import UserError
+from latentarm.core.types import Demonstrations, Episode, FloatArray, StepRecord
 from latentarm.demonstrations.gripper import ACTION_GRIPPER, GRIPPER_HOLDING, GRIPPER_WIDTH, going_to
 from latentarm.demonstrations.provenance import BY_HAND
 from latentarm.demonstrations.things import ENVIRONMENT
-from latentarm.errors import UserError
-from latentarm.kinematics.pose_rows import stored_rows
+from latentarm.robots.kinematics.pose_rows import stored_rows
 from latentarm.robots.limits import JointLimits
-from latentarm.types import Demonstrations, Episode, FloatArray, StepRecord
 
 NO_BOUND = -1.0
 """Stands for "no bound" in a dataset, whose numbers are all finite: a radius is never negative."""

@@ -10,7 +10,7 @@ from typing import final
 import numpy as np
 
 from latentarm.control.clock import Clock
-from latentarm.types import FloatArray, GripperAsk, Input
+from latentarm.core.types import FloatArray, GripperAsk, Input
 
 NONCE_LIFE_S = 0.2
 """An input must echo a nonce no older than this."""

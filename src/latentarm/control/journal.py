@@ -12,14 +12,14 @@ import numpy as np
 
 from latentarm.control.recorder import LIMITS, EpisodeHeader, check_is_journal
 from latentarm.control.samples import ALWAYS, COMPACT, gripper_command, gripper_reading, thing_poses, unpacked
+from latentarm.core.errors import UserError
+from latentarm.core.types import NO_THINGS, Command, FloatArray, Goal, Pose, StepRecord, Stop
+from latentarm.core.untrusted.documents import parse_object
+from latentarm.core.untrusted.memory import bounded_memory
+from latentarm.core.untrusted.opening import check_file, is_missing
 from latentarm.demonstrations.provenance import parse_provenance
-from latentarm.errors import UserError
 from latentarm.robots.limits import JointLimits
 from latentarm.robots.limits_file import parse_limits
-from latentarm.types import NO_THINGS, Command, FloatArray, Goal, Pose, StepRecord, Stop
-from latentarm.untrusted.documents import parse_object
-from latentarm.untrusted.memory import bounded_memory
-from latentarm.untrusted.opening import check_file, is_missing
 
 _EARLIER = (math.nan, 1.0, 0.0)
 """The bound, the pace and what was added, in samples from before they were recorded."""

@@ -14,7 +14,7 @@ from latentarm.control.arm_stops import stop_of
 from latentarm.control.clock import Clock
 from latentarm.control.input_port import InputSource
 from latentarm.control.step import Step
-from latentarm.types import StepRecord, Stop
+from latentarm.core.types import StepRecord, Stop
 
 ENABLING_S: Final = 5.0
 """An arm that has not become ready for so long after it was asked to is left disabled, s."""

@@ -5,8 +5,8 @@ from typing import Final
 
 import numpy as np
 
+from latentarm.core.types import StepRecord
 from latentarm.robots.limits import JointLimits
-from latentarm.types import StepRecord
 
 _OUTSIDE: Final = 0.01
 """Readings this far past a limit are noise, rad."""

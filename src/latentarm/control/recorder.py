@@ -10,15 +10,15 @@ from typing import final
 
 import numpy as np
 
-from latentarm.control.journal_limits import JournalFullError, JournalLimits, JournalWatch
 from latentarm.control.samples import ALWAYS, figures_of, packed, without_things
+from latentarm.core.errors import UserError
+from latentarm.core.journal_limits import JournalFullError, JournalLimits, JournalWatch
+from latentarm.core.types import NO_THINGS, Goal, Provenance, StatedLimits, StepRecord, StrPath
+from latentarm.core.untrusted.opening import check_file, is_missing
 from latentarm.demonstrations.provenance import provenance_json
-from latentarm.errors import UserError
-from latentarm.kinematics.pose_rows import STORED
+from latentarm.robots.kinematics.pose_rows import STORED
 from latentarm.robots.limits import JointLimits
 from latentarm.robots.limits_file import limits_document
-from latentarm.types import NO_THINGS, Goal, Provenance, StatedLimits, StepRecord, StrPath
-from latentarm.untrusted.opening import check_file, is_missing
 
 LIMITS = ("lower", "upper", "velocity", "acceleration", "jerk")
 """What a header says of the joints' limits."""

@@ -7,8 +7,8 @@ from typing import Final, final
 
 from latentarm.control.export import demonstrations_of
 from latentarm.control.journal import JournalEntry, list_journal, read_journal
-from latentarm.errors import UserError
-from latentarm.types import Demonstrations
+from latentarm.core.errors import UserError
+from latentarm.core.types import Demonstrations
 
 JOURNAL_SUFFIX: Final = ".sqlite"
 

@@ -6,8 +6,8 @@ from typing import Final
 
 import numpy as np
 
-from latentarm.kinematics.pose_rows import STORED
-from latentarm.types import FloatArray, GripperCommand, GripperReading, StepRecord
+from latentarm.core.types import FloatArray, GripperCommand, GripperReading, StepRecord
+from latentarm.robots.kinematics.pose_rows import STORED
 
 COMPACT: Final = {b"\x02": 8, b"\x03": 10, b"\x04": 11}
 """How many parts a compact sample has, by its first byte: two of a gripper came later, then one of things.

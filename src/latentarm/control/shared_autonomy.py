@@ -8,9 +8,9 @@ import numpy as np
 
 from latentarm.assistance.assistance import Assistance, Contribution
 from latentarm.assistance.belief import Belief
-from latentarm.control.controller import Controller
-from latentarm.errors import UserError
-from latentarm.types import Context, FloatArray, Goal
+from latentarm.assistance.controllers.contract import Controller
+from latentarm.core.errors import UserError
+from latentarm.core.types import Context, FloatArray, Goal
 
 
 @final

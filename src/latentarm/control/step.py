@@ -8,21 +8,12 @@ import numpy as np
 
 from latentarm.assistance.assistance import Assistance
 from latentarm.assistance.belief import Belief
-from latentarm.control.call_log import CallLog, logged
-from latentarm.control.controller import Controller
+from latentarm.assistance.controllers.contract import Controller
 from latentarm.control.engagement import Engagement
-from latentarm.control.safety.config import SafetyConfig
-from latentarm.control.safety.filter import Freshness
-from latentarm.control.safety.gripper import GripperFilter
-from latentarm.control.safety.newest_reading import NewestReading
-from latentarm.control.safety.plausibility import FOLLOWING_ERRORS, Plausibility
-from latentarm.control.safety.stack import Passed, SafetyStack
-from latentarm.control.safety.timekeeping import Timekeeping
-from latentarm.control.safety.yielding import YIELDING, Yielding
 from latentarm.control.shared_autonomy import SharedAutonomy
-from latentarm.errors import UserError
-from latentarm.robots.robot import Robot
-from latentarm.types import (
+from latentarm.core.call_log import CallLog, logged
+from latentarm.core.errors import UserError
+from latentarm.core.types import (
     NO_GRIPPER,
     NO_OBJECTS,
     Command,
@@ -35,6 +26,15 @@ from latentarm.types import (
     StepRecord,
     Stop,
 )
+from latentarm.robots.robot import Robot
+from latentarm.safety.config import SafetyConfig
+from latentarm.safety.filter import Freshness
+from latentarm.safety.gripper import GripperFilter
+from latentarm.safety.newest_reading import NewestReading
+from latentarm.safety.plausibility import FOLLOWING_ERRORS, Plausibility
+from latentarm.safety.stack import Passed, SafetyStack
+from latentarm.safety.timekeeping import Timekeeping
+from latentarm.safety.yielding import YIELDING, Yielding
 
 _ABSURD = 2.0
 """Inputs slightly above 1 come from a stick's corners and are clipped; above this the interface is broken."""

@@ -4,7 +4,7 @@ from typing import Final
 
 import numpy as np
 
-from latentarm.types import FloatArray
+from latentarm.core.types import FloatArray
 
 DIRECTIONS: Final = 32
 """Of a stick with two axes, counter-clockwise from the right."""

@@ -13,12 +13,12 @@ from typing import Any, Final
 
 import numpy as np
 
+from latentarm.core.errors import UserError
+from latentarm.core.types import Demonstrations, Episode, FloatArray
+from latentarm.core.untrusted.opening import check_file
 from latentarm.demonstrations.bounds import MAX_COLUMNS, MAX_FILE_BYTES, check_values
 from latentarm.demonstrations.source import SourceData
 from latentarm.demonstrations.timing import typical_rate_hz
-from latentarm.errors import UserError
-from latentarm.types import Demonstrations, Episode, FloatArray
-from latentarm.untrusted.opening import check_file
 
 ROS1: Final = b"#ROSBAG V"
 MCAP: Final = b"\x89MCAP"

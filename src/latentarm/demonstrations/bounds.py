@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Final
 
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 
 MAX_VALUES: Final = 1 << 27
 """Numbers in one dataset: 1 GiB as float64, or 19 million samples of seven joints."""

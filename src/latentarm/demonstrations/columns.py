@@ -11,8 +11,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final, final
 
+from latentarm.core.errors import UserError
 from latentarm.demonstrations.info import default_joint_names
-from latentarm.errors import UserError
 
 _GRIPPERS: Final = frozenset({"gripper", "finger", "fingers", "jaw", "hand"})
 _FILLERS: Final = frozenset({"pos", "position", "joint", "joints", "deg", "degrees", "rad", "radians"})

@@ -4,7 +4,7 @@ from typing import Final
 
 import numpy as np
 
-from latentarm.context import (
+from latentarm.core.context import (
     BELIEF,
     GRIPPER,
     OBJECTS,
@@ -14,11 +14,11 @@ from latentarm.context import (
     context_vector,
     feature_names,
 )
+from latentarm.core.errors import UserError
+from latentarm.core.types import NO_GRIPPER, NO_OBJECTS, Context, Demonstrations, Episode, FloatArray
 from latentarm.demonstrations.gripper import ACTION_GRIPPER, GRIPPER_TOGGLED, GRIPPER_WIDTH, opening_source
 from latentarm.demonstrations.things import ENVIRONMENT
-from latentarm.errors import UserError
-from latentarm.kinematics.pose_rows import STORED, seen_rows
-from latentarm.types import NO_GRIPPER, NO_OBJECTS, Context, Demonstrations, Episode, FloatArray
+from latentarm.robots.kinematics.pose_rows import STORED, seen_rows
 
 GRIPPER_SOURCES: Final = (ACTION_GRIPPER, GRIPPER_WIDTH, GRIPPER_TOGGLED)
 """Features of a dataset that tell how far the gripper is open, see `opening_source`."""

@@ -18,13 +18,13 @@ from typing import Final, Literal, final
 
 import numpy as np
 
+from latentarm.core.errors import UserError
+from latentarm.core.types import Demonstrations, Episode, FloatArray
 from latentarm.demonstrations.bounds import MAX_COLUMNS, MAX_EPISODES
 from latentarm.demonstrations.columns import is_gripper
 from latentarm.demonstrations.csv_lines import CsvTable
 from latentarm.demonstrations.source import SourceData
 from latentarm.demonstrations.timing import typical_rate_hz
-from latentarm.errors import UserError
-from latentarm.types import Demonstrations, Episode, FloatArray
 
 ACTION_PREFIX: Final = "action."
 RESERVED_COLUMNS: Final = frozenset({"episode", "timestamp", "task", "robot"})

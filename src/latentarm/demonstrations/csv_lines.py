@@ -13,9 +13,9 @@ from itertools import chain
 from pathlib import Path
 from typing import Final, TextIO, final
 
+from latentarm.core.errors import UserError
+from latentarm.core.untrusted.opening import opened
 from latentarm.demonstrations.bounds import MAX_LINE, MAX_TEXT_BYTES
-from latentarm.errors import UserError
-from latentarm.untrusted.opening import opened
 
 GZIP: Final = b"\x1f\x8b"
 """Begins every file that gzip packed."""

@@ -14,6 +14,9 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from latentarm.core.errors import UserError
+from latentarm.core.files import write_text, written_whole
+from latentarm.core.types import Demonstrations, Episode, StrPath
 from latentarm.demonstrations.folders import locked, remove_files, remove_parts, staged_folder
 from latentarm.demonstrations.info import (
     ACTION,
@@ -39,9 +42,6 @@ from latentarm.demonstrations.tables import (
     task_table,
 )
 from latentarm.demonstrations.validation import check_same_features, validate, validate_episode
-from latentarm.errors import UserError
-from latentarm.files import write_text, written_whole
-from latentarm.types import Demonstrations, Episode, StrPath
 
 LOCK_FILE: Final = ".lock"
 """In a dataset's folder while an episode is appended."""

@@ -5,7 +5,7 @@ from typing import Final
 
 import numpy as np
 
-from latentarm.types import FloatArray
+from latentarm.core.types import FloatArray
 
 QUANTILES: Final = {"q01": 0.01, "q10": 0.1, "q50": 0.5, "q90": 0.9, "q99": 0.99}
 MEASURES: Final = ("min", "max", "mean", "std", "count", *QUANTILES)

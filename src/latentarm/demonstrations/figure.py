@@ -13,10 +13,10 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from latentarm.files import written_whole
+from latentarm.core.files import written_whole
+from latentarm.core.style import FIGURE_DPI, literal, tidy
+from latentarm.core.types import Demonstrations
 from latentarm.robots.limits import JointLimits
-from latentarm.style import FIGURE_DPI, literal, tidy
-from latentarm.types import Demonstrations
 
 LINE: Final = "#0072B2"
 LIMIT: Final = "#D55E00"

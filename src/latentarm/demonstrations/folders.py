@@ -8,8 +8,8 @@ from pathlib import Path
 
 from filelock import FileLock, Timeout
 
-from latentarm.errors import UserError
-from latentarm.files import sync_folder
+from latentarm.core.errors import UserError
+from latentarm.core.files import sync_folder
 
 
 @contextmanager

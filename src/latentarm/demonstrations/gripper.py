@@ -6,9 +6,9 @@ from typing import Final, Literal, final
 
 import numpy as np
 
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
+from latentarm.core.types import BoolArray, Demonstrations, Episode, FloatArray
 from latentarm.robots.gripper import Gripper
-from latentarm.types import BoolArray, Demonstrations, Episode, FloatArray
 
 GRIPPER_WIDTH: Final = "observation.gripper_width"
 """Opening between the fingers, m: as measured, or as commanded where only that is known; the record of the

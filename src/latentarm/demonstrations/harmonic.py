@@ -21,16 +21,16 @@ from typing import Final, cast
 
 import numpy as np
 
+from latentarm.core.errors import UserError
+from latentarm.core.types import Demonstrations, Episode, FloatArray, Pose
+from latentarm.core.untrusted.opening import is_missing
+from latentarm.core.untrusted.yaml_file import read_yaml
 from latentarm.demonstrations.bounds import MAX_EPISODES, check_values
 from latentarm.demonstrations.csv_lines import CsvTable
 from latentarm.demonstrations.source import SourceData
 from latentarm.demonstrations.things import ENVIRONMENT
 from latentarm.demonstrations.timing import typical_rate_hz
-from latentarm.errors import UserError
-from latentarm.kinematics.pose_rows import stored_rows
-from latentarm.types import Demonstrations, Episode, FloatArray, Pose
-from latentarm.untrusted.opening import is_missing
-from latentarm.untrusted.yaml_file import read_yaml
+from latentarm.robots.kinematics.pose_rows import stored_rows
 
 JOINTS: Final = tuple(f"mico_joint_{number}" for number in range(1, 7))
 MORSELS: Final = ("morsel0", "morsel1", "morsel2")

@@ -13,10 +13,10 @@ from typing import Final
 import h5py
 import numpy as np
 
+from latentarm.core.errors import UserError
+from latentarm.core.types import FloatArray
+from latentarm.core.untrusted.opening import check_file
 from latentarm.demonstrations.bounds import MAX_FILE_BYTES
-from latentarm.errors import UserError
-from latentarm.types import FloatArray
-from latentarm.untrusted.opening import check_file
 
 MAX_CHUNKS: Final = 100_000
 """Of one table; each is looked up by itself."""

@@ -4,10 +4,10 @@ from typing import Final
 
 import numpy as np
 
-from latentarm.context import OBJECT, OBJECTS, OBJECTS_IN_TOOL, ContextLayout
-from latentarm.kinematics.chain import Chain
-from latentarm.kinematics.pose_rows import moved_along
-from latentarm.types import BoolArray, FloatArray, Pose
+from latentarm.core.context import OBJECT, OBJECTS, OBJECTS_IN_TOOL, ContextLayout
+from latentarm.core.types import BoolArray, FloatArray, Pose
+from latentarm.robots.kinematics.chain import Chain
+from latentarm.robots.kinematics.pose_rows import moved_along
 
 MOVES_M: Final = 0.001
 """Between two samples less motion than this tells nothing, m."""

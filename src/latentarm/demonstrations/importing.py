@@ -6,6 +6,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Final, TypedDict, Unpack
 
+from latentarm.core.errors import UserError
+from latentarm.core.types import Demonstrations, StrPath
+from latentarm.core.untrusted.memory import bounded_memory
+from latentarm.core.untrusted.opening import is_missing, opened
 from latentarm.demonstrations.aloha import is_aloha, read_aloha
 from latentarm.demonstrations.bag_file import MCAP, ROS1, read_bag
 from latentarm.demonstrations.bounds import MAX_FILE_BYTES
@@ -24,11 +28,7 @@ from latentarm.demonstrations.source import SourceData, join_files
 from latentarm.demonstrations.timing import Gaps, check_one_rate, resampled, split_at_gaps
 from latentarm.demonstrations.translation import ActionChoice, Translation, translate
 from latentarm.demonstrations.validation import validate
-from latentarm.errors import UserError
 from latentarm.robots.robot import Robot
-from latentarm.types import Demonstrations, StrPath
-from latentarm.untrusted.memory import bounded_memory
-from latentarm.untrusted.opening import is_missing, opened
 
 FOREIGN: Final = {
     b"\x80": "a pickle, which is never opened",

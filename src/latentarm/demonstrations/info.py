@@ -12,14 +12,14 @@ from typing import Any, Final, TypeVar, cast, final
 
 import numpy as np
 
+from latentarm.core.errors import UserError
+from latentarm.core.types import Demonstrations, Goal, Pose, Provenance, StatedLimits
+from latentarm.core.untrusted.documents import read_object
+from latentarm.core.untrusted.opening import is_missing
 from latentarm.demonstrations.bounds import check_values
 from latentarm.demonstrations.provenance import parse_provenance, provenance_json
 from latentarm.demonstrations.things import ENVIRONMENT, entry_names, object_names
-from latentarm.errors import UserError
 from latentarm.robots.limits_file import limits_document, parse_limits
-from latentarm.types import Demonstrations, Goal, Pose, Provenance, StatedLimits
-from latentarm.untrusted.documents import read_object
-from latentarm.untrusted.opening import is_missing
 
 CODEBASE_VERSION: Final = "v3.0"
 OLDER_VERSIONS: Final = ("v2.0", "v2.1")

@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Final
 
+from latentarm.core.errors import UserError
+from latentarm.core.types import Demonstrations
 from latentarm.demonstrations.info import goals_document
-from latentarm.errors import UserError
-from latentarm.types import Demonstrations
 
 _SAME: Final = {
     "robot": "the robot",

@@ -4,10 +4,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
+from latentarm.core.types import Demonstrations
 from latentarm.demonstrations.info import ACTION, OLDER_VERSIONS, STATE, Info, read_info
 from latentarm.demonstrations.reader import read_episodes, read_episodes_v2
 from latentarm.demonstrations.source import ActionKind, SourceData
-from latentarm.types import Demonstrations
 
 PLUGIN: Final = "latentarm"
 """What LeRobot calls the robot of `lerobot_robot_latentarm`: positions in rad, the gripper's width in m.

@@ -20,12 +20,12 @@ import numpy as np
 from numpy.lib import format as npy
 from numpy.typing import NDArray
 
+from latentarm.core.errors import UserError
+from latentarm.core.types import Demonstrations, Episode, FloatArray, IntArray
+from latentarm.core.untrusted.opening import opened
 from latentarm.demonstrations.bounds import MAX_FILE_BYTES, check_values
 from latentarm.demonstrations.gripper import GRIPPER_TOGGLED
 from latentarm.demonstrations.info import default_joint_names
-from latentarm.errors import UserError
-from latentarm.types import Demonstrations, Episode, FloatArray, IntArray
-from latentarm.untrusted.opening import opened
 
 FEATURES: Final = {"dq": "observation.velocity", "tau": "observation.effort"}
 MAX_ARRAYS: Final = 100

@@ -4,13 +4,13 @@ from typing import Literal
 
 import numpy as np
 
-from latentarm.context import Named
+from latentarm.core.context import Named
+from latentarm.core.errors import UserError
+from latentarm.core.types import BoolArray, Demonstrations, Episode, FloatArray, IntArray, Pairs
 from latentarm.demonstrations.contexts import context_layout, episode_contexts
 from latentarm.demonstrations.held import held_things, moved_to
-from latentarm.errors import UserError
-from latentarm.kinematics.chain import Chain
-from latentarm.kinematics.stillness import moving_range
-from latentarm.types import BoolArray, Demonstrations, Episode, FloatArray, IntArray, Pairs
+from latentarm.robots.kinematics.chain import Chain
+from latentarm.robots.kinematics.stillness import moving_range
 
 
 def make_pairs(
@@ -40,7 +40,7 @@ def make_pairs(
         demonstrations: whole, validated episodes.
         window: how many samples ahead and back an action may look, at least 1.
         state_noise_rad: standard deviation of the noise on the context's states, rad; 0 for none.
-        context: the features that the decoder sees, see `latentarm.context.feature_names`.
+        context: the features that the decoder sees, see `latentarm.core.context.feature_names`.
         rng: source of the noise.
         actions: ``"displacement"`` as above, or ``"recorded"`` for the actions in the episodes.
         chain: the arm, which tells what it holds; where None, nothing is held.

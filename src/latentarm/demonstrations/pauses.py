@@ -5,11 +5,11 @@ from typing import Final
 
 import numpy as np
 
+from latentarm.core.errors import UserError
+from latentarm.core.types import Demonstrations, Episode, FloatArray
 from latentarm.demonstrations.gripper import OBSERVED
 from latentarm.demonstrations.things import ENVIRONMENT
-from latentarm.errors import UserError
-from latentarm.kinematics.stillness import STILL_RAD_S
-from latentarm.types import Demonstrations, Episode, FloatArray
+from latentarm.robots.kinematics.stillness import STILL_RAD_S
 
 _ROUNDING: Final = 1e-6
 """Of a sample; a span of a whole number of samples must not get one more."""

@@ -5,9 +5,9 @@ from typing import Final
 
 import numpy as np
 
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
+from latentarm.core.types import Demonstrations
 from latentarm.robots.robot import Robot
-from latentarm.types import Demonstrations
 
 SLOWEST_HZ: Final = 1.0
 FASTEST_HZ: Final = 1000.0

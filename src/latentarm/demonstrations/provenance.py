@@ -6,7 +6,7 @@ from datetime import UTC, datetime
 from typing import Any, Final, cast
 
 from latentarm import __version__
-from latentarm.types import Provenance
+from latentarm.core.types import Provenance
 
 BY_HAND: Final = "by_hand"
 """`Provenance.controller` of an arm that was guided by hand."""

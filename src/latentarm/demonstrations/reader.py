@@ -11,13 +11,13 @@ from typing import Any, Final
 import numpy as np
 import pyarrow as pa
 
+from latentarm.core.errors import UserError
+from latentarm.core.types import Episode, FloatArray, Provenance
+from latentarm.core.untrusted.documents import MOST_BYTES, parse_object
+from latentarm.core.untrusted.memory import bounded_memory
+from latentarm.core.untrusted.opening import read_bytes
 from latentarm.demonstrations.info import ACTION, DATA_PATTERN, STATE, Info
 from latentarm.demonstrations.tables import TASK_COLUMN, Table, float_column, integer_column, read_table
-from latentarm.errors import UserError
-from latentarm.types import Episode, FloatArray, Provenance
-from latentarm.untrusted.documents import MOST_BYTES, parse_object
-from latentarm.untrusted.memory import bounded_memory
-from latentarm.untrusted.opening import read_bytes
 
 
 def read_tasks(root: Path) -> list[str]:

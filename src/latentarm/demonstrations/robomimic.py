@@ -21,14 +21,14 @@ from typing import Any, Final, Literal, cast
 import h5py
 import numpy as np
 
+from latentarm.core.errors import UserError
+from latentarm.core.types import Demonstrations, Episode, FloatArray
+from latentarm.core.untrusted.documents import parse_object
 from latentarm.demonstrations.bounds import check_values
 from latentarm.demonstrations.gripper import ACTION_GRIPPER, GRIPPER, GRIPPER_WIDTH, going_to
 from latentarm.demonstrations.hdf5_tables import group, member, opened_hdf5, path_in, table
 from latentarm.demonstrations.info import MAX_RATE_HZ, default_joint_names
 from latentarm.demonstrations.source import SourceData
-from latentarm.errors import UserError
-from latentarm.types import Demonstrations, Episode, FloatArray
-from latentarm.untrusted.documents import parse_object
 
 STATE_KEYS: Final = ("robot0_joint_pos", "joint_states")
 SECOND_ARM_KEY: Final = "robot1_joint_pos"

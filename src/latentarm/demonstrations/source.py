@@ -4,9 +4,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal, final
 
+from latentarm.core.errors import UserError
+from latentarm.core.types import Demonstrations
 from latentarm.demonstrations.joining import join
-from latentarm.errors import UserError
-from latentarm.types import Demonstrations
 
 ActionKind = Literal["velocity", "position", "unknown"]
 

@@ -6,8 +6,8 @@ from typing import Final
 
 import numpy as np
 
-from latentarm.errors import UserError
-from latentarm.types import Demonstrations, IntArray
+from latentarm.core.errors import UserError
+from latentarm.core.types import Demonstrations, IntArray
 
 
 def split_episodes(

@@ -6,11 +6,11 @@ from typing import Final, final
 
 import numpy as np
 
+from latentarm.core.types import Demonstrations, Episode, FloatArray, Row
 from latentarm.demonstrations.gripper import GripperUse, gripper_uses
-from latentarm.kinematics.stillness import STILL_RAD_S
+from latentarm.robots.kinematics.stillness import STILL_RAD_S
 from latentarm.robots.limits import JointLimits
 from latentarm.robots.robot import Robot
-from latentarm.types import Demonstrations, Episode, FloatArray, Row
 
 STUDY: Final = "inspect"
 

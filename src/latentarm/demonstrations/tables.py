@@ -10,13 +10,13 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from latentarm.core.errors import UserError
+from latentarm.core.types import Episode, FloatArray, IntArray
+from latentarm.core.untrusted.memory import bounded_memory
+from latentarm.core.untrusted.opening import is_missing, opened
 from latentarm.demonstrations.bounds import MAX_FILE_BYTES, check_values
 from latentarm.demonstrations.feature_statistics import MEASURES, episode_statistics, pooled
 from latentarm.demonstrations.info import ACTION, INDEX_DTYPES, STATE, Feature
-from latentarm.errors import UserError
-from latentarm.types import Episode, FloatArray, IntArray
-from latentarm.untrusted.memory import bounded_memory
-from latentarm.untrusted.opening import is_missing, opened
 
 Table: TypeAlias = Any
 """A `pyarrow.Table`: the library ships no types."""

@@ -7,8 +7,8 @@ Each thing has seven entries in the base frame: position, m, and quaternion (w, 
 from collections.abc import Sequence
 from typing import Final
 
-from latentarm.errors import UserError
-from latentarm.types import Episode
+from latentarm.core.errors import UserError
+from latentarm.core.types import Episode
 
 ENVIRONMENT: Final = "observation.environment_state"
 

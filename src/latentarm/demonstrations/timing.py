@@ -6,10 +6,10 @@ from typing import Final, Literal
 
 import numpy as np
 
+from latentarm.core.errors import UserError
+from latentarm.core.types import Demonstrations, Episode, FloatArray, IntArray
 from latentarm.demonstrations.plausibility import RATE_TOLERANCE
 from latentarm.demonstrations.source import SourceData
-from latentarm.errors import UserError
-from latentarm.types import Demonstrations, Episode, FloatArray, IntArray
 
 Gaps = Literal["refuse", "split", "keep"]
 """What becomes of an episode with a gap: it is refused, each part becomes an episode, or it stays whole."""

@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from latentarm.core.errors import UserError
+from latentarm.core.types import Episode, FloatArray
 from latentarm.demonstrations.gripper import ACTION_GRIPPER, GRIPPER_TOGGLED, GRIPPER_WIDTH, GripperStart
-from latentarm.errors import UserError
 from latentarm.robots.gripper import Gripper
-from latentarm.types import Episode, FloatArray
 
 
 def widths_from_toggles(

@@ -7,6 +7,8 @@ from typing import Final, Literal, final
 
 import numpy as np
 
+from latentarm.core.errors import UserError
+from latentarm.core.types import Demonstrations, Episode
 from latentarm.demonstrations.columns import Columns, find_columns, is_width
 from latentarm.demonstrations.gripper import (
     ACTION_GRIPPER,
@@ -22,9 +24,7 @@ from latentarm.demonstrations.toggles import widths_from_toggles
 from latentarm.demonstrations.turns import unwrapped
 from latentarm.demonstrations.unit_evidence import check_degrees, radians_after_all
 from latentarm.demonstrations.units import TARGET_POSITION, Conversion, Unit, conversion, parse_units
-from latentarm.errors import UserError
 from latentarm.robots.robot import Robot
-from latentarm.types import Demonstrations, Episode
 
 PER_JOINT: Final = ("observation.velocity", "observation.effort", "action.human", "action.assist")
 LEROBOT_SUFFIX: Final = ".pos"

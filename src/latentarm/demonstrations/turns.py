@@ -6,9 +6,9 @@ from typing import Final
 
 import numpy as np
 
+from latentarm.core.types import BoolArray, Episode, FloatArray
 from latentarm.demonstrations.units import TARGET_POSITION
 from latentarm.robots.robot import Robot
-from latentarm.types import BoolArray, Episode, FloatArray
 
 TURN: Final = 2.0 * np.pi
 

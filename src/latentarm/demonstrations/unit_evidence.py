@@ -5,11 +5,11 @@ from typing import Final
 
 import numpy as np
 
+from latentarm.core.errors import UserError
+from latentarm.core.types import Demonstrations, FloatArray
 from latentarm.demonstrations.turns import TURN, turning
 from latentarm.demonstrations.units import Unit
-from latentarm.errors import UserError
 from latentarm.robots.robot import Robot
-from latentarm.types import Demonstrations, FloatArray
 
 _READABLE: Final = 1e6
 

@@ -6,9 +6,9 @@ from typing import Final, Literal, final, get_args
 
 import numpy as np
 
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
+from latentarm.core.types import BoolArray, FloatArray
 from latentarm.robots.limits import JointLimits
-from latentarm.types import BoolArray, FloatArray
 
 Unit = Literal["rad", "deg", "normalized"]
 

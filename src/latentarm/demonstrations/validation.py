@@ -10,11 +10,11 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from latentarm.core.errors import UserError
+from latentarm.core.types import Demonstrations, Episode, FloatArray, Goal
 from latentarm.demonstrations.gripper import check_gripper
 from latentarm.demonstrations.things import check_things
-from latentarm.errors import UserError
 from latentarm.robots.limits import JointLimits
-from latentarm.types import Demonstrations, Episode, FloatArray, Goal
 
 LIMIT_TOLERANCE_RAD: Final = 0.01
 """How far past a joint limit a state may lie: encoder offsets and compliance, 0.6 degrees."""

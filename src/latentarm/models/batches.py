@@ -8,7 +8,7 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from latentarm.types import FloatArray
+from latentarm.core.types import FloatArray
 
 ELSEWHERE: Final = 32
 """Contexts without demonstrated actions that a step sees, at most, for terms that ask for them."""

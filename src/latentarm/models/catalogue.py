@@ -4,8 +4,8 @@ from collections.abc import Iterator, Mapping
 from pkgutil import resolve_name
 from typing import TYPE_CHECKING, Final, final
 
+from latentarm.core.plugins import Catalogue
 from latentarm.models.kind import ModelKind
-from latentarm.plugins import Catalogue
 
 if TYPE_CHECKING:
     from latentarm.models.model import LatentActionModel

@@ -13,11 +13,11 @@ from safetensors import SafetensorError, safe_open
 from safetensors.torch import save
 from torch import Tensor
 
-from latentarm.errors import UserError
-from latentarm.files import written_whole
+from latentarm.core.errors import UserError
+from latentarm.core.files import written_whole
+from latentarm.core.types import BoolArray, FloatArray, IntArray
+from latentarm.core.untrusted.opening import check_file
 from latentarm.models.optimiser import FlatAdam
-from latentarm.types import BoolArray, FloatArray, IntArray
-from latentarm.untrusted.opening import check_file
 
 _HEADER_BYTES: Final = 1 << 26
 """Bytes that the names and the loss history may take: 64 MiB."""

@@ -2,10 +2,10 @@
 
 from typing import final
 
+from latentarm.core.types import FloatArray
 from latentarm.models.enclosure import Enclosure
 from latentarm.models.kind import TrainedModel
 from latentarm.models.way_back.runtime import WayBack
-from latentarm.types import FloatArray
 
 
 @final

@@ -24,7 +24,7 @@ from typing import Final, Self, final
 
 import numpy as np
 
-from latentarm.types import FloatArray
+from latentarm.core.types import FloatArray
 
 ROUNDING: Final = 1e-9
 """Relative margin for rounding, many times that of float64 in networks of these sizes."""

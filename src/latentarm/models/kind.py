@@ -6,16 +6,16 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal, final
 
-from latentarm.context import ContextLayout
-from latentarm.errors import UserError
+from latentarm.core.context import ContextLayout
+from latentarm.core.errors import UserError
+from latentarm.core.style import Look
+from latentarm.core.types import BoolArray, FloatArray, IntArray
 from latentarm.models.enclosure import Enclosure
 from latentarm.models.numpy_networks import network_shapes
 from latentarm.models.saved_chain import chain_of_tensors, chain_shapes
 from latentarm.models.scaling import Normaliser
 from latentarm.models.tool_contexts import ToolContexts, ToolGeometry, tool_shapes
 from latentarm.models.tool_frame import ToolFrame
-from latentarm.style import Look
-from latentarm.types import BoolArray, FloatArray, IntArray
 
 Encoder = Literal["projection", "nearest", "deterministic", "gaussian"]
 Shape = tuple[int, ...]

@@ -13,12 +13,12 @@ from sklearn.base import BaseEstimator
 from sklearn.exceptions import NotFittedError
 from torch import Tensor
 
-from latentarm.context import JOINTS, feature_names
+from latentarm.core.context import JOINTS, feature_names
+from latentarm.core.errors import UserError
+from latentarm.core.types import BoolArray, Demonstrations, FloatArray, StrPath
 from latentarm.demonstrations.contexts import context_layout
 from latentarm.demonstrations.pairs import make_pairs
 from latentarm.demonstrations.split import split_episodes
-from latentarm.errors import UserError
-from latentarm.kinematics.chain import Chain
 from latentarm.models.batches import TrainingData
 from latentarm.models.decoder import Decoder
 from latentarm.models.kind import Dimensions, ModelKind, TrainedModel, TrainingSummary
@@ -53,7 +53,7 @@ from latentarm.models.training import Report, TrainingResult, choose_device
 from latentarm.models.way_back.runtime import WayBack
 from latentarm.models.way_back.training import with_way_back
 from latentarm.robots.catalogue import load_recorded_robot
-from latentarm.types import BoolArray, Demonstrations, FloatArray, StrPath
+from latentarm.robots.kinematics.chain import Chain
 
 ROWS_AT_ONCE: Final = 4096
 """Pairs encoded or decoded at a time, so that memory does not grow with the dataset."""
@@ -80,7 +80,7 @@ class LatentActionModel(BaseEstimator, ABC):
 
     Attributes:
         latent_dim: d, size of z.
-        context: the features that the decoder may see, in order, the joints first (`latentarm.context`).
+        context: the features that the decoder may see, in order, the joints first (`latentarm.core.context`).
         actions: where actions come from: ``displacement`` between states, or ``recorded``.
         window: samples that a displacement may reach ahead and back.
         state_noise_rad: standard deviation of the noise on training states, rad.

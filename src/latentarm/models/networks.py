@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Final, cast, final
 import torch
 from torch import Tensor
 
+from latentarm.core.types import FloatArray
 from latentarm.models.perceptron import Perceptrons
-from latentarm.types import FloatArray
 
 if TYPE_CHECKING:
     from latentarm.models.kind import Shape

@@ -11,7 +11,8 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
+from latentarm.core.types import Demonstrations, FloatArray
 from latentarm.models.batches import Batch, TrainingData
 from latentarm.models.kind import Dimensions
 from latentarm.models.model import LatentActionModel, Weights
@@ -20,7 +21,6 @@ from latentarm.models.prepared import side_by_side
 from latentarm.models.scaling import SPAN_QUANTILE
 from latentarm.models.term import ScaledTerm, Span
 from latentarm.models.training import Report, TrainingConfig, TrainingResult, choose_device, train
-from latentarm.types import Demonstrations, FloatArray
 
 Start = Callable[[TrainingData, Dimensions], dict[str, FloatArray]]
 """From the training pairs to initial weights by name."""

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from latentarm.types import FloatArray
+from latentarm.core.types import FloatArray
 
 if TYPE_CHECKING:
     from latentarm.models.kind import Shape, TrainedModel

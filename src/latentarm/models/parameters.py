@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Final, cast, final
 
 import numpy as np
 
-from latentarm.context import FEATURES, JOINTS, Named, feature_names
-from latentarm.errors import UserError
-from latentarm.types import FloatArray
+from latentarm.core.context import FEATURES, JOINTS, Named, feature_names
+from latentarm.core.errors import UserError
+from latentarm.core.types import FloatArray
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance

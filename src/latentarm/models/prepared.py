@@ -6,16 +6,16 @@ from typing import Final, final
 
 import numpy as np
 
-from latentarm.context import ContextLayout
+from latentarm.core.context import ContextLayout
+from latentarm.core.errors import UserError
+from latentarm.core.types import BoolArray, FloatArray, Pairs
 from latentarm.demonstrations.held import moved_to
-from latentarm.errors import UserError
-from latentarm.kinematics.chain import Chain
 from latentarm.models.batches import TrainingData
 from latentarm.models.scaling import Normaliser, action_normaliser, feature_normaliser
 from latentarm.models.term import LossTerm, ScaledTerm
 from latentarm.models.tool_contexts import ToolContexts
 from latentarm.models.tool_frame import ToolFrame
-from latentarm.types import BoolArray, FloatArray, Pairs
+from latentarm.robots.kinematics.chain import Chain
 
 AHEAD_S: Final = 0.1
 """How far ahead models look (those that do), s: as long as a short press of the stick."""

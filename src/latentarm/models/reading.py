@@ -7,9 +7,9 @@ from typing import Any, cast, final
 
 import numpy as np
 
-from latentarm.errors import UserError
-from latentarm.types import FloatArray
-from latentarm.untrusted.documents import read_object
+from latentarm.core.errors import UserError
+from latentarm.core.types import FloatArray
+from latentarm.core.untrusted.documents import read_object
 
 
 @final

@@ -4,8 +4,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from latentarm.kinematics.chain import Chain, Frame
-from latentarm.types import FloatArray
+from latentarm.core.types import FloatArray
+from latentarm.robots.kinematics.chain import Chain, Frame
 
 
 def chain_shapes(joints: int, tools: int) -> dict[str, tuple[int, ...]]:

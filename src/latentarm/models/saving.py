@@ -18,19 +18,19 @@ import numpy as np
 from safetensors import SafetensorError
 from safetensors.numpy import load, save
 
-from latentarm.context import EARLIER_NAMES, ContextLayout, feature_names
+from latentarm.core.context import EARLIER_NAMES, ContextLayout, feature_names
+from latentarm.core.errors import UserError
+from latentarm.core.files import write_text, written_whole
+from latentarm.core.plugins import Origin
+from latentarm.core.types import FloatArray, StrPath
+from latentarm.core.untrusted.opening import read_bytes
 from latentarm.demonstrations.contexts import GRIPPER_SOURCES
-from latentarm.errors import UserError
-from latentarm.files import write_text, written_whole
 from latentarm.models.catalogue import KINDS, MODELS
 from latentarm.models.decoder import Decoder
 from latentarm.models.kind import Dimensions, Shape, TrainedModel, TrainingSummary
 from latentarm.models.parameters import check_parameters
 from latentarm.models.reading import Section
 from latentarm.models.way_back.runtime import pull_shapes
-from latentarm.plugins import Origin
-from latentarm.types import FloatArray, StrPath
-from latentarm.untrusted.opening import read_bytes
 
 if TYPE_CHECKING:
     from latentarm.models.model import LatentActionModel

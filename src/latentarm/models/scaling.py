@@ -6,8 +6,8 @@ from typing import Final, final
 
 import numpy as np
 
-from latentarm.context import GRIPPER, OBJECT, OBJECTS, OBJECTS_IN_TOOL, ContextLayout
-from latentarm.types import BoolArray, FloatArray
+from latentarm.core.context import GRIPPER, OBJECT, OBJECTS, OBJECTS_IN_TOOL, ContextLayout
+from latentarm.core.types import BoolArray, FloatArray
 
 CONSTANT_SPREAD: Final = 1e-6
 """A feature that varies less than this (rad, or probability) is constant: dividing by its spread would

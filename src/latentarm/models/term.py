@@ -9,8 +9,8 @@ import numpy as np
 import torch
 from torch import Tensor
 
+from latentarm.core.types import FloatArray
 from latentarm.models.scaling import Normaliser
-from latentarm.types import FloatArray
 
 
 @final

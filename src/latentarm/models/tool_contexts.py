@@ -8,12 +8,12 @@ from typing import Final, final
 
 import numpy as np
 
-from latentarm.errors import UserError
-from latentarm.kinematics.chain import Chain
-from latentarm.kinematics.pose_rows import pose_rows
+from latentarm.core.errors import UserError
+from latentarm.core.types import FloatArray
 from latentarm.models.saved_chain import chain_of_tensors, chain_tensors
 from latentarm.models.scaling import SPAN_QUANTILE, Normaliser, context_normaliser
-from latentarm.types import FloatArray
+from latentarm.robots.kinematics.chain import Chain
+from latentarm.robots.kinematics.pose_rows import pose_rows
 
 TWIST: Final = 6
 """Entries of a tool's twist: 3 of velocity, 3 of angular velocity."""

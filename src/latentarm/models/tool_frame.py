@@ -5,9 +5,9 @@ from typing import final
 
 import numpy as np
 
-from latentarm.context import JOINTS, OBJECT, OBJECTS_IN_TOOL, ContextLayout
-from latentarm.kinematics.chain import Chain
-from latentarm.types import FloatArray
+from latentarm.core.context import JOINTS, OBJECT, OBJECTS_IN_TOOL, ContextLayout
+from latentarm.core.types import FloatArray
+from latentarm.robots.kinematics.chain import Chain
 
 
 @final

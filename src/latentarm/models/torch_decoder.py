@@ -6,13 +6,13 @@ from typing import final
 import torch
 from torch import Tensor
 
+from latentarm.core.types import FloatArray
 from latentarm.models.kind import TrainedModel
 from latentarm.models.networks import Networks, group_layers
 from latentarm.models.tool_contexts import ToolContexts
 from latentarm.models.torch_tool_contexts import TorchToolContexts
 from latentarm.models.torch_tool_frame import TorchToolFrame
 from latentarm.models.way_back.torch_way_back import TorchWayBack
-from latentarm.types import FloatArray
 
 Action = Callable[[Networks, Tensor, Tensor], Tensor]
 """A model's phi as it is trained: networks, latents (1, B, d) and what is seen of the contexts (1, B, o), to

@@ -9,9 +9,9 @@ from typing import final
 import torch
 from torch import Tensor
 
-from latentarm.kinematics.torch_chain import TorchChain
+from latentarm.core.types import FloatArray
 from latentarm.models.tool_contexts import TWIST, ToolContexts
-from latentarm.types import FloatArray
+from latentarm.robots.kinematics.torch_chain import TorchChain
 
 
 @final

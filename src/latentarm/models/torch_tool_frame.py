@@ -5,9 +5,9 @@ from typing import final
 import torch
 from torch import Tensor
 
-from latentarm.context import JOINTS, OBJECT, OBJECTS_IN_TOOL
-from latentarm.kinematics.torch_chain import TorchChain
+from latentarm.core.context import JOINTS, OBJECT, OBJECTS_IN_TOOL
 from latentarm.models.tool_frame import ToolFrame
+from latentarm.robots.kinematics.torch_chain import TorchChain
 
 
 @final

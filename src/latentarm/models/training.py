@@ -13,15 +13,15 @@ import torch
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 from torch import Tensor
 
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
+from latentarm.core.types import FloatArray, IntArray
+from latentarm.core.untrusted.console import VisibleConsole
 from latentarm.models.batches import Batch, Batches, TrainingData, seed_generator
 from latentarm.models.checkpoint import TrainingState, fingerprint, read_checkpoint, write_checkpoint
 from latentarm.models.kind import Shape
 from latentarm.models.networks import FlatNetworks, Networks
 from latentarm.models.optimiser import FlatAdam, falling_rate
 from latentarm.models.replay import Replay, UnreplayableError
-from latentarm.types import FloatArray, IntArray
-from latentarm.untrusted.console import VisibleConsole
 
 Report = Callable[[int, int, float], None]
 """Is told after each epoch: how many are done, how many there are at most, and the validation loss so far."""

@@ -6,17 +6,17 @@ from dataclasses import replace
 import mujoco
 import numpy as np
 
-from latentarm.errors import UserError
-from latentarm.kinematics.chain import Capsules
-from latentarm.kinematics.reader import ModelChain, read
+from latentarm.core.errors import UserError
+from latentarm.core.types import BoolArray, FloatArray, StatedGripper, StatedLimits
 from latentarm.robots.attachment import ATTACHED_BODIES, Attachment
 from latentarm.robots.end_effector import arm_joints, finger_joints
 from latentarm.robots.gripper import Gripper
+from latentarm.robots.kinematics.chain import Capsules
+from latentarm.robots.kinematics.reader import ModelChain, read
 from latentarm.robots.limits import JointLimits, Source
 from latentarm.robots.limits_file import with_stated
 from latentarm.robots.robot import Robot
 from latentarm.robots.shapes import body_name, read_capsules, self_pairs
-from latentarm.types import BoolArray, FloatArray, StatedGripper, StatedLimits
 
 
 def assemble(
@@ -52,7 +52,7 @@ def assemble(
         The robot.
 
     Raises:
-        UserError: see `latentarm.kinematics.reader.read`.
+        UserError: see `latentarm.robots.kinematics.reader.read`.
     """
     if model is None:
         model = mujoco.MjModel.from_xml_string(mjcf)

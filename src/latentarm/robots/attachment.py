@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from typing import Final, final
 
-from latentarm.scene.interior import Interior
-from latentarm.types import FloatArray, Pose
+from latentarm.core.types import FloatArray, Pose
+from latentarm.robots.scene.interior import Interior
 
 TINES_BODY: Final = "tines"
 """Name of the body of an attachment's tines in the robot's model; its frame is the tool's."""

@@ -7,16 +7,16 @@ import mujoco
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from latentarm.errors import UserError
-from latentarm.kinematics.reader import reference_positions
+from latentarm.core.errors import UserError
+from latentarm.core.types import FloatArray
 from latentarm.robots.assemble import assemble
 from latentarm.robots.attachment import ATTACHMENT_BODY, TINES_BODY, Attachment, Tines, Vessel
 from latentarm.robots.fixing import fix_slides
+from latentarm.robots.kinematics.reader import reference_positions
 from latentarm.robots.parts import add_parts
 from latentarm.robots.robot import Robot
-from latentarm.scene.containers import WALL_M, cup
-from latentarm.scene.thing import Part
-from latentarm.types import FloatArray
+from latentarm.robots.scene.containers import WALL_M, cup
+from latentarm.robots.scene.thing import Part
 
 HANDLE_HALF_M: Final = 0.006
 """Half the thickness of every handle: as far is each finger of a gripper from the middle."""

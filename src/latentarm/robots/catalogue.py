@@ -7,7 +7,8 @@ from os import fspath
 from pathlib import Path
 from typing import Any
 
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
+from latentarm.core.types import Demonstrations, StatedLimits, StrPath
 from latentarm.robots.assemble import restate
 from latentarm.robots.attachments import attach
 from latentarm.robots.end_effector import AmbiguousEndEffectorError
@@ -15,7 +16,6 @@ from latentarm.robots.model_file import load_model_file
 from latentarm.robots.panda import fr3, panda
 from latentarm.robots.planar import planar
 from latentarm.robots.robot import Robot
-from latentarm.types import Demonstrations, StatedLimits, StrPath
 
 ROBOTS: dict[str, Callable[[], Robot]] = {
     "panda": panda,

@@ -6,7 +6,7 @@ from typing import Final, final
 
 import mujoco
 
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 
 FINGER: Final = re.compile(r"finger|jaw|gripper|knuckle|thumb|claw", re.IGNORECASE)
 """Names of joints that open and close a gripper."""

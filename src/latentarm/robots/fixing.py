@@ -19,7 +19,7 @@ def arm_model(robot: Robot) -> "mujoco.MjModel":
     """
     import mujoco
 
-    from latentarm.kinematics.reader import reference_positions
+    from latentarm.robots.kinematics.reader import reference_positions
 
     fingers = () if robot.gripper is None else robot.gripper.slides
     if not fingers:

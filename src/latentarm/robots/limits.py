@@ -5,8 +5,8 @@ from typing import Final, Literal, final
 
 import numpy as np
 
-from latentarm.errors import UserError
-from latentarm.types import FloatArray
+from latentarm.core.errors import UserError
+from latentarm.core.types import FloatArray
 
 Source = Literal["model", "manufacturer", "limits_file", "assumed"]
 """Where a limit comes from: the robot's model, its manufacturer, a limits file, or an assumption."""

@@ -27,11 +27,11 @@ from typing import Final, cast
 import numpy as np
 import yaml
 
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
+from latentarm.core.types import StatedGripper, StatedJointLimits, StatedLimits
+from latentarm.core.untrusted.hand_written import check_keys, number_of, table_of
+from latentarm.core.untrusted.opening import read_bytes
 from latentarm.robots.limits import JointLimits, LimitSources, Quantity, Source
-from latentarm.types import StatedGripper, StatedJointLimits, StatedLimits
-from latentarm.untrusted.hand_written import check_keys, number_of, table_of
-from latentarm.untrusted.opening import read_bytes
 
 MOST_BYTES: Final = 100_000
 """A longer file is refused: a joint takes some 200 bytes."""

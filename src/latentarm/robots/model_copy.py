@@ -4,8 +4,9 @@ from pathlib import Path
 from typing import Final
 from xml.etree import ElementTree as Xml
 
-from latentarm.errors import UserError
-from latentarm.files import write_text, written_whole
+from latentarm.core.errors import UserError
+from latentarm.core.files import write_text, written_whole
+from latentarm.core.untrusted.opening import read_bytes
 from latentarm.robots.model_file import load_model_file
 from latentarm.robots.model_xml import (
     FILE_ATTRIBUTES,
@@ -18,7 +19,6 @@ from latentarm.robots.model_xml import (
 )
 from latentarm.robots.robot import Robot
 from latentarm.robots.urdf import prepare_urdf
-from latentarm.untrusted.opening import read_bytes
 
 MOST_COPIED: Final = 64 << 20
 """Bytes of all the files of a copy."""

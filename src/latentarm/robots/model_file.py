@@ -8,17 +8,17 @@ from typing import final
 import mujoco
 import numpy as np
 
-from latentarm.errors import UserError
-from latentarm.kinematics.chain import Chain
-from latentarm.kinematics.reader import ModelChain, read
+from latentarm.core.errors import UserError
+from latentarm.core.types import FloatArray
+from latentarm.core.untrusted.memory import bounded_memory
 from latentarm.robots.assemble import assemble
 from latentarm.robots.end_effector import AmbiguousEndEffectorError, choose_end_effector
+from latentarm.robots.kinematics.chain import Chain
+from latentarm.robots.kinematics.reader import ModelChain, read
 from latentarm.robots.limits import JointLimits, LimitSources, Source
 from latentarm.robots.model_xml import read_model_xml
 from latentarm.robots.robot import Robot
 from latentarm.robots.urdf import Urdf, prepare_urdf
-from latentarm.types import FloatArray
-from latentarm.untrusted.memory import bounded_memory
 
 MOST_JOINTS = 64
 """Longer chains are rejected: they are not arms, and comparing their pairs of links takes minutes."""

@@ -2,7 +2,7 @@
 
 MuJoCo opens whatever path a model names, and waits for a named pipe; it repeats an element as often as it
 is told, and crashes on a model that attaches itself. What is checked here is what it cannot be stopped in;
-memory is bounded by `latentarm.untrusted.memory`.
+memory is bounded by `latentarm.core.untrusted.memory`.
 """
 
 from collections.abc import Iterator, Mapping
@@ -13,8 +13,8 @@ from typing import Final, final
 from xml.etree import ElementTree as Xml
 from xml.parsers import expat
 
-from latentarm.errors import UserError
-from latentarm.untrusted.opening import check_file, is_missing, read_bytes
+from latentarm.core.errors import UserError
+from latentarm.core.untrusted.opening import check_file, is_missing, read_bytes
 
 MOST_XML_BYTES: Final = 20_000_000
 """Of one XML file; meshes lie in files of their own."""

@@ -5,11 +5,11 @@ from functools import cache
 import mujoco
 import numpy as np
 
+from latentarm.core.types import FloatArray
 from latentarm.robots.assemble import assemble
 from latentarm.robots.gripper import Gripper
 from latentarm.robots.limits import JointLimits, LimitSources
 from latentarm.robots.robot import Robot
-from latentarm.types import FloatArray
 
 HOME: FloatArray = np.array([0.0, -np.pi / 4, 0.0, -3 * np.pi / 4, 0.0, np.pi / 2, np.pi / 4])
 """(7,), the manufacturer's ready pose, rad."""

@@ -6,7 +6,7 @@ from typing import Final
 import mujoco
 import numpy as np
 
-from latentarm.scene.thing import Part
+from latentarm.robots.scene.thing import Part
 
 _SHAPES: Final = {
     "box": mujoco.mjtGeom.mjGEOM_BOX,

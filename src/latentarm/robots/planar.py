@@ -5,7 +5,7 @@ from functools import cache
 import mujoco
 import numpy as np
 
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 from latentarm.robots.assemble import assemble
 from latentarm.robots.limits import JointLimits, LimitSources
 from latentarm.robots.robot import Robot

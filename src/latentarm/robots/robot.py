@@ -3,11 +3,11 @@
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, final
 
-from latentarm.kinematics.chain import Capsules, Chain
+from latentarm.core.types import FloatArray, IntArray, StatedLimits
 from latentarm.robots.attachment import Attachment
 from latentarm.robots.gripper import Gripper
+from latentarm.robots.kinematics.chain import Capsules, Chain
 from latentarm.robots.limits import JointLimits, Source
-from latentarm.types import FloatArray, IntArray, StatedLimits
 
 if TYPE_CHECKING:
     import mujoco

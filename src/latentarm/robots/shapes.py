@@ -7,11 +7,11 @@ import mujoco
 import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 
-from latentarm.kinematics.chain import Capsules, Chain
-from latentarm.kinematics.distances import segment_distance
-from latentarm.kinematics.reader import ModelChain, reference_positions
+from latentarm.core.types import BoolArray, FloatArray, IntArray
+from latentarm.robots.kinematics.chain import Capsules, Chain
+from latentarm.robots.kinematics.distances import segment_distance
+from latentarm.robots.kinematics.reader import ModelChain, reference_positions
 from latentarm.robots.limits import JointLimits
-from latentarm.types import BoolArray, FloatArray, IntArray
 
 # NumPy integers never equal MuJoCo's enums: compare plain integers.
 _PLANE = int(mujoco.mjtGeom.mjGEOM_PLANE)
@@ -42,7 +42,7 @@ def read_capsules(
 
     Args:
         model: the robot's model.
-        reading: what `latentarm.kinematics.reader.read` found in it.
+        reading: what `latentarm.robots.kinematics.reader.read` found in it.
         sliding: names of sliding joints that move by themselves, such as those of a gripper's fingers: what
             they move is covered wherever it slides.
         apart: names of bodies whose capsules are merged with no other body's, such as those of a fork: it

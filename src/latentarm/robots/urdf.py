@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import final
 from xml.etree import ElementTree as Xml
 
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
+from latentarm.core.untrusted.opening import check_file
 from latentarm.robots.model_xml import MOST_FILE_BYTES
-from latentarm.untrusted.opening import check_file
 
 MESH_FORMATS = (".stl", ".obj", ".msh")
 """Mesh files that MuJoCo reads."""

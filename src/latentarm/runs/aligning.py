@@ -14,16 +14,16 @@ from latentarm.alignment.error import relative_alignment_error
 from latentarm.alignment.profile import model_fingerprint, save_profile
 from latentarm.alignment.tool_space import ToolSpace
 from latentarm.assistance.annotation import prepared
+from latentarm.core.errors import UserError
+from latentarm.core.types import Row
 from latentarm.demonstrations.split import select_episodes
-from latentarm.errors import UserError
-from latentarm.metrics.measures import unit_of
-from latentarm.metrics.results import as_document
+from latentarm.evaluation.measures import unit_of
+from latentarm.evaluation.results import as_document
 from latentarm.models.saving import load_model
 from latentarm.runs.folder import Run, read_run, robot_of
 from latentarm.runs.person import Kind
 from latentarm.runs.questions import Scene
 from latentarm.runs.samples import ALIGN_STREAM, load_samples
-from latentarm.types import Row
 
 NO_ALIGN: Final = "no_align"
 PROFILE: Final = "profile"

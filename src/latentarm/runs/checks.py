@@ -2,7 +2,7 @@
 
 import math
 
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 
 
 def check_seed(seed: int) -> None:

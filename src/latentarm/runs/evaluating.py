@@ -12,11 +12,16 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from latentarm.assistance.annotation import prepared
+from latentarm.core.errors import UserError
+from latentarm.core.parallel.grid import check_processes, run_grid
+from latentarm.core.style import save_figure
+from latentarm.core.types import Demonstrations, FloatArray, Row
+from latentarm.core.untrusted.documents import read_object
+from latentarm.core.untrusted.opening import is_missing
 from latentarm.demonstrations.gripper import told_by
 from latentarm.demonstrations.split import make_folds, select_episodes
-from latentarm.errors import UserError
-from latentarm.metrics.effects import axis_effects, axis_grid
-from latentarm.metrics.evaluation import (
+from latentarm.evaluation.effects import axis_effects, axis_grid
+from latentarm.evaluation.evaluation import (
     EvaluationConfig,
     Figures,
     Probe,
@@ -24,28 +29,23 @@ from latentarm.metrics.evaluation import (
     measure_behaviour,
     take_probe,
 )
-from latentarm.metrics.latent_effect_figure import latent_effect_figure
-from latentarm.metrics.properties_figure import properties_figure
-from latentarm.metrics.results import as_document
-from latentarm.metrics.samples import evenly_spread, moving_episodes, spread_contexts
-from latentarm.metrics.search import nearest_latents
-from latentarm.metrics.summary import Subject, summarise
-from latentarm.metrics.verdict import THRESHOLDS, Finding, findings
+from latentarm.evaluation.latent_effect_figure import latent_effect_figure
+from latentarm.evaluation.properties_figure import properties_figure
+from latentarm.evaluation.results import as_document
+from latentarm.evaluation.samples import evenly_spread, moving_episodes, spread_contexts
+from latentarm.evaluation.search import nearest_latents
+from latentarm.evaluation.summary import Subject, summarise
+from latentarm.evaluation.verdict import THRESHOLDS, Finding, findings
 from latentarm.models.decoder import Decoder
 from latentarm.models.model import LatentActionModel
 from latentarm.models.saving import load_model
 from latentarm.models.scaling import CollapseWarning
-from latentarm.parallel.grid import check_processes, run_grid
 from latentarm.robots.robot import Robot
 from latentarm.runs.advice import FEW_EPISODES, next_step
 from latentarm.runs.checks import check_seed
 from latentarm.runs.folder import Run, read_run, robot_of, weights_fingerprint
 from latentarm.runs.results_folder import refuse_other_results, write_json
 from latentarm.runs.samples import load_samples
-from latentarm.style import save_figure
-from latentarm.types import Demonstrations, FloatArray, Row
-from latentarm.untrusted.documents import read_object
-from latentarm.untrusted.opening import is_missing
 
 FOLDS: Final = 5
 """How many where there are few episodes."""

@@ -13,11 +13,13 @@ from typing import Final
 
 import numpy as np
 
-from latentarm.context import feature_names
+from latentarm.core.context import feature_names
+from latentarm.core.errors import UserError
+from latentarm.core.types import Demonstrations, FloatArray, Goal, StatedLimits, StrPath
+from latentarm.core.untrusted.opening import is_missing, read_bytes
 from latentarm.demonstrations.dataset import read_dataset
 from latentarm.demonstrations.info import goals_document, parse_goals
 from latentarm.demonstrations.validation import check_goal
-from latentarm.errors import UserError
 from latentarm.models.reading import Section
 from latentarm.models.saving import CONFIG_LIMIT, WEIGHTS_NAME
 from latentarm.robots.assemble import restate
@@ -27,8 +29,6 @@ from latentarm.robots.limits_file import limits_document, parse_limits
 from latentarm.robots.model_copy import COPIES, load_copy
 from latentarm.robots.robot import Robot
 from latentarm.tasks.catalogue import HELD_OUT, SCENE_TASKS, TASKS
-from latentarm.types import Demonstrations, FloatArray, Goal, StatedLimits, StrPath
-from latentarm.untrusted.opening import is_missing, read_bytes
 
 ROBOT: Final = "robot"
 """Folder of a run that holds the copy of its robot's model."""

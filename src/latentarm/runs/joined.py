@@ -4,12 +4,12 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
+from latentarm.core.errors import UserError
+from latentarm.core.untrusted.opening import is_missing
 from latentarm.demonstrations.dataset import read_dataset, write_dataset
 from latentarm.demonstrations.joining import join
 from latentarm.demonstrations.timing import check_one_rate
-from latentarm.errors import UserError
 from latentarm.runs.folder import fingerprint
-from latentarm.untrusted.opening import is_missing
 
 JOINED: Final = "demonstrations"
 """Folder of a run that holds the datasets that it was trained on, where these were several."""

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import Literal, final
 
 from latentarm.alignment.answers import Motions
-from latentarm.kinematics.chain import Chain
-from latentarm.types import FloatArray
+from latentarm.core.types import FloatArray
+from latentarm.robots.kinematics.chain import Chain
 
 Say = Callable[[str], None]
 """Shows text to the person."""

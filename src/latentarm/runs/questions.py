@@ -12,11 +12,11 @@ from latentarm.alignment.posterior import Posterior, fit_meaning
 from latentarm.alignment.queries import TOO_FEW, Design, StoppingRule, next_motion
 from latentarm.alignment.surroundings import Surroundings
 from latentarm.alignment.tool_space import ToolSpace
-from latentarm.errors import UserError
-from latentarm.kinematics.chain import Chain
+from latentarm.core.errors import UserError
+from latentarm.core.types import FloatArray
 from latentarm.models.model import LatentActionModel
+from latentarm.robots.kinematics.chain import Chain
 from latentarm.runs.person import Person, Question, Say
-from latentarm.types import FloatArray
 
 
 @final

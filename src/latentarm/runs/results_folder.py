@@ -9,10 +9,10 @@ from itertools import count
 from pathlib import Path
 from typing import Any, Final, cast
 
-from latentarm.errors import UserError
-from latentarm.files import write_text
+from latentarm.core.errors import UserError
+from latentarm.core.files import write_text
+from latentarm.core.untrusted.documents import read_object
 from latentarm.runs.folder import git_commit
-from latentarm.untrusted.documents import read_object
 
 CONFIG: Final = "config.json"
 """The options; written first, and used to recognise a study's folders."""

@@ -12,16 +12,16 @@ from safetensors.numpy import save
 
 from latentarm.alignment.answers import Motions
 from latentarm.alignment.demonstrated import shown
+from latentarm.core.errors import UserError
+from latentarm.core.files import written_whole
+from latentarm.core.types import Demonstrations, FloatArray, IntArray
 from latentarm.demonstrations.split import select_episodes
-from latentarm.errors import UserError
-from latentarm.files import written_whole
-from latentarm.kinematics.chain import Chain
-from latentarm.metrics.evaluation import Probe, take_probe
-from latentarm.metrics.samples import StartGoalPairs
+from latentarm.evaluation.evaluation import Probe, take_probe
+from latentarm.evaluation.samples import StartGoalPairs
 from latentarm.models.model import LatentActionModel
 from latentarm.models.reading import Section
 from latentarm.models.saving import CONFIG_LIMIT, CONFIG_NAME, read_tensors
-from latentarm.types import Demonstrations, FloatArray, IntArray
+from latentarm.robots.kinematics.chain import Chain
 
 SAMPLES_NAME: Final = "samples.safetensors"
 ALIGN_STREAM: Final = 3

@@ -8,10 +8,11 @@ from typing import cast
 import numpy as np
 
 from latentarm.arms.catalogue import DEFAULT_ARM, PHYSICAL_ARM
-from latentarm.context import BELIEF, GRIPPER, Named, feature_names
+from latentarm.core.context import BELIEF, GRIPPER, Named, feature_names
+from latentarm.core.errors import UserError
+from latentarm.core.types import Demonstrations, FloatArray, Goal, StatedLimits
 from latentarm.demonstrations.gripper import ACTION_GRIPPER, opening_source
 from latentarm.demonstrations.split import select_episodes
-from latentarm.errors import UserError
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.robot import Robot
 from latentarm.runs.folder import Run, robot_of
@@ -19,7 +20,6 @@ from latentarm.tasks.catalogue import HELD_OUT, SCENE_TASKS, TASKS
 from latentarm.tasks.replay import Replay, gripper_routes_of, routes_of
 from latentarm.tasks.table_top import ITEMS
 from latentarm.tasks.task import Task
-from latentarm.types import Demonstrations, FloatArray, Goal, StatedLimits
 
 
 def task_of_run(

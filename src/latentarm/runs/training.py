@@ -14,23 +14,23 @@ import numpy as np
 from latentarm.alignment.frame_file import save_frames
 from latentarm.assistance.annotation import prepared
 from latentarm.assistance.entropy import GoalEntropy
-from latentarm.context import JOINTS, Named, feature_names
+from latentarm.core.context import JOINTS, Named, feature_names
+from latentarm.core.errors import UserError
+from latentarm.core.types import Demonstrations, Row
 from latentarm.demonstrations.dataset import read_dataset
 from latentarm.demonstrations.split import select_episodes, split_episodes
-from latentarm.errors import UserError
-from latentarm.kinematics.chain import Chain
 from latentarm.models.catalogue import MODELS
 from latentarm.models.model import LatentActionModel
 from latentarm.models.neural import NeuralModel
 from latentarm.models.training import Report
 from latentarm.robots.catalogue import ROBOTS, load_recorded_robot
+from latentarm.robots.kinematics.chain import Chain
 from latentarm.robots.model_copy import copy_model
 from latentarm.robots.robot import Robot
 from latentarm.runs.checks import check_seed
 from latentarm.runs.folder import ROBOT, Run, fingerprint, git_commit, run_facts
 from latentarm.runs.samples import ALIGN_STREAM, save_samples, take_samples
 from latentarm.runs.tasks import routes_seen, usual_task
-from latentarm.types import Demonstrations, Row
 
 CHECKPOINT = "training.safetensors"
 

@@ -2,7 +2,7 @@
 
 from typing import Final
 
-from latentarm.plugins import Catalogue
+from latentarm.core.plugins import Catalogue
 from latentarm.tasks.scene_task import SceneTask
 from latentarm.tasks.task import Task
 

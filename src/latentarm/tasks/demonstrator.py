@@ -7,10 +7,10 @@ from typing import final
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from latentarm.errors import UserError
-from latentarm.kinematics.chain import Chain
+from latentarm.core.errors import UserError
+from latentarm.core.types import Demonstrations, Episode, FloatArray
+from latentarm.robots.kinematics.chain import Chain
 from latentarm.tasks.task import Task
-from latentarm.types import Demonstrations, Episode, FloatArray
 
 _FINE = 400
 """Samples with which a stroke's timing is integrated before it is sampled at the rate asked for."""

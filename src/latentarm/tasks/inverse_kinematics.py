@@ -4,10 +4,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
+from latentarm.core.types import FloatArray, Pose
 from latentarm.robots.fixing import arm_model
 from latentarm.robots.robot import Robot
-from latentarm.types import FloatArray, Pose
 
 _STEP_S = 0.1
 _STEPS = 300

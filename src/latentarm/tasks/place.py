@@ -4,9 +4,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol, final
 
-from latentarm.kinematics.obstacles import Obstacle
+from latentarm.core.types import Goal
+from latentarm.robots.kinematics.obstacles import Obstacle
 from latentarm.robots.robot import Robot
-from latentarm.types import Goal
 
 
 class Place(Protocol):

@@ -5,10 +5,10 @@ from typing import final
 
 import numpy as np
 
-from latentarm.scene.interior import Interior
-from latentarm.scene.scene import TOOL, SceneState
+from latentarm.core.types import FloatArray
+from latentarm.robots.scene.interior import Interior
+from latentarm.robots.scene.scene import TOOL, SceneState
 from latentarm.tasks.mishap import Mishap
-from latentarm.types import FloatArray
 
 
 @final
@@ -346,7 +346,7 @@ class Pressed:
     """The tool presses harder on something than it may.
 
     Attributes:
-        thing: its name, or `latentarm.scene.scene.TABLE`.
+        thing: its name, or `latentarm.robots.scene.scene.TABLE`.
         most_n: N.
     """
 

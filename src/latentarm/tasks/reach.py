@@ -4,11 +4,11 @@ from typing import final
 
 import numpy as np
 
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
+from latentarm.core.types import Demonstrations, FloatArray, Goal, Pose
 from latentarm.robots.robot import Robot
 from latentarm.tasks.demonstrator import demonstrate_goals
 from latentarm.tasks.task import Task, within
-from latentarm.types import Demonstrations, FloatArray, Goal, Pose
 
 SPREAD = 0.5
 """How far a goal's joints lie from home at most, rad."""

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from latentarm.types import FloatArray
+from latentarm.core.types import FloatArray
 
 Region = tuple[tuple[float, float], tuple[float, float]]
 """Lowest and highest x, lowest and highest y, m."""

@@ -6,13 +6,22 @@ from typing import final
 
 import numpy as np
 
-from latentarm.errors import UserError
-from latentarm.kinematics.rotations import angle_between
-from latentarm.kinematics.stillness import moving_range
+from latentarm.core.errors import UserError
+from latentarm.core.types import (
+    BoolArray,
+    Demonstrations,
+    Episode,
+    FloatArray,
+    Goal,
+    GripperAsk,
+    IntArray,
+    Pose,
+)
+from latentarm.robots.kinematics.rotations import angle_between
+from latentarm.robots.kinematics.stillness import moving_range
 from latentarm.robots.robot import Robot
 from latentarm.tasks.demonstrator import demonstrate_goals
 from latentarm.tasks.task import REACHED_ANGLE, REACHED_DISTANCE, GripperTask, within
-from latentarm.types import BoolArray, Demonstrations, Episode, FloatArray, Goal, GripperAsk, IntArray, Pose
 
 WAYPOINT_SPACING = 0.25
 """Way of the tool between two waypoints, m, a radian of turning counted as `RADIAN`."""

@@ -6,11 +6,11 @@ from typing import final
 
 import numpy as np
 
-from latentarm.kinematics.obstacles import Obstacle
+from latentarm.core.types import FloatArray, Goal
+from latentarm.robots.kinematics.obstacles import Obstacle
 from latentarm.robots.robot import Robot
-from latentarm.scene.scene import Scene
+from latentarm.robots.scene.scene import Scene
 from latentarm.tasks.steps import Failure, TaskStep
-from latentarm.types import FloatArray, Goal
 
 
 @final

@@ -6,10 +6,10 @@ from typing import Final, Literal, final
 
 import numpy as np
 
-from latentarm.kinematics.rotations import angle_between
-from latentarm.scene.scene import SceneState
+from latentarm.core.types import FloatArray, GripperAsk, Pose
+from latentarm.robots.kinematics.rotations import angle_between
+from latentarm.robots.scene.scene import SceneState
 from latentarm.tasks.mishap import Mishap
-from latentarm.types import FloatArray, GripperAsk, Pose
 
 StepKind = Literal[
     "approached",

@@ -2,9 +2,9 @@
 
 from collections.abc import Callable, Mapping, Sequence
 
-from latentarm.kinematics.pose_rows import object_rows
+from latentarm.core.types import FloatArray, Pose
+from latentarm.robots.kinematics.pose_rows import object_rows
 from latentarm.tasks.place import Place
-from latentarm.types import FloatArray, Pose
 
 
 def surroundings_of(place: Place, objects: Sequence[str]) -> Callable[[], FloatArray] | None:

@@ -5,9 +5,9 @@ from typing import Final
 
 import numpy as np
 
-from latentarm.scene.scene import Scene
-from latentarm.scene.thing import Part, Thing
-from latentarm.types import Pose
+from latentarm.core.types import Pose
+from latentarm.robots.scene.scene import Scene
+from latentarm.robots.scene.thing import Part, Thing
 
 _PLATE_RADIUS_M: Final = 0.06
 _PLATE_HALF_M: Final = 0.005

@@ -5,16 +5,16 @@ from typing import final
 
 import numpy as np
 
-from latentarm.errors import UserError
-from latentarm.kinematics.obstacles import HalfSpace, Obstacle
+from latentarm.core.errors import UserError
+from latentarm.core.types import Demonstrations, Episode, FloatArray, Goal, Pose
 from latentarm.robots.catalogue import load_robot
+from latentarm.robots.kinematics.obstacles import HalfSpace, Obstacle
 from latentarm.robots.robot import Robot
-from latentarm.scene.scene import Scene
+from latentarm.robots.scene.scene import Scene
 from latentarm.tasks.demonstrator import Hand, demonstrate, demonstrations_of
 from latentarm.tasks.inverse_kinematics import solve
 from latentarm.tasks.table_food import food_on_dishes
 from latentarm.tasks.task import Task, within
-from latentarm.types import Demonstrations, Episode, FloatArray, Goal, Pose
 
 TABLE_HEIGHT = 0.0
 """Height of the table top in the robot's base frame, m: the arm is mounted on the table."""

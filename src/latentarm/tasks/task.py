@@ -6,12 +6,12 @@ from typing import ClassVar
 
 import numpy as np
 
-from latentarm.errors import UserError
-from latentarm.kinematics.obstacles import Obstacle
-from latentarm.kinematics.rotations import angle_between
+from latentarm.core.errors import UserError
+from latentarm.core.types import Demonstrations, FloatArray, Goal, GripperAsk, Pose
+from latentarm.robots.kinematics.obstacles import Obstacle
+from latentarm.robots.kinematics.rotations import angle_between
 from latentarm.robots.robot import Robot
-from latentarm.scene.scene import Scene
-from latentarm.types import Demonstrations, FloatArray, Goal, GripperAsk, Pose
+from latentarm.robots.scene.scene import Scene
 
 
 class Task(ABC):

@@ -22,13 +22,13 @@ from typing import Final, NamedTuple, final
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
+from latentarm.core.types import Demonstrations, Episode, FloatArray, Goal, Pose
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.robot import Robot
 from latentarm.tasks.demonstrator import Hand, demonstrate, demonstrations_of
 from latentarm.tasks.inverse_kinematics import solve
 from latentarm.tasks.task import Task, within
-from latentarm.types import Demonstrations, Episode, FloatArray, Goal, Pose
 
 CUPS: Final = ("left cup", "right cup")
 

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from latentarm.arms.contract import Arm, ArmPhase
+from latentarm.core.types import Command
 from latentarm.robots.panda import panda
 from latentarm.robots.robot import Robot
-from latentarm.types import Command
 
 _panda = cache(panda)
 

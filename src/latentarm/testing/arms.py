@@ -6,10 +6,10 @@ import pytest
 from latentarm.arms.catalogue import ArmFactory
 from latentarm.arms.contract import Arm, check_arm
 from latentarm.control.clock import SimulatedClock
+from latentarm.core.types import Command, FloatArray
 from latentarm.robots.robot import Robot
 from latentarm.testing.arm_laws import ArmLaws
 from latentarm.testing.fault_trials import FAULTS, Fault, try_fault
-from latentarm.types import Command, FloatArray
 
 DT_S = 0.02
 

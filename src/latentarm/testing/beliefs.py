@@ -9,8 +9,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from latentarm.assistance.belief import ActionOf, Belief
-from latentarm.errors import UserError
-from latentarm.types import FloatArray
+from latentarm.core.errors import UserError
+from latentarm.core.types import FloatArray
 
 DOF, COUNT = 7, 3
 GOALS = np.random.default_rng(0).normal(0.0, 1.0, (COUNT, DOF))

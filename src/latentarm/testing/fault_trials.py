@@ -6,16 +6,16 @@ from typing import Final, Literal, final
 import numpy as np
 
 from latentarm.arms.catalogue import ArmFactory
+from latentarm.assistance.controllers.end_effector import EndEffectorController
 from latentarm.control.clock import SimulatedClock
 from latentarm.control.input_port import InputSource
 from latentarm.control.loop import ControlLoop
-from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
-from latentarm.controllers.end_effector import EndEffectorController
-from latentarm.kinematics.stillness import STILL_RAD_S
+from latentarm.core.types import BoolArray, FloatArray, Input, Reading, StepRecord
+from latentarm.robots.kinematics.stillness import STILL_RAD_S
 from latentarm.robots.robot import Robot
+from latentarm.safety.config import SafetyConfig
 from latentarm.testing.faults import FaultyArm
-from latentarm.types import BoolArray, FloatArray, Input, Reading, StepRecord
 
 Fault = Literal[
     "stop_pressed",

@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import final
 
 from latentarm.arms.contract import Arm, ArmSpec, ArmStatus
-from latentarm.types import Command, GripperCommand, Reading
+from latentarm.core.types import Command, GripperCommand, Reading
 
 
 @final

@@ -5,10 +5,10 @@ import pytest
 
 from latentarm.arms.guiding import GuidableArm
 from latentarm.arms.real import RealArm
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
+from latentarm.core.types import FloatArray, GripperCommand
 from latentarm.robots.robot import Robot
 from latentarm.testing.real_arm_rig import RealArmRig, StandIn
-from latentarm.types import FloatArray, GripperCommand
 
 
 class GuidingLaws(RealArmRig):

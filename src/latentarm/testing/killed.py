@@ -8,8 +8,8 @@ from typing import Self, final
 
 from latentarm.arms.real_catalogue import make_real_arm
 from latentarm.control.clock import MonotonicClock
+from latentarm.core.types import Command, FloatArray
 from latentarm.robots.robot import Robot
-from latentarm.types import Command, FloatArray
 
 _PERIOD_S = 0.01
 

@@ -15,15 +15,15 @@ from sklearn.exceptions import NotFittedError
 from sklearn.utils import estimator_checks
 from sklearn.utils.validation import check_is_fitted
 
+from latentarm.core.errors import UserError
+from latentarm.core.types import Demonstrations, Episode, FloatArray
 from latentarm.demonstrations.pairs import make_pairs
-from latentarm.errors import UserError
-from latentarm.metrics.search import nearest_latents
+from latentarm.evaluation.search import nearest_latents
 from latentarm.models.catalogue import KINDS
 from latentarm.models.model import LatentActionModel
 from latentarm.models.saving import load_decoder, load_model
 from latentarm.models.scaling import CollapseWarning
 from latentarm.robots.planar import planar
-from latentarm.types import Demonstrations, Episode, FloatArray
 
 JOINTS: Final = 4
 OBJECTS: Final = ("cup", "table")

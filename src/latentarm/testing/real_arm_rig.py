@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from latentarm.arms.real import RealArm
+from latentarm.core.types import Command, FloatArray, GripperCommand
 from latentarm.robots.robot import Robot
 from latentarm.testing.arm_laws import ArmLaws
-from latentarm.types import Command, FloatArray, GripperCommand
 
 HOLD_S = 0.05
 """How long a command of these tests lasts, as on the page, s."""

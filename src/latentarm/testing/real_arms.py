@@ -10,12 +10,12 @@ import pytest
 from latentarm.arms.contract import check_arm
 from latentarm.arms.real import RealArm
 from latentarm.control.clock import MonotonicClock
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
+from latentarm.core.types import Command, FloatArray, GripperCommand
 from latentarm.robots.robot import Robot
 from latentarm.testing.guiding_laws import GuidingLaws
 from latentarm.testing.killed import Driving
 from latentarm.testing.real_arm_rig import HOLD_S, StandIn
-from latentarm.types import Command, FloatArray, GripperCommand
 
 __all__ = ["RealArmContract", "StandIn"]
 

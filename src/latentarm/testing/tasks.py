@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 from latentarm.tasks.task import Task, check_not_done
 
 

@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from latentarm.errors import UserError
-from latentarm.kinematics.rotations import pose_error
-from latentarm.tasks.pouring.tasks import (
+from latentarm.core.errors import UserError
+from latentarm.core.types import Pose
+from latentarm.robots.kinematics.rotations import pose_error
+from latentarm_research.tasks.pouring.tasks import (
     AT_BOWL_M,
     FAR_LEFT_M,
     HEIGHT_M,
@@ -16,8 +17,7 @@ from latentarm.tasks.pouring.tasks import (
     POURING_TASKS,
     at_bowl,
 )
-from latentarm.tasks.pouring.tool_path import RATE_HZ, SPEED_M_S, TURN_RAD_S
-from latentarm.types import Pose
+from latentarm_research.tasks.pouring.tool_path import RATE_HZ, SPEED_M_S, TURN_RAD_S
 
 CLOSE_M = 2e-4
 """How far off its path the hand may be, m; off its direction, rad."""

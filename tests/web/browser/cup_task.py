@@ -2,13 +2,13 @@
 
 import numpy as np
 
+from latentarm.core.types import Pose
 from latentarm.robots.catalogue import load_robot
-from latentarm.scene.containers import cup
-from latentarm.scene.scene import Scene
-from latentarm.scene.thing import Thing
+from latentarm.robots.scene.containers import cup
+from latentarm.robots.scene.scene import Scene
+from latentarm.robots.scene.thing import Thing
 from latentarm.tasks.inverse_kinematics import solve
 from latentarm.tasks.scene_task import Beginning, SceneTask
-from latentarm.types import Pose
 
 CUP_AT = np.array([0.5, 0.0, 0.0])
 GRIP = np.array([0.0, 0.0, 0.07])

@@ -3,7 +3,7 @@
 import numpy as np
 
 from latentarm.robots.catalogue import load_robot
-from latentarm.scene.scene import Scene
+from latentarm.robots.scene.scene import Scene
 from latentarm.tasks.eating.stabbing import above, stab
 from latentarm.tasks.eating.table import fork, marshmallow, plate
 from latentarm.tasks.inverse_kinematics import solve

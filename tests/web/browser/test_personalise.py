@@ -11,7 +11,7 @@ from playwright.sync_api import expect
 
 from latentarm.alignment.demonstrated import demonstrated_motions
 from latentarm.runs.folder import read_run, robot_of
-from latentarm.studies.alignment.drives_learning import turned_person
+from latentarm_research.studies.alignment.drives_learning import turned_person
 
 REACH = 96 / 264
 """From the middle of the stick's drawing to its edge, as a share of the drawing."""

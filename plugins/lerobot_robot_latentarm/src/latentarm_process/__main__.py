@@ -12,10 +12,10 @@ from latentarm.arms.contract import Arm
 from latentarm.arms.helper_process import MessagePort
 from latentarm.control.clock import MonotonicClock
 from latentarm.control.loop import ControlLoop
-from latentarm.errors import UserError
-from latentarm.kinematics.rotations import quaternion
-from latentarm.punctuality import ask_for_priority, short_collections
-from latentarm.types import StepRecord, StopCode
+from latentarm.core.errors import UserError
+from latentarm.core.punctuality import ask_for_priority, short_collections
+from latentarm.core.types import StepRecord, StopCode
+from latentarm.robots.kinematics.rotations import quaternion
 from latentarm_process.driven import INPUT_TIMEOUT_S, Driven, Wanted, load
 from latentarm_process.inputs import PortInputs
 

@@ -7,8 +7,8 @@ from typing import Any, Final, final
 from latentarm.arms.helper_process import HelperProcess
 from latentarm.control.clock import MonotonicClock
 from latentarm.control.loop import ENABLING_S
-from latentarm.errors import UserError
-from latentarm.types import GripperAsk
+from latentarm.core.errors import UserError
+from latentarm.core.types import GripperAsk
 from latentarm_process.driven import Wanted
 
 _LOADING_S: Final = 120.0

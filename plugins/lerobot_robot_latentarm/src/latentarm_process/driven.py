@@ -7,17 +7,17 @@ from typing import Any, Final, Self, final
 
 import numpy as np
 
-from latentarm.control.safety.config import SafetyConfig
+from latentarm.assistance.controllers.latent import LatentController, latent_controller
 from latentarm.control.step import Step
-from latentarm.controllers.latent import LatentController, latent_controller
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
+from latentarm.core.types import FloatArray
 from latentarm.robots.robot import Robot
 from latentarm.runs.folder import read_run
 from latentarm.runs.tasks import task_of_run
+from latentarm.safety.config import SafetyConfig
 from latentarm.tasks.catalogue import SCENE_TASKS
 from latentarm.tasks.surroundings import surroundings_of
 from latentarm.tasks.task import Task
-from latentarm.types import FloatArray
 
 PERIOD_S: Final = 0.01
 """Period of the control loop: 100 Hz."""

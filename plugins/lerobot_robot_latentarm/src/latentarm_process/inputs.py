@@ -8,7 +8,7 @@ import numpy as np
 
 from latentarm.arms.helper_process import MessagePort
 from latentarm.control.input_port import InputSource
-from latentarm.types import GripperAsk, Input
+from latentarm.core.types import GripperAsk, Input
 
 LET_GO_S: Final = 0.5
 """Fresh neutral actions for so long enable an arm again that had stopped because actions were missing, s."""

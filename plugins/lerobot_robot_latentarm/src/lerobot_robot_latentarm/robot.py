@@ -12,7 +12,7 @@ from lerobot.cameras import make_cameras_from_configs
 from lerobot.robots import Robot
 from lerobot.utils.errors import DeviceAlreadyConnectedError, DeviceNotConnectedError
 
-from latentarm.types import GripperAsk
+from latentarm.core.types import GripperAsk
 from lerobot_robot_latentarm.config_robot import LatentarmConfig
 from lerobot_robot_latentarm.nothing_to_calibrate import NothingToCalibrate
 

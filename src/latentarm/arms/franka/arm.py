@@ -14,9 +14,9 @@ from latentarm.arms.franka.options import read_options
 from latentarm.arms.franka.worker import Order, Trouble, Worker
 from latentarm.arms.guiding import GuidableArm
 from latentarm.arms.real import Findings
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
+from latentarm.core.types import Command, GripperCommand, GripperReading, Reading
 from latentarm.robots.robot import Robot
-from latentarm.types import Command, GripperCommand, GripperReading, Reading
 
 RATE_HZ: Final = 100.0
 

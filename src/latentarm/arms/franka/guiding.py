@@ -6,7 +6,7 @@ import numpy as np
 
 from latentarm.arms.franka.limits import FrankaLimits
 from latentarm.arms.franka.link import Link
-from latentarm.types import FloatArray
+from latentarm.core.types import FloatArray
 
 LASTS_S: Final = 1.0
 """The arm comes to rest where guiding is not asked for again within this time, s."""

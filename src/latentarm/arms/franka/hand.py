@@ -4,8 +4,8 @@ import threading
 from typing import TYPE_CHECKING, Final, final
 
 from latentarm.arms.franka.words import plain
+from latentarm.core.types import GripperCommand, GripperReading
 from latentarm.robots.gripper import Gripper
-from latentarm.types import GripperCommand, GripperReading
 
 if TYPE_CHECKING:
     import franky

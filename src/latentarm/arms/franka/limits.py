@@ -6,9 +6,9 @@ from typing import Final, final
 
 import numpy as np
 
+from latentarm.core.types import FloatArray
 from latentarm.robots.panda import LIMITS as PANDA_LIMITS
 from latentarm.robots.robot import Robot
-from latentarm.types import FloatArray
 
 SHARE: Final = 0.99
 """How much of a limit is used; a share of 1 exceeds some by rounding."""

@@ -12,7 +12,7 @@ from latentarm.arms.franka.limits import SHARE, FrankaLimits, limits_of
 from latentarm.arms.franka.options import FrankaOptions
 from latentarm.arms.franka.words import plain
 from latentarm.arms.real import Fact, Findings
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 from latentarm.robots.robot import Robot
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Final, Literal, final
 
 from latentarm.arms.address import ArmAddress
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 
 Realtime = Literal["enforce", "ignore"]
 

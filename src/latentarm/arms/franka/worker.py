@@ -13,8 +13,8 @@ from latentarm.arms.franka.guiding import Guiding
 from latentarm.arms.franka.limits import FrankaLimits
 from latentarm.arms.franka.link import Link, library
 from latentarm.arms.franka.words import fault, plain
-from latentarm.errors import UserError
-from latentarm.types import FloatArray
+from latentarm.core.errors import UserError
+from latentarm.core.types import FloatArray
 
 if TYPE_CHECKING:
     import franky

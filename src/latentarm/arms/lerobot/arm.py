@@ -14,9 +14,9 @@ from latentarm.arms.helper_process import HelperProcess
 from latentarm.arms.lerobot import keeper
 from latentarm.arms.lerobot.options import Options
 from latentarm.arms.real import Fact, Findings
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
+from latentarm.core.types import Command, GripperCommand, GripperReading, Reading
 from latentarm.robots.robot import Robot
-from latentarm.types import Command, GripperCommand, GripperReading, Reading
 
 RATE_HZ: Final = 100.0
 """How often its process tells the servos where to be."""

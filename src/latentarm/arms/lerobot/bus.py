@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any, Final, TypeVar, final
 
 from latentarm.arms.lerobot.options import Options
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 
 KINDS: Final = ("so100_follower", "so101_follower", "koch_follower", "omx_follower")
 """The robots of LeRobot that have one arm on one bus, and the modules that register them."""

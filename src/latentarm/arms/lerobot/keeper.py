@@ -22,9 +22,9 @@ from latentarm.arms.lerobot.bus import GRIPPER, MotorsBus
 from latentarm.arms.lerobot.jaw import Jaw
 from latentarm.arms.lerobot.options import Options
 from latentarm.arms.lerobot.targets import Targets
-from latentarm.errors import UserError
-from latentarm.punctuality import ask_for_priority, short_collections
-from latentarm.types import FloatArray
+from latentarm.core.errors import UserError
+from latentarm.core.punctuality import ask_for_priority, short_collections
+from latentarm.core.types import FloatArray
 
 PERIOD_S: Final = 0.01
 """Of the targets."""

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Self, final
 
 from latentarm.arms.address import ArmAddress
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 
 
 @final

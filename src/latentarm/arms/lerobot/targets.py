@@ -5,7 +5,7 @@ from typing import Final, final
 
 import numpy as np
 
-from latentarm.types import FloatArray
+from latentarm.core.types import FloatArray
 
 LONGEST_STEP_S: Final = 0.02
 """However late a step is, the targets move for no longer than this, s."""

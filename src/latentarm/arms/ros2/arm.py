@@ -19,10 +19,10 @@ from latentarm.arms.ros2.joint_states import Measured
 from latentarm.arms.ros2.link import Link, check_installed
 from latentarm.arms.ros2.options import read_options
 from latentarm.arms.ros2.session import Session
-from latentarm.errors import UserError
-from latentarm.kinematics.stillness import STILL_RAD_S
+from latentarm.core.errors import UserError
+from latentarm.core.types import Command, GripperCommand, GripperReading, Reading
+from latentarm.robots.kinematics.stillness import STILL_RAD_S
 from latentarm.robots.robot import Robot
-from latentarm.types import Command, GripperCommand, GripperReading, Reading
 
 RATE_HZ: Final = 100.0
 """The watchdog commands the controller so often."""

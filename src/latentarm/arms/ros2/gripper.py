@@ -7,8 +7,8 @@ import numpy as np
 
 from latentarm.arms.ros2.link import Link
 from latentarm.arms.ros2.options import Ros2Options
+from latentarm.core.types import GripperCommand, GripperReading
 from latentarm.robots.gripper import Gripper
-from latentarm.types import GripperCommand, GripperReading
 
 _ACTION: Final = "control_msgs/action/GripperCommand"
 

@@ -8,7 +8,7 @@ from typing import Any, Final, final
 
 import numpy as np
 
-from latentarm.types import FloatArray
+from latentarm.core.types import FloatArray
 
 WINDOW: Final = 200
 """Over so many joint states the difference of the clocks is reckoned."""

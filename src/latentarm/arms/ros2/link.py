@@ -6,7 +6,7 @@ import socket
 from collections.abc import Callable, Mapping
 from typing import Any, Final, final
 
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 
 CONNECTING_S: Final = 3.0
 """For how long rosbridge may take to answer, s."""

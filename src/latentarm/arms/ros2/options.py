@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Final, Literal, cast, final, get_args
 
 from latentarm.arms.address import ArmAddress
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 from latentarm.robots.robot import Robot
 
 PORT: Final = 9090

@@ -5,8 +5,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Final, Literal, cast, final, get_args
 
-from latentarm.errors import UserError
-from latentarm.untrusted.documents import parse_object
+from latentarm.core.errors import UserError
+from latentarm.core.untrusted.documents import parse_object
 
 VERSION: Final = 1
 """Of the messages between the watchdog and us, as in ``docs/your-arm/latentarm_watchdog.py``."""

@@ -17,10 +17,10 @@ from latentarm.arms.xarm.reports import JointReport
 from latentarm.arms.xarm.sdk import load_sdk
 from latentarm.arms.xarm.session import Session, read_options
 from latentarm.arms.xarm.state import TAKES_COMMANDS, Ordered, Shared
-from latentarm.errors import UserError
-from latentarm.kinematics.stillness import STILL_RAD_S
+from latentarm.core.errors import UserError
+from latentarm.core.types import Command, GripperCommand, GripperReading, Reading
+from latentarm.robots.kinematics.stillness import STILL_RAD_S
 from latentarm.robots.robot import Robot
-from latentarm.types import Command, GripperCommand, GripperReading, Reading
 
 RATE_HZ: Final = 100.0
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from latentarm.arms.xarm.control_socket import ControlSocket
 from latentarm.arms.xarm.sdk import Sdk
-from latentarm.types import FloatArray
+from latentarm.core.types import FloatArray
 
 ANSWER_S: Final = 0.08
 """If the answer to a motion takes longer, the connection ends, and with it what was not delivered, s."""

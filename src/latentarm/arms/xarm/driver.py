@@ -20,8 +20,8 @@ from latentarm.arms.xarm.session import Session
 from latentarm.arms.xarm.state import Condition, Ordered, Request, Shared
 from latentarm.arms.xarm.watch import Watch
 from latentarm.arms.xarm.words import EMERGENCY_STOPS, controller_error, emergency_stop
-from latentarm.errors import UserError
-from latentarm.kinematics.stillness import STILL_RAD_S
+from latentarm.core.errors import UserError
+from latentarm.robots.kinematics.stillness import STILL_RAD_S
 from latentarm.robots.robot import Robot
 
 _ORDER: Final[tuple[Request, ...]] = ("halt", "stop", "recover", "guide", "enable")

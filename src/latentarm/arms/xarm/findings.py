@@ -12,7 +12,7 @@ from latentarm.arms.xarm.identity import BOUNDED_COMMANDS, GRIPPER_PORT, Identit
 from latentarm.arms.xarm.sdk import Sdk
 from latentarm.arms.xarm.session import Session
 from latentarm.arms.xarm.words import EMERGENCY_STOPS, controller_error, emergency_stop
-from latentarm.kinematics.stillness import STILL_RAD_S
+from latentarm.robots.kinematics.stillness import STILL_RAD_S
 from latentarm.robots.robot import Robot
 
 _SLOW_S: Final = 0.02

@@ -9,8 +9,8 @@ from latentarm.arms.xarm.control_socket import ControlSocket
 from latentarm.arms.xarm.controller import LinkLostError
 from latentarm.arms.xarm.sdk import Sdk
 from latentarm.arms.xarm.words import gripper_error
+from latentarm.core.types import GripperCommand, GripperReading
 from latentarm.robots.gripper import Gripper
-from latentarm.types import GripperCommand, GripperReading
 
 PORT: Final = 503
 

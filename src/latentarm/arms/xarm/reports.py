@@ -14,7 +14,7 @@ import numpy as np
 from latentarm.arms.xarm.controller import LinkLostError
 from latentarm.arms.xarm.report_clock import ReportClock
 from latentarm.arms.xarm.sdk import Sdk
-from latentarm.types import FloatArray
+from latentarm.core.types import FloatArray
 
 TIMED_PORT: Final = 30000
 """Joint states with the controller's time, 200 per second; from firmware 2.1 on."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Any, Protocol, cast, final
 
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 
 
 class Port(Protocol):

@@ -11,7 +11,7 @@ from latentarm.arms.xarm.gripper import GripperLink
 from latentarm.arms.xarm.identity import TIMED_REPORTS, Identity, read_identity
 from latentarm.arms.xarm.reports import JointReport, JointReports, StatusReport, StatusReports
 from latentarm.arms.xarm.sdk import Sdk
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 from latentarm.robots.robot import Robot
 
 COMMAND_PORT: Final = 502

@@ -4,7 +4,7 @@ import threading
 from dataclasses import dataclass, field
 from typing import Literal, final
 
-from latentarm.types import FloatArray
+from latentarm.core.types import FloatArray
 
 Condition = Literal[
     "off",

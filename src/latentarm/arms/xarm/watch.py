@@ -6,8 +6,8 @@ import numpy as np
 
 from latentarm.arms.xarm.controller import JOINT_VELOCITY, STATES_THAT_MOVE
 from latentarm.arms.xarm.reports import JointReport
-from latentarm.kinematics.stillness import STILL_RAD_S
-from latentarm.types import FloatArray
+from latentarm.core.types import FloatArray
+from latentarm.robots.kinematics.stillness import STILL_RAD_S
 
 _FROZEN_S: Final = 0.12
 """A joint that was commanded for so long has begun to move, whatever its lag, s."""

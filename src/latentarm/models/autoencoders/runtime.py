@@ -8,6 +8,8 @@ from typing import Final, final
 
 import numpy as np
 
+from latentarm.core.style import Look
+from latentarm.core.types import FloatArray
 from latentarm.models.enclosure import Enclosure, network_enclosure
 from latentarm.models.kind import Dimensions, ModelKind, Runtime, Shape, TrainedModel
 from latentarm.models.numpy_networks import (
@@ -18,8 +20,6 @@ from latentarm.models.numpy_networks import (
     scale_latent,
     scale_output,
 )
-from latentarm.style import Look
-from latentarm.types import FloatArray
 
 
 @final

@@ -4,6 +4,8 @@ from typing import Final, final
 
 import numpy as np
 
+from latentarm.core.style import Look
+from latentarm.core.types import FloatArray
 from latentarm.models.enclosure import Enclosure, celled, network_enclosure
 from latentarm.models.kind import Dimensions, ModelKind, Runtime, Shape, TrainedModel
 from latentarm.models.numpy_networks import (
@@ -14,8 +16,6 @@ from latentarm.models.numpy_networks import (
     scale_context,
     scale_output,
 )
-from latentarm.style import Look
-from latentarm.types import FloatArray
 
 
 @final

@@ -7,6 +7,7 @@ import numpy as np
 import torch
 from torch import Tensor
 
+from latentarm.core.types import FloatArray
 from latentarm.models.batches import Batch, TrainingData
 from latentarm.models.flow.runtime import FLOW
 from latentarm.models.kind import Dimensions, ModelKind
@@ -14,7 +15,6 @@ from latentarm.models.networks import Networks, mlp
 from latentarm.models.neural import NeuralModel
 from latentarm.models.numpy_networks import NORM_FLOOR
 from latentarm.models.parameters import RANGE, Real
-from latentarm.types import FloatArray
 
 NORMAL_START: Final = 4.0
 """Length of the first guess of the mirrors' normals, where what an untrained network adds is about 0.5:

@@ -7,6 +7,7 @@ import numpy as np
 import torch
 from torch import Tensor
 
+from latentarm.core.types import FloatArray
 from latentarm.models.batches import Batch, TrainingData
 from latentarm.models.homogeneous.directions import nearest_direction, odd_degrees
 from latentarm.models.homogeneous.runtime import BEND_SIZE, DAMPING_M2, HOMOGENEOUS, ORDERS
@@ -17,7 +18,6 @@ from latentarm.models.numpy_networks import NORM_FLOOR
 from latentarm.models.objectives import reconstruction_error
 from latentarm.models.parameters import RANGE, Real
 from latentarm.models.tool_contexts import PLACE, ToolSizes
-from latentarm.types import FloatArray
 
 STRAIGHT_START: Final = 8.0
 """Size of the first guess of M_1(c), where what an untrained network adds is about 0.5: large enough that
@@ -57,7 +57,7 @@ class Homogeneous(NeuralModel):
     finds none that leads back. These lie on a closed curve that leaves the plane (for d = 2, of the first,
     third, fifth and seventh harmonics of the stick's angle), so that there is nearly always a direction that
     brings the tools closer, and there are more kinds of motion than axes. The price is that between its axes
-    the motion may turn several times as fast as the stick; `latentarm.metrics.turning`
+    the motion may turn several times as fast as the stick; `latentarm.evaluation.turning`
     measures how much.
 
     A network of the context gives the matrices. The encoder searches for the latent action whose action is

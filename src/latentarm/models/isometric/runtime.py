@@ -4,12 +4,12 @@ from typing import Final, final
 
 import numpy as np
 
+from latentarm.core.style import Look
+from latentarm.core.types import FloatArray
 from latentarm.models.enclosure import ROUNDING, Enclosure
 from latentarm.models.kind import Dimensions, ModelKind, Runtime, Shape, TrainedModel
 from latentarm.models.numpy_networks import NORM_FLOOR, halve_hidden, layers_of, network_output
 from latentarm.models.tool_contexts import PLACE, TWIST
-from latentarm.style import Look
-from latentarm.types import FloatArray
 
 DAMPING_M2: Final = 1e-2
 

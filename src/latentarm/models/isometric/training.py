@@ -7,6 +7,7 @@ import numpy as np
 import torch
 from torch import Tensor
 
+from latentarm.core.types import FloatArray
 from latentarm.models.batches import Batch, TrainingData
 from latentarm.models.isometric.runtime import BEND_SIZE, DAMPING_M2, ISOMETRIC
 from latentarm.models.kind import Dimensions, ModelKind
@@ -17,7 +18,6 @@ from latentarm.models.objectives import reconstruction_error
 from latentarm.models.parameters import RANGE, Real
 from latentarm.models.tool_contexts import PLACE, TWIST, ToolSizes
 from latentarm.models.torch_tool_contexts import applied, inner
-from latentarm.types import FloatArray
 
 STRAIGHT_START: Final = 2.0
 """Size of the first guess of M(c), where what an untrained network adds is about 0.5: large enough that every

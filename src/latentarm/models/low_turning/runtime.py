@@ -5,11 +5,11 @@ from typing import Final, final
 
 import numpy as np
 
+from latentarm.core.style import Look
+from latentarm.core.types import FloatArray
 from latentarm.models.homogeneous.runtime import DAMPING_M2, ORDERS, CurveDecoder, curve_sizes
 from latentarm.models.kind import ModelKind
 from latentarm.models.numpy_networks import NORM_FLOOR
-from latentarm.style import Look
-from latentarm.types import FloatArray
 
 BEND_SIZE: Final = 0.15
 """Factor of the network's bends, so that they start with about as much of the curve's length as M_1."""

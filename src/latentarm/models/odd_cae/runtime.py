@@ -4,12 +4,12 @@ from typing import Final, final
 
 import numpy as np
 
+from latentarm.core.style import Look
+from latentarm.core.types import FloatArray
 from latentarm.models.autoencoders.runtime import conditioned_sizes
 from latentarm.models.enclosure import Enclosure, network_enclosure
 from latentarm.models.kind import ModelKind, Runtime, TrainedModel
 from latentarm.models.numpy_networks import halve_hidden, layers_of, propagate, scale_context, scale_output
-from latentarm.style import Look
-from latentarm.types import FloatArray
 
 
 @final

@@ -2,9 +2,9 @@
 
 from typing import Final
 
+from latentarm.core.style import Look
 from latentarm.models.autoencoders.runtime import LatentDecoder
 from latentarm.models.kind import Dimensions, ModelKind, Shape
-from latentarm.style import Look
 
 
 def _sizes(dimensions: Dimensions) -> dict[str, Shape]:

@@ -8,7 +8,8 @@ import numpy as np
 from sklearn import decomposition
 from torch import Tensor
 
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
+from latentarm.core.types import FloatArray
 from latentarm.models.batches import TrainingData
 from latentarm.models.kind import Dimensions, ModelKind
 from latentarm.models.model import LatentActionModel, Weights
@@ -16,7 +17,6 @@ from latentarm.models.networks import Networks, mlp
 from latentarm.models.pca import runtime
 from latentarm.models.term import ScaledTerm
 from latentarm.models.training import Report, TrainingResult
-from latentarm.types import FloatArray
 
 
 @final

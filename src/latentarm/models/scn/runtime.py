@@ -4,11 +4,11 @@ from typing import Final, final
 
 import numpy as np
 
+from latentarm.core.style import Look
+from latentarm.core.types import FloatArray
 from latentarm.models.enclosure import TANH_CURVATURE, Enclosure, celled
 from latentarm.models.kind import Dimensions, ModelKind, Runtime, Shape, TrainedModel
 from latentarm.models.numpy_networks import halve_hidden, layers_of, propagate, scale_context
-from latentarm.style import Look
-from latentarm.types import FloatArray
 
 UNITS: Final = 16
 """Hidden units k of the network of z."""

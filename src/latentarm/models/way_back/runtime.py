@@ -26,7 +26,8 @@ from typing import TYPE_CHECKING, Final, final
 
 import numpy as np
 
-from latentarm.context import BELIEF, GRIPPER, JOINTS, OBJECT, OBJECTS, OBJECTS_IN_TOOL, ContextLayout
+from latentarm.core.context import BELIEF, GRIPPER, JOINTS, OBJECT, OBJECTS, OBJECTS_IN_TOOL, ContextLayout
+from latentarm.core.types import FloatArray
 from latentarm.models.enclosure import Enclosure
 from latentarm.models.numpy_networks import (
     NORM_FLOOR,
@@ -36,7 +37,6 @@ from latentarm.models.numpy_networks import (
     network_shapes,
 )
 from latentarm.models.tool_contexts import PLACE, ToolGeometry
-from latentarm.types import FloatArray
 
 if TYPE_CHECKING:
     from latentarm.models.kind import Dimensions, Shape, TrainedModel

@@ -5,14 +5,14 @@ from typing import TYPE_CHECKING, final
 import torch
 from torch import Tensor
 
-from latentarm.context import OBJECT
-from latentarm.kinematics.torch_chain import TorchChain
+from latentarm.core.context import OBJECT
+from latentarm.core.types import FloatArray
 from latentarm.models.networks import group_layers, mlp
 from latentarm.models.numpy_networks import NORM_FLOOR
 from latentarm.models.saved_chain import chain_of_tensors
 from latentarm.models.tool_contexts import TWIST, twist_weight
 from latentarm.models.way_back.runtime import DAMPING_M2, GATE_M, NETWORK, STRENGTH, pull_columns
-from latentarm.types import FloatArray
+from latentarm.robots.kinematics.torch_chain import TorchChain
 
 if TYPE_CHECKING:
     from latentarm.models.kind import TrainedModel

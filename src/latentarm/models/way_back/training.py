@@ -9,9 +9,9 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from latentarm.context import GRIPPER, OBJECT, OBJECTS, OBJECTS_IN_TOOL, ContextLayout
+from latentarm.core.context import GRIPPER, OBJECT, OBJECTS, OBJECTS_IN_TOOL, ContextLayout
+from latentarm.core.types import BoolArray, FloatArray, Pairs
 from latentarm.demonstrations.held import moved_to
-from latentarm.kinematics.chain import Chain
 from latentarm.models.batches import Batch, TrainingData
 from latentarm.models.kind import TrainedModel
 from latentarm.models.networks import Networks, mlp
@@ -20,7 +20,7 @@ from latentarm.models.scaling import LEAST_SCALE, SPAN_QUANTILE, STILL, UNSEEN, 
 from latentarm.models.tool_contexts import PLACE, TWIST, ToolGeometry, places_and_jacobian, twist_weight
 from latentarm.models.training import Report, TrainingConfig, TrainingResult, train
 from latentarm.models.way_back.runtime import DAMPING_M2, NETWORK, PullContexts, metric_length
-from latentarm.types import BoolArray, FloatArray, Pairs
+from latentarm.robots.kinematics.chain import Chain
 
 DRAWS: Final = 6
 """Displacements of each demonstrated state."""

@@ -6,10 +6,10 @@ from typing import Final, final
 
 import numpy as np
 
-from latentarm.scene.containers import bowl, packed
-from latentarm.scene.interior import Interior
-from latentarm.scene.scene import Scene
-from latentarm.scene.thing import Grains, Part, Thing
+from latentarm.robots.scene.containers import bowl, packed
+from latentarm.robots.scene.interior import Interior
+from latentarm.robots.scene.scene import Scene
+from latentarm.robots.scene.thing import Grains, Part, Thing
 from latentarm.tasks.eating.fork_task import OFF_M, ForkTask, fallen
 from latentarm.tasks.eating.stabbing import above, carried_over, stab
 from latentarm.tasks.eating.table import (

@@ -5,15 +5,15 @@ from typing import Final, final
 
 import numpy as np
 
-from latentarm.scene.scene import Scene, SceneState
-from latentarm.scene.thing import Bond, Food, Part, Thing
+from latentarm.core.types import Pose
+from latentarm.robots.scene.scene import Scene, SceneState
+from latentarm.robots.scene.thing import Bond, Food, Part, Thing
 from latentarm.tasks.eating.fork_task import ForkTask, fallen
 from latentarm.tasks.eating.stabbing import above, carried_over, stab
 from latentarm.tasks.eating.table import PLATE_RADIUS_M, STAND_M, at, fork, plate
 from latentarm.tasks.predicates import Apart, CarriedOver, Placed
 from latentarm.tasks.scene_task import Beginning
 from latentarm.tasks.steps import TaskStep, Waypoint
-from latentarm.types import Pose
 
 DISH_M: Final = (0.50, 0.14)
 """x and y of the middle of the dish with the tofu."""

@@ -5,17 +5,17 @@ from typing import Final, final
 
 import numpy as np
 
-from latentarm.kinematics.obstacles import Obstacle
+from latentarm.core.types import FloatArray, Goal
 from latentarm.robots.catalogue import load_robot
+from latentarm.robots.kinematics.obstacles import Obstacle
 from latentarm.robots.robot import Robot
-from latentarm.scene.scene import Scene
-from latentarm.scene.thing import Thing
+from latentarm.robots.scene.scene import Scene
+from latentarm.robots.scene.thing import Thing
 from latentarm.tasks.eating.stabbing import HOVER_M
 from latentarm.tasks.eating.table import STAND_M, fork
 from latentarm.tasks.inverse_kinematics import solve
 from latentarm.tasks.predicates import Dropped
 from latentarm.tasks.scene_task import SceneTask
-from latentarm.types import FloatArray, Goal
 
 START_SPREAD_RAD: Final = np.array([0.3, 0.05, 0.05, 0.05, 0.05, 0.05, 0.05])
 """How far each joint may start from the robot's home, at most: mostly turned about the base."""

@@ -5,13 +5,13 @@ from typing import Final, final
 
 import numpy as np
 
-from latentarm.scene.scene import Scene
+from latentarm.core.types import FloatArray
+from latentarm.robots.scene.scene import Scene
 from latentarm.tasks.eating.fork_task import ForkTask, fallen
 from latentarm.tasks.eating.stabbing import above, stab
 from latentarm.tasks.eating.table import marshmallow, plate
 from latentarm.tasks.region import Region, anywhere
 from latentarm.tasks.scene_task import Beginning
-from latentarm.types import FloatArray
 
 PLATE_AT_M: Final[Region] = ((0.5, 0.5), (0.0, 0.0))
 """x and y of the plate's middle: always the same, as in the paper."""

@@ -5,11 +5,11 @@ from typing import Final
 
 import numpy as np
 
-from latentarm.scene.scene import SceneState
+from latentarm.core.types import FloatArray, Pose
+from latentarm.robots.scene.scene import SceneState
 from latentarm.tasks.eating.table import MARSHMALLOW_HALF_M, STAND_M, fork
 from latentarm.tasks.predicates import Above, Stabbed, Taken
 from latentarm.tasks.steps import TaskStep, Waypoint
-from latentarm.types import FloatArray, Pose
 
 HOVER_M: Final = 0.10
 """How far over the middle of the food a reach ends."""

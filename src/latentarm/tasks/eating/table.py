@@ -4,8 +4,8 @@ from typing import Final
 
 import numpy as np
 
-from latentarm.scene.thing import Food, Part, Thing
-from latentarm.types import FloatArray, Pose
+from latentarm.core.types import FloatArray, Pose
+from latentarm.robots.scene.thing import Food, Part, Thing
 
 STAND_M: Final = 0.06
 """Dishes stand this high over the table, on stands: the arm keeps clear of the table top."""

@@ -6,10 +6,11 @@ from typing import Final, final
 
 import numpy as np
 
-from latentarm.scene.containers import bowl, cup
-from latentarm.scene.interior import Interior
-from latentarm.scene.scene import Scene, SceneState
-from latentarm.scene.thing import Part, Thing
+from latentarm.core.types import FloatArray, Pose
+from latentarm.robots.scene.containers import bowl, cup
+from latentarm.robots.scene.interior import Interior
+from latentarm.robots.scene.scene import Scene, SceneState
+from latentarm.robots.scene.thing import Part, Thing
 from latentarm.tasks.eating.table import at
 from latentarm.tasks.predicates import CarriedOver, KnockedOver, Placed, Stirred, Within
 from latentarm.tasks.region import Region, anywhere
@@ -29,7 +30,6 @@ from latentarm.tasks.serving.counter import (
 from latentarm.tasks.serving.counter_task import CounterTask, fallen, spilled
 from latentarm.tasks.serving.cup_steps import LIFT_M, POURED, at_place, over, pour, take
 from latentarm.tasks.steps import TaskStep, Waypoint
-from latentarm.types import FloatArray, Pose
 
 SHELF_AT_M: Final[Region] = ((0.57, 0.61), (-0.27, -0.23))
 """Where the middle of the shelf is, x and y."""

@@ -5,8 +5,9 @@ from typing import Final, final
 
 import numpy as np
 
-from latentarm.scene.scene import Scene, SceneState
-from latentarm.scene.thing import Part, Thing
+from latentarm.core.types import FloatArray, Goal, Pose
+from latentarm.robots.scene.scene import Scene, SceneState
+from latentarm.robots.scene.thing import Part, Thing
 from latentarm.tasks.eating.table import at
 from latentarm.tasks.predicates import KnockedOver, Pressed
 from latentarm.tasks.region import Region, anywhere
@@ -15,7 +16,6 @@ from latentarm.tasks.serving.counter import TOP_M, bearing_of, counter, hand
 from latentarm.tasks.serving.counter_task import CounterTask
 from latentarm.tasks.serving.cup_steps import at_place
 from latentarm.tasks.steps import TaskStep, Waypoint
-from latentarm.types import FloatArray, Goal, Pose
 
 BOTTLE_AT_M: Final[Region] = ((0.60, 0.66), (-0.05, 0.05))
 """Where the bottle stands, x and y."""

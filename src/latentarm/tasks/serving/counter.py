@@ -5,10 +5,10 @@ from typing import Final
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from latentarm.scene.containers import WALL_M, Colour, bowl, cup, packed
-from latentarm.scene.thing import Grains, Part, Thing
+from latentarm.core.types import FloatArray, Pose
+from latentarm.robots.scene.containers import WALL_M, Colour, bowl, cup, packed
+from latentarm.robots.scene.thing import Grains, Part, Thing
 from latentarm.tasks.eating.table import at
-from latentarm.types import FloatArray, Pose
 
 TOP_M: Final = 0.28
 """Height of the counter's top in the base frame of the arm: high enough for a Panda to tilt what it holds."""

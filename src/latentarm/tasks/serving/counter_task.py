@@ -4,16 +4,16 @@ from typing import Final, final
 
 import numpy as np
 
-from latentarm.kinematics.obstacles import Obstacle
+from latentarm.core.types import FloatArray
 from latentarm.robots.catalogue import load_robot
+from latentarm.robots.kinematics.obstacles import Obstacle
 from latentarm.robots.robot import Robot
-from latentarm.scene.scene import Scene
-from latentarm.scene.thing import Thing
+from latentarm.robots.scene.scene import Scene
+from latentarm.robots.scene.thing import Thing
 from latentarm.tasks.inverse_kinematics import solve
 from latentarm.tasks.predicates import Dropped, Spilled
 from latentarm.tasks.scene_task import SceneTask
 from latentarm.tasks.serving.counter import POSTURE_RAD, TOP_M, bearing_of, hand
-from latentarm.types import FloatArray
 
 START_M: Final = (0.45, 0.0, 0.50)
 """About where the hand starts before it takes something."""

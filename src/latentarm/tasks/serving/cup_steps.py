@@ -5,12 +5,12 @@ from typing import Final
 
 import numpy as np
 
-from latentarm.scene.interior import Interior
-from latentarm.scene.scene import SceneState
+from latentarm.core.types import FloatArray, Pose
+from latentarm.robots.scene.interior import Interior
+from latentarm.robots.scene.scene import SceneState
 from latentarm.tasks.predicates import CarriedOver, Holding, Poured, Taken
 from latentarm.tasks.serving.counter import GRIP_M, TOP_M, bearing_of, hand, pouring
 from latentarm.tasks.steps import TaskStep, Waypoint
-from latentarm.types import FloatArray, Pose
 
 BEFORE_M: Final = 0.08
 """How far before a cup the hand stops first."""

@@ -4,7 +4,7 @@ from typing import Final, final
 
 import numpy as np
 
-from latentarm.scene.scene import Scene
+from latentarm.robots.scene.scene import Scene
 from latentarm.tasks.region import Region, anywhere
 from latentarm.tasks.scene_task import Beginning
 from latentarm.tasks.serving.counter import (

@@ -8,17 +8,17 @@ from typing import Final, final
 import numpy as np
 
 from latentarm.arms.catalogue import make_scene_arm
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
+from latentarm.core.types import FloatArray, StatedLimits
 from latentarm.robots.assemble import restate
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.limits_file import read_limits
 from latentarm.robots.robot import Robot
+from latentarm.robots.scene.scene import Scene
 from latentarm.runs.folder import Run
 from latentarm.runs.tasks import task_of_run, task_without_run
-from latentarm.scene.scene import Scene
 from latentarm.tasks.catalogue import SCENE_TASKS, make_scene_task
 from latentarm.tasks.place import Place, ScenePlace
-from latentarm.types import FloatArray, StatedLimits
 from latentarm.web.arm_process.task_run import Todo, goal_to_reach, things_to_do
 
 FREE: Final = "free"

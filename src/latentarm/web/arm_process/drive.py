@@ -8,13 +8,13 @@ from typing import Final, final
 import numpy as np
 
 from latentarm.arms.contract import Arm
-from latentarm.control.call_log import CallLog
 from latentarm.control.clock import Clock
 from latentarm.control.loop import ControlLoop
-from latentarm.control.safety.straight_way import StraightWay
-from latentarm.control.safety.zones import zone_of_filter
 from latentarm.control.stick_ring import STRETCHES
-from latentarm.types import StepRecord, Stop
+from latentarm.core.call_log import CallLog
+from latentarm.core.types import StepRecord, Stop
+from latentarm.safety.straight_way import StraightWay
+from latentarm.safety.zones import zone_of_filter
 from latentarm.web.arm_process.drive_setup import PERIOD_S, DriveSetup
 from latentarm.web.arm_process.episodes import Episodes
 from latentarm.web.arm_process.ghosts import GhostPaths

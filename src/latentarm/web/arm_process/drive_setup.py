@@ -12,28 +12,28 @@ from latentarm.arms.address import is_address
 from latentarm.arms.catalogue import check_named
 from latentarm.arms.contract import Arm, SceneArm
 from latentarm.assistance.boltzmann import BoltzmannBelief
+from latentarm.assistance.controllers.end_effector import EndEffectorController
+from latentarm.assistance.controllers.joined import JoinedController
+from latentarm.assistance.controllers.latent import latent_controller
+from latentarm.assistance.controllers.to_pose import ToPose
 from latentarm.assistance.goal_blending import GoalBlending
-from latentarm.context import BELIEF
-from latentarm.control.call_log import CallLog
-from latentarm.control.journal_limits import JournalLimits
 from latentarm.control.recorder import EpisodeHeader
-from latentarm.control.safety.config import SafetyConfig
-from latentarm.control.safety.zones import Zone
 from latentarm.control.step import Step
-from latentarm.controllers.end_effector import EndEffectorController
-from latentarm.controllers.joined import JoinedController
-from latentarm.controllers.latent import latent_controller
-from latentarm.controllers.to_pose import ToPose
+from latentarm.core.call_log import CallLog
+from latentarm.core.context import BELIEF
+from latentarm.core.errors import UserError
+from latentarm.core.journal_limits import JournalLimits
+from latentarm.core.types import FloatArray
 from latentarm.demonstrations.provenance import provenance_now
-from latentarm.errors import UserError
-from latentarm.kinematics.obstacles import Obstacle
+from latentarm.robots.kinematics.obstacles import Obstacle
+from latentarm.robots.scene.scene import Scene
 from latentarm.runs.folder import Run, read_run, weights_fingerprint
 from latentarm.runs.tasks import usual_arm
-from latentarm.scene.scene import Scene
+from latentarm.safety.config import SafetyConfig
+from latentarm.safety.zones import Zone
 from latentarm.tasks.place import Place, ScenePlace
 from latentarm.tasks.surroundings import surroundings_of, watched
 from latentarm.tasks.task import Task
-from latentarm.types import FloatArray
 from latentarm.web.arm_process.beginning import RobotOptions, begin, begin_real
 from latentarm.web.arm_process.help import Help
 from latentarm.web.arm_process.page_inputs import INPUT_TIMEOUT_S

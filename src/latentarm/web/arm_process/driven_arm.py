@@ -7,7 +7,7 @@ import numpy as np
 from latentarm.arms.catalogue import make_arm, make_scene_arm
 from latentarm.arms.contract import Arm
 from latentarm.control.clock import Clock
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 from latentarm.robots.robot import Robot
 from latentarm.web.arm_process.drive_setup import DriveSetup
 

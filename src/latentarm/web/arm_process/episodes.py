@@ -2,8 +2,8 @@
 
 from typing import final
 
+from latentarm.core.types import StepRecord
 from latentarm.demonstrations.provenance import BY_HAND
-from latentarm.types import StepRecord
 from latentarm.web.arm_process.drive_setup import DriveSetup
 from latentarm.web.arm_process.page_inputs import PageInputs
 from latentarm.web.arm_process.recording import EpisodeWriter

@@ -6,13 +6,13 @@ from typing import Final, final
 import numpy as np
 
 from latentarm.assistance.blending import assistive_action, blend
-from latentarm.control.controller import Controller
-from latentarm.control.safety.config import SafetyConfig
+from latentarm.assistance.controllers.contract import Controller
 from latentarm.control.stick_ring import AHEAD_S, DIRECTIONS, STRETCHES, full_pushes
-from latentarm.kinematics.obstacles import HalfSpace
-from latentarm.kinematics.pose_rows import stored_rows
+from latentarm.core.types import BoolArray, Context, FloatArray
+from latentarm.robots.kinematics.obstacles import HalfSpace
+from latentarm.robots.kinematics.pose_rows import stored_rows
+from latentarm.safety.config import SafetyConfig
 from latentarm.tasks.place import Place
-from latentarm.types import BoolArray, Context, FloatArray
 from latentarm.web.arm_process.help import Help
 from latentarm.web.protocol.orders import HelpLevel
 from latentarm.web.protocol.report import NO_GHOSTS, Ghosts

@@ -4,10 +4,10 @@ from typing import Final, Literal, final
 
 import numpy as np
 
-from latentarm.kinematics.rotations import rotation_vector
-from latentarm.scene.scene import SceneState
+from latentarm.core.types import FloatArray
+from latentarm.robots.kinematics.rotations import rotation_vector
+from latentarm.robots.scene.scene import SceneState
 from latentarm.tasks.steps import RETRY_S, TaskStep, Waypoint
-from latentarm.types import FloatArray
 from latentarm.web.protocol.report import Point, ToGo
 
 _METRES: Final = 4

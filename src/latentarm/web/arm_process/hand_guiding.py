@@ -7,8 +7,8 @@ from latentarm.arms.contract import Arm
 from latentarm.arms.guiding import GuidableArm
 from latentarm.control.loop import ENABLING_S
 from latentarm.control.step import Step
-from latentarm.errors import UserError
-from latentarm.types import GripperAsk
+from latentarm.core.errors import UserError
+from latentarm.core.types import GripperAsk
 from latentarm.web.arm_process.lost_arm import why_not
 from latentarm.web.protocol.notice import Notice, notice_of
 from latentarm.web.protocol.report import Guiding

@@ -3,8 +3,8 @@
 from typing import Final, final
 
 from latentarm.assistance.blending import Arbitration, ConfidenceAlpha, FixedAlpha
-from latentarm.control.call_log import CallLog, logged
-from latentarm.types import FloatArray
+from latentarm.core.call_log import CallLog, logged
+from latentarm.core.types import FloatArray
 from latentarm.web.protocol.orders import HelpLevel
 
 USUAL_HELP: Final[HelpLevel] = "medium"

@@ -17,16 +17,16 @@ from threadpoolctl import threadpool_info
 from latentarm import __version__
 from latentarm.alignment.frame_file import FRAME_NAME
 from latentarm.alignment.profile import folder_of
-from latentarm.control.call_log import MOST_FILE_BYTES, CallLog
-from latentarm.control.exact_json import of_json, to_json
-from latentarm.control.journal_limits import JournalLimits
-from latentarm.control.safety.zones import Zone
-from latentarm.errors import UserError
-from latentarm.kinematics.obstacles import Box, Capsule, HalfSpace, Sphere
+from latentarm.core.call_log import MOST_FILE_BYTES, CallLog
+from latentarm.core.errors import UserError
+from latentarm.core.exact_json import of_json, to_json
+from latentarm.core.journal_limits import JournalLimits
+from latentarm.core.untrusted.opening import read_bytes
 from latentarm.models.saving import CONFIG_NAME, WEIGHTS_NAME
+from latentarm.robots.kinematics.obstacles import Box, Capsule, HalfSpace, Sphere
 from latentarm.robots.model_copy import MOST_COPIED
 from latentarm.runs.folder import ROBOT
-from latentarm.untrusted.opening import read_bytes
+from latentarm.safety.zones import Zone
 from latentarm.web.arm_process.beginning import RobotOptions
 from latentarm.web.arm_process.drive_setup import DriveSetup, Spec, load_setup
 from latentarm.web.arm_process.speeds import Speeds

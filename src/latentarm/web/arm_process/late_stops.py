@@ -2,7 +2,7 @@
 
 from typing import final
 
-from latentarm.types import Stop
+from latentarm.core.types import Stop
 
 
 @final

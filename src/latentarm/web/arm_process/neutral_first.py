@@ -6,7 +6,7 @@ from typing import final
 import numpy as np
 
 from latentarm.control.input_port import InputSource
-from latentarm.types import Input
+from latentarm.core.types import Input
 from latentarm.web.arm_process.page_inputs import PageInputs
 
 

@@ -3,8 +3,8 @@
 import math
 from typing import final
 
+from latentarm.core.types import FloatArray, StepRecord
 from latentarm.robots.gripper import Gripper
-from latentarm.types import FloatArray, StepRecord
 from latentarm.web.protocol.report import GripperState
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from latentarm.control.clock import Clock
 from latentarm.control.input_port import InputPort, InputSource
-from latentarm.types import Input
+from latentarm.core.types import Input
 from latentarm.web.protocol.notice import Notice
 from latentarm.web.protocol.orders import Given, Paced, parse_given
 from latentarm.web.protocol.shared_memory import LatestSlot

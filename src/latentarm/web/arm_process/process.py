@@ -20,9 +20,9 @@ from threadpoolctl import threadpool_limits
 
 from latentarm.arms.contract import Arm
 from latentarm.control.clock import Clock, MonotonicClock
-from latentarm.errors import UserError
-from latentarm.punctuality import ask_for_priority, short_collections
-from latentarm.untrusted.terminal import one_line
+from latentarm.core.errors import UserError
+from latentarm.core.punctuality import ask_for_priority, short_collections
+from latentarm.core.untrusted.terminal import one_line
 from latentarm.web.arm_process.drive import Drive
 from latentarm.web.arm_process.drive_setup import SEEDS, DriveSetup, Spec, load_setup, with_profile
 from latentarm.web.arm_process.driven_arm import first_arm, from_where_it_stands, next_arm

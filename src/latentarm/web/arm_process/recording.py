@@ -10,11 +10,11 @@ from typing import Final, final
 
 import numpy as np
 
-from latentarm.control.journal_limits import JournalFullError, JournalLimits, JournalLostError
 from latentarm.control.recorder import EpisodeHeader, Recorder
-from latentarm.errors import UserError
-from latentarm.types import FloatArray, StepRecord, Stop
-from latentarm.untrusted.terminal import one_line
+from latentarm.core.errors import UserError
+from latentarm.core.journal_limits import JournalFullError, JournalLimits, JournalLostError
+from latentarm.core.types import FloatArray, StepRecord, Stop
+from latentarm.core.untrusted.terminal import one_line
 from latentarm.web.protocol.notice import Notice, notice_of_stop
 from latentarm.web.protocol.report import Recording
 

@@ -10,10 +10,10 @@ from typing import Any, Final, final
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from latentarm.control.call_log import answer_of, read_calls
-from latentarm.control.exact_json import of_json
-from latentarm.errors import UserError
-from latentarm.types import FloatArray, GripperReading, Input, Reading, Stop
+from latentarm.core.call_log import answer_of, read_calls
+from latentarm.core.errors import UserError
+from latentarm.core.exact_json import of_json
+from latentarm.core.types import FloatArray, GripperReading, Input, Reading, Stop
 from latentarm.web.arm_process.drive_setup import DriveSetup
 from latentarm.web.arm_process.incident import computer, newest, rebuild, unpack
 

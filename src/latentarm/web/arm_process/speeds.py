@@ -4,8 +4,8 @@ import math
 from dataclasses import dataclass
 from typing import Final, Self, final
 
-from latentarm.control.safety.config import SafetyConfig
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
+from latentarm.safety.config import SafetyConfig
 
 SLOWEST: Final = 0.01
 """An arm that is slower hardly moves at all, rad/s or m/s."""

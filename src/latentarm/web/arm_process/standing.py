@@ -6,7 +6,7 @@ from typing import Literal, final
 from latentarm.arms.contract import Arm
 from latentarm.control.arm_stops import stop_of
 from latentarm.control.step import Step
-from latentarm.types import GripperAsk, Stop
+from latentarm.core.types import GripperAsk, Stop
 from latentarm.web.arm_process.episodes import Episodes
 from latentarm.web.arm_process.hand_guiding import HandGuiding
 from latentarm.web.arm_process.lost_arm import LostArm

@@ -6,12 +6,12 @@ from functools import partial
 from typing import Final, final
 
 from latentarm.arms.contract import Arm, SceneArm
-from latentarm.kinematics.chain import Chain
-from latentarm.scene.scene import SceneState
+from latentarm.core.types import FloatArray, Pose
+from latentarm.robots.kinematics.chain import Chain
+from latentarm.robots.scene.scene import SceneState
 from latentarm.tasks.scene_task import Beginning, SceneTask
 from latentarm.tasks.steps import Failure, Progress, StepKind, TaskStep, Waypoint
 from latentarm.tasks.task import Task
-from latentarm.types import FloatArray, Pose
 from latentarm.web.arm_process.fills import Fills, Vessel, vessels
 from latentarm.web.arm_process.guide import Guide
 from latentarm.web.protocol.report import Lost, TaskState, ToGo, Why

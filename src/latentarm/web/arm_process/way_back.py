@@ -7,8 +7,8 @@ from typing import Final, Literal, final
 import numpy as np
 
 from latentarm.control.input_port import InputSource
-from latentarm.control.safety.straight_way import StraightWay
-from latentarm.types import FloatArray, Input
+from latentarm.core.types import FloatArray, Input
+from latentarm.safety.straight_way import StraightWay
 from latentarm.web.arm_process.neutral_first import NeutralFirst
 from latentarm.web.arm_process.page_inputs import PageInputs
 from latentarm.web.protocol.notice import Notice, NoticeCode

@@ -3,9 +3,9 @@
 from typing import Final, final
 
 from latentarm.arms.contract import Arm, SceneArm
-from latentarm.kinematics.pose_rows import thing_rows
-from latentarm.scene.scene import Scene
-from latentarm.types import NO_THINGS, FloatArray
+from latentarm.core.types import NO_THINGS, FloatArray
+from latentarm.robots.kinematics.pose_rows import thing_rows
+from latentarm.robots.scene.scene import Scene
 from latentarm.web.protocol.report import Things
 from latentarm.web.protocol.things import whereabouts
 

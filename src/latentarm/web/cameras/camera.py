@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable, Iterator
 from typing import Final, Literal, final
 
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 from latentarm.web.cameras.light import Light
 from latentarm.web.cameras.picture import Picture
 from latentarm.web.cameras.sources import CameraSource

@@ -13,7 +13,7 @@ from av.error import FFmpegError
 from av.video.frame import VideoFrame
 from av.video.stream import VideoStream
 
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 from latentarm.web.cameras.arrival import ArrivalClock
 from latentarm.web.cameras.clock_pattern import clock_pictures
 from latentarm.web.cameras.picture import MOST_HIGH, MOST_PER_S, MOST_WIDE, Picture, fitted

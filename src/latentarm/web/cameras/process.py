@@ -19,8 +19,8 @@ from functools import partial
 from multiprocessing.connection import Connection
 from typing import Any, Final, final
 
-from latentarm.errors import UserError
-from latentarm.untrusted.terminal import one_line
+from latentarm.core.errors import UserError
+from latentarm.core.untrusted.terminal import one_line
 from latentarm.web.cameras.sources import CameraSource
 from latentarm.web.protocol.notice import NoticeError
 

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Final, Literal, final
 from urllib.parse import urlsplit
 
-from latentarm.errors import UserError
-from latentarm.untrusted.names import clean_name, same_name
+from latentarm.core.errors import UserError
+from latentarm.core.untrusted.names import clean_name, same_name
 
 MOST: Final = 4
 """Cameras of one page."""

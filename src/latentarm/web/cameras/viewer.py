@@ -20,8 +20,8 @@ from aiortc import (
 from aiortc.exceptions import InvalidAccessError, InvalidStateError
 from av.video.frame import VideoFrame
 
-from latentarm.errors import UserError
-from latentarm.untrusted.documents import parse_object
+from latentarm.core.errors import UserError
+from latentarm.core.untrusted.documents import parse_object
 from latentarm.web.cameras.camera import Camera
 from latentarm.web.cameras.rtp_clock import TIME_BASE, RtpClock
 

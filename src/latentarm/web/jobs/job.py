@@ -19,7 +19,7 @@ from typing import Final, Generic, TypeVar, final
 from pydantic import BaseModel, TypeAdapter, ValidationError
 from threadpoolctl import threadpool_limits
 
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 from latentarm.web.protocol.notice import Message, Notice, notice_of
 
 MESSAGE_LIMIT: Final = 1 << 20

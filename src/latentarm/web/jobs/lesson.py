@@ -10,8 +10,8 @@ import numpy as np
 
 from latentarm.control.export import ImplausibleWarning, demonstrations_of
 from latentarm.control.journal import JournalEpisode
-from latentarm.errors import UserError
-from latentarm.types import Demonstrations
+from latentarm.core.errors import UserError
+from latentarm.core.types import Demonstrations
 from latentarm.web.protocol.learning_messages import Lesson
 
 SHORT_SHARE: Final = 0.5

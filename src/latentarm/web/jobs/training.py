@@ -14,8 +14,8 @@ from pydantic import Field, TypeAdapter
 
 from latentarm.control.export import ImplausibleWarning, demonstrations_of
 from latentarm.control.journal import read_journal
+from latentarm.core.types import Demonstrations
 from latentarm.models.catalogue import DEFAULT_MODEL, KINDS
-from latentarm.types import Demonstrations
 from latentarm.web.jobs.job import Job, Wire
 from latentarm.web.jobs.lesson import lesson_of, moving_seconds
 from latentarm.web.protocol.learning_messages import Lesson, Training, TrainingPhase

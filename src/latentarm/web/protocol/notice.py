@@ -4,9 +4,9 @@ from typing import Literal, final
 
 from pydantic import BaseModel, ConfigDict
 
-from latentarm.errors import UserError
-from latentarm.types import Stop, StopCode
-from latentarm.untrusted.terminal import one_line
+from latentarm.core.errors import UserError
+from latentarm.core.types import Stop, StopCode
+from latentarm.core.untrusted.terminal import one_line
 from latentarm.web.words.catalogue import DEFAULT, languages
 
 PersonName = str | int

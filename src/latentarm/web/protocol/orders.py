@@ -5,7 +5,7 @@ from typing import Annotated, Final, Literal, final
 from pydantic import Field, TypeAdapter, ValidationError
 
 from latentarm.alignment.seat import Seat
-from latentarm.types import GripperAsk
+from latentarm.core.types import GripperAsk
 from latentarm.web.protocol.notice import Message
 
 ModeName = Literal["latent", "assisted", "end_effector"]

@@ -9,7 +9,7 @@ from typing import Annotated, Final, Literal, final
 from pydantic import Field, TypeAdapter
 
 from latentarm.alignment.seat import Seat
-from latentarm.types import GripperAsk
+from latentarm.core.types import GripperAsk
 from latentarm.web.protocol.copilot_messages import CopilotMessage
 from latentarm.web.protocol.learning_messages import CancelTraining, PickRun, Train
 from latentarm.web.protocol.notice import Message

@@ -9,12 +9,12 @@ import mujoco
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from latentarm.control.safety.zones import Zone
-from latentarm.kinematics.obstacles import Box, Capsule, HalfSpace, Obstacle, Sphere
-from latentarm.kinematics.reader import ModelChain, read, reference_positions
-from latentarm.scene.scene import Scene
+from latentarm.core.types import FloatArray
+from latentarm.robots.kinematics.obstacles import Box, Capsule, HalfSpace, Obstacle, Sphere
+from latentarm.robots.kinematics.reader import ModelChain, read, reference_positions
+from latentarm.robots.scene.scene import Scene
+from latentarm.safety.zones import Zone
 from latentarm.tasks.place import Place
-from latentarm.types import FloatArray
 from latentarm.web.protocol.things import described
 
 _TYPES: Final = {

@@ -6,9 +6,9 @@ from typing import Final
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from latentarm.scene.scene import Scene, SceneState
-from latentarm.scene.thing import Grains, Part
-from latentarm.types import FloatArray, Pose
+from latentarm.core.types import FloatArray, Pose
+from latentarm.robots.scene.scene import Scene, SceneState
+from latentarm.robots.scene.thing import Grains, Part
 from latentarm.web.protocol.report import PoseRow, Things
 
 _DIGITS: Final = 4

@@ -7,11 +7,11 @@ from typing import Final, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
-from latentarm.errors import UserError
-from latentarm.files import write_text
-from latentarm.untrusted.documents import parse_object
-from latentarm.untrusted.opening import read_bytes
-from latentarm.untrusted.terminal import one_line
+from latentarm.core.errors import UserError
+from latentarm.core.files import write_text
+from latentarm.core.untrusted.documents import parse_object
+from latentarm.core.untrusted.opening import read_bytes
+from latentarm.core.untrusted.terminal import one_line
 from latentarm.web.protocol.notice import Notice
 
 DOCUMENT_LIMIT: Final = 1 << 17

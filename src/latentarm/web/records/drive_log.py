@@ -10,7 +10,7 @@ from typing import Final, final
 
 import numpy as np
 
-from latentarm.kinematics.chain import Chain
+from latentarm.robots.kinematics.chain import Chain
 from latentarm.web.arm_process.task_run import Todo
 from latentarm.web.protocol.report import Report, Things
 from latentarm.web.protocol.scene import Drawable, pose_of

@@ -5,7 +5,7 @@ from typing import Annotated, Final, Literal, final
 
 from pydantic import Field, ValidationError, model_validator
 
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 from latentarm.web.protocol.notice import Message
 from latentarm.web.protocol.orders import ModeName
 from latentarm.web.protocol.report import Point, PoseRow

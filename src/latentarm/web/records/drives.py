@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, final
 
-from latentarm.errors import UserError
-from latentarm.files import written_whole
-from latentarm.untrusted.opening import is_missing, read_bytes
+from latentarm.core.errors import UserError
+from latentarm.core.files import written_whole
+from latentarm.core.untrusted.opening import is_missing, read_bytes
 from latentarm.web.protocol.notice import Notice, NoticeError
 from latentarm.web.records.documents import read_record, unreadable, write_record
 from latentarm.web.records.drive_record import PACKED_LIMIT, DriveRecord, Trace, checked_trace, packed

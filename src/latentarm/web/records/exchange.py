@@ -8,8 +8,8 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Final
 
-from latentarm.errors import UserError
-from latentarm.files import written_whole
+from latentarm.core.errors import UserError
+from latentarm.core.files import written_whole
 from latentarm.web.protocol.notice import NoticeError
 from latentarm.web.records.documents import DOCUMENT_LIMIT, ID, new_id, parse_record, write_record
 from latentarm.web.records.drive_record import PACKED_LIMIT, DriveRecord, checked_trace

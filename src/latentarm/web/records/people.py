@@ -8,8 +8,8 @@ from typing import Annotated, Final, Literal, final
 
 from pydantic import Field
 
-from latentarm.errors import UserError
-from latentarm.untrusted.names import MOST_CHARACTERS, clean_name, same_name
+from latentarm.core.errors import UserError
+from latentarm.core.untrusted.names import MOST_CHARACTERS, clean_name, same_name
 from latentarm.web.protocol.notice import Message, Notice, NoticeError
 from latentarm.web.records.calendar import Calendar
 from latentarm.web.records.documents import ID, new_id, read_record, unreadable, write_record

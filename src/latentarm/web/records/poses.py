@@ -5,8 +5,8 @@ from typing import Annotated, Final, Literal, final
 
 from pydantic import Field
 
-from latentarm.errors import UserError
-from latentarm.untrusted.names import MOST_CHARACTERS, clean_name, same_name
+from latentarm.core.errors import UserError
+from latentarm.core.untrusted.names import MOST_CHARACTERS, clean_name, same_name
 from latentarm.web.protocol.notice import Message, NoticeError
 from latentarm.web.records.documents import read_record, write_record
 

@@ -13,9 +13,9 @@ from pydantic import Field
 
 from latentarm.control.journal import list_journal
 from latentarm.control.recordings import JOURNAL_SUFFIX
-from latentarm.errors import UserError
-from latentarm.untrusted.opening import is_missing
-from latentarm.untrusted.terminal import one_line
+from latentarm.core.errors import UserError
+from latentarm.core.untrusted.opening import is_missing
+from latentarm.core.untrusted.terminal import one_line
 from latentarm.web.protocol.notice import Message, Notice, NoticeError
 from latentarm.web.records.documents import read_record, write_record
 from latentarm.web.records.drives import UNDO_S

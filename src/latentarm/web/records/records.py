@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import Final, final
 
 from latentarm.alignment.profile import load_profile, profile_folder
+from latentarm.core.errors import UserError
+from latentarm.core.untrusted.opening import read_bytes
 from latentarm.demonstrations.folders import staged_folder
-from latentarm.errors import UserError
 from latentarm.models.saving import WEIGHTS_LIMIT
-from latentarm.untrusted.opening import read_bytes
 from latentarm.web.protocol.notice import Message, NoticeError
 from latentarm.web.records.calendar import Calendar
 from latentarm.web.records.documents import new_id

@@ -8,10 +8,10 @@ from collections.abc import Container
 from pathlib import Path
 from typing import Final, final
 
-from latentarm.errors import UserError
-from latentarm.files import written_whole
+from latentarm.core.errors import UserError
+from latentarm.core.files import written_whole
+from latentarm.core.untrusted.opening import is_missing, read_bytes
 from latentarm.models.reading import Section
-from latentarm.untrusted.opening import is_missing, read_bytes
 from latentarm.web.protocol.scene import Drawable
 
 _SCENE_LIMIT: Final = 1 << 22

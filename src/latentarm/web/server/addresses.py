@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, final
 
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 from latentarm.web.arm_process.drive_setup import Spec
 from latentarm.web.cameras.sources import CameraSource
 

@@ -7,8 +7,8 @@ from pydantic import ValidationError
 from starlette.requests import Request
 from starlette.responses import JSONResponse, Response
 
-from latentarm.errors import UserError
-from latentarm.untrusted.documents import parse_object
+from latentarm.core.errors import UserError
+from latentarm.core.untrusted.documents import parse_object
 from latentarm.web.protocol.notice import Message, NoticeError, notice_of
 
 NO_STORE: Final = {"cache-control": "no-store"}

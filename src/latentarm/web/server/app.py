@@ -23,9 +23,9 @@ from latentarm.arms.checking import look_at
 from latentarm.arms.real_catalogue import make_real_arm
 from latentarm.control.clock import MonotonicClock
 from latentarm.control.recordings import JOURNAL_SUFFIX
+from latentarm.core.errors import UserError
+from latentarm.core.punctuality import short_collections
 from latentarm.demonstrations.folders import locked
-from latentarm.errors import UserError
-from latentarm.punctuality import short_collections
 from latentarm.robots.notices import notices
 from latentarm.web.arm_process.drive_setup import PERIOD_S, DriveSetup, load_setup
 from latentarm.web.arm_process.process import ControlProcess

@@ -12,7 +12,7 @@ from typing import Final, final
 from starlette.requests import Request
 from starlette.responses import Response
 
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 
 FOLDER: Final = Path(__file__).parent.parent / "pages"
 THREE: Final = "three/index.js"

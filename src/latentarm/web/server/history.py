@@ -5,7 +5,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Final, final
 
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 from latentarm.web.protocol.notice import Notice, notice_of
 from latentarm.web.protocol.report import Report
 from latentarm.web.records.calendar import Calendar

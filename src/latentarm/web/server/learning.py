@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final, final
 
 from latentarm.control.journal import list_journal
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 from latentarm.runs.folder import read_run
 from latentarm.web.jobs.training import TrainingJob, TrainingPlan
 from latentarm.web.protocol.learning_messages import LearningState, Recorded, Train, Training

@@ -7,7 +7,7 @@ from typing import final
 import numpy as np
 
 from latentarm.alignment.profile import profile_names
-from latentarm.types import FloatArray
+from latentarm.core.types import FloatArray
 from latentarm.web.arm_process.drive_setup import DriveSetup, Spec, load_setup
 from latentarm.web.arm_process.page_inputs import LATCH_MAX_S
 from latentarm.web.protocol.orders import BuiltInPose, PoseToGoTo

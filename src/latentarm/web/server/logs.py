@@ -3,7 +3,7 @@
 import logging
 from typing import Any, Final
 
-from latentarm.untrusted.terminal import one_line, visible
+from latentarm.core.untrusted.terminal import one_line, visible
 
 _TRACEBACKS: Final = logging.Formatter()
 

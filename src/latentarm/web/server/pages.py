@@ -10,7 +10,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from starlette.requests import Request
 from starlette.responses import HTMLResponse, Response
 
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 from latentarm.models.catalogue import KINDS
 from latentarm.web.server.assets import FOLDER, Assets
 from latentarm.web.words.catalogue import COOKIE, Words, chosen_language, languages

@@ -16,8 +16,8 @@ from latentarm.alignment.profile import (
     profile_folder,
     trial_folder,
 )
-from latentarm.errors import UserError
-from latentarm.untrusted.names import clean_name
+from latentarm.core.errors import UserError
+from latentarm.core.untrusted.names import clean_name
 from latentarm.web.jobs.personalise import PersonaliseJob, PersonalisePlan
 from latentarm.web.protocol.notice import Notice, NoticeError, notice_of
 from latentarm.web.protocol.orders import ChooseProfile

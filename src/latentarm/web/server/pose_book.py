@@ -4,7 +4,7 @@ import asyncio
 from pathlib import Path
 from typing import final
 
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
 from latentarm.web.protocol.notice import Notice, notice_of
 from latentarm.web.protocol.orders import PoseToGoTo
 from latentarm.web.protocol.server_messages import Poses

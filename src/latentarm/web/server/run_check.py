@@ -13,9 +13,9 @@ from typing import Final, final
 
 from pydantic import TypeAdapter
 
-from latentarm.errors import UserError
-from latentarm.untrusted.memory import bounded_memory
-from latentarm.untrusted.terminal import one_line
+from latentarm.core.errors import UserError
+from latentarm.core.untrusted.memory import bounded_memory
+from latentarm.core.untrusted.terminal import one_line
 from latentarm.web.arm_process.drive_setup import Spec, load_setup
 from latentarm.web.jobs.job import Job, Wire
 from latentarm.web.protocol.notice import Message, Notice, NoticeError

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Final, final
 
 import numpy as np
 
-from latentarm.errors import UserError
-from latentarm.kinematics.pose_rows import STORED
-from latentarm.untrusted.terminal import one_line
+from latentarm.core.errors import UserError
+from latentarm.core.untrusted.terminal import one_line
+from latentarm.robots.kinematics.pose_rows import STORED
 from latentarm.web.protocol.copilot_messages import CopilotState, Person
 from latentarm.web.protocol.notice import Notice, notice_of
 from latentarm.web.protocol.report import Ghosts, GripperState, Report, Things

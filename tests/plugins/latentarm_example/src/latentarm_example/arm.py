@@ -6,8 +6,8 @@ import numpy as np
 
 from latentarm.arms.simulated import SimulatedArm
 from latentarm.arms.simulated_gripper import KinematicGripper
+from latentarm.core.types import FloatArray
 from latentarm.robots.robot import Robot
-from latentarm.types import FloatArray
 
 COUNT_RAD = 1e-5
 

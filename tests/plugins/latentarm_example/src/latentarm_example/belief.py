@@ -3,7 +3,7 @@
 import numpy as np
 
 from latentarm.assistance.belief import Belief
-from latentarm.types import FloatArray
+from latentarm.core.types import FloatArray
 
 PER_RAD = 8.0
 """How much it counts that an action leads 1 rad nearer."""

@@ -2,9 +2,9 @@
 
 import numpy as np
 
+from latentarm.core.style import Look
+from latentarm.core.types import FloatArray
 from latentarm.models.kind import Dimensions, ModelKind, Runtime, TrainedModel
-from latentarm.style import Look
-from latentarm.types import FloatArray
 
 
 class StraightRuntime(Runtime):

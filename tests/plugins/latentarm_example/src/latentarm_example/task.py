@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from latentarm.errors import UserError
+from latentarm.core.errors import UserError
+from latentarm.core.types import Demonstrations, FloatArray, Goal, Pose
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.robot import Robot
 from latentarm.tasks.demonstrator import demonstrate_goals
 from latentarm.tasks.task import Task
-from latentarm.types import Demonstrations, FloatArray, Goal, Pose
 
 PRESSED_M = 0.03
 """A button is pressed where the tool is this near to it."""

@@ -1,0 +1,1 @@
+"""Published controllers that latent actions are compared with."""

@@ -1,0 +1,107 @@
+"""Retargeting: the stick's twist mimicked by the arm as well as its joints allow.
+
+Rakita, Mutlu and Gleicher, "A motion retargeting method for effective mimicry-based teleoperation of robot
+arms", 2017, carry the motion of a person's hand over to an arm by an optimisation that trades the pose of the
+hand for smooth, feasible joint motion. Of that, this keeps what applies to a stick of two axes.
+"""
+
+from dataclasses import dataclass
+from typing import final
+
+import numpy as np
+
+from latentarm.assistance.controllers.axis_modes import PAIRS, AxisController, AxisModes
+from latentarm.core.errors import UserError
+from latentarm.core.types import Context, FloatArray
+from latentarm.robots.robot import Robot
+
+
+@final
+@dataclass(frozen=True)
+class RetargetingCosts:
+    """What the objectives of retargeting weigh against each other; all values are assumptions.
+
+    Attributes:
+        rotation_m: what a rad of wrong orientation counts, m: the tool's place matters more than its turn.
+        effort: of joint velocities, (m/rad)²: keeps motions small, and bounded at singular configurations.
+        limits: of a velocity towards a joint's limit, (m/rad)², at the limit itself.
+        near_rad: where that begins, before the limit, rad; it grows with the square of the nearness.
+
+    Raises:
+        UserError: a weight is not positive and finite.
+    """
+
+    rotation_m: float = 0.2
+    effort: float = 1e-4
+    limits: float = 1.0
+    near_rad: float = 0.3
+
+    def __post_init__(self) -> None:
+        for name in ("rotation_m", "effort", "limits", "near_rad"):
+            if not 0 < getattr(self, name) < np.inf:
+                raise UserError(
+                    f"Retargeting's {name} must be positive and finite, not {getattr(self, name)}."
+                )
+
+
+@final
+class RetargetingController(AxisController):
+    """The stick moves a target pose, and the arm follows it as well as its joints allow.
+
+    The stick's offset is the target's twist: held for a moment, it carries the target on from where the
+    tool is. The joint velocities v are those with the least::
+
+        ‖W (J v - twist)‖² + effort ‖v‖² + Σ_i limits near_i² v_i²
+
+    over joints i that a first solution without the last term moves towards a limit, where ``near_i`` grows
+    from 0 to 1 over ``near_rad`` before the limit. W counts a radian as ``rotation_m``.
+
+    Kept of Rakita et al.: matching position and orientation as objectives rather than constraints, position
+    before orientation; small joint velocities; keeping away from limits. Left out: the mapping of a human
+    arm onto the robot's, which a stick has no use for; jerk, which the loop's filters limit; and collisions
+    with the arm itself, which they prevent. Modes are those of end-effector control, because two axes
+    cannot command six.
+
+    Args:
+        robot: the arm; its first tool is driven.
+        linear_speed: of a full input along an axis, m/s.
+        angular_speed: of a full input about an axis, rad/s.
+        modes: which axes the inputs drive in each mode.
+        costs: of the objectives.
+
+    Raises:
+        UserError: a speed is not positive and finite.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        linear_speed: float = 0.15,
+        angular_speed: float = 0.5,
+        modes: AxisModes = PAIRS,
+        costs: RetargetingCosts | None = None,
+    ) -> None:
+        super().__init__(robot, linear_speed, angular_speed, modes)
+        self._limits = robot.limits
+        self._costs = costs or RetargetingCosts()
+        self._weights = np.array([1.0] * 3 + [self._costs.rotation_m] * 3)
+
+    def action(self, z: FloatArray, context: Context, mode: int) -> FloatArray:
+        """Joint velocities that follow the target best, (..., n), rad/s."""
+        costs, state = self._costs, context.state
+        twists, jacobian = self._twists_and_jacobian(state, mode)
+        twist = np.vecmat(z, twists)
+        matched = self._weights[:, None] * jacobian
+        wanted = np.vecmat(self._weights * twist, matched)
+        normal = matched.mT @ matched + costs.effort * np.eye(state.shape[-1])
+        first = np.linalg.solve(normal, wanted[..., None])[..., 0]
+        held = costs.limits * np.where(first > 0.0, self._near_upper(state), self._near_lower(state)) ** 2
+        return np.linalg.solve(normal + held[..., None] * np.eye(state.shape[-1]), wanted[..., None])[..., 0]
+
+    def _near_upper(self, state: FloatArray) -> FloatArray:
+        """From 0, ``near_rad`` and more before each joint's upper limit, to 1, at it, (..., n)."""
+        return np.clip(1.0 - (self._limits.upper - state) / self._costs.near_rad, 0.0, 1.0)
+
+    def _near_lower(self, state: FloatArray) -> FloatArray:
+        """The same before the lower limit."""
+        return np.clip(1.0 - (state - self._limits.lower) / self._costs.near_rad, 0.0, 1.0)

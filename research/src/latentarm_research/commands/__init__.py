@@ -1,0 +1,1 @@
+"""The commands that the research distribution adds to the command line."""

@@ -1,0 +1,65 @@
+"""The commands that this distribution adds to the command line; nothing of them is imported here."""
+
+from typing import Final
+
+from latentarm.commands.catalogue import CommandSet, Entry
+from latentarm_research.studies.catalogue import STUDIES
+
+
+def _ours(module: str, summary: str) -> Entry:
+    return Entry(f"latentarm_research.commands.{module}", summary)
+
+
+COMMANDS: Final = CommandSet(
+    {
+        "demo": _ours(
+            "demo:demo",
+            "Learn latent actions and stab marshmallows with a 7-DoF Panda in physics,"
+            " against mode switching.",
+        ),
+        "compare": _ours(
+            "compare:compare",
+            "Compare all models on recorded demonstrations, with every episode held out once.",
+        ),
+        "drive": _ours(
+            "drive:drive",
+            "Drive an arm in simulation with a simulated operator, through Algorithm 1"
+            " and its safety filters.",
+        ),
+        **{
+            f"reproduce {name}": _ours(f"reproduce:{name.replace('-', '_')}", entry.summary)
+            for name, entry in STUDIES.items()
+        },
+        "study list": _ours("study:list_studies", "List the paper's user studies."),
+        "study show": _ours(
+            "study:show_study",
+            "Show a study's definition: conditions, tasks, hypotheses with their tests, and its hash.",
+        ),
+        "study run": _ours(
+            "study:run_study",
+            "Send simulated people through a study, analyse their trials, and write the report.",
+        ),
+        "study power": _ours(
+            "study:power_of_study",
+            "Find how many people a study needs: studies drawn from simulated people,"
+            " through its own analysis.",
+        ),
+        "study questions": _ours(
+            "study_answers:questions",
+            "Write a study's questionnaire: after each condition all items, in a random order"
+            " for each person.",
+        ),
+        "study analyse": _ours(
+            "study_answers:analyse_study",
+            "Analyse recorded trials, with the answers of real people, and write the report.",
+        ),
+        "bench": _ours(
+            "bench:bench",
+            "Time the online step, and training ten seeds in one fit and one after the other.",
+        ),
+    },
+    {
+        "reproduce": "Reproduce a study of the paper; `reproduce --help` lists them.",
+        "study": "Send simulated people through the paper's user studies; `study --help` lists how.",
+    },
+)

@@ -1,0 +1,129 @@
+"""What `latentarm demo` writes for a reader: a page, and a strip of pictures of one drive."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final, final
+
+from latentarm.core.errors import UserError
+from latentarm.core.style import save_figure
+from latentarm.core.types import Row
+from latentarm.evaluation.table import markdown_table
+from latentarm.tasks.scene_task import SceneTask
+from latentarm_research.drives.film import Camera, Film, strip
+from latentarm_research.drives.task_drive import STUCK_S, TaskTrace
+from latentarm_research.drives.task_drives import Series, drive_again
+from latentarm_research.people.names import OperatorName
+
+FILM: Final = "film.png"
+
+CAMERA: Final = Camera(look_at=(0.5, 0.0, 0.12), distance_m=0.48)
+"""Near enough to see what is on the fork."""
+
+
+@final
+@dataclass(frozen=True)
+class Filmed:
+    """A strip of pictures, or why it is missing.
+
+    Attributes:
+        picture: for the page, in Markdown; "" without one.
+        said: what it shows, or why there is no strip, in a sentence.
+    """
+
+    picture: str
+    said: str
+
+
+def film(out: Path, model: str, series: Series, driven: Sequence[TaskTrace], seed: int) -> Filmed:
+    """Film the first drive that succeeded, where this machine renders.
+
+    Args:
+        out: folder to write to.
+        model: name of the model that was driven with.
+        series: the drives.
+        driven: what came of them.
+        seed: of the drives.
+
+    Raises:
+        UserError: the file cannot be written.
+    """
+    first = next((index for index, trace in enumerate(driven) if trace.figures.success), None)
+    if first is None:
+        return Filmed("", f"No drive with the model {model} succeeded, so there is no {FILM}.")
+    seen = Film()
+    trace = drive_again(series, seed, first, seen.sees)
+    try:
+        times, pictures = seen.frames(CAMERA)
+    except UserError as error:
+        return Filmed("", f"{FILM} is left out. {error}")
+    heading = f"Latent actions, {model}; person and arm simulated"
+    save_figure(strip(heading, times, pictures, trace), out / FILM)
+    return Filmed(
+        f"![A drive in eight pictures: the fork goes over a marshmallow, into it, and lifts it]({FILM})\n\n",
+        f"{FILM} shows one of these drives, with the marshmallow on the fork at its end.",
+    )
+
+
+def held_in_words(driven: Mapping[str, Sequence[TaskTrace]]) -> str:
+    """In how many drives of each condition the fork holds the food at the end."""
+    counts = [
+        f"{sum(trace.figures.success for trace in traces)} of {len(traces)} drives with {name}"
+        for name, traces in driven.items()
+    ]
+    return f"The fork holds the marshmallow in {'; '.join(counts)}."
+
+
+def page(
+    task: SceneTask,
+    tables: Mapping[OperatorName, Sequence[Row]],
+    properties: Sequence[Row],
+    held: str,
+    filmed: Filmed,
+    *,
+    model: str,
+    shown: OperatorName,
+    drives: int,
+    others: int,
+    seeds: int,
+    seed: int,
+) -> str:
+    """The page of a demo, in Markdown.
+
+    Args:
+        task: what was driven.
+        tables: figures of the drives by simulated person.
+        properties: figures of the latent spaces.
+        held: see `held_in_words`.
+        filmed: see `film`.
+        model: whose drives the figures show.
+        shown: who drives in the figures.
+        drives: of that person for each choice.
+        others: of everybody else.
+        seeds: trained models of each kind.
+        seed: of the demo.
+    """
+    choices = len(task.choices)
+    return (
+        "# What the demo measured\n\n"
+        f"In physics, simulated operators drove a simulated Panda with a fork: the {shown} one"
+        f" {drives * choices} times per column ({drives} times for each of {choices} marshmallows), the"
+        f" others {others * choices} times. The {seeds} trained models of a kind take turns. Seed {seed};"
+        f" mean ± SD over the drives, failed ones included (they end after {task.time_limit_s:g} s, or once"
+        f" the tool has come no nearer for {STUCK_S:g} s). No person took part. {held}\n\n"
+        f"{filmed.picture}"
+        f"{_people_tables(tables)}"
+        f"The figures show the model {model}, driven by the {shown} operator. Marks are over the"
+        " marshmallows, which lie elsewhere in each drive.\n\n"
+        "![Paths of the tool](paths.png)\n\n"
+        "![Inputs over time](inputs.png)\n\n"
+        "## The latent spaces, on held-out episodes\n\n"
+        f"Mean ± SD over {seeds} seeds.\n\n{markdown_table(properties)}\n"
+        "![The properties of the latent spaces](properties.png)\n\n"
+        "![The task, with the marshmallows where they lie in one run](task.png)\n"
+    )
+
+
+def _people_tables(tables: Mapping[OperatorName, Sequence[Row]]) -> str:
+    """A table of drives under the name of each simulated person."""
+    return "".join(f"## The {person} operator\n\n{markdown_table(rows)}\n" for person, rows in tables.items())

@@ -1,0 +1,309 @@
+"""The parts of `latentarm demo`: demonstrate, learn, drive, and write what came of it."""
+
+import shutil
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Final, final
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from latentarm.alignment.profile import profile_names
+from latentarm.assistance.assistance import AssistanceRule
+from latentarm.assistance.blending import FixedAlpha
+from latentarm.assistance.controllers.contract import Controller
+from latentarm.assistance.controllers.end_effector import EndEffectorController
+from latentarm.assistance.controllers.latent import LatentController
+from latentarm.assistance.goal_blending import blending
+from latentarm.core.context import JOINTS, OBJECTS_IN_TOOL
+from latentarm.core.errors import UserError
+from latentarm.core.files import write_text
+from latentarm.core.parallel.grid import run_grid
+from latentarm.core.style import save_figure
+from latentarm.core.types import Row
+from latentarm.core.untrusted.console import VisibleConsole
+from latentarm.demonstrations.dataset import write_dataset
+from latentarm.evaluation.looks import look_of
+from latentarm.evaluation.results import write_results
+from latentarm.evaluation.summary import Subject, headline
+from latentarm.models.catalogue import DEFAULT_MODEL
+from latentarm.models.saving import load_decoder
+from latentarm.runs.evaluating import evaluate_run
+from latentarm.runs.results_folder import ResultsFolder, vacant_name
+from latentarm.runs.training import TrainConfig, train_run
+from latentarm.tasks.eating.marshmallows import Marshmallows
+from latentarm.tasks.place import ScenePlace
+from latentarm_research.commands.demo_page import FILM, film, held_in_words, page
+from latentarm_research.drives.arm_figure import draw_task
+from latentarm_research.drives.demonstrate import demonstrate
+from latentarm_research.drives.drive import STATE_NOISE_RAD
+from latentarm_research.drives.drive_figures import draw_drives, draw_inputs, marks_of_first_steps
+from latentarm_research.drives.task_drive import TaskSetup, TaskTrace
+from latentarm_research.drives.task_drives import Series, drive_series
+from latentarm_research.metrics.comparison_figure import comparison_figure
+from latentarm_research.metrics.task_drives import task_drive_rows
+from latentarm_research.people.catalogue import PEOPLE
+from latentarm_research.people.names import OperatorName
+
+if TYPE_CHECKING:
+    from latentarm_research.commands.demo import DemoOptions
+
+MODELS: Final = tuple(dict.fromkeys((DEFAULT_MODEL, "cvae")))
+"""The default model and the paper's."""
+
+CONTEXT: Final[Mapping[str, tuple[str, ...]]] = {DEFAULT_MODEL: (JOINTS, OBJECTS_IN_TOOL), "cvae": (JOINTS,)}
+WAY_BACK_M: Final[Mapping[str, float]] = {DEFAULT_MODEL: 0.06, "cvae": 0.0}
+"""Length of each model's way back, m; the cVAE has none, as in the paper."""
+
+HIDDEN: Final = (64, 64)
+BATCH_SIZE: Final = 256
+"""Units of each hidden layer and pairs per step, as in the study of the tasks."""
+
+TASK: Final = Marshmallows()
+
+ARM: Final = "mujoco"
+"""What moves: only in physics is food held."""
+
+SHOWN: Final[OperatorName] = "greedy"
+"""Whose drives the figures show, and who is helped as well: the paper's simulated person (equation 24)."""
+
+DRIVERS: Final[tuple[OperatorName, ...]] = tuple(person for person in PEOPLE if person != "planning")
+"""Who drives: everybody but the person who plans, each of whose drives takes 20 s and more to compute."""
+
+MADE = ("results.json", "results.md", "paths.png", "inputs.png", "properties.png", "task.png", FILM)
+"""Every file of the folder except its options, the dataset and the runs."""
+
+
+@dataclass(frozen=True)
+class Sizes:
+    """How much is learned from; only tests take other sizes.
+
+    Attributes:
+        episodes: demonstrations, of some 5 s each.
+        seeds: models of each kind, trained together and driven in turn.
+        epochs: passes over the training pairs, at most, by model.
+    """
+
+    episodes: int = 230
+    seeds: int = 3
+    epochs: Mapping[str, int] = field(default_factory=lambda: EPOCHS)
+
+
+EPOCHS: Final = {DEFAULT_MODEL: 2, "cvae": 30}
+"""Of the default model chosen on drives of another seed; the cVAE's validation loss has settled."""
+
+USUAL = Sizes()
+
+
+@dataclass(frozen=True)
+class Shown:
+    """Results of the demo.
+
+    Attributes:
+        rows: figures of the drives: mean and SD over all of a condition.
+        said: what happened to the food, and why anything is missing, in sentences.
+    """
+
+    rows: list[Row]
+    said: tuple[str, ...]
+
+
+def run_demo(config: "DemoOptions", sizes: Sizes = USUAL) -> Shown:
+    """Run the whole demo and write its results to ``config.out``.
+
+    Raises:
+        UserError: the folder holds something else, or cannot be written.
+    """
+    _claim(config, sizes)
+    console = VisibleConsole(stderr=True, quiet=config.json)
+    task = TASK
+    console.print(
+        f"1/3  A simulated person guides a fork into marshmallows {sizes.episodes} times, in physics."
+    )
+    demonstrations, _ = demonstrate(task, sizes.episodes, config.seed, config.jobs, bars=config.bars)
+    write_dataset(demonstrations, config.out / "demonstrations")
+    draw_task(_place(task, config.seed), demonstrations, config.out / "task.png")
+    console.print(
+        f"2/3  {' and '.join(MODELS)} learn 2-D latent actions, {sizes.seeds} seeds of each at once."
+    )
+    properties = _learn_all(config, sizes)
+    conditions = _conditions(task, config, sizes.seeds)
+    number = len(task.choices) * sum(one.series.drives for one in conditions)
+    console.print(f"3/3  Simulated operators drive {number} times, in {len(conditions)} conditions.")
+    series = [one.series for one in conditions]
+    driven = drive_series(series, config.seed, config.jobs, bars=config.bars)
+    tables: dict[OperatorName, list[Row]] = {person: [] for person in DRIVERS}
+    for condition, traces in zip(conditions, driven, strict=True):
+        tables[condition.person] += task_drive_rows(condition.subject, [trace.measured for trace in traces])
+    rows = [_named(person, row) for person, table in tables.items() for row in table]
+    write_results(config.out / "results.json", [*rows, *properties], _about(config, sizes))
+    shown = [(one, traces) for one, traces in zip(conditions, driven, strict=True) if one.person == SHOWN]
+    held = held_in_words({condition.name: traces for condition, traces in shown})
+    filmed = film(config.out, MODELS[0], shown[0][0].series, shown[0][1], config.seed)
+    _draw({str(one.subject.condition): traces for one, traces in shown if one.drawn}, properties, config.out)
+    text = page(
+        task,
+        tables,
+        properties,
+        held,
+        filmed,
+        model=MODELS[0],
+        shown=SHOWN,
+        drives=config.drives,
+        others=config.others,
+        seeds=sizes.seeds,
+        seed=config.seed,
+    )
+    write_text(config.out / "results.md", text)
+    return Shown(rows, (held, filmed.said))
+
+
+def _place(task: Marshmallows, seed: int) -> ScenePlace:
+    """The task with the marshmallows where they lie in one run."""
+    begun = task.begin(0, np.random.default_rng(seed))
+    return ScenePlace(task.robot, begun.goals, task.obstacles)
+
+
+def _draw(shown: Mapping[str, Sequence[TaskTrace]], properties: Sequence[Row], out: Path) -> None:
+    """Draw drives by condition, and the properties of the latent spaces."""
+    marks = marks_of_first_steps(next(iter(shown.values())))
+    draw_drives(shown, marks, out / "paths.png")
+    draw_inputs(shown, out / "inputs.png")
+    save_figure(comparison_figure(headline(properties)), out / "properties.png")
+
+
+@final
+@dataclass(frozen=True)
+class _Learning:
+    """One kind of model, as it is trained and measured."""
+
+    config: "DemoOptions"
+    model: str
+    seeds: int
+    epochs: int
+
+
+def _learn_all(config: "DemoOptions", sizes: Sizes) -> list[Row]:
+    """Train and measure the models, side by side."""
+    calls = [_Learning(config, model, sizes.seeds, sizes.epochs[model]) for model in MODELS]
+    found = run_grid(
+        _learn,
+        calls,
+        jobs=config.jobs,
+        backend="joblib",
+        label=lambda call: call.model,
+        bars=config.bars,
+        unit="models",
+    )
+    return [row for rows in found for row in rows]
+
+
+def _learn(call: _Learning) -> list[Row]:
+    config = call.config
+    run = config.out / "runs" / call.model
+    chosen = TrainConfig(
+        demonstrations=config.out / "demonstrations",
+        model=call.model,
+        out=run,
+        seeds=call.seeds,
+        seed=config.seed,
+        state_noise_rad=STATE_NOISE_RAD,
+        epochs=call.epochs,
+        context=CONTEXT[call.model],
+        way_back_m=WAY_BACK_M[call.model],
+        hidden=HIDDEN,
+        batch_size=BATCH_SIZE,
+        task=TASK.name,
+    )
+    with threadpool_limits(limits=1):
+        train_run(chosen)
+        return evaluate_run(run, run, config.seed, folds=0).rows
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class _Condition:
+    """Who drives with what.
+
+    Attributes:
+        person: who drives.
+        subject: of the figures.
+        series: their drives; all seeds of a model take turns.
+    """
+
+    person: OperatorName
+    subject: Subject
+    series: Series
+
+    @property
+    def name(self) -> str:
+        """What steers, in words."""
+        return ", ".join(look_of(part).label for part in (self.subject.model, self.subject.condition) if part)
+
+    @property
+    def drawn(self) -> bool:
+        """Whether figures show it."""
+        return self.subject.model in (MODELS[0], None)
+
+
+def _conditions(task: Marshmallows, config: "DemoOptions", seeds: int) -> list[_Condition]:
+    """The shown person with everything, the others without help, with the default model or mode switching."""
+    steered: list[tuple[str | None, str, Sequence[Controller], AssistanceRule | None]] = []
+    for model in MODELS:
+        run = config.out / "runs" / model
+        controllers = [LatentController(load_decoder(run, seed)) for seed in range(seeds)]
+        steered.append((model, "latent", controllers, None))
+        steered.append((model, "latent_assist", controllers, blending(FixedAlpha())))
+    steered.append((None, "end_effector", [EndEffectorController(task.robot)], None))
+    return [
+        _Condition(
+            person,
+            Subject("demo", task=task.name, model=model, condition=condition),
+            Series(
+                [TaskSetup(task, one, PEOPLE[person], help_by, ARM) for one in controllers],
+                config.drives if person == SHOWN else config.others,
+            ),
+        )
+        for person in DRIVERS
+        for model, condition, controllers, help_by in steered
+        if person == SHOWN or (help_by is None and model in (MODELS[0], None))
+    ]
+
+
+def _named(person: OperatorName, row: Row) -> Row:
+    """The row with the person in its condition, unless it is the one whose drives are shown."""
+    return row if person == SHOWN else replace(row, condition=f"{row.condition}, {person}")
+
+
+def _about(config: "DemoOptions", sizes: Sizes) -> dict[str, object]:
+    """What the figures depend on."""
+    return {
+        "study": "demo",
+        "seed": config.seed,
+        "drives_per_choice": config.drives,
+        "operator": "simulated",
+        "episodes": sizes.episodes,
+        "seeds": sizes.seeds,
+        "epochs": dict(sizes.epochs),
+        "task": TASK.name,
+        "arm": ARM,
+    }
+
+
+def _claim(config: "DemoOptions", sizes: Sizes) -> None:
+    """Prepare the folder: a demo with the same options is replaced, anything else is left alone.
+
+    Raises:
+        UserError: the folder holds something else, or profiles of people.
+    """
+    runs = [config.out / "runs" / model for model in MODELS]
+    for run in runs:
+        if profile_names(run):
+            raise UserError(
+                f"{run} holds the profiles of people ({', '.join(profile_names(run))}), and the demo would"
+                f" train it anew: choose another folder with --out, such as {vacant_name(config.out)}."
+            )
+    ResultsFolder("demo", MADE).claim(config.out, _about(config, sizes))
+    for made in (config.out / "demonstrations", *runs):
+        shutil.rmtree(made, ignore_errors=True)

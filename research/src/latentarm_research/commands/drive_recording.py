@@ -1,0 +1,147 @@
+"""Recording the drives of `latentarm drive`: a journal next to the results, then a dataset."""
+
+from collections.abc import Generator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TypeVar, final
+
+from latentarm.assistance.controllers.contract import Controller
+from latentarm.control.export import export_journal
+from latentarm.control.recorder import EpisodeHeader, Recorder
+from latentarm.core.errors import UserError
+from latentarm.core.parallel.grid import counting_bar
+from latentarm.core.types import Goal, StepRecord
+from latentarm.demonstrations.folders import check_vacant
+from latentarm.demonstrations.provenance import provenance_now
+from latentarm.robots.robot import Robot
+from latentarm.runs.folder import weights_fingerprint
+from latentarm_research.commands.drive_options import DriveOptions
+from latentarm_research.drives.drive import RATE_HZ
+
+_Call = TypeVar("_Call")
+
+
+@final
+class DriveRecording:
+    """Records one drive after the other.
+
+    Args:
+        config: what was asked for.
+        robot: that is driven.
+        controller: what steers.
+        recorder: of the journal.
+    """
+
+    def __init__(
+        self, config: DriveOptions, robot: Robot, controller: Controller, recorder: Recorder
+    ) -> None:
+        self._config, self._robot, self._controller = config, robot, controller
+        self._recorder = recorder
+
+    def begin(
+        self, task: str, goals: Sequence[Goal], things: Sequence[str] = (), objects: Sequence[str] = ()
+    ) -> None:
+        """Begin a drive.
+
+        Args:
+            task: what is done, in words.
+            goals: what the person may want.
+            things: names of the things whose poses every step has.
+            objects: those of them that matter.
+
+        Raises:
+            UserError: the journal cannot be written.
+        """
+        config, robot = self._config, self._robot
+        self._recorder.begin_episode(
+            EpisodeHeader(
+                robot=robot.name,
+                joint_names=robot.joint_names,
+                joint_limits=robot.limits,
+                rate_hz=RATE_HZ,
+                task=task,
+                goals=tuple(goals),
+                modes=self._controller.modes,
+                provenance=provenance_now(
+                    run="" if config.run is None else config.run.name,
+                    run_fingerprint="" if config.run is None else weights_fingerprint(config.run),
+                    profile=config.profile or "",
+                    device="simulated",
+                    controller=config.driver,
+                ),
+                end_effector=robot.end_effector,
+                limits=robot.stated_limits,
+                things=tuple(things),
+                objects=tuple(objects),
+            )
+        )
+
+    def step(self, record: StepRecord) -> None:
+        """Add a step of the drive.
+
+        Raises:
+            UserError: the journal cannot be written.
+        """
+        self._recorder.record(record)
+
+    def end(self) -> None:
+        """Complete the drive.
+
+        Raises:
+            UserError: the journal cannot be written.
+        """
+        self._recorder.end_episode()
+
+
+def check_recordable(config: DriveOptions) -> None:
+    """Fail before anything is computed where a recording would overwrite something.
+
+    Raises:
+        UserError: the dataset or the journal is there already.
+    """
+    if config.record is None:
+        return
+    check_vacant(config.record)
+    if _journal(config).exists():
+        raise UserError(f"{_journal(config)} already exists: choose another folder with --out.")
+
+
+@contextmanager
+def recording(
+    config: DriveOptions, dataset: Path, robot: Robot, controller: Controller
+) -> Generator[DriveRecording]:
+    """Record drives; export them as a dataset once all are done.
+
+    Args:
+        config: what was asked for.
+        dataset: folder to export to.
+        robot: that is driven.
+        controller: what steers.
+
+    Raises:
+        UserError: a file cannot be written.
+    """
+    recorder = Recorder(_journal(config))
+    try:
+        yield DriveRecording(config, robot, controller, recorder)
+    finally:
+        recorder.close()
+    export_journal(_journal(config), dataset)
+
+
+def counted(plan: Sequence[_Call], bars: bool) -> Generator[_Call]:
+    """The drives, one after the other, with a bar that counts those that are done.
+
+    Args:
+        plan: what is to be driven.
+        bars: whether to show the bar.
+    """
+    with counting_bar(bars) as bar:
+        task = bar.add_task("drives", total=len(plan))
+        for call in plan:
+            yield call
+            bar.advance(task)
+
+
+def _journal(config: DriveOptions) -> Path:
+    return config.out / "journal.sqlite"

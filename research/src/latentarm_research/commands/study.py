@@ -1,0 +1,200 @@
+"""`latentarm study`: the paper's user studies, gone through by simulated people."""
+
+import json as json_format
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+from rich.table import Table
+from tyro.conf import Positional, arg
+
+from latentarm.commands.configuration import write_options
+from latentarm.commands.options import Json, StudyOptions
+from latentarm.commands.output import note, print_renderables, say, show
+from latentarm.core.errors import UserError
+from latentarm_research.commands.study_name import StudyName
+from latentarm_research.user_studies.catalogue import NAMES, load_definition
+from latentarm_research.user_studies.definition import Definition
+from latentarm_research.user_studies.own.definition_file import find_definition
+from latentarm_research.user_studies.sizes import PRESETS
+
+if TYPE_CHECKING:
+    from latentarm_research.user_studies.run import Request
+
+Simulated = Annotated[
+    int | None,
+    arg(metavar="N", help="How many simulated people; by default as many as the definition plans."),
+]
+Preset = Annotated[
+    str,
+    arg(
+        metavar="{" + ",".join(PRESETS) + "}",
+        help="paper: whole sizes; smoke: trials that end after a second, which only shows that it runs.",
+    ),
+]
+
+
+def list_studies(json: Json = False) -> int:
+    """List the paper's user studies.
+
+    For example: latentarm study list
+    """
+    definitions = [load_definition(name) for name in NAMES]
+    if json:
+        found = [{"name": one.name, "section": one.section, "title": one.title} for one in definitions]
+        print(json_format.dumps(found, indent=2))
+        return 0
+    table = Table("study", "section", "conditions", "tasks", title="User studies of the paper")
+    for one in definitions:
+        conditions, tasks = (", ".join(names) for names in _names(one))
+        table.add_row(one.name, one.section, conditions, tasks)
+    print_renderables(table)
+    return 0
+
+
+def show_study(name: Positional[StudyName], json: Json = False) -> int:
+    """Show a study's definition: conditions, tasks, hypotheses with their tests, and its hash.
+
+    For example: latentarm study show eating
+    """
+    from latentarm_research.user_studies.analysis.claims import worded
+
+    definition = find_definition(name)
+    if json:
+        print(json_format.dumps({"digest": definition.digest, **definition.as_json()}, indent=2))
+        return 0
+    conditions = Table("condition", "what it is", title=_titled(definition))
+    for one in definition.conditions:
+        conditions.add_row(one.name, one.about)
+    claims = Table("", "claim", title="Hypotheses")
+    for hypothesis in definition.hypotheses:
+        claims.add_row(hypothesis.name, hypothesis.text)
+        for claim in hypothesis.claims:
+            claims.add_row("", worded(definition, claim))
+    print_renderables(conditions, claims, f"{definition.people} people. Definition {definition.digest}")
+    return 0
+
+
+def run_study(
+    name: Positional[StudyName],
+    options: StudyOptions,
+    simulated: Simulated = None,
+    preset: Preset = "paper",
+    out: Annotated[
+        Path | None, arg(metavar="DIR", help="Folder for report and figures; studies/NAME.")
+    ] = None,
+) -> int:
+    """Send simulated people through a study, analyse their trials, and write the report.
+
+    For example: latentarm study run harmonic --simulated 2 --preset smoke
+    """
+    from latentarm_research.user_studies.folder import claim, write_documents
+    from latentarm_research.user_studies.report.report import report_files, write_report
+    from latentarm_research.user_studies.run import send_people
+
+    definition = find_definition(name)
+    folder = Path("studies", definition.name) if out is None else out
+    request = _request(definition, options, simulated, preset, folder)
+    people = request.people
+    claim(request, report_files(definition))
+    ran = send_people(request)
+    rows = write_documents(request, ran)
+    write_options(folder, "study run")
+    command = f"latentarm study run {name} --simulated {people} --preset {preset} --seed {options.seed}"
+    why = write_report(folder, ran, rows, command)
+    if why:
+        note([why])
+    verdicts = Table("", "says", "why", title=f"{definition.title}: {ran.sizes.people(people)}")
+    for one in ran.analysis.verdicts:
+        verdicts.add_row(one.hypothesis.name, one.says, one.why)
+    show(rows, options.json, verdicts)
+    say(f"Report, figures and results.json are in {folder}/ (begin with {folder}/report.html).", options.json)
+    return 0
+
+
+def power_of_study(
+    name: Positional[StudyName],
+    options: StudyOptions,
+    results: Annotated[
+        Path | None,
+        arg(
+            metavar="DIR", help="Folder of a run of this study; without it, people are sent through it first."
+        ),
+    ] = None,
+    simulated: Simulated = None,
+    preset: Preset = "paper",
+    draws: Annotated[int, arg(help="Studies drawn for each number of people.")] = 200,
+    out: Annotated[
+        Path | None, arg(metavar="DIR", help="Folder for power.json; by default studies/NAME-power.")
+    ] = None,
+) -> int:
+    """Find how many people a study needs: studies drawn from simulated people, through its own analysis.
+
+    For example: latentarm study power harmonic --results studies/harmonic
+    """
+    from latentarm_research.user_studies.folder import claim_power, read_trials, write_power
+    from latentarm_research.user_studies.power import TARGETS, power_of
+    from latentarm_research.user_studies.run import send_people
+
+    definition = find_definition(name)
+    folder = Path("studies", f"{definition.name}-power") if out is None else out
+    about: dict[str, object] = {"draws": draws, "seed": options.seed}
+    if results is None:
+        request = _request(definition, options, simulated, preset, folder)
+        claim_power(folder, definition, {**about, "drawn_from": request.about})
+        trials = send_people(request).trials
+    else:
+        found, trials = read_trials(results)
+        if found != definition:
+            raise UserError(
+                f"{results} holds a run of the study {found.name}, definition {found.digest[:12]}: name a"
+                f" run of {definition.name}, definition {definition.digest[:12]}."
+            )
+        claim_power(folder, definition, {**about, "drawn_from": str(results)})
+    power = power_of(definition, trials, draws, options.seed)
+    write_power(folder, power)
+    if options.json:
+        print(json_format.dumps(power.as_json(), indent=2))
+        return 0
+    table = Table("", "80 %", "90 %", title=f"People needed, drawn from {power.people} simulated people")
+    for what, shares in {**power.hypotheses, **power.claims}.items():
+        needed = (power.needed(shares, target) for target in TARGETS)
+        table.add_row(
+            what, *(f"more than {power.numbers[-1]}" if one is None else str(one) for one in needed)
+        )
+    print_renderables(table)
+    say(f"How often each claim holds with how many people is in {folder}/power.json.", options.json)
+    return 0
+
+
+def _request(
+    definition: Definition, options: StudyOptions, simulated: int | None, preset: str, out: Path
+) -> "Request":
+    """What was asked for.
+
+    Raises:
+        UserError: something is out of its range.
+    """
+    from latentarm_research.user_studies.run import Request
+
+    if preset not in PRESETS:
+        raise UserError(f"There is no preset {preset!r}: choose from {', '.join(PRESETS)}.")
+    return Request(
+        definition,
+        PRESETS[preset],
+        definition.people if simulated is None else simulated,
+        out,
+        seed=options.seed,
+        jobs=options.jobs,
+        backend=options.backend,
+        quiet=options.json,
+        bars=not options.json and sys.stderr.isatty(),
+    )
+
+
+def _titled(definition: Definition) -> str:
+    return definition.title + (f" (section {definition.section})" if definition.section else "")
+
+
+def _names(definition: Definition) -> tuple[list[str], list[str]]:
+    return [one.name for one in definition.conditions], [one.label for one in definition.tasks]

@@ -1,0 +1,108 @@
+"""`latentarm study questions` and `latentarm study analyse`: what real people are asked, and their trials."""
+
+import hashlib
+import json as json_format
+from pathlib import Path
+from typing import Annotated
+
+from rich.table import Table
+from tyro.conf import Positional, arg
+
+from latentarm.commands.configuration import write_options
+from latentarm.commands.options import Json, Seed
+from latentarm.commands.output import note, say, show
+from latentarm.core.errors import UserError
+from latentarm.core.untrusted.opening import read_bytes
+from latentarm.demonstrations.bounds import MAX_TEXT_BYTES
+from latentarm_research.commands.study_name import StudyName
+from latentarm_research.user_studies.own.definition_file import find_definition
+
+
+def questions(
+    name: Positional[StudyName],
+    people: Annotated[
+        int | None, arg(metavar="N", help="How many people; by default as many as the definition plans.")
+    ] = None,
+    out: Annotated[
+        Path | None, arg(metavar="FILE", help="A .csv or .md file; by default NAME-questions.csv.")
+    ] = None,
+    seed: Seed = 0,
+    json: Json = False,
+) -> int:
+    """Write a study's questionnaire: after each condition all items, in a random order for each person.
+
+    For example: latentarm study questions eating --out sheets.md
+    """
+    from latentarm_research.user_studies.answers.items import sheet
+    from latentarm_research.user_studies.answers.sheets import write_sheet
+
+    definition = find_definition(name)
+    count = definition.people if people is None else people
+    if count < 1:
+        raise UserError(f"--people must be 1 or more, not {count}.")
+    path = Path(f"{definition.name}-questions.csv") if out is None else out
+    asked = sheet(definition, count, seed)
+    write_sheet(path, definition, asked)
+    say(f"{len(asked)} questions for {count} people are in {path}; people are numbered from 0.", json)
+    if json:
+        print(json_format.dumps({"sheet": str(path), "questions": len(asked), "people": count}))
+    return 0
+
+
+def analyse_study(
+    folder: Positional[
+        Annotated[Path, arg(metavar="DIR", help="Folder of a run, or of trials of real people.")]
+    ],
+    answers: Annotated[
+        Path | None, arg(metavar="FILE.csv", help="Answers of real people: person, condition, item, answer.")
+    ] = None,
+    out: Annotated[
+        Path | None, arg(metavar="DIR", help="Folder for report and figures; studies/NAME-analysis.")
+    ] = None,
+    json: Json = False,
+) -> int:
+    """Analyse recorded trials, with the answers of real people, and write the report.
+
+    For example: latentarm study analyse studies/harmonic
+    """
+    from latentarm_research.user_studies.analysis.analysis import analyse
+    from latentarm_research.user_studies.answers.reading import read_answers
+    from latentarm_research.user_studies.answers.scales import rate
+    from latentarm_research.user_studies.folder import claim_analysis, rows_of, write_analysis
+    from latentarm_research.user_studies.recorded import read_recorded
+    from latentarm_research.user_studies.report.report import report_files, write_report_of
+
+    recorded = read_recorded(folder)
+    definition = recorded.definition
+    ratings, digest = None, None
+    if answers is not None:
+        if recorded.people_are == "simulated":
+            raise UserError(
+                f"{folder} holds simulated people, who have no opinions: give --answers of real people only."
+            )
+        given = read_answers(answers, definition, recorded.met)
+        ratings = rate(definition, given, recorded.trials)
+        digest = hashlib.sha256(read_bytes(answers, MAX_TEXT_BYTES)).hexdigest()
+    about: dict[str, object] = {
+        "analysed": str(folder),
+        "people": len(recorded.met),
+        "people_are": recorded.people_are,
+        "answers": digest,
+    }
+    path = Path("studies", f"{definition.name}-analysis") if out is None else out
+    claim_analysis(path, definition, about, report_files(definition))
+    scores = () if ratings is None else ratings.scores
+    analysis = analyse(definition, recorded.trials, scores, recorded.sizes.not_judged)
+    rows = rows_of(definition, analysis.trials)
+    write_analysis(path, about, analysis, rows, ratings)
+    write_options(path, "study analyse")
+    asked = "" if answers is None else f" --answers {answers}"
+    why = write_report_of(path, recorded, analysis, rows, ratings, f"latentarm study analyse {folder}{asked}")
+    if why:
+        note([why])
+    verdicts = Table("", "says", "why", title=f"{definition.title}: {recorded.who}")
+    for one in analysis.verdicts:
+        verdicts.add_row(one.hypothesis.name, one.says, one.why)
+    show(rows, json, verdicts)
+    say(f"Report, figures and analysis.json are in {path}/ (begin with {path}/report.html).", json)
+    return 0

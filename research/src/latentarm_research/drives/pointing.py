@@ -1,0 +1,157 @@
+"""Movements of a simulated person along one axis, as in Fitts's law: to a target so far away and so wide."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final, final
+
+import numpy as np
+
+from latentarm.arms.catalogue import PHYSICAL_ARM, make_simulated_arm
+from latentarm.arms.contract import check_arm
+from latentarm.assistance.controllers.contract import Controller
+from latentarm.control.clock import SimulatedClock
+from latentarm.control.step import Step
+from latentarm.core.types import Context, FloatArray, Input, Pose
+from latentarm.robots.robot import Robot
+from latentarm.safety.config import SafetyConfig
+from latentarm_research.drives.drive import RATE_HZ
+from latentarm_research.people.loop_limits import LoopLimits
+from latentarm_research.people.person import Person, SimulatedPerson
+
+DWELL_S: Final = 0.3
+"""A movement is over when the tool has come into the target and stays there for so long, s."""
+
+GIVES_UP_S: Final = 15.0
+"""A movement that takes longer has failed, s."""
+
+
+@final
+@dataclass(frozen=True)
+class Pointing:
+    """One movement along an axis of the base frame.
+
+    Attributes:
+        axis: 0 to 2, for x, y and z.
+        distance_m: from the start to the middle of the target, along the axis; negative is the other way.
+        width_m: of the target.
+    """
+
+    axis: int
+    distance_m: float
+    width_m: float
+
+    @property
+    def difficulty(self) -> float:
+        """Index of difficulty, bits: Shannon's form, ``log2(D / W + 1)`` (MacKenzie 1992)."""
+        return math.log2(abs(self.distance_m) / self.width_m + 1.0)
+
+
+@final
+class OneMode(Controller):
+    """One mode of a controller, with no other to switch to.
+
+    Args:
+        controller: whose.
+        mode: index into its modes.
+    """
+
+    def __init__(self, controller: Controller, mode: int) -> None:
+        self._controller = controller
+        self._mode = mode
+
+    @property
+    def modes(self) -> tuple[str, ...]:
+        """That one."""
+        return (self._controller.modes[self._mode],)
+
+    @property
+    def input_dim(self) -> int:
+        """As many axes as the controller has."""
+        return self._controller.input_dim
+
+    def latent(self, u: FloatArray, context: Context, mode: int) -> FloatArray:
+        """What the controller makes of the input in the mode."""
+        return self._controller.latent(u, context, self._mode)
+
+    def action(self, z: FloatArray, context: Context, mode: int) -> FloatArray:
+        """What the controller does in the mode."""
+        return self._controller.action(z, context, self._mode)
+
+    def speed_bound(self, context: Context, mode: int) -> float | None:
+        """That of the mode."""
+        return self._controller.speed_bound(context, self._mode)
+
+
+def point(
+    robot: Robot, controller: Controller, person: Person, pointing: Pointing, rng: np.random.Generator
+) -> float:
+    """Move once from the arm's home, in physics, through Algorithm 1 and its filters.
+
+    Args:
+        robot: the arm; its first tool is moved.
+        controller: what the person steers with, in its only mode.
+        person: who moves.
+        pointing: where to.
+        rng: of the person.
+
+    Returns:
+        Time from the start until the tool came into the target to stay for `DWELL_S`, s; infinity where that
+        took too long.
+
+    Raises:
+        UserError: the arm cannot be used.
+    """
+    dt_s = 1.0 / RATE_HZ
+    clock = SimulatedClock()
+    step = Step(robot, controller, SafetyConfig(), dt_s=dt_s)
+    operator = SimulatedPerson(robot, person, dt_s, LoopLimits(step.dead_zone, step.joint_speed))
+    home = robot.chain.forward(robot.home)
+    target = Pose(home.position + pointing.distance_m * np.eye(3)[pointing.axis], home.rotation)
+    dwelt = 0
+    with make_simulated_arm(PHYSICAL_ARM, robot, robot.home, clock.now_s) as arm:
+        check_arm(arm.spec, robot)
+        reading = arm.read()
+        step.reset(reading.q)
+        step(Input(np.zeros(controller.input_dim)), 0.0, reading, clock.now_s())
+        arm.enable()
+        step.enable()
+        for tick in range(1, round(GIVES_UP_S * RATE_HZ) + 1):
+            clock.wait_until(tick * dt_s)
+            reading = arm.read()
+            missed = (robot.chain.forward(reading.q).position - target.position)[pointing.axis]
+            dwelt = dwelt + 1 if abs(missed) <= pointing.width_m / 2.0 else 0
+            if dwelt >= round(DWELL_S * RATE_HZ):
+                return (tick - dwelt + 1) * dt_s
+            given = operator.act(
+                step.context(reading.q), controller, step.mode, target, rng, pointing.width_m / 2.0
+            )
+            arm.send(step(given, 0.0, reading, clock.now_s()).command)
+    return math.inf
+
+
+@final
+@dataclass(frozen=True)
+class FittsLaw:
+    """``time = intercept + slope difficulty``, fitted by least squares.
+
+    Attributes:
+        slope_s_per_bit: s/bit.
+        intercept_s: s.
+        r2: share of the variance that it explains.
+    """
+
+    slope_s_per_bit: float
+    intercept_s: float
+    r2: float
+
+    @classmethod
+    def fitted(cls, difficulty: Sequence[float], time_s: Sequence[float]) -> "FittsLaw":
+        """The law of some movements.
+
+        Args:
+            difficulty: of each, bits.
+            time_s: that each took, finite, s.
+        """
+        slope, intercept = np.polyfit(difficulty, time_s, 1)
+        return cls(float(slope), float(intercept), float(np.corrcoef(difficulty, time_s)[0, 1]) ** 2)

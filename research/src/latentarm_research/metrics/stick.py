@@ -1,0 +1,43 @@
+"""What the person's hand does during a drive: how long it rests, and how often it turns round."""
+
+from typing import Final
+
+import numpy as np
+
+from latentarm.core.types import FloatArray
+
+TURNED_ROUND_S: Final = 0.5
+"""A change of direction counts as one where it takes no longer than this, s."""
+
+
+def idle_time(time_s: FloatArray, u: FloatArray) -> float:
+    """Time without input, s: *Idle Time* of the paper's third user study.
+
+    Args:
+        time_s: (T,), when each input began, s; each holds until the next.
+        u: (T, d), inputs as they were used, zero within the dead zone.
+    """
+    return float(np.diff(time_s) @ ~u[:-1].any(axis=-1))
+
+
+def turned_round_share(time_s: FloatArray, u: FloatArray) -> float:
+    """Share of the time in which the stick points away from where it pointed a moment ago.
+
+    *Undo* of the paper's fourth user study: "the percentage of the time that users undo their actions by
+    significantly changing the joystick direction". The paper names no threshold. Here a moment counts where
+    the input is more than 90° from one within the last `TURNED_ROUND_S`.
+
+    Args:
+        time_s: (T,), when each input began, s, at a constant period; each holds until the next.
+        u: (T, d), inputs as they were used, zero within the dead zone.
+
+    Returns:
+        In [0, 1]; 0 for a drive that took no time.
+    """
+    if len(u) < 2:
+        return 0.0
+    period_s = float(np.median(np.diff(time_s)))
+    turned = np.zeros(len(u), dtype=bool)
+    for back in range(1, min(round(TURNED_ROUND_S / period_s), len(u) - 1) + 1):
+        turned[back:] |= np.vecdot(u[back:], u[:-back]) < 0.0
+    return float(np.mean(turned[:-1]))

@@ -1,0 +1,231 @@
+"""A simulated person who is approximately optimal (equation 24)."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import final
+
+import numpy as np
+
+from latentarm.assistance.controllers.contract import Controller
+from latentarm.core.errors import UserError
+from latentarm.core.types import FloatArray, Input, Pose
+from latentarm.robots.kinematics.rotations import pose_error
+from latentarm_research.people.decision import Decision
+from latentarm_research.people.density import CostModel, InputDensity, Lattice
+from latentarm_research.people.imagination import Imagination
+from latentarm_research.people.moment import USUAL_WITHIN_M, Moment
+from latentarm_research.people.rationality import boltzmann
+
+
+@final
+@dataclass(frozen=True)
+class BoltzmannConfig:
+    """Parameters of a simulated person who looks one step ahead; all values are assumptions.
+
+    Attributes:
+        beta: rationality of equation 24, 1/m², at the start of a drive; 0 acts at random, infinity always
+            takes the best.
+        beta_per_s: m of ``beta(t) = beta + m t``, 1/(m² s): somebody who learns within the task.
+        horizon_s: the look-ahead dt of equation 24, s: how far ahead an input is imagined.
+        rotation_weight: what a radian of wrong orientation counts, m.
+        decision_s: a person decides this often and holds the input in between, s.
+        rest_share: how often a person without reason (beta = 0) lets go, if they do not switch, 0 to 1.
+        switch_share: how often they ask for another mode, where there is one, 0 to 1.
+        switch_cost: a switch of mode must bring the tool this much closer to be worth it, m.
+        switch_s: a switch takes this long, during which the input is zero, s.
+
+    Raises:
+        UserError: a figure is out of its range.
+    """
+
+    beta: float = 2000.0
+    beta_per_s: float = 0.0
+    horizon_s: float = 0.5
+    rotation_weight: float = 0.2
+    decision_s: float = 0.1
+    rest_share: float = 0.04
+    switch_share: float = 0.04
+    switch_cost: float = 0.015
+    switch_s: float = 0.8
+
+    def __post_init__(self) -> None:
+        if not self.beta >= 0:
+            raise UserError(f"The simulated person's beta must be zero or more, not {self.beta}.")
+        if not 0 <= self.beta_per_s < np.inf:
+            raise UserError(
+                f"The simulated person's beta_per_s must be zero or more, and finite, not {self.beta_per_s}."
+            )
+        for name in ("horizon_s", "decision_s"):
+            if not 0 < getattr(self, name) < np.inf:
+                raise UserError(
+                    f"The simulated person's {name} must be positive and finite, not {getattr(self, name)}."
+                )
+        for name in ("rotation_weight", "switch_cost", "switch_s"):
+            if not 0 <= getattr(self, name) < np.inf:
+                raise UserError(
+                    f"The simulated person's {name} must be zero or more, and finite, "
+                    f"not {getattr(self, name)}."
+                )
+        for name in ("rest_share", "switch_share"):
+            if not 0 <= getattr(self, name) < 0.5:
+                raise UserError(
+                    f"The simulated person's {name} must be in [0, 0.5), not {getattr(self, name)}."
+                )
+
+    def missed(self, target: Pose, reached: Pose, within_m: float) -> FloatArray:
+        """How far poses are from the target, (..., 6), m; a radian counts as `rotation_weight`.
+
+        Args:
+            target: where the tool is wanted.
+            reached: where it may be.
+            within_m: how near it has to come. Distances count in proportion to that, so that a person is as
+                careful as they need to be (distance over width, as in Fitts 1954); with `USUAL_WITHIN_M`
+                they are what they are.
+        """
+        return pose_error(target, reached) * np.repeat([USUAL_WITHIN_M / within_m, self.rotation_weight], 3)
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Outlook:
+    """What a simulated person can do at one moment.
+
+    Attributes:
+        push_to: (d,), where they would push the stick in the present mode.
+        left_m: how far from the target the best of some inputs leaves the tool, in any mode, m.
+        rest_m: how far it is now, m.
+        push: probability of pushing the stick.
+        rest: of letting go.
+        switch: of asking for the next mode. The three sum to one.
+    """
+
+    push_to: FloatArray
+    left_m: float
+    rest_m: float
+    push: float
+    rest: float
+    switch: float
+
+
+@final
+class OneStep(Decision):
+    """Looks one step ahead and usually picks a helpful input.
+
+    Equation 24::
+
+        p(u) ∝ exp(-beta(t) ‖g* - Psi(s + phi(f(u, c), c) dt)‖²)
+
+    over all inputs of length 1 at most that the loop does not take for rest (see
+    `latentarm_research.people.density`), with the person's own `Foresight` in place of Psi and phi where
+    they do not know these. Distance between poses is ``‖Δp‖² + (rotation_weight · angle)²``, m², and Δp
+    grows where they must come nearer than usual (see `BoltzmannConfig.missed`). The person looks one step
+    ahead only, as in the paper: they can get stuck where no single input brings the tool closer.
+    ``beta(t)`` counts from `reset`, by calls of `decide`.
+
+    A person can also let go, which leaves the tool where it is: one more input of equation 24, with a
+    probability of its own, ``rest_share``, where beta is zero.
+
+    Where the controller has several modes, they first decide whether to ask for the next one. To stay
+    counts as the best input of the present mode, and to switch as the best input of the best other one with
+    ``switch_cost`` added to the distance that it leaves, so that a switch is worth a gain of more than that.
+
+    Args:
+        config: how the simulated person thinks.
+        period_s: time between calls of `decide`, s.
+        dead_zone: length of an input up to which the loop takes it for rest, in [0, 1).
+
+    Raises:
+        UserError: the period is not positive and finite.
+    """
+
+    def __init__(self, config: BoltzmannConfig, period_s: float, dead_zone: float = 0.0) -> None:
+        if not 0 < period_s < np.inf:
+            raise UserError(f"The time between inputs must be positive and finite, not {period_s} s.")
+        self._config = config
+        self._period_s = period_s
+        self._dead_zone = dead_zone
+        self._hold_calls = max(round(config.decision_s / period_s), 1)
+        # The step that asks for the mode already has a zero input.
+        self._switch_calls = max(round(config.switch_s / period_s), 1)
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget the held input, any switch under way and what was learned."""
+        self._held = np.zeros(0)
+        self._held_calls = 0
+        self._calls = 0
+
+    @property
+    def holding(self) -> bool:
+        """Whether the next call of `decide` holds an input, or waits for a mode, without deciding."""
+        return self._held_calls > 0
+
+    def decide(
+        self, moment: Moment, controller: Controller, imagination: Imagination, rng: np.random.Generator
+    ) -> Input:
+        """Hold the input of the last decision, or decide again."""
+        if self.holding:
+            return self._hold()
+        return self.take(self.outlook(moment, controller, imagination, rng), rng)
+
+    def outlook(
+        self, moment: Moment, controller: Controller, imagination: Imagination, rng: np.random.Generator
+    ) -> Outlook:
+        """Equation 24 at a moment."""
+        config, mode = self._config, moment.mode
+        beta = config.beta + config.beta_per_s * self._calls * self._period_s
+        lattice = Lattice.of(controller.input_dim, rng, self._dead_zone)
+        inputs = np.concatenate([np.zeros((1, lattice.axes)), lattice.nodes])
+        modes = range(len(controller.modes))
+        foresight = imagination.foresight(rng)
+
+        def residuals(tried: FloatArray, in_modes: Sequence[int]) -> FloatArray:
+            """(M, K, 6), m, what K inputs leave in each of M modes."""
+            reached = foresight(tried, moment.context, controller, in_modes, config.horizon_s)
+            return config.missed(moment.target, reached, moment.within_m)
+
+        left = residuals(inputs, modes)
+        models = [CostModel(lattice, one[1:]) for one in left]
+        draws = InputDensity(models[mode], beta).draw(
+            lambda tried: np.square(residuals(tried, (mode,))[0]).sum(axis=1), rng
+        )
+        # What is best by a model is looked at too: its error may be large.
+        tops = residuals(np.stack([model.best for model in models]), modes)[modes, modes]
+        best = np.fmin.reduce(np.square(np.concatenate([left, tops[:, None]], axis=1)).sum(axis=2), axis=1)
+        best[mode] = np.fmin(best[mode], draws.least[0])
+        rest = float(np.square(left[mode, 0]).sum())
+        other = np.delete(best, mode).min(initial=np.inf)
+        switched = np.square(np.sqrt(other) + config.switch_cost)
+        # What comes first is what they do if no cost is finite: stay, and let go.
+        stay, switch = _shared(boltzmann(np.array([best[mode], switched]), beta), config.switch_share)
+        push, let_go = _shared(boltzmann(np.array([rest, draws.value[0]]), beta)[::-1], config.rest_share)
+        return Outlook(
+            push_to=draws.inputs[0],
+            left_m=float(np.sqrt(best.min())),
+            rest_m=float(np.sqrt(rest)),
+            push=stay * push,
+            rest=stay * let_go,
+            switch=switch,
+        )
+
+    def take(self, outlook: Outlook, rng: np.random.Generator) -> Input:
+        """Choose among what there is to do, and begin to do it."""
+        chance = rng.random()
+        switches = chance < outlook.switch
+        lets_go = switches or chance < outlook.switch + outlook.rest
+        self._held = np.zeros_like(outlook.push_to) if lets_go else outlook.push_to
+        self._held_calls = self._switch_calls if switches else self._hold_calls
+        return Input(self._hold().u, switch_mode=switches)
+
+    def _hold(self) -> Input:
+        self._held_calls -= 1
+        self._calls += 1
+        return Input(self._held)
+
+
+def _shared(likely: FloatArray, share: float) -> list[float]:
+    """Probabilities of two options: the second has this share where both are worth as much."""
+    weight = likely * np.array([1.0 - share, share])
+    if not weight.any():
+        weight = likely
+    return (weight / weight.sum()).tolist()

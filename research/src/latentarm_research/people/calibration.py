@@ -1,0 +1,44 @@
+"""What was fitted of the simulated people, to mode switching and to movements along one axis alone."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from importlib.resources import files
+from typing import Any, Final, final
+
+from latentarm.core.errors import UserError
+
+
+@final
+@dataclass(frozen=True)
+class Calibration:
+    """The figures of the simulated people that are fitted; all others are given.
+
+    Attributes:
+        push_variation: of the median person, see `latentarm_research.people.hand.HandConfig`.
+        switch_s: the median person's time for a mode switch, in which the stick is let go, s.
+
+    Raises:
+        UserError: a figure is not positive.
+    """
+
+    push_variation: float
+    switch_s: float
+
+    def __post_init__(self) -> None:
+        if not (self.push_variation > 0 and self.switch_s > 0):
+            raise UserError("The figures of a calibration must be positive.")
+
+
+BEFORE: Final = Calibration(push_variation=0.1, switch_s=0.8)
+"""Before anything was fitted: chosen, and the time of a switch is that of the other simulated people."""
+
+_FROZEN: Final[dict[str, Any]] = json.loads(
+    (files("latentarm_research.people") / "calibration.json").read_text(encoding="utf-8")
+)
+
+PROVENANCE: Final[Mapping[str, Any]] = _FROZEN.pop("provenance")
+"""How `CALIBRATED` was fitted: the command, the seed, what was aimed at, and all figures before and after."""
+
+CALIBRATED: Final = Calibration(**_FROZEN)
+"""Frozen before any latent action was driven by these people; see `scripts/calibrate_population.py`."""

@@ -1,0 +1,81 @@
+"""A simulated person for whom the stick is turned, or upside down, before anything was aligned to them."""
+
+import math
+from dataclasses import dataclass
+from typing import final
+
+import numpy as np
+
+from latentarm.alignment.answers import Motions
+from latentarm.alignment.preference import Preference
+from latentarm.core.errors import UserError
+from latentarm.core.types import FloatArray
+
+
+@final
+@dataclass(frozen=True)
+class OwnDirections:
+    """How one person's directions of a stick of two axes differ from the usual ones.
+
+    Attributes:
+        turn_rad: they push so far to the left of where others push for the same motion, rad.
+        mirrored: for them the second axis is upside down, before the turn.
+
+    Raises:
+        UserError: the turn is not finite.
+    """
+
+    turn_rad: float = 0.0
+    mirrored: bool = False
+
+    def __post_init__(self) -> None:
+        if not math.isfinite(self.turn_rad):
+            raise UserError(f"A turn of the stick must be finite, not {self.turn_rad} rad.")
+
+    @property
+    def matrix(self) -> FloatArray:
+        """(2, 2), orthogonal: from where others push the stick to where they do."""
+        cos, sin = math.cos(self.turn_rad), math.sin(self.turn_rad)
+        up = -1.0 if self.mirrored else 1.0
+        return np.array([[cos, -sin * up], [sin, cos * up]])
+
+    def expected(self, usual: FloatArray) -> FloatArray:
+        """The twist (6, 2), m/s and rad/s, that they expect of a full push of each axis.
+
+        Args:
+            usual: (6, 2), what others expect.
+
+        Raises:
+            UserError: the stick has not two axes.
+        """
+        _check_axes(usual.shape[1])
+        return usual @ self.matrix.T
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class InOwnDirections:
+    """Answers like another person, in one's own directions.
+
+    Attributes:
+        preference: what others mean by the stick.
+        directions: how this person's directions differ.
+    """
+
+    preference: Preference
+    directions: OwnDirections
+
+    def inputs(self, motions: Motions) -> FloatArray:
+        """The inputs (N, 2) by which they would ask for N motions, each in [-1, 1].
+
+        Raises:
+            UserError: the stick has not two axes.
+        """
+        usual = self.preference.inputs(motions)
+        _check_axes(usual.shape[1])
+        return np.clip(usual @ self.directions.matrix.T, -1.0, 1.0)
+
+
+def _check_axes(axes: int) -> None:
+    if axes != 2:
+        raise UserError(f"Own directions are those of a stick of two axes, and this one has {axes}.")

@@ -1,0 +1,92 @@
+"""How a figure is spread over people."""
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import final
+
+import numpy as np
+from scipy.special import ndtr, ndtri
+
+from latentarm.core.errors import UserError
+
+
+@dataclass(frozen=True)
+class Spread(ABC):
+    """A distribution over people, cut off at both ends.
+
+    Attributes:
+        middle: median before it is cut off.
+        width: how wide it is; see the kinds.
+        lowest: nobody has less.
+        highest: nobody has more.
+
+    Raises:
+        UserError: the range is empty or does not hold the middle, or the width is not positive.
+    """
+
+    middle: float
+    width: float
+    lowest: float
+    highest: float
+
+    def __post_init__(self) -> None:
+        if not (self.lowest < self.highest and self.lowest <= self.middle <= self.highest and self.width > 0):
+            raise UserError(
+                f"A spread needs a width above 0 and its middle in its range, not {self.middle} in"
+                f" {self.lowest} to {self.highest} with {self.width}."
+            )
+
+    def at(self, quantile: float) -> float:
+        """What so large a share of people stay below.
+
+        Args:
+            quantile: in [0, 1].
+        """
+        low, high = ndtr(self._standard(self.lowest)), ndtr(self._standard(self.highest))
+        value = self._figure(float(ndtri(low + quantile * (high - low))))
+        return float(np.clip(value, self.lowest, self.highest))
+
+    @property
+    @abstractmethod
+    def shape(self) -> str:
+        """The distribution in words and figures, without its ends."""
+
+    @abstractmethod
+    def _standard(self, value: float) -> float:
+        """A figure as a standard normal one."""
+
+    @abstractmethod
+    def _figure(self, standard: float) -> float:
+        """The reverse."""
+
+
+@final
+class Normal(Spread):
+    """Normal: `width` is the SD."""
+
+    @property
+    def shape(self) -> str:
+        """See the base class."""
+        return f"normal, {self.middle:.3g} ± {self.width:.3g}"
+
+    def _standard(self, value: float) -> float:
+        return (value - self.middle) / self.width
+
+    def _figure(self, standard: float) -> float:
+        return self.middle + self.width * standard
+
+
+@final
+class LogNormal(Spread):
+    """Log-normal: `width` is the SD of the natural logarithm. The range is positive."""
+
+    @property
+    def shape(self) -> str:
+        """See the base class."""
+        return f"log-normal, median {self.middle:g}, SD of the logarithm {self.width:g}"
+
+    def _standard(self, value: float) -> float:
+        return float(np.log(value / self.middle)) / self.width
+
+    def _figure(self, standard: float) -> float:
+        return self.middle * float(np.exp(self.width * standard))

@@ -1,0 +1,155 @@
+"""What a simulated person is like, and who that makes at the stick."""
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from typing import Final, final
+
+from latentarm.core.types import FloatArray
+from latentarm_research.people.boltzmann import BoltzmannConfig
+from latentarm_research.people.hand import HandConfig
+from latentarm_research.people.lapses import LapseConfig
+from latentarm_research.people.linear_guess import LinearGuessConfig
+from latentarm_research.people.own_directions import OwnDirections
+from latentarm_research.people.own_speed import OwnSpeed
+from latentarm_research.people.page_rates import PAGE, PageRates
+from latentarm_research.people.person import Person
+from latentarm_research.people.planning import PlanningConfig
+from latentarm_research.people.practice import Practice
+
+UNSURE_M_S: Final = 0.05
+UNSURE_RAD_S: Final = 0.25
+"""How unsure people are of what they expect of the stick: half of `LinearGuessConfig`'s, which expects
+nothing in particular. Chosen."""
+
+TREMOR_HZ: Final = (8.0, 12.0)
+"""Band of physiological tremor (Elble and Randall, J. Neurophysiol. 39:370, 1976), Hz."""
+
+
+@final
+@dataclass(frozen=True)
+class Traits:
+    """What one simulated person is like. Nothing here depends on a study or its conditions.
+
+    `latentarm_research.people.population.TRAITS` says where each figure comes from. Times and
+    rationality are those of the first trial without practice.
+
+    Attributes:
+        number: of the person among those drawn from the same seed, from 0.
+        reaction_s: time from what can be seen to the input that answers it, s.
+        tremor: RMS of each axis's tremor as a share of full deflection.
+        push_variation: SD of each axis of a push about what was meant, as a share of its length.
+        rationality: beta of equation 24, 1/m².
+        look_ahead_s: how far ahead they imagine an input, the dt of equation 24, s.
+        plan_s: how far ahead they plan where one input leads no nearer, s.
+        decision_s: time from decision to decision, s.
+        switch_s: time that a mode switch takes, s.
+        switch_cost_m: how much nearer a mode switch must bring the tool to be worth it, m.
+        lapses_per_min: how often attention lapses.
+        lapse_s: mean duration of a lapse, s.
+        learning: exponent of the power law of practice.
+        own_speed: share of the speed of somebody who pushes as far as it takes.
+        turn_rad: how far their own directions of the stick are turned, rad.
+        mirrored: whether the second axis is upside down for them.
+        answer_variation: coefficient of variation of their answers to alignment queries.
+    """
+
+    number: int
+    reaction_s: float
+    tremor: float
+    push_variation: float
+    rationality: float
+    look_ahead_s: float
+    plan_s: float
+    decision_s: float
+    switch_s: float
+    switch_cost_m: float
+    lapses_per_min: float
+    lapse_s: float
+    learning: float
+    own_speed: float
+    turn_rad: float
+    mirrored: bool
+    answer_variation: float
+
+    @property
+    def directions(self) -> OwnDirections:
+        """Where they push the stick, before anything is aligned to them."""
+        return OwnDirections(self.turn_rad, self.mirrored)
+
+    def person(self, trial: int, practice_s: float = 0.0, page: PageRates | None = PAGE) -> Person:
+        """Who they are in a trial, with a stick whose effect they have been shown.
+
+        They know what each input does, plan, and make up for their reaction time.
+
+        Args:
+            trial: number of trials before this one.
+            practice_s: time practised before the first trial, s.
+            page: what they drive through; None sees and is heard at once.
+
+        Raises:
+            UserError: a figure is negative or not finite.
+        """
+        plans = PlanningConfig()
+        pieces = max(round(self.plan_s / plans.piece_s), 1)
+        return Person(
+            decides=self._decides(trial, practice_s),
+            plans=PlanningConfig(pieces=pieces),
+            hand=self._hand,
+            speed=OwnSpeed(self.own_speed),
+            lapses=self._lapses,
+            anticipates=True,
+            page=page,
+        )
+
+    def newcomer(
+        self, usual: FloatArray, trial: int, practice_s: float = 0.0, page: PageRates | None = PAGE
+    ) -> Person:
+        """Who they are in a trial, with a stick whose effect nobody has shown to them.
+
+        They push by what the directions of the stick mean to themselves, and learn from what they see; from
+        one drive to the next they keep nothing of that.
+
+        Args:
+            usual: (6, 2), the twist that people usually expect of a full push of each axis, m/s and rad/s.
+            trial: number of trials before this one.
+            practice_s: time practised before the first trial, s.
+            page: what they drive through; None sees and is heard at once.
+
+        Raises:
+            UserError: a figure is negative or not finite, or the stick has not two axes.
+        """
+        expected = tuple(tuple(twist) for twist in self.directions.expected(usual).T.tolist())
+        return Person(
+            decides=self._decides(trial, practice_s),
+            imagines=LinearGuessConfig(speed_m_s=UNSURE_M_S, turn_rad_s=UNSURE_RAD_S, expected=expected),
+            hand=self._hand,
+            speed=OwnSpeed(self.own_speed),
+            lapses=self._lapses,
+            page=page,
+        )
+
+    def as_json(self) -> Mapping[str, object]:
+        """Every figure by its name, ready for ``json.dumps``."""
+        return asdict(self)
+
+    @property
+    def _hand(self) -> HandConfig:
+        return HandConfig(self.reaction_s, self.tremor, *TREMOR_HZ, self.push_variation)
+
+    @property
+    def _lapses(self) -> LapseConfig:
+        return LapseConfig(self.lapses_per_min, self.lapse_s)
+
+    def _decides(self, trial: int, practice_s: float) -> BoltzmannConfig:
+        """How they decide: faster and surer with practice.
+
+        The spread of their pushes shrinks as times do: beta is one over its square.
+        """
+        share = Practice(self.learning).time_share(trial, practice_s)
+        return BoltzmannConfig(
+            beta=self.rationality / share**2,
+            horizon_s=self.look_ahead_s,
+            decision_s=self.decision_s * share,
+            switch_s=self.switch_s * share,
+            switch_cost=self.switch_cost_m,
+        )

@@ -1,0 +1,129 @@
+"""One cell of the study: every way of finding an alignment, for one task, one decoder and one noise."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from time import perf_counter
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from latentarm.alignment.affine import fit_affine
+from latentarm.alignment.answers import Answers
+from latentarm.alignment.contract import identity
+from latentarm.alignment.priors import NO_PRIORS
+from latentarm.alignment.queries import order_of_questions
+from latentarm.alignment.training import FitConfig
+from latentarm.core.types import FloatArray
+from latentarm_research.studies.alignment.preset import (
+    CHOSEN,
+    IDEAL,
+    LEARNED,
+    MANUAL,
+    NO_ALIGN,
+    TOOL_SPACE,
+    Preset,
+    Stream,
+)
+from latentarm_research.studies.alignment.scene import LearnedDecoder, Scene, scene_of
+
+
+@dataclass(frozen=True, eq=False)
+class Cell:
+    """What is to be measured.
+
+    Attributes:
+        learned: task and decoder.
+        noise: coefficient of variation of the answers.
+    """
+
+    learned: LearnedDecoder
+    noise: float
+
+    @property
+    def task(self) -> str:
+        """Name of the task."""
+        return self.learned.cell.task
+
+    @property
+    def model(self) -> str:
+        """Name of the decoder's model."""
+        return self.learned.cell.model
+
+
+@dataclass(frozen=True, eq=False)
+class CellResult:
+    """What was measured.
+
+    Attributes:
+        cell: what was asked for.
+        errors: condition -> (R,), relative error of each run on the held-out motions; (1,) where nothing is
+            learned.
+        encoded: the error of the encoder's choice, see `Scene.encoded`.
+        learn_s: condition -> how long all its runs took in one fit, s.
+    """
+
+    cell: Cell
+    errors: Mapping[str, FloatArray]
+    encoded: float
+    learn_s: Mapping[str, float]
+
+
+def measure_cell(cell: Cell) -> CellResult:
+    """Ask, learn all runs of a condition in one fit, and measure the errors.
+
+    The errors are the same to the last bit in every process. All models and noises get the same motions, so
+    that nothing else differs.
+
+    Raises:
+        UserError: the preset's sizes leave nothing to ask or to learn.
+    """
+    with threadpool_limits(limits=1):
+        return _measure(cell, scene_of(cell.learned))
+
+
+def _measure(cell: Cell, scene: Scene) -> CellResult:
+    preset = cell.learned.cell.preset
+    runs = range(preset.runs)
+
+    def ask(count: int) -> list[Answers]:
+        return [scene.ask(count, cell.noise, Stream.QUESTIONS, Stream.ANSWERS, run) for run in runs]
+
+    few = ask(preset.answers)
+    errors = {
+        NO_ALIGN: scene.errors([identity]),
+        MANUAL: scene.errors([fit_affine(scene.model, answers) for answers in few]),
+    }
+    learn_s: dict[str, float] = {}
+    for name, priors in LEARNED.items():
+        began = perf_counter()
+        fitted = scene.learn(few, FitConfig(priors, steps=preset.steps), runs)
+        learn_s[name] = perf_counter() - began
+        errors[name] = scene.errors(fitted.alignments)
+    began = perf_counter()
+    alignments = [scene.in_tool_space(answers) for answers in few]
+    learn_s[TOOL_SPACE] = perf_counter() - began
+    errors[TOOL_SPACE] = scene.errors(alignments)
+    began = perf_counter()
+    asked = [
+        said[np.array(order_of_questions(scene.chain, said.motions, min(preset.answers, len(said))))]
+        for said in scene.candidates(cell.noise)
+    ]
+    alignments = [scene.in_tool_space(answers) for answers in asked]
+    learn_s[CHOSEN] = perf_counter() - began
+    errors[CHOSEN] = scene.errors(alignments)
+    began = perf_counter()
+    ideal = scene.learn(
+        ask(preset.ideal_answers)[: preset.ideal_runs], ideal_config(preset), runs[: preset.ideal_runs]
+    )
+    learn_s[IDEAL] = perf_counter() - began
+    errors[IDEAL] = scene.errors(ideal.alignments)
+    return CellResult(cell, errors, scene.encoded(), learn_s)
+
+
+def ideal_config(preset: Preset) -> FitConfig:
+    """How Ideal Align is learned: to its end, which answers decide that train nothing."""
+    return FitConfig(
+        NO_PRIORS,
+        steps=preset.ideal_steps,
+        held_out=preset.ideal_held_out,
+    )

@@ -1,0 +1,169 @@
+"""Drives to the goals of the demo's table by a simulated person whose stick does not do what they expect.
+
+The person answers the questions of `latentarm align` by their expectation and drives by it: at each decision
+they choose by equation 24, with the motion that they expect in place of the decoder's. The same person drives
+in every condition but one: in `KNOWS` the person predicts exactly what z = u does, like the simulated
+operator of the demo. That is the best this decoder can do.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from time import perf_counter
+from typing import Final
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from latentarm.assistance.blending import FixedAlpha
+from latentarm.assistance.controllers.latent import LatentController
+from latentarm.assistance.goal_blending import blending
+from latentarm.core.types import FloatArray, StepRecord
+from latentarm.tasks.table_top import TableTop
+from latentarm.tasks.task import Task
+from latentarm_research.drives.drive import RATE_HZ, Setup, simulate
+from latentarm_research.drives.drives import drive_plan
+from latentarm_research.people.person import Person
+from latentarm_research.studies.alignment.drives_learning import DriveCell, Learned, learn
+from latentarm_research.studies.alignment.preset import (
+    ALL_PRIORS,
+    IDEAL,
+    NO_ALIGN,
+    TOOL_SPACE,
+    WITHOUT_PRIORS,
+    Preset,
+)
+
+HELPED: Final = f"{TOOL_SPACE}, shared autonomy"
+KNOWS: Final = "knows the arm"
+DRIVEN: Final = (NO_ALIGN, WITHOUT_PRIORS, ALL_PRIORS, TOOL_SPACE, HELPED, IDEAL, KNOWS)
+"""All conditions, as tables and figures order them."""
+
+PATH_HZ: Final = 10.0
+"""Rate at which paths are kept."""
+
+
+@dataclass(frozen=True, eq=False)
+class Driven:
+    """One drive.
+
+    Attributes:
+        goal: index of the goal.
+        model_seed: whose decoder.
+        reached_s: when the tool came to the goal, or None where it never did, s.
+        done: whether it went on to stab or scoop before the time was over.
+        path: (T, 3), the tool until it came to the goal, or all along, m.
+    """
+
+    goal: int
+    model_seed: int
+    reached_s: float | None
+    done: bool
+    path: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class DrivesResult:
+    """What was measured with one kind of model.
+
+    Attributes:
+        cell: what was asked for.
+        drives: condition -> all drives, from the same starts in the same order everywhere.
+        errors: condition -> (S,), see `Learned`.
+        directions: (2, 3), that the person expects of the stick, in the base frame.
+        speed_m_s: of the tool, that they expect of a full push along one axis, m/s.
+        fit_s: how long the fit of all models took, s.
+        align_s: how long asking and learning took, all models together, s.
+        drive_s: how long the drives took, s.
+    """
+
+    cell: DriveCell
+    drives: Mapping[str, tuple[Driven, ...]]
+    errors: Mapping[str, FloatArray]
+    directions: FloatArray
+    speed_m_s: float
+    fit_s: float
+    align_s: float
+    drive_s: float
+
+
+def drive_cells(preset: Preset, seed: int) -> list[DriveCell]:
+    """One cell per kind of model."""
+    return [DriveCell(model, preset, seed) for model in preset.drives.models]
+
+
+def measure_drives(cell: DriveCell) -> DrivesResult:
+    """Learn, and drive in every condition.
+
+    The figures are the same to the last bit in whatever process this runs.
+
+    Raises:
+        UserError: the preset's sizes make no sense.
+    """
+    with threadpool_limits(limits=1):
+        learned = learn(cell)
+        began = perf_counter()
+        drives = {condition: drive_all(cell, learned, condition) for condition in DRIVEN}
+        return DrivesResult(
+            cell=cell,
+            drives=drives,
+            errors=learned.errors,
+            directions=learned.person.directions,
+            speed_m_s=learned.person.speed_m_s,
+            fit_s=learned.fit_s,
+            align_s=learned.align_s,
+            drive_s=perf_counter() - began,
+        )
+
+
+def drive_all(cell: DriveCell, learned: Learned, condition: str) -> tuple[Driven, ...]:
+    """All drives of one condition of `DRIVEN`; models take turns.
+
+    Starts and the simulated person's random choices depend only on the study's seed, the goal and the drive's
+    number.
+    """
+    sizes, task = cell.preset.drives, TableTop()
+    setups = [_setup(task, learned, seed, condition, sizes.limit_s) for seed in range(sizes.seeds)]
+    plan = drive_plan(task, sizes.to_each_goal, cell.seed)
+    return tuple(
+        drive(setups[number % sizes.seeds], number % sizes.seeds, *call) for number, call in enumerate(plan)
+    )
+
+
+def drive(setup: Setup, model_seed: int, goal: int, manner: str, rng: np.random.Generator) -> Driven:
+    """One drive: to the goal, and on to stab or scoop there.
+
+    Args:
+        setup: who drives, with what.
+        model_seed: whose decoder that is.
+        goal: index into the task's goals.
+        manner: what is done at the goal.
+        rng: of the start and of the simulated person.
+    """
+    task, records = setup.task, list[StepRecord]()
+    trace = simulate(setup, goal, manner, rng, records.append)
+    # A drive that ends at the goal has no record there.
+    at_the_end = trace.figures.time_s if trace.figures.success else None
+    reached_s = next((record.time_s for record in records if _there(task, goal, record)), at_the_end)
+    until = trace.time_s <= (np.inf if reached_s is None else reached_s)
+    return Driven(
+        goal=goal,
+        model_seed=model_seed,
+        reached_s=reached_s,
+        done=trace.figures.success,
+        path=trace.position[until][:: round(RATE_HZ / PATH_HZ)],
+    )
+
+
+def _there(task: Task, goal: int, record: StepRecord) -> bool:
+    return task.reached(task.robot.chain.forward(record.state), task.goals[goal].pose)
+
+
+def _setup(task: Task, learned: Learned, seed: int, condition: str, limit_s: float) -> Setup:
+    alignment = {KNOWS: NO_ALIGN, HELPED: TOOL_SPACE}.get(condition, condition)
+    return Setup(
+        task,
+        LatentController(learned.model.decoder(seed), learned.alignments[seed][alignment]),
+        blending(FixedAlpha()) if condition == HELPED else None,
+        Person(imagines=None if condition == KNOWS else learned.person),
+        limit_s,
+    )

@@ -1,0 +1,201 @@
+"""The demo's models, and alignments of each with one simulated person, for the drives.
+
+The person expects each axis of the stick to move the tool along one direction. The two directions are those
+along which the demonstrated tool moves most (sideways, and forward and down), on a stick that is
+turned by `TURN_RAD` and mirrored.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import pi
+from time import perf_counter
+from typing import Final
+
+import numpy as np
+
+from latentarm.alignment.answers import Answers, Motions
+from latentarm.alignment.contract import Alignment, identity
+from latentarm.alignment.demonstrated import demonstrated_motions, shown
+from latentarm.alignment.error import relative_alignment_error
+from latentarm.alignment.queries import StoppingRule
+from latentarm.alignment.training import FitConfig, fit_alignments
+from latentarm.core.types import Demonstrations, FloatArray
+from latentarm.demonstrations.split import select_episodes, split_episodes
+from latentarm.models.model import LatentActionModel
+from latentarm.robots.kinematics.chain import Chain
+from latentarm.runs.asking import FASTEST, SimulatedPerson
+from latentarm.runs.questions import Scene, ask
+from latentarm.tasks.table_top import TableTop
+from latentarm_research.drives.drive import STATE_NOISE_RAD
+from latentarm_research.people.expectation import Expectation, displacements, main_directions
+from latentarm_research.studies.alignment.cell import ideal_config
+from latentarm_research.studies.alignment.preset import (
+    ALL_PRIORS,
+    IDEAL,
+    LEARNED,
+    NO_ALIGN,
+    TOOL_SPACE,
+    WITHOUT_PRIORS,
+    Preset,
+    Stream,
+)
+from latentarm_research.studies.fitting import fit_model
+from latentarm_research.studies.streams import generator, integer, sequence
+
+TASK: Final = "table_top"
+
+TURN_RAD: Final = pi / 3
+"""How far the stick is turned before it is mirrored: far enough that no axis does what the person expects."""
+
+HELD_OUT: Final = 0.2
+"""Share of the demonstrations that are held out, as in the demo."""
+
+EVERY: Final = 10**9
+"""More than the number of motions."""
+
+
+@dataclass(frozen=True)
+class DriveCell:
+    """What is to be measured.
+
+    Attributes:
+        model: a name of `MODELS`.
+        preset: sizes of the study.
+        seed: of the study.
+    """
+
+    model: str
+    preset: Preset
+    seed: int
+
+
+@dataclass(frozen=True, eq=False)
+class Learned:
+    """What is driven with.
+
+    Attributes:
+        model: the S models of a kind.
+        alignments: S times, condition -> alignment.
+        person: who was asked.
+        errors: condition -> (S,), relative alignment errors on motions that trained nothing.
+        fit_s: how long the fit of all models took, s.
+        align_s: how long asking and learning took, all models together, s.
+    """
+
+    model: LatentActionModel
+    alignments: tuple[Mapping[str, Alignment], ...]
+    person: Expectation
+    errors: Mapping[str, FloatArray]
+    fit_s: float
+    align_s: float
+
+
+def learn(cell: DriveCell) -> Learned:
+    """Demonstrate, fit all models in one fit, ask the person about each, and learn.
+
+    Raises:
+        UserError: the preset's sizes make no sense.
+    """
+    preset, task = cell.preset, TableTop()
+    chain = task.robot.chain
+    demonstrations = task.demonstrate(preset.drives.episodes, _generator(cell, Stream.TRAINING))
+    rows = split_episodes(demonstrations, HELD_OUT, _generator(cell, Stream.TEST))
+    training, held_out = (select_episodes(demonstrations, part) for part in rows)
+    motions = demonstrated_motions(training, EVERY, _generator(cell, Stream.SHOWN))
+    person = turned_person(motions, chain)
+    many = motions[np.arange(min(preset.ideal_answers, len(motions)))]
+    began = perf_counter()
+    model = _fit(cell, training, chain)
+    fitted = perf_counter()
+    ideal = Answers(many, person.inputs(many))
+    alignments = tuple(
+        _alignments(cell, model, seed, training, person, ideal) for seed in range(preset.drives.seeds)
+    )
+    align_s = perf_counter() - fitted
+    tested = demonstrated_motions(held_out, preset.test_motions, _generator(cell, Stream.TEST_MOTIONS))
+    errors = _errors(model, alignments, chain, Answers(tested, person.inputs(tested)))
+    return Learned(model, alignments, person, errors, fitted - began, align_s)
+
+
+def turned_person(motions: Motions, chain: Chain) -> Expectation:
+    """The simulated person: the two main directions of motions on a stick that is turned and mirrored.
+
+    A full push along one direction is as fast as nearly all of the motions, as for the simulated person of
+    `latentarm align`.
+    """
+    directions = main_directions(motions, chain, 2)
+    along = np.abs(displacements(motions, chain) @ directions.T).max(axis=1)
+    speed = float(np.quantile(along, FASTEST)) / motions.duration_s
+    return Expectation(chain, directions, speed).turned_and_mirrored(TURN_RAD)
+
+
+def _fit(cell: DriveCell, training: Demonstrations, chain: Chain) -> LatentActionModel:
+    """The models, as the demo trains them."""
+    return fit_model(
+        cell.model,
+        training,
+        latent_dim=2,
+        state_noise_rad=STATE_NOISE_RAD,
+        seeds=cell.preset.drives.seeds,
+        epochs=cell.preset.drives.epochs,
+        seed=integer(sequence(cell.seed, TASK, Stream.NETWORKS)),
+        data_seed=integer(sequence(cell.seed, TASK, Stream.STATE_NOISE)),
+        fit={"chain": chain},
+    )
+
+
+def _alignments(
+    cell: DriveCell,
+    model: LatentActionModel,
+    seed_index: int,
+    training: Demonstrations,
+    person: Expectation,
+    ideal: Answers,
+) -> dict[str, Alignment]:
+    """Every alignment of one model: with priors and without, from the same answers."""
+    drawing = _generator(cell, Stream.CANDIDATES, seed_index)
+    motions = shown(training, "state", person.chain, drawing)
+    unlabelled = demonstrated_motions(training, cell.preset.unlabelled, drawing).context
+    scene = Scene(model, seed_index, person.chain, motions)
+    count = cell.preset.drives.answers
+    # Asking never stops early, so that every model has the same number of answers.
+    stopping = StoppingRule(share=0.0, patience=count)
+    answers = ask(scene, SimulatedPerson(person, _unheard), count, _unheard, stopping)
+
+    def learn(answers: Answers, config: FitConfig) -> Alignment:
+        return fit_alignments(model, person.chain, [answers], unlabelled, config, seed_index=seed_index).best
+
+    return {
+        NO_ALIGN: identity,
+        **{
+            name: learn(answers, FitConfig(LEARNED[name], steps=cell.preset.steps))
+            for name in (WITHOUT_PRIORS, ALL_PRIORS)
+        },
+        TOOL_SPACE: scene.learn(answers).with_arm(model.decoder(seed_index), person.chain),
+        IDEAL: learn(ideal, ideal_config(cell.preset)),
+    }
+
+
+def _errors(
+    model: LatentActionModel, alignments: tuple[Mapping[str, Alignment], ...], chain: Chain, test: Answers
+) -> dict[str, FloatArray]:
+    """Relative alignment errors (S,) by condition."""
+    decoders = [model.decoder(seed) for seed in range(len(alignments))]
+    return {
+        name: np.array(
+            [
+                relative_alignment_error(of_seed[name], decoder, chain, test)
+                for of_seed, decoder in zip(alignments, decoders, strict=True)
+            ]
+        )
+        for name in alignments[0]
+    }
+
+
+def _generator(cell: DriveCell, *use: int) -> np.random.Generator:
+    """The same for every kind of model."""
+    return generator(cell.seed, TASK, *use)
+
+
+def _unheard(text: str) -> None:
+    """Discards what the simulated person says."""

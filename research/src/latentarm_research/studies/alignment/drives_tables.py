@@ -1,0 +1,212 @@
+"""Figures of the drives, tests of what alignment does for them, and the tables of both.
+
+Tool Space is compared with No Align, No Priors and All Priors, drive by drive: each pair has the same model,
+goal, start and chances. Whether the goal is reached is tested by McNemar's exact test, the time by a paired t
+test; both are one-sided, and corrected by Holm's method over all tests with one kind of model.
+"""
+
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+
+from latentarm.core.types import FloatArray, Row
+from latentarm.evaluation.measures import label_of, unit_of
+from latentarm.evaluation.summary import Subject, summarise
+from latentarm.evaluation.table import ABSENT, format_figure
+from latentarm.tasks.table_top import TableTop
+from latentarm_research.studies.alignment.drives import DRIVEN, HELPED, KNOWS, DrivesResult
+from latentarm_research.studies.alignment.drives_learning import TASK
+from latentarm_research.studies.alignment.preset import (
+    ALL_PRIORS,
+    IDEAL,
+    NO_ALIGN,
+    TOOL_SPACE,
+    WITHOUT_PRIORS,
+)
+from latentarm_research.studies.hypotheses import Comparison, comparison_table, corrected
+from latentarm_research.studies.page import markdown_table
+from latentarm_research.studies.statistics import Statistic, format_p, paired
+
+REACHED: Final = "arrival_rate"
+TIME: Final = "time_s"
+DONE: Final = "success_rate"
+ERROR: Final = "relative_alignment_error"
+
+AGAINST: Final = (NO_ALIGN, WITHOUT_PRIORS, ALL_PRIORS)
+"""What Tool Space is compared with."""
+
+
+def drive_figures(result: DrivesResult, condition: str) -> dict[str, FloatArray]:
+    """Figures (P,) of all drives of a condition.
+
+    ``arrival_rate``: whether the tool came to the goal; ``time_s``: until then, all the time there was where
+    it never did; ``success_rate``: whether it was stabbed or scooped there, too.
+    """
+    drives, limit_s = result.drives[condition], result.cell.preset.drives.limit_s
+    return {
+        REACHED: np.array([float(one.reached_s is not None) for one in drives]),
+        TIME: np.array([limit_s if one.reached_s is None else one.reached_s for one in drives]),
+        DONE: np.array([float(one.done) for one in drives]),
+    }
+
+
+def misses(result: DrivesResult, condition: str) -> FloatArray:
+    """Where the drives (F,) that never came to their goal left the tool, (F, 2), m.
+
+    How far from the goal along the person's two directions, and how far across them.
+    """
+    goals = TableTop().goals
+    missed = [one for one in result.drives[condition] if one.reached_s is None]
+    off = np.array([one.path[-1] - goals[one.goal].pose.position for one in missed]).reshape(-1, 3)
+    along = off @ result.directions.T
+    across = off - along @ result.directions
+    return np.stack([np.linalg.norm(along, axis=1), np.linalg.norm(across, axis=1)], axis=1)
+
+
+def drives_rows(results: Sequence[DrivesResult]) -> list[Row]:
+    """Mean and SD of every figure: of drives over drives, of alignments over models."""
+    rows: list[Row] = []
+    for result in results:
+        for condition in DRIVEN:
+            subject = Subject("alignment", TASK, result.cell.model, condition)
+            if condition in result.errors:
+                rows.append(summarise(subject, ERROR, result.errors[condition]))
+            rows += [
+                summarise(subject, name, values) for name, values in drive_figures(result, condition).items()
+            ]
+    return rows
+
+
+def compare_drives(results: Sequence[DrivesResult]) -> list[Comparison]:
+    """Every test, model by model."""
+    comparisons: list[Comparison] = []
+    for result in results:
+        figures = {name: drive_figures(result, name) for name in (TOOL_SPACE, *AGAINST)}
+        comparisons += [
+            _test(
+                result.cell.model, measure, against, figures[TOOL_SPACE][measure], figures[against][measure]
+            )
+            for measure in (REACHED, TIME)
+            for against in AGAINST
+        ]
+    return corrected(comparisons)
+
+
+def _test(model: str, measure: str, against: str, own: FloatArray, other: FloatArray) -> Comparison:
+    """One test, without correction."""
+    more = measure == REACHED
+    return Comparison(
+        hypothesis="drives",
+        family=model,
+        task=TASK,
+        model=model,
+        measure=measure,
+        subject=TOOL_SPACE,
+        against=against,
+        direction="greater" if more else "less",
+        mean=float(own.mean()),
+        mean_against=float(other.mean()),
+        n=len(own),
+        n_against=len(other),
+    ).tested(_mcnemar(own, other) if more else paired(own, other, "less"))
+
+
+def _mcnemar(own: FloatArray, other: FloatArray) -> Statistic:
+    """Whether more drives reach the goal: p of those that differ, by the binomial distribution."""
+    from scipy.stats import binomtest  # takes a second, and only a finished study needs it
+
+    better, worse = int((own > other).sum()), int((own < other).sum())
+    if better + worse == 0:
+        return Statistic("none: no drive differs")
+    return Statistic("McNemar", p=float(binomtest(better, better + worse, alternative="greater").pvalue))
+
+
+WORDS: Final = {
+    NO_ALIGN: "z = u",
+    WITHOUT_PRIORS: "learned from the answers alone",
+    ALL_PRIORS: "learned from the same answers and all priors",
+    TOOL_SPACE: "learned from the same answers as `latentarm align` does",
+    HELPED: "the same, with help towards the likely goals, as in the demo",
+    IDEAL: "learned from many more answers",
+    KNOWS: "z = u and a person of equation 24 who knows exactly what each input does: the demo's operator",
+}
+"""What each condition is."""
+
+
+MISSED: Final = "the others end off, along and across (mm)"
+
+
+def drive_parts(
+    results: Sequence[DrivesResult], tests: Sequence[Comparison]
+) -> dict[str, dict[str, str | list[str]]]:
+    """For each kind of model: the table, one sentence per test result, and the tests."""
+    parts: dict[str, dict[str, str | list[str]]] = {}
+    for result in results:
+        of_model = [one for one in tests if one.model == result.cell.model]
+        parts[result.cell.model] = {
+            "table": _table(result),
+            "said": _said(of_model),
+            "tests": comparison_table(of_model),
+        }
+    return parts
+
+
+def ways(result: DrivesResult) -> list[str]:
+    """What each axis of the stick means to the person."""
+    return [
+        f"axis {axis} means ({', '.join(f'{part:+.2f}' for part in direction)})"
+        for axis, direction in enumerate(result.directions, start=1)
+    ]
+
+
+def _table(result: DrivesResult) -> str:
+    """Conditions down, figures across."""
+    head = ["simulated", *(_name(measure) for measure in (ERROR, REACHED, TIME)), MISSED, _name(DONE)]
+    return markdown_table(head, [_line(result, condition) for condition in DRIVEN])
+
+
+def _name(measure: str) -> str:
+    own = {REACHED: "reaches the goal", DONE: "stabs or scoops, too", TIME: "time to the goal"}
+    unit = unit_of(measure)
+    return own.get(measure, label_of(measure)) + ("" if unit == "1" else f" ({unit})")
+
+
+def _line(result: DrivesResult, condition: str) -> list[str]:
+    figures = drive_figures(result, condition)
+    errors = result.errors.get(condition)
+    return [
+        condition,
+        ABSENT if errors is None else _mean_and_sd(errors),
+        _share(figures[REACHED]),
+        _mean_and_sd(figures[TIME]),
+        _misses(misses(result, condition)),
+        _share(figures[DONE]),
+    ]
+
+
+def _share(happened: FloatArray) -> str:
+    return f"{int(happened.sum())} of {len(happened)} ({happened.mean():.0%})"
+
+
+def _misses(off_m: FloatArray) -> str:
+    along, across = 1000 * off_m.mean(axis=0) if len(off_m) else (None, None)
+    return ABSENT if along is None else f"{along:.0f}, {across:.0f}"
+
+
+def _mean_and_sd(values: FloatArray) -> str:
+    return format_figure(float(values.mean()), float(np.std(values, ddof=1)) if len(values) > 1 else None)
+
+
+def _said(tests: Sequence[Comparison]) -> list[str]:
+    """The results of one model's tests, one sentence each."""
+    words = {REACHED: "reaches more goals than", TIME: "is faster than"}
+    return [
+        f"{TOOL_SPACE} {words[one.measure]} {one.against}: "
+        + ("supported" if one.holds else f"**not supported**{_why(one)}")
+        for one in tests
+    ]
+
+
+def _why(test: Comparison) -> str:
+    return f" ({test.test.removeprefix('none: ')})" if test.p is None else f" (p = {format_p(test.p_holm)})"

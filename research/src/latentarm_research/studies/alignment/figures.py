@@ -1,0 +1,246 @@
+"""The study's figures: conditions as in the paper's figure 12, learning curves, and drives from above."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from latentarm.core.style import FONT_SIZE, TWO_COLUMNS_MM, legend_below, new_figure, tidy
+from latentarm.core.types import Goal
+from latentarm.evaluation.looks import look_of
+from latentarm.tasks.table_top import TableTop
+from latentarm_research.drives.drive_figures import GOAL_COLOURS, GOAL_MARKERS, OUTCOMES, outcome_lines
+from latentarm_research.studies.alignment.cell import CellResult
+from latentarm_research.studies.alignment.curves import CHOICES, PRIORS_AT_RANDOM, CurveResult
+from latentarm_research.studies.alignment.drives import DRIVEN, Driven, DrivesResult
+from latentarm_research.studies.alignment.hypotheses import RANDOM_ANSWERS
+from latentarm_research.studies.alignment.preset import CHOSEN, CONDITIONS
+from latentarm_research.studies.alignment.rows import ENCODED
+from latentarm_research.studies.drawing import draw_series, name_series, plain_ticks, title
+from latentarm_research.studies.statistics import bootstrap_interval, reach_of_interval
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+
+CONDITIONS_ROW_MM: Final = 48.0
+CONDITIONS_FRAME_MM: Final = 20.0
+GROUP: Final = 0.86
+"""Width of a group of conditions; groups are 1 apart."""
+
+ROOM: Final = 1.6
+"""Free room below and above everything on the logarithmic axis, as a factor."""
+
+
+def conditions_figure(
+    results: Sequence[CellResult], models: Sequence[str], tasks: Sequence[str], noises: Sequence[float]
+) -> "Figure":
+    """Means with 95 % intervals, a panel per task, a row per model, grouped by noise.
+
+    Args:
+        results: every cell.
+        models: those to be shown.
+        tasks: from left to right.
+        noises: coefficients of variation of the answers.
+    """
+    figure = new_figure(CONDITIONS_ROW_MM * len(models) + CONDITIONS_FRAME_MM, TWO_COLUMNS_MM)
+    figure.suptitle(
+        "Relative alignment error, mean over runs with 95 % interval; people and arm simulated",
+        fontsize=FONT_SIZE,
+    )
+    panels = figure.subplots(len(models), len(tasks), sharex=True, sharey="row", squeeze=False)
+    for line, model in zip(panels, models, strict=True):
+        for axes, task in zip(line, tasks, strict=True):
+            here = [result for result in results if (result.cell.model, result.cell.task) == (model, task)]
+            _draw_conditions(axes, here)
+            title(
+                axes,
+                look_of(task).label if len(models) == 1 else f"{look_of(task).label}, {look_of(model).label}",
+            )
+        _log_axis(line[0], [result for result in results if result.cell.model == model])
+        line[0].set_ylabel("relative error", fontsize=FONT_SIZE)
+    for axes in panels[-1]:
+        axes.set_xticks(range(len(noises)), [f"{noise:g}" for noise in noises])
+        axes.set_xlabel("coefficient of variation of answers", fontsize=FONT_SIZE)
+    (line, *points), (encoded, *names) = panels[0, 0].get_legend_handles_labels()
+    legend_below(figure, [*points, line], [*names, encoded])
+    return figure
+
+
+def _draw_conditions(axes: "Axes", results: Sequence[CellResult]) -> None:
+    """All conditions of one task and model, one group per noise, and the encoder's own choice."""
+    width = GROUP / len(CONDITIONS)
+    groups = np.arange(len(results))
+    for index, name in enumerate(CONDITIONS):
+        errors = [result.errors[name] for result in results]
+        look = look_of(name)
+        axes.errorbar(
+            groups + (index - (len(CONDITIONS) - 1) / 2) * width,
+            [values.mean() for values in errors],
+            yerr=np.transpose([reach_of_interval(values) for values in errors]),
+            color=look.colour,
+            marker=look.marker,
+            linestyle="none",
+            markersize=4.2,
+            elinewidth=1.0,
+            label=look.label,
+            zorder=2,
+        )
+    axes.axhline(
+        results[0].encoded,
+        color="black",
+        linestyle=":",
+        linewidth=0.9,
+        label=ENCODED,
+        zorder=3,
+    )
+    tidy(axes)
+    axes.grid(False, axis="x")
+
+
+def _log_axis(axes: "Axes", results: Sequence[CellResult]) -> None:
+    """A logarithmic axis around all intervals and the encoder's choice."""
+    ends = [bootstrap_interval(values) for result in results for values in result.errors.values()]
+    encoded = [result.encoded for result in results]
+    low, high = min(float(low) for low, _ in ends), max(float(high) for _, high in ends)
+    axes.set_yscale("log")
+    axes.set_ylim(min(low, *encoded) / ROOM, max(high, *encoded) * ROOM)
+    plain_ticks(axes)
+
+
+CURVES_ROW_MM: Final = 46.0
+CURVES_FRAME_MM: Final = 18.0
+NUDGE: Final = 0.16
+"""How far choices stand from each other, in answers, so that no bar hides another."""
+
+
+def curves_figure(curves: Sequence[CurveResult], tasks: Sequence[str]) -> "Figure":
+    """Means with 95 % intervals over the number of answers, a panel per task, a row per model and noise.
+
+    Args:
+        curves: every curve.
+        tasks: from left to right.
+    """
+    places = list(dict.fromkeys((curve.cell.learned.cell.model, curve.cell.noise) for curve in curves))
+    figure = new_figure(CURVES_ROW_MM * len(places) + CURVES_FRAME_MM, TWO_COLUMNS_MM)
+    figure.suptitle(
+        "Relative alignment error, mean over runs with 95 % interval; people and arm simulated",
+        fontsize=FONT_SIZE,
+    )
+    panels = figure.subplots(len(places), len(tasks), sharex=True, squeeze=False)
+    known = {
+        (curve.cell.learned.cell.model, curve.cell.noise, curve.cell.learned.cell.task): curve
+        for curve in curves
+    }
+    for line, (model, noise) in zip(panels, places, strict=True):
+        for axes, task in zip(line, tasks, strict=True):
+            _draw_curves(axes, known[model, noise, task])
+            title(axes, f"{look_of(task).label}, {look_of(model).label}, noise {noise:g}")
+        line[0].set_ylabel("relative error", fontsize=FONT_SIZE)
+    for axes in panels[-1]:
+        axes.set_xlabel("answers", fontsize=FONT_SIZE)
+    name_series(figure, panels[0, 0], handle_length=2.6)
+    return figure
+
+
+def _draw_curves(axes: "Axes", curve: CurveResult) -> None:
+    for index, choice in enumerate(CHOICES):
+        errors = curve.errors[choice]
+        means = [float(values.mean()) for values in errors.values()]
+        draw_series(
+            axes,
+            choice,
+            [count + (index - 1) * NUDGE for count in errors],
+            means,
+            np.transpose([reach_of_interval(values) for values in errors.values()]),
+            markersize=3.2,
+            linewidth=1.0,
+            elinewidth=0.6,
+            zorder=3 + index,
+        )
+    if RANDOM_ANSWERS in curve.errors[PRIORS_AT_RANDOM]:
+        axes.axhline(
+            curve.errors[PRIORS_AT_RANDOM][RANDOM_ANSWERS].mean(),
+            color="black",
+            linestyle=":",
+            linewidth=0.8,
+            label=f"{PRIORS_AT_RANDOM}, {RANDOM_ANSWERS} answers",
+            zorder=2,
+        )
+    axes.plot(
+        curve.stopped_after.mean(),
+        curve.stopped_at.mean(),
+        marker="*",
+        markersize=8.0,
+        color="white",
+        markeredgecolor=look_of(CHOSEN).colour,
+        linestyle="none",
+        label="where asking stops (mean)",
+        zorder=8,
+    )
+    axes.set_yscale("log")
+    plain_ticks(axes)
+    axes.set_xlim(left=0.0)
+    tidy(axes)
+
+
+DRIVES_ACROSS: Final = 4
+DRIVES_ROW_MM: Final = 54.0
+DRIVES_LEGEND_MM: Final = 18.0
+VIEW: Final = ((-0.6, 0.6), (-0.2, 0.85))
+"""What is shown, y from and to, x from and to, m."""
+
+
+def drives_figure(results: Sequence[DrivesResult]) -> "Figure":
+    """All paths until the goal from above: a panel for each condition, one model after the other."""
+    goals, rows_each = TableTop().goals, -(-len(DRIVEN) // DRIVES_ACROSS)
+    rows = rows_each * len(results)
+    figure = new_figure(height_mm=DRIVES_ROW_MM * rows + DRIVES_LEGEND_MM, width_mm=TWO_COLUMNS_MM)
+    figure.set_layout_engine("compressed")  # panels keep their shape; without it the rest of a row is blank
+    figure.suptitle("Simulated drives from above, and how many reach their goal", fontsize=FONT_SIZE)
+    panels = figure.subplots(rows, DRIVES_ACROSS, squeeze=False, sharex=True, sharey=True)
+    for result, own in zip(results, panels.reshape(len(results), -1), strict=True):
+        for axes, condition in zip(own, DRIVEN, strict=False):
+            drives = result.drives[condition]
+            _draw_drives(axes, drives, goals)
+            name = condition.replace(", ", ",\n")
+            title(axes, f"{name}\n{sum(one.reached_s is not None for one in drives)} of {len(drives)}")
+        for axes in own[len(DRIVEN) :]:
+            axes.remove()
+        for axes in own[len(DRIVEN) - DRIVES_ACROSS : len(DRIVEN)]:
+            axes.set_xlabel("y (m)")
+            axes.tick_params(labelbottom=True)
+        for axes in own[::DRIVES_ACROSS]:
+            axes.set_ylabel(f"{look_of(result.cell.model).label}: x (m)")
+    handles, labels = panels[0, 0].get_legend_handles_labels()
+    legend_below(figure, [*handles, *outcome_lines()], [*labels, *OUTCOMES])
+    return figure
+
+
+def _draw_drives(axes: "Axes", drives: Sequence[Driven], goals: Sequence[Goal]) -> None:
+    for one in drives:
+        axes.plot(
+            one.path[:, 1],
+            one.path[:, 0],
+            color=GOAL_COLOURS[one.goal],
+            linestyle=OUTCOMES["goal not reached" if one.reached_s is None else "goal reached"],
+            linewidth=0.6,
+            alpha=0.6,
+        )
+    for index, goal in enumerate(goals):
+        axes.plot(
+            goal.pose.position[1],
+            goal.pose.position[0],
+            marker=GOAL_MARKERS[index],
+            color=GOAL_COLOURS[index],
+            markeredgecolor="black",
+            markersize=4.5,
+            linestyle="none",
+            label=goal.name,
+        )
+    axes.set_xlim(*VIEW[0])
+    axes.set_ylim(*VIEW[1])
+    axes.set_aspect("equal", adjustable="box")
+    axes.locator_params(nbins=3)
+    tidy(axes)

@@ -1,0 +1,247 @@
+"""Tests of the paper's three hypotheses of section 8.3, and of targets of our own, on the errors of all runs.
+
+H1: with abundant labelled data the alignment model learns the preference. Read as: Ideal Align has a lower
+error than No Align and than Manual Align. The paper adds that this also holds for alignments learned from few
+answers; that is tested for All Priors.
+
+H2: with priors, far fewer answers do. Read as: with the same few answers, each single prior and all of them
+have a lower error than No Priors; and All Priors comes close to Ideal Align: its error is below `NEAR` times
+that. The same is tested for Tool Space, ours, which the paper does not have.
+
+H3: all priors together are better than one of them. Read as: All Priors has a lower error than each.
+
+All tests are one-sided at `LEVEL`, Welch's where both sides have spread, after Holm's correction over all
+tests of one hypothesis with one model. Targets compare means and test nothing.
+"""
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import asdict, dataclass
+from typing import Final
+
+from latentarm.core.types import FloatArray
+from latentarm.evaluation.looks import look_of
+from latentarm_research.studies.alignment.cell import CellResult
+from latentarm_research.studies.alignment.curves import PRIORS_AT_RANDOM, CurveResult
+from latentarm_research.studies.alignment.preset import (
+    ALL_PRIORS,
+    CHOSEN,
+    FEW_ANSWERS,
+    IDEAL,
+    MANUAL,
+    NO_ALIGN,
+    SINGLE_PRIORS,
+    TOOL_SPACE,
+    WITHOUT_PRIORS,
+)
+from latentarm_research.studies.alignment.turning import FEW, TurningResult
+from latentarm_research.studies.hypotheses import Comparison, corrected
+from latentarm_research.studies.page import listed
+from latentarm_research.studies.statistics import compare_means
+
+NEAR: Final = 1.25
+"""Up to this many times the error of Ideal Align counts as close to it."""
+
+
+@dataclass(frozen=True)
+class Claim:
+    """One part of a hypothesis: a condition's error is lower than another's.
+
+    Attributes:
+        hypothesis: ``H1``, ``H2`` or ``H3``.
+        condition: the one that should have the lower error.
+        against: the one it is compared with.
+        times: factor on the other's error.
+    """
+
+    hypothesis: str
+    condition: str
+    against: str
+    times: float = 1.0
+
+
+CLAIMS: Final = (
+    *(Claim("H1", one, other) for one in (IDEAL, ALL_PRIORS) for other in (NO_ALIGN, MANUAL)),
+    *(Claim("H2", one, WITHOUT_PRIORS) for one in (*SINGLE_PRIORS, ALL_PRIORS)),
+    *(Claim("H2", one, IDEAL, NEAR) for one in (ALL_PRIORS, TOOL_SPACE)),
+    *(Claim("H3", ALL_PRIORS, one) for one in SINGLE_PRIORS),
+)
+
+
+def compare_conditions(results: Sequence[CellResult]) -> list[Comparison]:
+    """Every test, by hypothesis, then by model, then in the order of the results."""
+    return corrected([_test(claim, result) for result in results for claim in CLAIMS])
+
+
+def _test(claim: Claim, result: CellResult) -> Comparison:
+    """One test, without correction."""
+    values, reference = result.errors[claim.condition], claim.times * result.errors[claim.against]
+    return Comparison(
+        hypothesis=claim.hypothesis,
+        family=result.cell.model,
+        task=result.cell.task,
+        model=result.cell.model,
+        measure="relative_alignment_error",
+        where=f"noise {result.cell.noise:g}",
+        subject=claim.condition,
+        against=claim.against if claim.times == 1 else f"{claim.times:g} times {claim.against}",
+        mean=float(values.mean()),
+        mean_against=float(reference.mean()),
+        n=len(values),
+        n_against=len(reference),
+    ).tested(compare_means(values, reference, "less"))
+
+
+SINGLE_SHARE: Final = 0.6
+"""A single prior should stay below this share of the error of No Priors; the paper says "twice as well"."""
+
+PAPER_MODEL: Final = "cae"
+"""The model of the paper's study."""
+
+RANDOM_ANSWERS: Final = 10
+"""Answers at random, whose error with All Priors ..."""
+
+CHOSEN_ANSWERS: Final = 4
+"""... so many chosen ones in tool space should reach."""
+
+
+@dataclass(frozen=True)
+class Target:
+    """One target.
+
+    Attributes:
+        name: what should be reached.
+        met: whether it was.
+        figures: how far it was met, or by how much it was missed.
+    """
+
+    name: str
+    met: bool
+    figures: str
+
+    def as_json(self) -> dict[str, object]:
+        """Plain mapping, ready for ``json.dumps``."""
+        return asdict(self)
+
+
+def targets(
+    results: Sequence[CellResult], curves: Sequence[CurveResult], turning: Sequence[TurningResult]
+) -> list[Target]:
+    """Every target that the results can decide, model by model."""
+    found: list[Target] = []
+    for model in dict.fromkeys(result.cell.model for result in results):
+        of_model = [result for result in results if result.cell.model == model]
+        found += [
+            _near_ideal(of_model, TOOL_SPACE),
+            _near_ideal(of_model, CHOSEN),
+            _lowest(of_model, "mean", lambda errors: float(errors.mean())),
+            _lowest(of_model, "SD", lambda errors: float(errors.std(ddof=1)) if len(errors) > 1 else 0.0),
+            _single_priors(of_model),
+        ]
+    found += [
+        _fewer_answers([curve for curve in curves if curve.cell.noise == noise and _judged(curve)])
+        for noise in dict.fromkeys(curve.cell.noise for curve in curves if _judged(curve))
+    ]
+    for result in turning:
+        found += _turning(result)
+    return found
+
+
+def answers_needed(curve: CurveResult) -> int | None:
+    """The fewest chosen answers with a mean error no higher than that of `RANDOM_ANSWERS` with All Priors.
+
+    None where no measured number of them has.
+    """
+    wanted = curve.errors[PRIORS_AT_RANDOM][RANDOM_ANSWERS].mean()
+    return next((count for count, errors in curve.errors[CHOSEN].items() if errors.mean() <= wanted), None)
+
+
+def _lowest(results: Sequence[CellResult], what: str, of: Callable[[FloatArray], float]) -> Target:
+    missed: list[str] = []
+    for result in results:
+        figures = {name: of(result.errors[name]) for name in FEW_ANSWERS if name != TOOL_SPACE}
+        best = min(figures, key=lambda name: figures[name])
+        if figures[best] < figures[ALL_PRIORS]:
+            missed.append(f"{_place(result)}: {figures[ALL_PRIORS]:.3g}, {best} {figures[best]:.3g}")
+    return Target(
+        f"{ALL_PRIORS} has the lowest {what} of the paper's conditions with few answers, {_model(results)}",
+        not missed,
+        _counted(len(results), missed),
+    )
+
+
+def _single_priors(results: Sequence[CellResult]) -> Target:
+    ratios = {
+        f"{_place(result)}: {name}": float(result.errors[name].mean() / result.errors[WITHOUT_PRIORS].mean())
+        for result in results
+        for name in SINGLE_PRIORS
+    }
+    missed = [f"{place} {ratio:.2f}" for place, ratio in ratios.items() if ratio > SINGLE_SHARE]
+    return Target(
+        f"each single prior has at most {SINGLE_SHARE:g} of the error of {WITHOUT_PRIORS}, {_model(results)}",
+        not missed,
+        f"{min(ratios.values()):.2f} to {max(ratios.values()):.2f}; {_counted(len(ratios), missed)}",
+    )
+
+
+def _near_ideal(results: Sequence[CellResult], condition: str) -> Target:
+    ratios = {
+        _place(result): float(result.errors[condition].mean() / result.errors[IDEAL].mean())
+        for result in results
+    }
+    missed = [f"{place} {ratio:.2f}" for place, ratio in ratios.items() if ratio > NEAR]
+    return Target(
+        f"{condition} has at most {NEAR:g} times the error of {IDEAL}, {_model(results)}",
+        not missed,
+        f"{min(ratios.values()):.2f} to {max(ratios.values()):.2f} times; {_counted(len(ratios), missed)}",
+    )
+
+
+def _fewer_answers(curves: Sequence[CurveResult]) -> Target:
+    needed = {curve.cell.learned.cell.task: answers_needed(curve) for curve in curves}
+    return Target(
+        f"chosen questions in tool space reach the error of {RANDOM_ANSWERS} random ones of {ALL_PRIORS} with"
+        f" at most {CHOSEN_ANSWERS}, noise {curves[0].cell.noise:g}",
+        all(count is not None and count <= CHOSEN_ANSWERS for count in needed.values()),
+        "; ".join(
+            f"{look_of(task).label} {'with no measured number' if count is None else f'with {count}'}"
+            for task, count in needed.items()
+        ),
+    )
+
+
+def _turning(result: TurningResult) -> list[Target]:
+    """For people whose axes turn: as near to Ideal Align, and with as few answers."""
+    mean = {name: float(errors.mean()) for name, errors in result.errors.items()}
+    who = f"people whose axes turn, noise {result.cell.noise:g}"
+    many = len(result.errors[IDEAL])
+    ours, ideal = float(result.errors[CHOSEN][:many].mean()), mean[IDEAL]
+    return [
+        Target(
+            f"{CHOSEN}, has at most {NEAR:g} times the error of {IDEAL}, {who}",
+            ours <= NEAR * ideal,
+            f"{ours:.3g} against {ideal:.3g}, {ours / ideal:.2f} times, the same {many} people",
+        ),
+        Target(
+            f"{FEW}, have at most the error of {RANDOM_ANSWERS} random ones of {ALL_PRIORS}, {who}",
+            mean[FEW] <= mean[PRIORS_AT_RANDOM],
+            f"{mean[FEW]:.3g} against {mean[PRIORS_AT_RANDOM]:.3g}",
+        ),
+    ]
+
+
+def _judged(curve: CurveResult) -> bool:
+    return RANDOM_ANSWERS in curve.errors[PRIORS_AT_RANDOM] and any(
+        count <= CHOSEN_ANSWERS for count in curve.errors[CHOSEN]
+    )
+
+
+def _counted(many: int, missed: Sequence[str]) -> str:
+    return f"{many - len(missed)} of {many}" + (f"; not {'; '.join(missed)}" if missed else "")
+
+
+def _place(result: CellResult) -> str:
+    return f"{look_of(result.cell.task).label}, noise {result.cell.noise:g}"
+
+
+def _model(results: Iterable[CellResult]) -> str:
+    return listed(look_of(result.cell.model).label for result in results)

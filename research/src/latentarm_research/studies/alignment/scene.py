@@ -1,0 +1,251 @@
+"""What alignments are learned in: a decoder, learned once for each task and model, and a simulated person."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from time import perf_counter
+from typing import Final, final
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from latentarm.alignment.answers import Answers, Motions
+from latentarm.alignment.contract import Alignment
+from latentarm.alignment.demonstrated import CANDIDATES, demonstrated_motions, noticeable
+from latentarm.alignment.error import lengths, outcome, relative_alignment_error
+from latentarm.alignment.poses import pose_vectors
+from latentarm.alignment.posterior import Posterior, fit_meaning
+from latentarm.alignment.preference import ByPlace, HeightAndTilt, Imprecise, Preference, ToolAxes
+from latentarm.alignment.surroundings import Surroundings
+from latentarm.alignment.tool_space import ToolSpace, ToolSpaceAlignment
+from latentarm.alignment.training import FitConfig, FittedAlignments, fit_alignments
+from latentarm.core.types import Demonstrations, FloatArray
+from latentarm.models.decoder import Decoder
+from latentarm.models.model import LatentActionModel
+from latentarm.robots.kinematics.chain import Chain
+from latentarm_research.studies.alignment.preset import Preset, Stream
+from latentarm_research.studies.fitting import fit_model, validation_episodes
+from latentarm_research.studies.streams import generator, integer, sequence
+from latentarm_research.tasks.pouring.tasks import POURING_TASKS, at_bowl
+from latentarm_research.tasks.pouring.tool_path import SPEED_M_S, TURN_RAD_S
+
+
+def preference_of(task: str, chain: Chain) -> Preference:
+    """What is meant in a task: a full push is the fastest motion of the demonstrations.
+
+    Args:
+        task: a name of `POURING_TASKS`.
+        chain: the arm.
+    """
+    plane = ToolAxes(chain, 2, SPEED_M_S)
+    pour = HeightAndTilt(chain, SPEED_M_S, TURN_RAD_S)
+    return {"plane": plane, "pour": pour, "reach_and_pour": ByPlace(chain, at_bowl, pour, plane)}[task]
+
+
+WINDOW: Final = 10
+"""Samples that an action may reach ahead and back: half a second, as long as a motion that is asked about."""
+
+
+@dataclass(frozen=True)
+class DecoderCell:
+    """A decoder to be learned.
+
+    Attributes:
+        task: a name of `POURING_TASKS`.
+        model: a name of `MODELS`.
+        preset: sizes of the study.
+        seed: of the whole study; the same demonstrations come from it for every model.
+    """
+
+    task: str
+    model: str
+    preset: Preset
+    seed: int
+
+
+@dataclass(frozen=True, eq=False)
+class LearnedDecoder:
+    """A decoder that was learned.
+
+    Attributes:
+        cell: what was asked for.
+        model: fitted, of one seed.
+        fit_s: how long that took, s.
+    """
+
+    cell: DecoderCell
+    model: LatentActionModel
+    fit_s: float
+
+
+def learn_decoder(cell: DecoderCell) -> LearnedDecoder:
+    """Demonstrate and fit.
+
+    The weights are the same to the last bit in whatever process this runs: one thread each for linear algebra
+    and for torch, since more of them add up in another order.
+
+    Raises:
+        UserError: the preset's sizes make no sense to the model or to the task.
+    """
+    with threadpool_limits(limits=1):
+        demonstrations = demonstrate(cell, Stream.TRAINING)
+        began = perf_counter()
+        model = _fit(cell, demonstrations)
+        return LearnedDecoder(cell, model, perf_counter() - began)
+
+
+def demonstrate(cell: DecoderCell, stream: Stream) -> Demonstrations:
+    """The demonstrations for training or for testing: the same whenever they are asked for.
+
+    Raises:
+        UserError: the preset asks for none.
+    """
+    preset = cell.preset
+    episodes = preset.episodes if stream == Stream.TRAINING else preset.test_episodes
+    return POURING_TASKS[cell.task]().demonstrate(episodes, generator(cell.seed, cell.task, stream))
+
+
+def _fit(cell: DecoderCell, demonstrations: Demonstrations) -> LatentActionModel:
+    preset = cell.preset
+    return fit_model(
+        cell.model,
+        demonstrations,
+        validation=validation_episodes(demonstrations),
+        latent_dim=2,
+        window=WINDOW,
+        state_noise_rad=preset.state_noise_rad,
+        data_seed=integer(sequence(cell.seed, cell.task, Stream.STATE_NOISE)),
+        seed=integer(sequence(cell.seed, cell.task, Stream.NETWORKS)),
+        hidden=preset.hidden,
+        epochs=preset.epochs,
+        batch_size=preset.batch_size,
+        patience=preset.epochs,
+        fit={"chain": POURING_TASKS[cell.task]().robot.chain},
+    )
+
+
+ALL: Final = 10**9
+"""More motions than there are."""
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """What alignments are learned and judged with.
+
+    Attributes:
+        learned: the decoder.
+        chain: the arm.
+        preference: what the simulated person means.
+        shown: motions of the training demonstrations that are visibly not rest.
+        unlabelled: (M, c), contexts of the training demonstrations.
+        test: held-out motions, and what is meant by them without noise.
+        surroundings: of the training demonstrations.
+    """
+
+    learned: LearnedDecoder
+    chain: Chain
+    preference: Preference
+    shown: Motions
+    unlabelled: FloatArray
+    test: Answers
+    surroundings: Surroundings
+
+    @property
+    def model(self) -> LatentActionModel:
+        """The fitted model."""
+        return self.learned.model
+
+    @cached_property
+    def decoder(self) -> Decoder:
+        """The function phi of the paper."""
+        return self.model.decoder()
+
+    def ask(self, count: int, noise: float, stream: Stream, answers: Stream, run: int) -> Answers:
+        """One person's answers about motions drawn at random.
+
+        Args:
+            count: answers; all motions where there are fewer.
+            noise: coefficient of variation of the answers.
+            stream: of the draw of motions: the first of more motions are those of fewer.
+            answers: of the noise.
+            run: which run.
+        """
+        cell = self.learned.cell
+        rows = generator(cell.seed, cell.task, stream, run).permutation(len(self.shown))[:count]
+        motions = self.shown[rows]
+        person = Imprecise(self.preference, noise, generator(cell.seed, cell.task, answers, run))
+        return Answers(motions, person.inputs(motions))
+
+    def candidates(self, noise: float) -> list[Answers]:
+        """For each run, motions that may be asked about, and what would be answered."""
+        preset = self.learned.cell.preset
+        return [
+            self.ask(preset.curves.candidates, noise, Stream.CANDIDATES, Stream.CANDIDATE_ANSWERS, run)
+            for run in range(preset.runs)
+        ]
+
+    def learn(self, answers: Sequence[Answers], config: FitConfig, seeds: Sequence[int]) -> FittedAlignments:
+        """An alignment for each of S runs, from the seeds' first weights."""
+        return fit_alignments(self.model, self.chain, answers, self.unlabelled, config, seeds=seeds)
+
+    def meant(self, answers: Answers) -> Posterior:
+        """What answers say of the person, judged on the first of the motions that are shown."""
+        few = self.shown[np.arange(min(CANDIDATES, len(self.shown)))]
+        return fit_meaning(answers, self.chain, self.surroundings, few)
+
+    def in_tool_space(self, answers: Answers) -> ToolSpaceAlignment:
+        """The alignment of `latentarm align`."""
+        known = ToolSpace(self.meant(answers).meaning, self.surroundings, answers.motions.duration_s)
+        return known.with_arm(self.decoder, self.chain)
+
+    def errors(self, alignments: Sequence[Alignment]) -> FloatArray:
+        """Relative errors (S,) on the held-out motions."""
+        return np.array([self.error(one, self.test) for one in alignments])
+
+    def error(self, alignment: Alignment, test: Answers) -> float:
+        """The relative error for a person who meant ``test``."""
+        return relative_alignment_error(alignment, self.decoder, self.chain, test)
+
+    def encoded(self) -> float:
+        """The relative error with the latent action that the encoder would choose, which knows the motion.
+
+        The encoder looks for the nearest joint action and not for the nearest tool position, so an alignment
+        may have a lower error.
+        """
+        motions = self.test.motions
+        z = self.model.encode(motions.context, motions.action)[0]
+        reached = outcome(lambda u, _: u, self.decoder, self.chain, motions, z)
+        missed = reached - pose_vectors(self.chain, motions.end)
+        return float(np.square(missed).sum() / np.square(lengths(self.chain, motions)).sum())
+
+
+def scene_of(learned: LearnedDecoder) -> Scene:
+    """The scene of a decoder, the same whenever it is asked for.
+
+    Raises:
+        UserError: the preset's sizes leave no motion to ask about.
+    """
+    cell = learned.cell
+    chain = POURING_TASKS[cell.task]().robot.chain
+    training = demonstrate(cell, Stream.TRAINING)
+    preference = preference_of(cell.task, chain)
+
+    def draw(stream: Stream) -> np.random.Generator:
+        return generator(cell.seed, cell.task, stream)
+
+    every = demonstrated_motions(training, ALL, draw(Stream.SHOWN))
+    test = demonstrated_motions(
+        demonstrate(cell, Stream.TEST), cell.preset.test_motions, draw(Stream.TEST_MOTIONS)
+    )
+    shown = every[np.flatnonzero(noticeable(every, chain))]
+    some = shown[draw(Stream.SURROUNDINGS).permutation(len(shown))[: cell.preset.surroundings]]
+    return Scene(
+        learned=learned,
+        chain=chain,
+        preference=preference,
+        shown=shown,
+        unlabelled=demonstrated_motions(training, cell.preset.unlabelled, draw(Stream.UNLABELLED)).context,
+        test=Answers(test, preference.inputs(test)),
+        surroundings=Surroundings.of_motions(some, chain, 2),
+    )

@@ -1,0 +1,251 @@
+"""`latentarm reproduce alignment`: learning what simulated people mean by their stick (section 8.3)."""
+
+from collections.abc import Sequence
+from math import degrees, exp
+from typing import TYPE_CHECKING, Final
+
+from latentarm.alignment import posterior, queries, tool_space
+from latentarm.alignment.demonstrated import DURATION_S
+from latentarm.alignment.poses import ROTATION_WEIGHT_M
+from latentarm.alignment.priors import Priors
+from latentarm.evaluation.looks import look_of
+from latentarm.tasks.table_top import TableTop
+from latentarm.tasks.task import REACHED_ANGLE, REACHED_DISTANCE
+from latentarm_research.studies.alignment import curves, drives
+from latentarm_research.studies.alignment import preset as conditions
+from latentarm_research.studies.alignment.cell import Cell, CellResult, measure_cell
+from latentarm_research.studies.alignment.curves import CurveCell, CurveResult, measure_curve
+from latentarm_research.studies.alignment.drives import DrivesResult, drive_cells, measure_drives
+from latentarm_research.studies.alignment.drives_learning import TASK, TURN_RAD, DriveCell
+from latentarm_research.studies.alignment.drives_tables import (
+    WORDS,
+    compare_drives,
+    drive_parts,
+    drives_rows,
+    ways,
+)
+from latentarm_research.studies.alignment.figures import conditions_figure, curves_figure, drives_figure
+from latentarm_research.studies.alignment.hypotheses import (
+    NEAR,
+    PAPER_MODEL,
+    Target,
+    compare_conditions,
+    targets,
+)
+from latentarm_research.studies.alignment.preset import PRESETS, Preset
+from latentarm_research.studies.alignment.rows import STUDY as NAME
+from latentarm_research.studies.alignment.rows import Measured, by_run, rows_of, time_alignment, timings
+from latentarm_research.studies.alignment.scene import DecoderCell, LearnedDecoder, learn_decoder
+from latentarm_research.studies.alignment.tables import (
+    condition_table,
+    curve_table,
+    stopping_table,
+    summary_tables,
+    target_table,
+    turning_table,
+)
+from latentarm_research.studies.alignment.turning import TASK as TURNING_TASK
+from latentarm_research.studies.alignment.turning import TurningCell, TurningResult, measure_turning
+from latentarm_research.studies.hypotheses import Comparison, comparison_table, verdicts
+from latentarm_research.studies.page import render_page
+from latentarm_research.studies.statistics import LEVEL
+from latentarm_research.studies.study import Grid, Report, Request, Study, again
+from latentarm_research.tasks.pouring.tasks import AT_BOWL_M, BOWL_M, POURING_TASKS
+from latentarm_research.tasks.pouring.tool_path import RATE_HZ, SPEED_M_S, TURN_RAD_S
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+TASKS: Final = (*POURING_TASKS, TASK)
+"""The paper's tasks, and the demo's table, where goals are driven to."""
+
+AnyCell = Cell | CurveCell | TurningCell | DriveCell
+AnyResult = CellResult | CurveResult | TurningResult | DrivesResult
+
+
+def _measure(request: Request[Preset], grid: Grid) -> Measured:
+    wanted = [
+        DecoderCell(task, model, request.preset, request.seed)
+        for model in request.preset.models
+        for task in request.tasks
+        if task in POURING_TASKS
+    ]
+    decoders = grid.run("Decoders", learn_decoder, wanted, _decoder_label)
+    cells = _cells(request, decoders)
+    found = grid.run("Alignments, learning curves and drives", measure, cells, _label)
+    return Measured(
+        decoders,
+        results=sorted((one for one in found if isinstance(one, CellResult)), key=_place),
+        curves=[one for one in found if isinstance(one, CurveResult)],
+        turning=[one for one in found if isinstance(one, TurningResult)],
+        drives=[one for one in found if isinstance(one, DrivesResult)],
+    )
+
+
+def measure(cell: AnyCell) -> AnyResult:
+    """Measure one cell of the second grid.
+
+    Raises:
+        UserError: it cannot be measured as asked.
+    """
+    if isinstance(cell, Cell):
+        return measure_cell(cell)
+    if isinstance(cell, TurningCell):
+        return measure_turning(cell)
+    return measure_curve(cell) if isinstance(cell, CurveCell) else measure_drives(cell)
+
+
+def _cells(request: Request[Preset], decoders: Sequence[LearnedDecoder]) -> list[AnyCell]:
+    """The second grid, its longest cells first."""
+    preset = request.preset
+    curves = [
+        CurveCell(learned, noise)
+        for noise in preset.curves.noises
+        for learned in decoders
+        if learned.cell.model == PAPER_MODEL
+    ]
+    turning = [
+        TurningCell(learned, noise)
+        for learned in decoders
+        if (learned.cell.task, learned.cell.model) == (TURNING_TASK, PAPER_MODEL)
+        for noise in preset.turning.noises
+    ]
+    drives = drive_cells(preset, request.seed) if TASK in request.tasks else []
+    table = [Cell(learned, noise) for learned in decoders for noise in preset.noises]
+    return [*drives, *turning, *curves, *table]
+
+
+def _place(result: CellResult) -> tuple[int, int, float]:
+    """Where a cell stands in tables."""
+    models = result.cell.learned.cell.preset.models
+    return TASKS.index(result.cell.task), models.index(result.cell.model), result.cell.noise
+
+
+def _decoder_label(cell: DecoderCell) -> str:
+    return f"{cell.task}, {cell.model}, decoder"
+
+
+def _label(cell: AnyCell) -> str:
+    if isinstance(cell, DriveCell):
+        return f"{TASK}, {cell.model}, drives"
+    if isinstance(cell, TurningCell):
+        return f"{TURNING_TASK}, {cell.learned.cell.model}, noise {cell.noise:g}, axes turn"
+    what = ", curve" if isinstance(cell, CurveCell) else ""
+    return f"{cell.learned.cell.task}, {cell.learned.cell.model}, noise {cell.noise:g}{what}"
+
+
+def _report(request: Request[Preset], measured: Measured) -> Report:
+    rows = [*rows_of(measured.results, measured.curves, measured.turning), *drives_rows(measured.drives)]
+    tests, drive_tests = compare_conditions(measured.results), compare_drives(measured.drives)
+    reached = targets(measured.results, measured.curves, measured.turning)
+    figures = _figures(measured)
+    # While nothing else runs.
+    alone = [time_alignment(one) for one in measured.decoders if one.cell.model == PAPER_MODEL]
+    return Report(
+        rows=rows,
+        page=_page(request, measured, tests, drive_tests, reached, figures),
+        figures=figures,
+        tests=[*tests, *drive_tests],
+        documents={
+            "targets.json": [one.as_json() for one in reached],
+            "runs.json": by_run(measured),
+        },
+        timings={"one_alignment": alone, **timings(measured)},
+        tables=summary_tables(rows, request.preset),
+    )
+
+
+def _figures(measured: Measured) -> "dict[str, Figure]":
+    """Those of what was measured."""
+    results, figures = measured.results, dict[str, "Figure"]()
+    tasks = list(dict.fromkeys(result.cell.task for result in results))
+    noises = list(dict.fromkeys(result.cell.noise for result in results))
+    models = list(dict.fromkeys(result.cell.model for result in results))
+    for name, shown in (
+        ("conditions", [model for model in models if model == PAPER_MODEL]),
+        ("conditions_other_models", [model for model in models if model != PAPER_MODEL]),
+    ):
+        if shown:
+            figures[name] = conditions_figure(results, shown, tasks, noises)
+    if measured.curves:
+        figures["curves"] = curves_figure(measured.curves, tasks)
+    if measured.drives:
+        figures["drives"] = drives_figure(measured.drives)
+    return figures
+
+
+def _page(
+    request: Request[Preset],
+    measured: Measured,
+    tests: Sequence[Comparison],
+    drive_tests: Sequence[Comparison],
+    reached: Sequence[Target],
+    figures: "dict[str, Figure]",
+) -> str:
+    by_task: dict[str, dict[str, list[CellResult]]] = {}
+    for result in measured.results:
+        by_task.setdefault(result.cell.task, {}).setdefault(result.cell.model, []).append(result)
+    return render_page(
+        "alignment/page.md",
+        command=again(STUDY, request),
+        preset=request.preset,
+        tasks=list(by_task),
+        paper_model=PAPER_MODEL,
+        figures=figures,
+        speed_m_s=SPEED_M_S,
+        turn_rad_s=TURN_RAD_S,
+        rate_hz=RATE_HZ,
+        bowl_m=BOWL_M,
+        at_bowl_m=AT_BOWL_M,
+        duration_s=DURATION_S,
+        rotation_weight_m=ROTATION_WEIGHT_M,
+        priors=Priors(),
+        fading=exp(-Priors().gamma),
+        conditions=conditions,
+        choices=curves,
+        verdicts=verdicts(tests),
+        target_table=target_table(reached),
+        condition_tables={
+            task: {model: condition_table(cells) for model, cells in of_task.items()}
+            for task, of_task in by_task.items()
+        },
+        settings=posterior,
+        queries=queries,
+        tool_space=tool_space,
+        turning=measured.turning,
+        turning_deg=degrees(request.preset.turning.turn_rad),
+        turning_table=turning_table(measured.turning) if measured.turning else "",
+        stopping_table=stopping_table(measured.curves),
+        curve_tables={_curve_name(curve): curve_table(curve) for curve in measured.curves},
+        drives=measured.drives,
+        drive_conditions=drives,
+        drive_words=WORDS,
+        drive_parts=drive_parts(measured.drives, drive_tests),
+        ways=ways(measured.drives[0]) if measured.drives else [],
+        goals=[goal.name for goal in TableTop().goals] if measured.drives else [],
+        reached_m=REACHED_DISTANCE,
+        reached_deg=degrees(REACHED_ANGLE),
+        turn_deg=degrees(TURN_RAD),
+        near=NEAR,
+        level=LEVEL,
+        tests=tests,
+        test_table=comparison_table(tests),
+    )
+
+
+def _curve_name(curve: CurveResult) -> str:
+    cell = curve.cell.learned.cell
+    return f"{look_of(cell.task).label}, {look_of(cell.model).label}, noise {curve.cell.noise:g}"
+
+
+STUDY: Final = Study(
+    name=NAME,
+    command="reproduce alignment",
+    presets=PRESETS,
+    tasks=TASKS,
+    simulated=("arms", "people"),
+    measure=_measure,
+    report=_report,
+    figures=("conditions", "conditions_other_models", "curves", "drives"),
+    documents=("runs.json", "targets.json"),
+)

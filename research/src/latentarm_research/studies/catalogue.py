@@ -1,0 +1,73 @@
+"""The studies by name: what `latentarm reproduce` offers. Nothing is imported before a study runs."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, Final
+
+from latentarm.tasks.catalogue import SCENE_TASKS
+
+if TYPE_CHECKING:
+    from latentarm_research.studies.study import Study
+
+
+_PAPER: Final = "whole sizes"
+_SMOKE: Final = "small ones that only show that it runs"
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A study as the command line lists it.
+
+    Attributes:
+        summary: the first line of its help.
+        tasks: names of all its tasks, as in its `Study`.
+        about_tasks: what they are, in a few words.
+        presets: what each of its presets is, by its name in the `Study`.
+        people: whether one can choose which simulated people drive, and how often.
+    """
+
+    summary: str
+    tasks: tuple[str, ...]
+    about_tasks: str
+    presets: Mapping[str, str]
+    people: bool = False
+
+
+STUDIES: Final[Mapping[str, Entry]] = {
+    "properties": Entry(
+        "Measure the four properties of all models on the paper's planar tasks (section 8.1), simulated.",
+        ("sine", "rotate", "circle", "reach"),
+        "One of the tasks, or all four.",
+        {
+            "paper": _PAPER,
+            "noise": "noise on the states as well",
+            "sweep": "other designs of the tasks, smaller",
+            "smoke": _SMOKE,
+        },
+    ),
+    "shared-autonomy": Entry(
+        "Let simulated people reach and change goals with help and without (section 8.2).",
+        ("planar_two_cups", "panda_two_cups"),
+        "Two cups in front of one of the arms, or of both.",
+        {"paper": _PAPER, "smoke": _SMOKE},
+    ),
+    "alignment": Entry(
+        "Learn from few answers what simulated people mean by their stick (section 8.3).",
+        ("plane", "pour", "reach_and_pour", "table_top"),
+        "One of the paper's tasks, drives at the demo's table, or all of it.",
+        {"paper": _PAPER, "smoke": _SMOKE},
+    ),
+    "tasks": Entry(
+        "Let simulated people do tasks with things in physics, by mode switching and by latent actions.",
+        (*SCENE_TASKS, "moved_marshmallows", "moved_reach_and_pour"),
+        "One of the tasks, or all of them; in moved ones things stand where no demonstration had them.",
+        {"paper": _PAPER, "small": "few runs and fewer demonstrations", "smoke": _SMOKE},
+        people=True,
+    ),
+}
+
+
+def load_study(name: str) -> "Study[Any, Any]":
+    """The study of that name: ``STUDY`` in the package ``studies/<name>``, module ``study``."""
+    return import_module(f"latentarm_research.studies.{name.replace('-', '_')}.study").STUDY

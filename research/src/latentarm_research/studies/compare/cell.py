@@ -1,0 +1,145 @@
+"""One cell of the comparison: one model on one fold of a dataset, under one noise, all its seeds."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from time import process_time
+from typing import Final
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from latentarm.core.types import FloatArray
+from latentarm.demonstrations.split import Fold, select_episodes
+from latentarm.models.decoder import Decoder
+from latentarm.models.model import LatentActionModel
+from latentarm.robots.catalogue import load_recorded_robot
+from latentarm.robots.robot import Robot
+from latentarm_research.studies.compare.datasets import Dataset
+from latentarm_research.studies.compare.measures import measure_model
+from latentarm_research.studies.compare.preset import Preset, Stream
+from latentarm_research.studies.fitting import fit_model
+from latentarm_research.studies.streams import integer, sequence
+
+SEEDLESS: Final = "pca"
+"""Nothing in it is random, so it is fitted once, not once per seed."""
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where a cell stands.
+
+    Attributes:
+        dataset: its name.
+        noise_rad: SD of the noise on states, in training and in the noisy error, rad.
+        model: a name of `MODELS`.
+        fold: index of the fold.
+        demonstrations: how many train the model, the validation episodes among them.
+    """
+
+    dataset: str
+    noise_rad: float
+    model: str
+    fold: int
+    demonstrations: int
+
+
+@dataclass(frozen=True, eq=False)
+class Cell:
+    """What is to be measured.
+
+    Attributes:
+        dataset: what is learned from.
+        noise_rad: SD of the noise on states, rad.
+        model: a name of `MODELS`.
+        fold: which episodes do what.
+        preset: sizes.
+        seed: of everything random.
+    """
+
+    dataset: Dataset
+    noise_rad: float
+    model: str
+    fold: Fold
+    preset: Preset
+    seed: int
+
+    @property
+    def place(self) -> Place:
+        """Where it stands."""
+        fold = self.fold
+        return Place(self.dataset.name, self.noise_rad, self.model, fold.index, len(fold.others))
+
+
+@dataclass(frozen=True, eq=False)
+class CellResult:
+    """What was measured.
+
+    Attributes:
+        place: of the cell.
+        figures: measure -> (S,), one figure per seed.
+        decoder: of the first seed.
+        fit_s: processor time of the fit of all seeds, s: it depends less than wall time on what runs besides.
+        measure_s: how long measuring took, s; planning is not in it.
+        plan_s: how long planning took for one decoder, s; 0 where nothing was planned.
+    """
+
+    place: Place
+    figures: Mapping[str, FloatArray]
+    decoder: Decoder
+    fit_s: float
+    measure_s: float
+    plan_s: float
+
+
+def measure_cell(cell: Cell) -> CellResult:
+    """Fit all seeds in one fit and measure them on the held-out episodes.
+
+    The figures are the same to the last bit in whatever process this runs: one thread each for linear algebra
+    and for torch, since more of them add up in another order.
+
+    Raises:
+        UserError: the demonstrations or the sizes make no sense to the model.
+    """
+    with threadpool_limits(limits=1):
+        robot = load_recorded_robot(cell.dataset.demonstrations)
+        began = process_time()
+        model = _fit(cell, robot)
+        fit_s = process_time() - began
+        measured = measure_model(
+            model,
+            cell.dataset.demonstrations,
+            cell.fold.held_out,
+            robot,
+            cell.preset,
+            np.random.default_rng(_stream(cell, Stream.TEST_NOISE)),
+        )
+    return CellResult(
+        place=cell.place,
+        figures=measured.figures,
+        decoder=model.decoder(0),
+        fit_s=fit_s,
+        measure_s=measured.measure_s,
+        plan_s=measured.plan_s,
+    )
+
+
+def _stream(cell: Cell, use: Stream) -> np.random.SeedSequence:
+    """Where one use of randomness begins in a cell."""
+    return sequence(cell.seed, cell.dataset.name, use, cell.fold.index)
+
+
+def _fit(cell: Cell, robot: Robot) -> LatentActionModel:
+    fold, preset = cell.fold, cell.preset
+    return fit_model(
+        cell.model,
+        select_episodes(cell.dataset.demonstrations, (*fold.training, *fold.validation)),
+        validation=range(len(fold.training), len(fold.training) + len(fold.validation)),
+        fit={"chain": robot.chain},
+        state_noise_rad=cell.noise_rad,
+        data_seed=integer(_stream(cell, Stream.TRAINING_NOISE)),
+        seeds=1 if cell.model == SEEDLESS else preset.seeds,
+        seed=integer(_stream(cell, Stream.NETWORKS)),
+        batch_size=preset.batch_size,
+        hidden=preset.hidden,
+        **({} if preset.epochs is None else {"epochs": preset.epochs}),
+    )

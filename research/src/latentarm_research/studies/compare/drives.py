@@ -1,0 +1,176 @@
+"""Simulated drives along held-out episodes: latent actions of two models, and mode switching.
+
+The loop is that of `latentarm drive` on held-out episodes, with its safety filters; the simulated operator
+is the same for all controllers. Looking one step ahead, as in equation 24, it gets stuck within a few
+waypoints of latent actions, so here it plans up to 4 s ahead when no single step leads nearer.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from time import perf_counter
+from typing import Final
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from latentarm.assistance.controllers.contract import Controller
+from latentarm.assistance.controllers.end_effector import EndEffectorController
+from latentarm.assistance.controllers.latent import LatentController
+from latentarm.core.types import Row
+from latentarm.demonstrations.split import select_episodes
+from latentarm.evaluation.summary import Subject, summarise
+from latentarm.models.decoder import Decoder
+from latentarm.robots.catalogue import load_recorded_robot
+from latentarm.tasks.replay import Replay, routes_of
+from latentarm_research.drives.drive import Setup, simulate
+from latentarm_research.metrics.drives import GoalDrive, goal_drive_rows
+from latentarm_research.metrics.ending import Ending
+from latentarm_research.metrics.undone import undone_share
+from latentarm_research.people.catalogue import PEOPLE, usual_operator
+from latentarm_research.studies.compare.cell import CellResult
+from latentarm_research.studies.compare.datasets import Dataset
+from latentarm_research.studies.compare.preset import Stream
+from latentarm_research.studies.streams import sequence
+
+BESIDE: Final = "cvae"
+"""The model of the paper's user studies, which is driven as well as ours."""
+
+MODES: Final = "end_effector"
+"""Mode switching, as rows name it."""
+
+
+@dataclass(frozen=True, eq=False)
+class DriveCell:
+    """One drive.
+
+    Attributes:
+        dataset: what is driven.
+        episode: its index in the dataset.
+        controller: a model's name, or `MODES`.
+        decoder: of that model, trained on the fold; None for `MODES`.
+        limit_s: a drive that lasts longer has failed, s.
+        seed: of everything random.
+    """
+
+    dataset: Dataset
+    episode: int
+    controller: str
+    decoder: Decoder | None
+    limit_s: float
+    seed: int
+
+
+@dataclass(frozen=True, eq=False)
+class DriveResult:
+    """The result of a drive.
+
+    Attributes:
+        dataset: its name.
+        controller: a model's name, or `MODES`.
+        episode: its index in the dataset.
+        figures: of the drive.
+        progress: share of the waypoints that were reached.
+        ending: why it ended.
+        undone: share of the tool's path that was gone back over.
+        demonstrated_undone: the same of the episode itself.
+        took_s: computing time, s.
+    """
+
+    dataset: str
+    controller: str
+    episode: int
+    figures: GoalDrive
+    progress: float
+    ending: Ending
+    undone: float
+    demonstrated_undone: float
+    took_s: float
+
+
+def drive_cells(
+    datasets: Sequence[Dataset],
+    results: Sequence[CellResult],
+    ours: str,
+    noise_rad: float,
+    drives: int | None,
+    limit_s: float,
+    seed: int,
+) -> list[DriveCell]:
+    """Every held-out episode once with each controller.
+
+    Args:
+        datasets: what was compared on.
+        results: of the cells that have all of a fold's demonstrations.
+        ours: the model that is driven as well as `BESIDE`, if both were compared.
+        noise_rad: of which models.
+        drives: folds, and episodes of each, at most; None for all.
+        limit_s: a drive that lasts longer has failed, s.
+        seed: of the study.
+    """
+    decoders = {
+        (one.place.dataset, one.place.model, one.place.fold): one.decoder
+        for one in results
+        if one.place.noise_rad == noise_rad
+    }
+    models = [name for name in dict.fromkeys((ours, BESIDE)) if any(name == key[1] for key in decoders)]
+    return [
+        DriveCell(
+            dataset, episode, controller, decoders.get((dataset.name, controller, fold.index)), limit_s, seed
+        )
+        for dataset in datasets
+        for controller in (*models, MODES)
+        for fold in dataset.folds[:drives]
+        for episode in fold.held_out[:drives]
+    ]
+
+
+def measure_drive_cell(cell: DriveCell) -> DriveResult:
+    """Drive once; the start and the operator's randomness depend on the episode, not on the controller."""
+    with threadpool_limits(limits=1):
+        began = perf_counter()
+        robot = load_recorded_robot(cell.dataset.demonstrations)
+        task = Replay(robot, routes_of(robot, select_episodes(cell.dataset.demonstrations, [cell.episode])))
+        controller: Controller = (
+            EndEffectorController(robot) if cell.decoder is None else LatentController(cell.decoder)
+        )
+        setup = Setup(
+            task,
+            controller,
+            assistance=None,
+            person=PEOPLE[usual_operator(task.name)],
+            time_limit_s=cell.limit_s,
+        )
+        streams = sequence(cell.seed, cell.dataset.name, Stream.DRIVES, cell.episode)
+        trace = simulate(setup, 0, task.manners[0], np.random.default_rng(streams))
+        shown = robot.chain.forward(cell.dataset.demonstrations.episodes[cell.episode].state)
+    return DriveResult(
+        dataset=cell.dataset.name,
+        controller=cell.controller,
+        episode=cell.episode,
+        figures=trace.measured,
+        progress=trace.progress,
+        ending=trace.ending,
+        undone=undone_share(trace.position),
+        demonstrated_undone=undone_share(shown.position),
+        took_s=perf_counter() - began,
+    )
+
+
+def drive_label(cell: DriveCell) -> str:
+    """What a drive is called when it fails."""
+    return f"{cell.dataset.name}, drive of episode {cell.episode} with {cell.controller}"
+
+
+def rows_of_drives(study: str, condition: str, results: Sequence[DriveResult]) -> list[Row]:
+    """Mean and SD over the drives of each dataset and controller."""
+    rows: list[Row] = []
+    for dataset, controller in dict.fromkeys((one.dataset, one.controller) for one in results):
+        here = [one for one in results if (one.dataset, one.controller) == (dataset, controller)]
+        subject = Subject(study, task=dataset, model=controller, condition=condition)
+        rows += goal_drive_rows(subject, [one.figures for one in here])
+        rows += [
+            summarise(subject, "progress", [one.progress for one in here]),
+            summarise(subject, "undone_share", [one.undone for one in here]),
+            summarise(subject, "demonstrated_undone_share", [one.demonstrated_undone for one in here]),
+        ]
+    return rows

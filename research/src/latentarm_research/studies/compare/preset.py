@@ -1,0 +1,103 @@
+"""How large the comparison is."""
+
+from dataclasses import dataclass, field
+from enum import IntEnum
+from typing import Final
+
+from latentarm.core.errors import UserError
+from latentarm.models.catalogue import KINDS
+from latentarm.runs.checks import check_count
+
+OURS: Final = "homogeneous"
+"""The model that is judged against the targets by default."""
+
+REFERENCE: Final = "cae"
+"""The paper's model, to which reach and error are compared."""
+
+BASELINE: Final = "homogeneous"
+"""The best model so far, which a new one has to match in error and to undercut in time."""
+
+RAISED: Final = ("low_turning", "odd_cae")
+"""Models that were made for these targets; where they are compared they are judged too, each by itself."""
+
+CHOSEN_ON: Final = "pour_coffee"
+"""Ending of the name of the recording that hyper-parameters were chosen on; frozen for the others."""
+
+
+@dataclass(frozen=True)
+class Preset:
+    """Sizes of the comparison.
+
+    Attributes:
+        name: what it is called on the command line.
+        models: names in the catalogue of models; by default all that load.
+        noises_rad: SDs of the noise on the states, rad.
+        folds: parts of each dataset; each is held out once.
+        seeds: models of each kind in each fold.
+        epochs: passes over the training pairs, at most; the model's own number where None.
+        batch_size: pairs per step: faster for every model than its own, and no worse.
+        hidden: units of each hidden layer, for every model.
+        searched_pairs: held-out pairs per fold, spread evenly, whose nearest inputs are searched for.
+        reach_pairs: pairs of start and goal per fold for the greedy operator.
+        planned_pairs: of these, how many the operator who plans is asked; 0 asks none.
+        planned_seeds: of the seeds, for how many.
+        turned_states: states in which the stick is led around.
+        demonstrations: numbers of training demonstrations for the curves with fewer, each below what a fold
+            leaves; that one is added.
+        drives: folds whose held-out episodes are driven, and how many of each; None drives all.
+        drive_limit_s: a drive that lasts longer has failed, s.
+    """
+
+    name: str
+    models: tuple[str, ...] = field(default_factory=lambda: tuple(KINDS.usable()))
+    noises_rad: tuple[float, ...] = (0.01, 0.1)
+    folds: int = 5
+    seeds: int = 5
+    epochs: int | None = None
+    batch_size: int = 128
+    hidden: tuple[int, ...] = (64, 64)
+    searched_pairs: int = 500
+    reach_pairs: int = 40
+    planned_pairs: int = 12
+    planned_seeds: int = 2
+    turned_states: int = 100
+    demonstrations: tuple[int, ...] = (3, 6)
+    drives: int | None = None
+    drive_limit_s: float = 300.0
+
+    def __post_init__(self) -> None:
+        check_count("seeds", self.seeds)
+        check_count("pairs for reaching", self.reach_pairs)
+        if self.folds < 2:
+            raise UserError(f"The number of folds is {self.folds}: it must be at least 2.")
+
+
+PRESETS: Final[dict[str, Preset]] = {
+    "paper": Preset("paper"),
+    "smoke": Preset(
+        "smoke",
+        models=(REFERENCE, OURS),
+        noises_rad=(0.01,),
+        folds=2,
+        seeds=1,
+        epochs=3,
+        searched_pairs=100,
+        reach_pairs=4,
+        planned_pairs=2,
+        planned_seeds=1,
+        turned_states=10,
+        demonstrations=(1,),
+        drives=1,
+        drive_limit_s=10.0,
+    ),
+}
+
+
+class Stream(IntEnum):
+    """Streams of randomness: one per use, the same for every model and noise."""
+
+    FOLDS = 0
+    NETWORKS = 1
+    TRAINING_NOISE = 2
+    TEST_NOISE = 3
+    DRIVES = 4

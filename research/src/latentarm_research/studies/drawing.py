@@ -1,0 +1,164 @@
+"""Drawing for the figures of all studies: panels, titles, legends, and planar arms."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from latentarm.core.style import FONT_SIZE, SMALL_FONT_SIZE, legend_below, tidy
+from latentarm.core.types import FloatArray
+from latentarm.evaluation.looks import look_of
+from latentarm.robots.robot import Robot
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure, FigureBase, SubFigure
+
+DECADES: Final = 100.0
+"""Ratio of a logarithmic axis' ends above which powers of ten are enough as labels."""
+ARM_COLOUR: Final = "#9aa3ad"
+JOINT_COLOUR: Final = "#3c434b"
+
+View = tuple[tuple[float, float], tuple[float, float]]
+"""What a panel shows of the plane: x from and to, y from and to, m."""
+
+
+def stacked_parts(figure: "Figure", heights_mm: Sequence[float]) -> "list[SubFigure]":
+    """The figure cut into rows, each of which gets its panels."""
+    parts = figure.subfigures(len(heights_mm), 1, height_ratios=heights_mm, squeeze=False)
+    return list(np.ravel(parts))
+
+
+def row_of_panels(part: "FigureBase", count: int) -> "list[Axes]":
+    """A row of panels that share their axes; empty if there is nothing to show."""
+    return list(part.subplots(1, count, sharex=True, sharey=True, squeeze=False)[0]) if count else []
+
+
+def draw_series(
+    axes: "Axes",
+    name: str,
+    places: ArrayLike,
+    means: ArrayLike,
+    reach: ArrayLike,
+    *,
+    markersize: float = 3.6,
+    linewidth: float = 1.1,
+    elinewidth: float = 0.8,
+    zorder: float = 2.0,
+) -> None:
+    """Means (K,) with bars of a reach (K,) or (2, K), as a line that looks as its name does everywhere."""
+    look = look_of(name)
+    axes.errorbar(
+        places,
+        means,
+        yerr=reach,
+        color=look.colour,
+        marker=look.marker,
+        linestyle=look.dash,
+        label=look.label,
+        markersize=markersize,
+        linewidth=linewidth,
+        elinewidth=elinewidth,
+        zorder=zorder,
+    )
+
+
+def title(axes: "Axes", text: str, letter: str = "") -> None:
+    """A title at the left edge, after a bold letter where the caption needs one."""
+    bold = f"$\\bf{{{letter}}}$  " if letter else ""
+    axes.set_title(bold + text, loc="left", fontsize=FONT_SIZE)
+
+
+def plane(axes: "Axes", view: View, ticks: int = 4) -> None:
+    """A panel in the plane of the arm: the same scale both ways, in metres.
+
+    What lies outside the view is cut off. Of panels that share their y axis only the first is labelled.
+
+    Args:
+        axes: the panel.
+        view: what it shows.
+        ticks: numbers along an axis, at most; fewer for a narrow panel.
+    """
+    axes.set_xlim(*view[0])
+    axes.set_ylim(*view[1])
+    axes.set_aspect("equal", adjustable="box")
+    axes.set_xlabel("x (m)")
+    axes.set_ylabel("y (m)")
+    axes.locator_params(nbins=ticks)
+    tidy(axes)
+    axes.grid(False)
+    axes.label_outer()
+
+
+def plain_ticks(axes: "Axes") -> None:
+    """Numbers such as 0.2 along a logarithmic y axis: powers of ten, in a short one 2 and 5 too."""
+    from matplotlib.ticker import LogLocator, NullFormatter
+
+    low, high = axes.get_ylim()
+    axes.yaxis.set_major_locator(LogLocator(subs=(1.0,) if high > DECADES * low else (1.0, 2.0, 5.0)))
+    axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
+    axes.yaxis.set_minor_formatter(NullFormatter())
+
+
+def note(axes: "Axes", text: str, *, high: bool = False) -> None:
+    """Small print in the left corner of a panel, at the bottom or at the top."""
+    axes.text(
+        0.03,
+        0.97 if high else 0.03,
+        text,
+        transform=axes.transAxes,
+        fontsize=SMALL_FONT_SIZE,
+        verticalalignment="top" if high else "bottom",
+        bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.8},
+        zorder=9,
+    )
+
+
+def name_series(figure: "Figure", *panels: "Axes", handle_length: float = 3.0) -> None:
+    """A legend below all panels, from the labels of some of them; what has a name twice is named once."""
+    named = {
+        label: handle
+        for axes in panels
+        for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)
+    }
+    if named:
+        legend_below(figure, list(named.values()), list(named), handle_length=handle_length)
+
+
+def arm_line(robot: Robot, state: FloatArray, tool: int = 0) -> FloatArray:
+    """The joints of one arm from its base outwards and its tool, in the plane.
+
+    Args:
+        robot: one planar arm or two.
+        state: (..., n), rad.
+        tool: whose arm.
+
+    Returns:
+        (..., J + 1, 2), m.
+    """
+    chain = robot.chain
+    transforms = chain.link_transforms(state)
+    link = chain.tools[tool].link
+    links = np.flatnonzero(chain.moves[link])
+    joints = transforms[..., links, :2, 3]
+    end = chain.tool_pose(transforms, tool).position[..., None, :2]
+    return np.concatenate([joints, end], axis=-2)
+
+
+def draw_arm(axes: "Axes", robot: Robot, state: FloatArray) -> None:
+    """Draw all arms of a robot in one state (n,), with their joints and a mark on each base."""
+    for tool in range(len(robot.chain.tools)):
+        line = arm_line(robot, state, tool)
+        axes.plot(*line.T, color=ARM_COLOUR, linewidth=2.4, solid_capstyle="round", zorder=3)
+        axes.plot(*line[1:-1].T, "o", color="white", markeredgecolor=JOINT_COLOUR, markersize=2.6, zorder=3.1)
+        axes.plot(*line[0], "s", color=JOINT_COLOUR, markersize=4.0, zorder=3.1)
+        axes.plot(*line[-1], "o", color="black", markersize=3.0, zorder=6)
+
+
+def draw_pose(axes: "Axes", robot: Robot, state: FloatArray, colour: str) -> None:
+    """Draw all arms of a robot in one state (n,) as thin lines in one colour."""
+    for tool in range(len(robot.chain.tools)):
+        line = arm_line(robot, state, tool)
+        axes.plot(*line.T, color=colour, linewidth=0.9, solid_capstyle="round", zorder=4)
+        axes.plot(*line[-1], "o", color=colour, markersize=2.2, zorder=5)

@@ -1,0 +1,94 @@
+"""How studies fit models: the last demonstrations say which epoch was best, and dead axes are no warning."""
+
+import warnings
+from collections.abc import Sequence
+from dataclasses import fields, replace
+from typing import Any, Final
+
+from latentarm.core.types import Demonstrations
+from latentarm.models.catalogue import MODELS
+from latentarm.models.model import LatentActionModel
+from latentarm.models.neural import NeuralModel
+from latentarm.models.scaling import CollapseWarning
+
+VALIDATION_SHARE: Final = 0.2
+"""Share of the training demonstrations that is for validation."""
+
+
+def validation_episodes(demonstrations: Demonstrations) -> range:
+    """The last episodes, for validation."""
+    episodes = len(demonstrations.episodes)
+    return range(episodes - max(1, round(VALIDATION_SHARE * episodes)), episodes)
+
+
+def fit_model(
+    kind: str,
+    demonstrations: Demonstrations,
+    *,
+    validation: Sequence[int] | None = None,
+    kl_weight: float | None = None,
+    fit: dict[str, Any] | None = None,
+    **parameters: Any,
+) -> LatentActionModel:
+    """A model of a kind, fitted.
+
+    Args:
+        kind: a name of `MODELS`.
+        demonstrations: to learn from.
+        validation: episodes that say which epoch was best, such as `validation_episodes`; the model draws its
+            own where None.
+        kl_weight: for models that have one.
+        fit: further arguments of ``fit``, such as the chain.
+        parameters: of the model.
+
+    Raises:
+        UserError: the parameters or the demonstrations make no sense to the model.
+    """
+    with warnings.catch_warnings():
+        # Studies show what models fail at: a dead axis shows in every figure.
+        warnings.simplefilter("ignore", CollapseWarning)
+        return _model(kind, kl_weight, parameters).fit(demonstrations, validation=validation, **(fit or {}))
+
+
+def fit_each(
+    kind: str,
+    demonstrations: Sequence[Demonstrations],
+    *,
+    validation: Sequence[int],
+    seed: int,
+    kl_weight: float | None = None,
+    **parameters: Any,
+) -> list[LatentActionModel]:
+    """Models of a kind, each fitted to demonstrations of its own; those trained by gradient in one training.
+
+    Args:
+        kind: a name of `MODELS`.
+        demonstrations: what each of them learns from.
+        validation: episodes that say which epoch was best, the same for all.
+        seed: of the first; the others follow.
+        kl_weight: for models that have one.
+        parameters: of the model.
+
+    Returns:
+        As many models of one seed each as there are demonstrations.
+
+    Raises:
+        UserError: the parameters or the demonstrations make no sense to the model.
+    """
+    model = _model(kind, kl_weight, {**parameters, "seed": seed, "seeds": len(demonstrations)})
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", CollapseWarning)
+        if isinstance(model, NeuralModel):
+            return [*model.fit_each(demonstrations, validation=validation)]
+        return [
+            replace(model, seeds=1, seed=number).fit(shown, validation=validation)
+            for number, shown in zip(model.seed_numbers, demonstrations, strict=True)
+        ]
+
+
+def _model(kind: str, kl_weight: float | None, parameters: dict[str, Any]) -> LatentActionModel:
+    """A model of a kind, with a KL weight if it has one."""
+    model_class = MODELS[kind]
+    if kl_weight is not None and "kl_weight" in {entry.name for entry in fields(model_class)}:
+        parameters = {**parameters, "kl_weight": kl_weight}
+    return model_class(**parameters)

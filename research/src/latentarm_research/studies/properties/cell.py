@@ -1,0 +1,208 @@
+"""One cell of the study: one model, on one task, under one noise, all its seeds."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import IntEnum
+from functools import lru_cache
+from time import perf_counter
+from typing import Final
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from latentarm.core.types import Demonstrations, FloatArray
+from latentarm.demonstrations.split import select_episodes
+from latentarm.models.decoder import Decoder
+from latentarm.models.model import LatentActionModel
+from latentarm_research.studies.fitting import fit_each, validation_episodes
+from latentarm_research.studies.properties.measures import (
+    accuracy_figures,
+    control_figures,
+    latent_figures,
+    reach_figures,
+    recorded_pairs,
+    start_goal_pairs,
+)
+from latentarm_research.studies.properties.preset import Preset
+from latentarm_research.studies.properties.sweep import AS_CHOSEN
+from latentarm_research.studies.streams import generator, integer, sequence
+from latentarm_research.tasks.planar.catalogue import MOTIONS
+from latentarm_research.tasks.planar.motion import Design, PlanarMotion
+from latentarm_research.tasks.planar.reach import ReachRegion
+
+BASELINE: Final = "pca"
+"""The baseline of controllability."""
+
+
+class Stream(IntEnum):
+    """Streams of randomness: one per use, so that none depends on another's draws."""
+
+    TRAINING = 0
+    TEST = 1
+    NETWORKS = 2
+    TRAINING_NOISE = 3
+    TEST_NOISE = 4
+    PAIRS = 5
+    GOALS = 6
+
+
+@dataclass(frozen=True)
+class Cell:
+    """What is to be measured.
+
+    Attributes:
+        task: a name of `MOTIONS`.
+        model: a name of `MODELS`.
+        noise_rad: SD of the noise on states, in training and in the noisy error, rad.
+        preset: sizes of the study.
+        seed: of the whole study; the same demonstrations come from it for every kind of model and noise.
+        design: what the preset's design is called in a sweep.
+    """
+
+    task: str
+    model: str
+    noise_rad: float
+    preset: Preset
+    seed: int
+    design: str = AS_CHOSEN
+
+
+def condition(noise_rad: float) -> str:
+    """How rows name a noise."""
+    return f"noise {noise_rad:g} rad"
+
+
+@dataclass(frozen=True, eq=False)
+class CellResult:
+    """What was measured.
+
+    Attributes:
+        cell: what was asked for.
+        figures: measure -> (S,), one figure per seed; each seed has demonstrations of its own.
+        decoder: of the first seed, for figures.
+        fit_s: how long the fit of all seeds took, s.
+    """
+
+    cell: Cell
+    figures: Mapping[str, FloatArray]
+    decoder: Decoder
+    fit_s: float
+
+
+def measure_cell(cell: Cell) -> CellResult:
+    """Demonstrate, fit all seeds in one fit, measure.
+
+    The figures are the same to the last bit in whatever process this runs: one thread each for linear algebra
+    and for torch, since more of them add up in another order.
+
+    Raises:
+        UserError: the preset's sizes make no sense to the model or to the task.
+    """
+    with threadpool_limits(limits=1):
+        return _measure(cell)
+
+
+@dataclass(frozen=True, eq=False)
+class Demonstrated:
+    """One seed's demonstrations.
+
+    Attributes:
+        training: to fit a model to.
+        test: that its figures are taken on.
+    """
+
+    training: Demonstrations
+    test: Demonstrations
+
+
+@lru_cache(maxsize=2)
+def demonstrated(
+    task: str, design: Design, sizes: tuple[int, int], seeds: int, seed: int
+) -> tuple[Demonstrated, ...]:
+    """The demonstrations of every seed, the same for every kind of model and noise.
+
+    Args:
+        task: a name of `MOTIONS`.
+        design: how it is demonstrated.
+        sizes: episodes for training and for the test.
+        seeds: how many models are fitted.
+        seed: of the study.
+    """
+    motion = MOTIONS[task](design)
+    return tuple(
+        Demonstrated(
+            motion.demonstrate(sizes[0], generator(seed, task, Stream.TRAINING, index)),
+            motion.demonstrate(sizes[1], generator(seed, task, Stream.TEST, index)),
+        )
+        for index in range(seeds)
+    )
+
+
+def _measure(cell: Cell) -> CellResult:
+    preset = cell.preset
+    motion = MOTIONS[cell.task](preset.design)
+    sizes = preset.episodes, preset.test_episodes
+    shown = demonstrated(cell.task, preset.design, sizes, preset.seeds, cell.seed)
+    began = perf_counter()
+    models = _fit(cell, cell.model, shown)
+    fit_s = perf_counter() - began
+    baselines = _fit(cell, BASELINE, shown)
+    each = [
+        _figures(cell, motion, index, *of_seed)
+        for index, of_seed in enumerate(zip(shown, models, baselines, strict=True))
+    ]
+    return CellResult(
+        cell=cell,
+        figures={name: np.concatenate([figures[name] for figures in each]) for name in each[0]},
+        decoder=models[0].decoder(),
+        fit_s=fit_s,
+    )
+
+
+def _figures(
+    cell: Cell,
+    motion: PlanarMotion,
+    index: int,
+    shown: Demonstrated,
+    model: LatentActionModel,
+    baseline: LatentActionModel,
+) -> dict[str, FloatArray]:
+    """The figures of one seed, by its index: measure -> (1,)."""
+
+    def draws(stream: Stream) -> np.random.Generator:
+        """The same for every kind of model and noise."""
+        return generator(cell.seed, cell.task, stream, index)
+
+    preset = cell.preset
+    pairs = recorded_pairs(shown.test, cell.noise_rad, draws(Stream.TEST_NOISE))
+    chosen = select_episodes(shown.training, range(validation_episodes(shown.training).start))
+    # Only the actions of these are used, so no noise is drawn.
+    fitted = recorded_pairs(chosen, 0.0, draws(Stream.TRAINING_NOISE))
+    decoders = [model.decoder()]
+    figures = accuracy_figures(model, decoders, fitted, pairs)
+    figures |= latent_figures(motion, model, decoders, pairs, preset)
+    if cell.noise_rad == 0 and isinstance(motion, ReachRegion):
+        figures |= reach_figures(motion, decoders, preset.reach_goals, draws(Stream.GOALS))
+    elif cell.noise_rad == 0:
+        goals = start_goal_pairs(motion, shown.test, preset.reach_pairs, draws(Stream.PAIRS))
+        figures |= control_figures(motion, decoders, baseline.decoder(), goals)
+    return figures
+
+
+def _fit(cell: Cell, kind: str, shown: tuple[Demonstrated, ...]) -> list[LatentActionModel]:
+    preset = cell.preset
+    return fit_each(
+        kind,
+        [one.training for one in shown],
+        validation=validation_episodes(shown[0].training),
+        seed=integer(sequence(cell.seed, cell.task, Stream.NETWORKS)),
+        kl_weight=preset.kl_weight,
+        latent_dim=MOTIONS[cell.task]().latent_dim,
+        actions="recorded",
+        state_noise_rad=cell.noise_rad,
+        data_seed=integer(sequence(cell.seed, cell.task, Stream.TRAINING_NOISE)),
+        hidden=preset.hidden,
+        epochs=preset.epochs,
+        batch_size=preset.batch_size,
+        patience=preset.epochs,
+    )

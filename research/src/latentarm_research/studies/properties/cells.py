@@ -1,0 +1,143 @@
+"""Which cells of the paper's table hold: within one SD of the paper's, or beyond it in the method's favour.
+
+The paper's claim is that models that see the context do better than models that do not. So its favour is a
+better figure where the decoder sees the context, and a worse one where it does not.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from typing import Final
+
+from latentarm.core.types import Row
+from latentarm.evaluation.looks import look_of
+from latentarm.evaluation.measures import measure_of
+from latentarm.evaluation.table import ABSENT, format_figure, measure_name
+from latentarm.models.catalogue import KINDS
+from latentarm_research.studies.page import markdown_table
+from latentarm_research.studies.properties.paper import OF_MEANS, PAPER
+
+HALF_A_DIGIT: Final = 0.005
+"""What a figure that is printed with two decimals and without SD may be off."""
+
+
+class Verdict(StrEnum):
+    """How a cell compares with the paper's."""
+
+    IN_FAVOUR = "in the method's favour"
+    WITHIN = "within one SD"
+    MISSED = "missed"
+
+    @property
+    def holds(self) -> bool:
+        """Whether the cell holds."""
+        return self is not Verdict.MISSED
+
+
+@dataclass(frozen=True)
+class PaperCell:
+    """One cell of the paper's table.
+
+    Attributes:
+        row: ours, with the paper's mean and SD.
+        verdict: how they compare.
+    """
+
+    row: Row
+    verdict: Verdict
+
+
+def judge(mean: float, paper: float, sd: float, better: str, sees_context: bool) -> Verdict:
+    """Compare one figure with the paper's.
+
+    Args:
+        mean: ours.
+        paper: the paper's mean.
+        sd: the paper's SD, or how exactly it is printed where it has none.
+        better: which way is better for a user, ``higher`` or ``lower``.
+        sees_context: whether the model's decoder does.
+
+    Returns:
+        `Verdict.IN_FAVOUR` where ours is the paper's mean or beyond it in the method's favour.
+    """
+    upward = (better == "higher") == sees_context
+    ahead = mean - paper if upward else paper - mean
+    if ahead >= 0:
+        return Verdict.IN_FAVOUR
+    return Verdict.WITHIN if -ahead <= sd else Verdict.MISSED
+
+
+def paper_cells(rows: Iterable[Row], *, means: bool = False) -> list[PaperCell]:
+    """The paper's cells among the rows of the paper's setting.
+
+    What is a figure of the paper's by definition (PCA's loss in percent of its own, the VAE's length in
+    percent of its own) is no cell.
+
+    Args:
+        rows: of the study; those under noise or of a further design are passed over.
+        means: judge means over pairs where the study has medians over episodes.
+    """
+    ours = {(row.task, row.model, row.measure): row for row in rows if row.condition is None}
+    cells: list[PaperCell] = []
+    for (task, model, measure), (paper, sd) in PAPER.items():
+        row = ours.get((task, model, OF_MEANS.get(measure, measure) if means else measure))
+        known = measure_of(measure)
+        if row is None or row.mean is None or known is None or known.better is None:
+            continue
+        if measure.endswith(f"_of_{model}"):
+            continue
+        tolerance = HALF_A_DIGIT if sd is None else sd
+        verdict = judge(row.mean, paper, tolerance, known.better, KINDS[model].sees_context)
+        cells.append(PaperCell(replace(row, paper_mean=paper, paper_sd=sd), verdict))
+    return cells
+
+
+def count(cells: Sequence[PaperCell]) -> tuple[int, int]:
+    """How many cells hold, and of how many."""
+    return sum(cell.verdict.holds for cell in cells), len(cells)
+
+
+def cells_table(cells: Sequence[PaperCell]) -> str:
+    """Every cell: the paper's, ours, and how they compare."""
+    return markdown_table(
+        ["task", "measure", "model", "the paper's", "ours", "verdict"],
+        [
+            [
+                cell.row.task or ABSENT,
+                measure_name(cell.row),
+                look_of(cell.row.model or "").label,
+                _printed(cell.row),
+                format_figure(cell.row.mean, cell.row.sd),
+                str(cell.verdict),
+            ]
+            for cell in cells
+        ],
+    )
+
+
+def _printed(row: Row) -> str:
+    """What the paper prints, with its SD where it has one."""
+    return f"{row.paper_mean:.3g}" + ("" if row.paper_sd is None else f" ± {row.paper_sd:.2g}")
+
+
+def sweep_table(rows: Sequence[Row], designs: Sequence[str]) -> str:
+    """How many cells hold in each design, and which do not.
+
+    Args:
+        rows: of the study, those of a design with its name as their condition.
+        designs: their names.
+    """
+    lines: list[list[str]] = []
+    for design in designs:
+        here = [replace(row, condition=None) for row in rows if row.condition == design]
+        cells = paper_cells(here)
+        held, of = count(cells)
+        by_mean, _ = count(paper_cells(here, means=True))
+        missed = [
+            f"{cell.row.task} {measure_name(cell.row)} {look_of(cell.row.model or '').label}"
+            f" {format_figure(cell.row.mean, None)} ({cell.row.paper_mean:.3g})"
+            for cell in cells
+            if not cell.verdict.holds
+        ]
+        lines.append([design, f"{held} of {of}", str(by_mean), "; ".join(missed) or ABSENT])
+    return markdown_table(["design", "cells that hold", "by means", "missed: ours (the paper's)"], lines)

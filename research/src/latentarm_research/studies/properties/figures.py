@@ -1,0 +1,322 @@
+"""Figures over the models: the paper's next to ours, controllability, noise."""
+
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+from latentarm.core.style import FONT_SIZE, SMALL_FONT_SIZE, TWO_COLUMNS_MM, new_figure, tidy
+from latentarm.core.types import Row
+from latentarm.evaluation.looks import look_of
+from latentarm.evaluation.table import format_figure
+from latentarm_research.studies.drawing import draw_series, name_series, title
+from latentarm_research.studies.properties.cell import condition
+from latentarm_research.studies.properties.tables import OURS
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+
+class Point(NamedTuple):
+    """One model's figure, with the paper's.
+
+    Attributes:
+        mean: over seeds.
+        sd: over seeds, 0 where there is one seed.
+        paper: the paper's mean, where it reports one.
+        paper_sd: 0 where the paper reports none.
+    """
+
+    mean: float
+    sd: float
+    paper: float | None
+    paper_sd: float
+
+
+def points(rows: Iterable[Row], task: str, measure: str, condition: str | None = None) -> dict[str, Point]:
+    """One measure by model, of the main table where no condition is named."""
+    return {
+        row.model: Point(row.mean, row.sd or 0.0, row.paper_mean, row.paper_sd or 0.0)
+        for row in rows
+        if (row.task, row.measure, row.condition) == (task, measure, condition)
+        and row.model is not None
+        and row.mean is not None
+    }
+
+
+def in_mm(lengths: Mapping[str, Point]) -> dict[str, Point]:
+    """Lengths in metres as millimetres, without the paper's, for which it states no unit."""
+    return {model: Point(1000 * point.mean, 1000 * point.sd, None, 0.0) for model, point in lengths.items()}
+
+
+BELOW: Final = 0.25
+"""How far the paper's figure stands below ours, so that no SD is taken for the other."""
+DECADES: Final = 50.0
+"""Ratio of a logarithmic axis' ends above which powers of ten are enough as labels."""
+PAPER_SIGN: Final = "($\\diamond$: the paper)"
+
+
+def log_axis(axes: "Axes", figures: Collection[Point], least: float = 0.0) -> float:
+    """Make the x axis logarithmic, around all figures and the paper's.
+
+    Args:
+        axes: the panel.
+        figures: all that are drawn.
+        least: the axis goes no further down.
+
+    Returns:
+        Its left edge.
+    """
+    from matplotlib.ticker import LogLocator, NullFormatter
+
+    axes.set_xscale("log")
+    spans = [(figure.mean, figure.mean + figure.sd) for figure in figures]
+    spans += [(figure.paper, figure.paper) for figure in figures if figure.paper is not None]
+    left = max(0.5 * min((low for low, _ in spans if low > 0), default=1.0), least)
+    right = 1.6 * max((high for _, high in spans), default=1.0)
+    axes.set_xlim(left, max(right, 2 * left))
+    between = (1.0,) if right > DECADES * left else (1.0, 2.0, 5.0)
+    axes.xaxis.set_major_locator(LogLocator(subs=between))
+    axes.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
+    axes.xaxis.set_minor_formatter(NullFormatter())
+    return left
+
+
+def draw_points(axes: "Axes", figures: Mapping[str, Point], left: float, least: float = 0.0) -> None:
+    """Draw points with their SD, named on the left and with their figures on the right.
+
+    An SD that reaches the left edge goes on beyond it, on a logarithmic axis as far as zero.
+    Points and not bars, because a bar's length means nothing on a logarithmic axis.
+
+    Args:
+        axes: where to draw; its scale is already set.
+        figures: by model.
+        left: the left edge of the axis.
+        least: a figure below it is no point, but the words that it is, at the left edge.
+    """
+    for place, (model, figure) in enumerate(figures.items()):
+        if figure.mean < least:
+            axes.annotate(
+                f"< {least:g}",
+                (left, place),
+                (2.0, 0.0),
+                textcoords="offset points",
+                fontsize=SMALL_FONT_SIZE,
+                verticalalignment="center_baseline",
+                bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.8},  # no grid line through them
+            )
+            continue
+        look = look_of(model)
+        draw_spread(axes, place, figure.mean, figure.sd, left)
+        axes.plot(figure.mean, place, look.marker, color=look.colour, markersize=5.5, zorder=7)
+        draw_paper(axes, place + BELOW, figure, left)
+        axes.text(
+            1.02,
+            place,
+            format_figure(figure.mean, figure.sd),
+            transform=axes.get_yaxis_transform(),
+            fontsize=SMALL_FONT_SIZE,
+            verticalalignment="center_baseline",
+        )
+    axes.set_yticks(range(len(figures)), [look_of(model).label for model in figures])
+    axes.set_ylim(len(figures) - 0.4, -0.6)
+    tidy(axes)
+    axes.grid(False, axis="y")
+
+
+def draw_spread(axes: "Axes", place: float, mean: float, sd: float, left: float) -> None:
+    """One SD to either side of a mean, no further down than the left edge."""
+    ends = [max(mean - sd, left), mean + sd]
+    axes.plot(ends, [place, place], color="black", linewidth=0.9, zorder=4)
+
+
+def draw_paper(axes: "Axes", place: float, figure: Point, left: float) -> None:
+    """The paper's figure, where there is one: a hollow diamond with its SD."""
+    if figure.paper is None:
+        return
+    draw_spread(axes, place, figure.paper, figure.paper_sd, left)
+    axes.plot(figure.paper, place, "d", markersize=5.0, color="white", markeredgecolor="black", zorder=6)
+
+
+def beside(figures: Mapping[str, Point]) -> str:
+    """What the axis' label adds where figures of the paper are drawn."""
+    return f"   {PAPER_SIGN}" if any(figure.paper is not None for figure in figures.values()) else ""
+
+
+def draw_losses(axes: "Axes", rows: Sequence[Row], task: str) -> None:
+    """Median test loss in percent of PCA's on a logarithmic axis, with the paper's.
+
+    Args:
+        axes: where to draw.
+        rows: of the study; those of other tasks and measures are passed over.
+        task: which task.
+    """
+    losses = points(rows, task, "median_error_percent_of_pca")
+    draw_points(axes, losses, log_axis(axes, losses.values()))
+    title(axes, "median test loss, mean ± SD", "A")
+    axes.set_xlabel(f"% of PCA's{beside(losses)}")
+
+
+COMPARED: Final = (
+    ("sine", "median_error_percent_of_pca", "loss (% of PCA)"),
+    ("sine", "median_controllability_percent_of_pca", "distance to goal (% of PCA)"),
+    ("sine", "r2", "$R^2$"),
+    ("rotate", "median_error_percent_of_pca", "loss (% of PCA)"),
+    ("rotate", "median_controllability_percent_of_pca", "distance to goal (% of PCA)"),
+    ("rotate", "r2", "$R^2$ of turning"),
+    ("circle", "disentanglement_deg", "angle of the axes (deg)"),
+    ("reach", "final_distance_percent_of_vae", "final distance (% of VAE)"),
+    ("reach", "path_length_percent_of_vae", "path length (% of VAE)"),
+)
+"""Task, measure and what the axis says. Lengths are compared as ratios: the paper states no unit."""
+
+ACROSS: Final = 3
+LINE_MM: Final = 5.0
+APART: Final = 0.2
+"""Of ours and the paper's from the line of their model."""
+FRAME_MM: Final = 17.0
+
+
+def beside_paper_figure(rows: Sequence[Row], tasks: Sequence[str]) -> "Figure":
+    """One panel per task and measure: ours filled, the paper's hollow; models that the paper has, and ours.
+
+    Args:
+        rows: of the study, with the paper's figures.
+        tasks: those that were run.
+    """
+    compared = [(task, measure, label) for task, measure, label in COMPARED if task in tasks]
+    found = [points(rows, task, measure) for task, measure, _ in compared]
+    printed = {model for figures in found for model, figure in figures.items() if figure.paper is not None}
+    models = [
+        model for model in dict.fromkeys(m for figures in found for m in figures) if model in {*printed, OURS}
+    ]
+    down = -(-len(compared) // ACROSS)
+    figure = new_figure(down * (FRAME_MM + LINE_MM * max(len(models), 2)) + 8.0, TWO_COLUMNS_MM)
+    figure.suptitle(
+        "The paper's simulations (hollow) and ours (filled), mean ± SD over seeds; all arms simulated",
+        fontsize=FONT_SIZE,
+    )
+    panels = figure.subplots(down, ACROSS, sharey=True, squeeze=False)
+    for axes, (task, measure, label), figures in zip(panels.flat, compared, found, strict=False):
+        _draw_measure(axes, {model: figures[model] for model in models if model in figures}, models, measure)
+        title(axes, task.capitalize())
+        axes.set_xlabel(label)
+        axes.set_yticks(range(len(models)), [look_of(model).label for model in models])
+        axes.set_ylim(len(models) - 0.4, -0.6)
+        tidy(axes)
+    for axes in panels.flat[len(compared) :]:
+        axes.remove()
+    return figure
+
+
+def _draw_measure(axes: "Axes", figures: dict[str, Point], models: Sequence[str], measure: str) -> None:
+    """Ours above the line of the model, the paper's below it."""
+    left = log_axis(axes, figures.values()) if measure.endswith("_percent_of_pca") else 0.0
+    for model, figure in figures.items():
+        place = models.index(model)
+        look = look_of(model)
+        draw_spread(axes, place - APART, figure.mean, figure.sd, left)
+        axes.plot(figure.mean, place - APART, look.marker, color=look.colour, markersize=5.5, zorder=7)
+        draw_paper(axes, place + APART, figure, left)
+
+
+ROW_MM: Final = 52.0
+COLUMNS: Final = 2
+
+LEAST_MM: Final = 0.001
+"""A distance below this is rounding: with as many latent axes as the plane has, any model comes so near."""
+
+
+def measure_of(task: str) -> str:
+    """The measure that says so: on the reach task goals are places, elsewhere states."""
+    return "final_distance" if task == "reach" else "controllability_m"
+
+
+def controllability_figure(rows: Sequence[Row], tasks: Sequence[str]) -> "Figure":
+    """Least distance of the tool from its goal, one panel per task, with the distance at the start.
+
+    Args:
+        rows: of the study.
+        tasks: those that were run.
+    """
+    down = -(-len(tasks) // COLUMNS)
+    figure = new_figure(down * ROW_MM + 6.0, TWO_COLUMNS_MM)
+    figure.suptitle(
+        "How near simulated arms come to their goals by latent actions alone, mean ± SD over seeds",
+        fontsize=FONT_SIZE,
+    )
+    panels = list(figure.subplots(down, COLUMNS, squeeze=False).flat)
+    for axes, task in zip(panels, tasks, strict=False):
+        distances = in_mm(points(rows, task, measure_of(task)))
+        starts = in_mm(points(rows, task, "start_distance_m"))
+        left = log_axis(axes, [*distances.values(), *starts.values()], LEAST_MM)
+        draw_points(axes, distances, left, LEAST_MM)
+        for start in list(starts.values())[:1]:  # the same pairs for all models
+            axes.axvline(
+                start.mean, color="black", linestyle=":", linewidth=1.0, zorder=1, label="at the start"
+            )
+        title(axes, task.capitalize())
+        axes.set_xlabel("tool from goal (mm)")
+    for axes in panels[len(tasks) :]:
+        axes.remove()
+    name_series(figure, panels[0], handle_length=2.0)
+    return figure
+
+
+NOISE_MM: Final = 98.0
+NOISE_MEASURES: Final = {
+    "error_percent_of_pca": "noisy states",
+    "noise_free_error_percent_of_pca": "noise-free states",
+}
+"""What the models are tested on; they are trained on noisy states in both."""
+
+
+def noise_figure(rows: Sequence[Row], tasks: Sequence[str], noises_rad: Sequence[float]) -> "Figure":
+    """Loss over noise, a line per model; tested with the noise (above) and without it (below).
+
+    Args:
+        rows: of the study.
+        tasks: those that were run.
+        noises_rad: SDs of the noise on states, rad, rising.
+    """
+    figure = new_figure(NOISE_MM, TWO_COLUMNS_MM)
+    figure.suptitle(
+        "Models trained with noise on the joint positions of simulated arms, mean ± SD over seeds",
+        fontsize=FONT_SIZE,
+    )
+    panels = figure.subplots(len(NOISE_MEASURES), len(tasks), sharex=True, sharey=True, squeeze=False)
+    for line, (measure, where) in zip(panels, NOISE_MEASURES.items(), strict=True):
+        for axes, task in zip(line, tasks, strict=True):
+            _draw_sweep(axes, rows, task, measure, noises_rad)
+            tidy(axes)
+        line[0].set_ylabel(f"loss on {where}\n(% of PCA)", fontsize=FONT_SIZE)
+    lowest = min((row.mean for row in rows if row.measure in NOISE_MEASURES and row.mean), default=1.0)
+    panels[0, 0].set_ylim(bottom=lowest / 2.0)
+    for axes, task in zip(panels[0], tasks, strict=True):
+        title(axes, task.capitalize())
+    for axes in panels[-1]:
+        axes.set_xlabel("noise (rad)", fontsize=FONT_SIZE)
+        axes.set_xticks(range(len(noises_rad)), [f"{noise:g}" for noise in noises_rad])
+    name_series(figure, panels[0, 0], handle_length=4.0)
+    return figure
+
+
+def _draw_sweep(
+    axes: "Axes", rows: Sequence[Row], task: str, measure: str, noises_rad: Sequence[float]
+) -> None:
+    """One line per model; series are offset a little, so that their bars do not hide each other."""
+    sweep = [points(rows, task, measure, condition(noise)) for noise in noises_rad]
+    models = list(dict.fromkeys(model for figures in sweep for model in figures))
+    for index, model in enumerate(models):
+        shift = 0.03 * (index - (len(models) - 1) / 2)
+        known = [(place, figures[model]) for place, figures in enumerate(sweep) if model in figures]
+        draw_series(
+            axes,
+            model,
+            [place + shift for place, _ in known],
+            [figure.mean for _, figure in known],
+            [figure.sd for _, figure in known],
+            markersize=4.5,
+        )
+    # An SD that reaches zero leaves the panel at its foot.
+    axes.set_yscale("log", nonpositive="clip")
+    axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}")

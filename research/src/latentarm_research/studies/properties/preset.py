@@ -1,0 +1,86 @@
+"""How large the study is."""
+
+from dataclasses import dataclass, field
+from typing import Final
+
+from latentarm.models.catalogue import KINDS
+from latentarm_research.tasks.planar.motion import DESIGN, Design
+
+LEFT_OUT: Final = frozenset({"cae_jacobian", "cvae_jacobian", "odd_cae", "flow", "scn", "low_turning"})
+"""Variants for recorded demonstrations, which `compare` measures. The study has the paper's models, cAE with
+a penalty on rest or on reversal, the models whose speed is controlled, and those of plug-ins."""
+
+
+def _models() -> tuple[str, ...]:
+    return tuple(name for name in KINDS.usable() if name not in LEFT_OUT)
+
+
+@dataclass(frozen=True)
+class Preset:
+    """Sizes of the study.
+
+    Attributes:
+        name: what it is called on the command line.
+        models: names in the catalogue of models; by default all that load but `LEFT_OUT`.
+        design: how the tasks are demonstrated.
+        episodes: demonstrations that each model has to itself; with 10 pairs each, the 10000 pairs that the
+            paper trains on. A fifth of them is for validation and decides which epoch is best.
+        test_episodes: further demonstrations, of its own too, that each model's figures are taken on.
+        seeds: models of each kind; the paper's figures are over 10.
+        epochs: passes over the training pairs, at most.
+        batch_size: pairs per step.
+        hidden: units of each hidden layer; the paper leaves them open.
+        kl_weight: lambda of equations 7 and 8; the paper says below 1.
+        reach_pairs: pairs of start and goal states by which a model's controllability is measured; over ten
+            models they are the paper's 1000.
+        reach_goals: goals in the region that each model of reach is driven to.
+        states: along the task, from which the effects of a grid of latent actions are measured; 25 in the
+            paper.
+        grid: latent actions in [-1, 1] at each of them.
+        noises_rad: standard deviations of the noise on states, rad; 0 is the paper's setting.
+        sweeps: whether the design is varied as well, see `latentarm_research.studies.properties.sweep`.
+    """
+
+    name: str
+    models: tuple[str, ...] = field(default_factory=_models)
+    design: Design = DESIGN
+    episodes: int = 1000
+    test_episodes: int = 200
+    seeds: int = 10
+    epochs: int = 30
+    batch_size: int = 100
+    hidden: tuple[int, ...] = (64, 64)
+    kl_weight: float = 0.03
+    reach_pairs: int = 100
+    reach_goals: int = 100
+    states: int = 25
+    grid: int = 21
+    noises_rad: tuple[float, ...] = (0.0,)
+    sweeps: bool = False
+
+
+PRESETS: Final[dict[str, Preset]] = {
+    "paper": Preset("paper"),
+    "noise": Preset("noise", noises_rad=(0.0, 0.01, 0.1)),
+    "sweep": Preset(
+        "sweep",
+        test_episodes=100,
+        seeds=2,
+        epochs=20,
+        reach_pairs=30,
+        reach_goals=30,
+        models=("pca", "ae", "vae", "cae", "cvae"),
+        sweeps=True,
+    ),
+    "smoke": Preset(
+        "smoke",
+        episodes=40,
+        test_episodes=10,
+        seeds=2,
+        epochs=4,
+        reach_pairs=10,
+        reach_goals=5,
+        states=9,
+        noises_rad=(0.0, 0.1),
+    ),
+}

@@ -1,0 +1,192 @@
+"""`latentarm reproduce properties`: every model on every task (section 8.1)."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import product
+from typing import TYPE_CHECKING, Final
+
+from latentarm.core.types import Row
+from latentarm.evaluation.summary import Subject, summarise
+from latentarm_research.studies.hypotheses import Comparison, comparison_table, verdicts
+from latentarm_research.studies.page import render_page
+from latentarm_research.studies.properties.cell import Cell, CellResult, condition, measure_cell
+from latentarm_research.studies.properties.cells import cells_table, count, paper_cells, sweep_table
+from latentarm_research.studies.properties.figures import (
+    beside_paper_figure,
+    controllability_figure,
+    noise_figure,
+)
+from latentarm_research.studies.properties.hypotheses import CLAIMS, LINEAR, compare_models
+from latentarm_research.studies.properties.motion_figures.catalogue import TASK_FIGURES
+from latentarm_research.studies.properties.paper import with_paper
+from latentarm_research.studies.properties.preset import PRESETS, Preset
+from latentarm_research.studies.properties.sweep import AS_CHOSEN, designs
+from latentarm_research.studies.properties.tables import (
+    OURS,
+    UNIT_NOT_STATED,
+    as_good_as_paper,
+    noise_table,
+    paper_table,
+)
+from latentarm_research.studies.statistics import LEVEL
+from latentarm_research.studies.study import Grid, Report, Request, Study, again
+from latentarm_research.tasks.planar.catalogue import MOTIONS
+from latentarm_research.tasks.planar.paths import STEP_S
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+def _measure(request: Request[Preset], grid: Grid) -> list[CellResult]:
+    # Without noise most is measured: these take longest, and begin first. The models of a task stand
+    # together, so that one process demonstrates once for all of them.
+    cells = [
+        Cell(task, model, noise_rad, preset, request.seed, design)
+        for (design, preset), noise_rad in product(designs(request.preset).items(), request.preset.noises_rad)
+        for task, model in product(request.tasks, request.preset.models)
+    ]
+    return grid.run("Models on tasks", measure_cell, cells, _label)
+
+
+def _label(cell: Cell) -> str:
+    design = [cell.design] if cell.design != AS_CHOSEN else []
+    return ", ".join([cell.task, cell.model, condition(cell.noise_rad), *design])
+
+
+def _report(request: Request[Preset], results: list[CellResult]) -> Report:
+    proper = [result for result in results if result.cell.design == AS_CHOSEN]
+    rows = with_paper([row for task in request.tasks for row in _rows(proper, task)])
+    tests = compare_models(proper)
+    figures = _figures(proper, rows, request.tasks)
+    swept = _swept(request, results)
+    return Report(
+        rows=rows + swept,
+        page=_page(request, rows, swept, tests, figures),
+        figures=figures,
+        tests=tests,
+        documents={
+            "seeds.json": [
+                {
+                    **_place(result.cell),
+                    "measure": measure,
+                    "values": [x if math.isfinite(x) else None for x in values.tolist()],
+                }
+                for result in results
+                for measure, values in result.figures.items()
+            ]
+        },
+        timings={"cells": [{**_place(result.cell), "fit_s": result.fit_s} for result in results]},
+    )
+
+
+def _place(cell: Cell) -> dict[str, object]:
+    return {
+        "task": cell.task,
+        "model": cell.model,
+        "condition": condition(cell.noise_rad),
+        "design": cell.design,
+    }
+
+
+def _swept(request: Request[Preset], results: Sequence[CellResult]) -> list[Row]:
+    """Rows of every design, with its name as their condition; none where there is one design."""
+    names = designs(request.preset)
+    if len(names) < 2:
+        return []
+    return [
+        replace(row, condition=name)
+        for name in names
+        for row in with_paper(
+            [
+                row
+                for task in request.tasks
+                for row in _rows([one for one in results if one.cell.design == name], task)
+            ]
+        )
+        if row.condition is None
+    ]
+
+
+def _rows(results: Sequence[CellResult], task: str) -> list[Row]:
+    """One task's rows: without noise everything, and in the sweep what is measured under every noise."""
+    here = [result for result in results if result.cell.task == task]
+    rows = [
+        summarise(Subject(STUDY.name, task, result.cell.model), measure, values)
+        for result in here
+        if result.cell.noise_rad == 0
+        for measure, values in result.figures.items()
+    ]
+    if len({result.cell.noise_rad for result in here}) < 2:
+        return rows
+    swept = set[str].intersection(*(set(result.figures) for result in here))
+    return rows + [
+        summarise(
+            Subject(STUDY.name, task, result.cell.model, condition(result.cell.noise_rad)), measure, values
+        )
+        for result in here
+        for measure, values in result.figures.items()
+        if measure in swept
+    ]
+
+
+def _figures(results: Sequence[CellResult], rows: Sequence[Row], tasks: Sequence[str]) -> "dict[str, Figure]":
+    """Those over all tasks, and one for each task."""
+    noises_rad = sorted({result.cell.noise_rad for result in results})
+    figures = {
+        "beside_paper": beside_paper_figure(rows, tasks),
+        "controllability": controllability_figure(rows, tasks),
+    }
+    if len(noises_rad) > 1:
+        figures["noise"] = noise_figure(rows, tasks, noises_rad)
+    for task in tasks:
+        here = [one for one in results if (one.cell.task, one.cell.noise_rad) == (task, 0.0)]
+        figures[task] = TASK_FIGURES[task]({one.cell.model: one.decoder for one in here}, rows)
+    return figures
+
+
+def _page(
+    request: Request[Preset],
+    rows: Sequence[Row],
+    swept: Sequence[Row],
+    tests: Sequence[Comparison],
+    figures: "dict[str, Figure]",
+) -> str:
+    as_good = {task: as_good_as_paper(rows, task) for task in request.tasks}
+    cells = paper_cells(rows)
+    return render_page(
+        "properties/page.md",
+        command=again(STUDY, request),
+        preset=request.preset,
+        tasks=request.tasks,
+        step_s=STEP_S,
+        cells_held=count(cells),
+        cells_held_by_means=count(paper_cells(rows, means=True)),
+        cells_table=cells_table(cells),
+        sweep_table=sweep_table(swept, list(designs(request.preset))) if swept else "",
+        verdicts=verdicts(tests),
+        ours=OURS,
+        as_good={task: counts for task, counts in as_good.items() if counts[1]},
+        figures=list(figures),
+        paper_tables={task: paper_table(rows, task) for task in request.tasks},
+        noise_tables={task: noise_table(rows, task) for task in request.tasks if "noise" in figures},
+        unit_not_stated=UNIT_NOT_STATED,
+        compared_measures=", ".join(dict.fromkeys(one.measure for one in CLAIMS if one.threshold is None)),
+        linear=LINEAR,
+        level=LEVEL,
+        tests=tests,
+        test_table=comparison_table(tests),
+    )
+
+
+STUDY: Final = Study(
+    name="properties",
+    command="reproduce properties",
+    presets=PRESETS,
+    tasks=tuple(MOTIONS),
+    simulated=("arms",),
+    measure=_measure,
+    report=_report,
+    figures=("beside_paper", "controllability", "noise", *TASK_FIGURES),
+    documents=("seeds.json",),
+)

@@ -1,0 +1,279 @@
+"""One cell of the study: one model for one arm, with entropy or without, all its seeds and their drives."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from enum import IntEnum
+from time import perf_counter
+from typing import Final
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from latentarm.assistance.annotation import annotate
+from latentarm.assistance.blending import Arbitration
+from latentarm.assistance.entropy import GoalEntropy
+from latentarm.core.types import Demonstrations, FloatArray, Pairs
+from latentarm.demonstrations.pairs import make_pairs
+from latentarm.demonstrations.split import select_episodes
+from latentarm.evaluation.accuracy import pca_error, percent_of, reconstruction_error
+from latentarm.models.model import LatentActionModel
+from latentarm.tasks.two_cups import TWO_CUPS, TwoCups
+from latentarm_research.studies.fitting import fit_model, validation_episodes
+from latentarm_research.studies.shared_autonomy.drive import (
+    HELP,
+    NO_HELP,
+    RULE,
+    STEP_S,
+    Scene,
+    drive,
+    steps_of,
+)
+from latentarm_research.studies.shared_autonomy.measures import measure, state_error, true_belief
+from latentarm_research.studies.shared_autonomy.preset import Entropy, Person, Preset
+from latentarm_research.studies.streams import integer, sequence
+
+WITHOUT_HELP: Final = "LA"
+WITH_HELP: Final = "LA+SA"
+WITH_ENTROPY: Final = "LA+SA+Entropy"
+METHODS: Final[dict[str, Arbitration]] = {WITHOUT_HELP: NO_HELP, WITH_HELP: HELP, WITH_ENTROPY: HELP}
+"""The paper's conditions, and how much the robot helps in each."""
+
+ROWS: Final = 100
+"""Drives per batch: few enough for the processor's caches, many enough to amortise NumPy's calls."""
+
+TASKS: Final = {make().name: make for make in TWO_CUPS.values()}
+"""Two cups before each arm, by the task's name."""
+
+
+class Stream(IntEnum):
+    """Streams of randomness: one per use, so that none depends on another's draws."""
+
+    TRAINING = 0
+    TEST = 1
+    NETWORKS = 2
+    STATE_NOISE = 3
+    STARTS = 4
+    CHANCES = 5
+
+
+@dataclass(frozen=True)
+class Cell:
+    """What is to be measured.
+
+    Attributes:
+        task: a name of `TASKS`.
+        model: a name of `MODELS`.
+        entropy: term that is added to the model's own loss, or None for that alone.
+        variant: what an ablation calls it; None in the study proper.
+        methods: names of `METHODS` that it is driven by.
+        people: who drives.
+        seeds: models of the kind.
+        drives: drives with each of them and each person.
+        preset: sizes of the training.
+        seed: of the whole study; demonstrations, starts and chances come from it and are the same for every
+            model.
+    """
+
+    task: str
+    model: str
+    entropy: Entropy | None
+    variant: str | None
+    methods: tuple[str, ...]
+    people: tuple[Person, ...]
+    seeds: int
+    drives: int
+    preset: Preset
+    seed: int
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """Results of one kind of person with one method.
+
+    Attributes:
+        method: a name of `METHODS`.
+        person: who drove.
+        figures: measure -> (S, P), of each seed's drives.
+        error: (S, T + 1), state error over time, mean over a seed's drives.
+        belief: (S, T + 1), in the goal that is wanted in the end.
+    """
+
+    method: str
+    person: Person
+    figures: Mapping[str, FloatArray]
+    error: FloatArray
+    belief: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class CellResult:
+    """What was measured.
+
+    Attributes:
+        cell: what was asked for.
+        outcomes: of every method and person.
+        reconstruction: (S,), error on test demonstrations, % of PCA's.
+        fit_s: how long the fit of all seeds took, s.
+        drive_s: how long all drives took, s.
+    """
+
+    cell: Cell
+    outcomes: tuple[Outcome, ...]
+    reconstruction: FloatArray
+    fit_s: float
+    drive_s: float
+
+
+def measure_cell(cell: Cell) -> CellResult:
+    """Demonstrate, fit all seeds in one fit, drive, measure.
+
+    The figures are the same to the last bit in whatever process this runs: one thread each for linear algebra
+    and for torch, since more of them add up in another order.
+
+    Raises:
+        UserError: the preset's sizes make no sense to the model or to the task.
+    """
+    with threadpool_limits(limits=1):
+        return _measure(cell)
+
+
+def _measure(cell: Cell) -> CellResult:
+    task, preset = TASKS[cell.task](), cell.preset
+    training = annotate(task.demonstrate(preset.demonstrations, _generator(cell, Stream.TRAINING)), RULE)
+    test = annotate(task.demonstrate(preset.test_demonstrations, _generator(cell, Stream.TEST)), RULE)
+    began = perf_counter()
+    model = _fit(cell, task, training)
+    fitted = perf_counter()
+    chosen = select_episodes(training, range(validation_episodes(training).start))
+    scene = _scene(task, recorded_pairs(chosen))
+    outcomes = tuple(
+        outcome
+        for method in cell.methods
+        for people in _together(cell)
+        for outcome in _outcomes(cell, task, scene, model, method, people)
+    )
+    return CellResult(
+        cell=cell,
+        outcomes=outcomes,
+        reconstruction=_reconstruction(model, recorded_pairs(chosen), recorded_pairs(test)),
+        fit_s=fitted - began,
+        drive_s=perf_counter() - fitted,
+    )
+
+
+def recorded_pairs(demonstrations: Demonstrations) -> Pairs:
+    """Pairs of contexts ``(s, b)`` and actions as recorded, without noise."""
+    return make_pairs(demonstrations, 1, 0.0, "state_belief", np.random.default_rng(0), actions="recorded")
+
+
+def _scene(task: TwoCups, fitted: Pairs) -> Scene:
+    goals = np.stack([goal.configuration for goal in task.goals])
+    speed = float(np.sqrt(np.square(fitted.action).sum(axis=1).mean()))
+    return Scene(task.robot.chain, RULE(goals, period_s=STEP_S), speed)
+
+
+def _fit(cell: Cell, task: TwoCups, training: Demonstrations) -> LatentActionModel:
+    preset = cell.preset
+    return fit_model(
+        cell.model,
+        training,
+        validation=validation_episodes(training),
+        latent_dim=1,
+        context="state_belief",
+        actions="recorded",
+        state_noise_rad=preset.state_noise_rad,
+        data_seed=integer(sequence(cell.seed, cell.task, Stream.STATE_NOISE)),
+        seeds=cell.seeds,
+        seed=integer(sequence(cell.seed, cell.task, Stream.NETWORKS)),
+        hidden=preset.hidden,
+        epochs=preset.epochs,
+        batch_size=preset.batch_size,
+        patience=preset.epochs,
+        kl_weight=preset.kl_weight,
+        fit={"chain": task.robot.chain, "term": _term(cell.entropy, task)},
+    )
+
+
+def _term(entropy: Entropy | None, task: TwoCups) -> GoalEntropy | None:
+    if entropy is None:
+        return None
+    goals = np.stack([goal.configuration for goal in task.goals])
+    return GoalEntropy(
+        goals,
+        weight=entropy.weight,
+        sharpness=entropy.sharpness,
+        least_progress=entropy.least_progress,
+        where=entropy.where,
+        chain=task.robot.chain if entropy.sees_tool else None,
+    )
+
+
+def _reconstruction(model: LatentActionModel, fitted: Pairs, pairs: Pairs) -> FloatArray:
+    """Error on other pairs, % of PCA's: (S,)."""
+    decoders = [model.decoder(seed) for seed in range(model.seeds)]
+    z = model.encode(pairs.context, pairs.action)
+    error = reconstruction_error(decoders, z, pairs.context, pairs.action)
+    return percent_of(pca_error(fitted.action, pairs.action, model.latent_dim), error)
+
+
+def _together(cell: Cell) -> list[list[Person]]:
+    """The cell's people in groups that drive in one go: for the same time, and about `ROWS` drives."""
+    groups: list[list[Person]] = []
+    for person in cell.people:
+        last = groups[-1] if groups else []
+        alike = bool(last) and last[0].drive_s == person.drive_s
+        if alike and (len(last) + 1) * cell.drives <= ROWS:
+            last.append(person)
+        else:
+            groups.append([person])
+    return groups
+
+
+def _outcomes(
+    cell: Cell, task: TwoCups, scene: Scene, model: LatentActionModel, method: str, people: Sequence[Person]
+) -> list[Outcome]:
+    """Results of people who drive in one batch."""
+    target = np.arange(cell.drives) % len(scene.goals)
+    of_seeds: list[tuple[dict[str, FloatArray], FloatArray, FloatArray]] = []
+    for seed in range(cell.seeds):
+        starts = _generator(cell, Stream.STARTS, seed)
+        start = np.stack([task.sample_start(int(goal), starts) for goal in target])
+        chances = [_chances(cell, seed, person) for person in people]
+        decoder = model.decoder(seed)
+        drives = drive(
+            decoder,
+            scene,
+            [person for person in people for _ in target],
+            METHODS[method],
+            np.tile(start, (len(people), 1)),
+            np.tile(target, len(people)),
+            np.concatenate(chances),
+        )
+        of_seeds.append((measure(drives, scene, decoder), state_error(drives, scene), true_belief(drives)))
+    outcomes: list[Outcome] = []
+    for index, person in enumerate(people):
+        own = slice(index * cell.drives, (index + 1) * cell.drives)
+        outcomes.append(
+            Outcome(
+                method,
+                person,
+                {
+                    name: np.stack([figures[name][own] for figures, _, _ in of_seeds])
+                    for name in of_seeds[0][0]
+                },
+                np.stack([error[own].mean(axis=0) for _, error, _ in of_seeds]),
+                np.stack([belief[own].mean(axis=0) for _, _, belief in of_seeds]),
+            )
+        )
+    return outcomes
+
+
+def _chances(cell: Cell, seed: int, person: Person) -> FloatArray:
+    """Random numbers (P, T) for one person's drives with one seed, independent of who else drives."""
+    chances = _generator(cell, Stream.CHANCES, seed, int.from_bytes(person.label.encode()))
+    return chances.random((cell.drives, steps_of(person)))
+
+
+def _generator(cell: Cell, *use: int) -> np.random.Generator:
+    """The same for every model and method."""
+    return np.random.default_rng(sequence(cell.seed, cell.task, *use))

@@ -1,0 +1,357 @@
+"""The study's figures: those of the paper, its models, the weight of the entropy, and the tasks."""
+
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from latentarm.core.style import FONT_SIZE, TWO_COLUMNS_MM, new_figure, tidy
+from latentarm.core.types import FloatArray
+from latentarm.evaluation.looks import look_of
+from latentarm.tasks.two_cups import BEARING_RAD, Place, PlanarTwoCups, TwoCups
+from latentarm_research.drives.arm_figure import draw_arm as draw_solid_arm
+from latentarm_research.drives.arm_figure import frame
+from latentarm_research.drives.drive_figures import GOAL_COLOURS, GOAL_MARKERS
+from latentarm_research.studies.drawing import arm_line, draw_series, name_series, plane, title
+from latentarm_research.studies.drawing import draw_arm as draw_planar_arm
+from latentarm_research.studies.shared_autonomy.ablations import weight_label
+from latentarm_research.studies.shared_autonomy.cell import METHODS, CellResult, Outcome
+from latentarm_research.studies.shared_autonomy.drive import STEP_S
+from latentarm_research.studies.shared_autonomy.hypotheses import MEASURE
+from latentarm_research.studies.shared_autonomy.intervals import Interval, band, interval
+from latentarm_research.studies.shared_autonomy.preset import (
+    Ablation,
+    Preset,
+    changing,
+    learner,
+    of_fixed_expertise,
+)
+from latentarm_research.studies.shared_autonomy.rows import MODEL, RECONSTRUCTION, Figure
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure as Drawing
+    from mpl_toolkits.mplot3d.axes3d import Axes3D
+
+EXPERTISE_MM: Final = 88.0
+CHANGES_ROW_MM: Final = 46.0
+ROW_MM: Final = 44.0
+FRAME_MM: Final = 14.0
+WEIGHTS_MM: Final = 58.0
+TASK_MM: Final = 74.0
+
+NUDGE: Final = 0.015
+"""Offset between methods as a share of the axis' width, so that no bar hides another."""
+
+WEIGHT_NUDGE: Final = 0.08
+"""The same for arms, as a share of the distance between two weights."""
+
+EXPERTISE_MEASURES: Final = {"final_state_error": "final state error", "time_s": "time to the goal (s)"}
+COURSES: Final = {"error": "state error", "belief": "belief in the true goal"}
+RATIONALITIES: Final = {1000.0: "$10^3$", 10000.0: "$10^4$"}
+"""Numbers that would be too long for an axis."""
+
+DRAWN: Final = 12
+"""Demonstrations that are drawn."""
+
+STREAM: Final = 82
+"""Keeps them apart from those of the study; they are always the same."""
+
+MARGIN_M: Final = 0.06
+
+AT_THE_CUP: Final = Place(back=0.0, left=0.0, up=0.0, turn=0.0)
+
+
+Outcomes = dict[tuple[str, str], Outcome]
+"""Outcomes by method and person."""
+
+
+def expertise_figure(results: Sequence[CellResult], preset: Preset, tasks: Sequence[str]) -> "Drawing":
+    """Final error and time over rationality, a column per arm, as in the paper's figure 9."""
+    figure = _figure(EXPERTISE_MM, "Fixed expertise, mean with 95 % interval; simulated", wide=False)
+    panels = figure.subplots(len(EXPERTISE_MEASURES), len(tasks), sharex=True, sharey="row", squeeze=False)
+    people = [of_fixed_expertise(beta).label for beta in preset.betas]
+    named = np.arange(0, len(people), 1 if len(people) < 5 else 2)
+    for column, task in zip(panels.T, tasks, strict=True):
+        outcomes = outcomes_of(results, task, MODEL)
+        title(column[0], look_of(task).label)
+        for axes, measure in zip(column, EXPERTISE_MEASURES, strict=True):
+            draw_over(axes, outcomes, people, measure)
+            tidy(axes)
+        names = [RATIONALITIES.get(preset.betas[place], f"{preset.betas[place]:g}") for place in named]
+        column[-1].set_xticks(named, names)
+    _from_zero(panels.flat)
+    _label(panels[-1], x="rationality β (1/m²)")
+    for axes, name in zip(panels[:, 0], EXPERTISE_MEASURES.values(), strict=True):
+        _label([axes], y=name)
+    name_series(figure, panels[0, 0])
+    return figure
+
+
+def changes_figure(results: Sequence[CellResult], preset: Preset, tasks: Sequence[str]) -> "Drawing":
+    """Final error over the time of a change; belief over time for two, as in the paper's figure 10."""
+    figure = _figure(
+        CHANGES_ROW_MM * len(tasks) + FRAME_MM,
+        "People who change their mind about the cup, mean with 95 % interval; people and arms simulated",
+    )
+    drawn = preset.drawn_changes_s
+    panels = figure.subplots(len(tasks), 1 + len(drawn), sharex="col", squeeze=False)
+    for (error, *beliefs), task in zip(panels, tasks, strict=True):
+        outcomes = outcomes_of(results, task, MODEL)
+        _draw_changes(error, outcomes, preset)
+        _from_zero([error])
+        title(error, look_of(task).label)
+        _label([error], y="final state error")
+        for axes, after_s in zip(beliefs, drawn, strict=True):
+            draw_course(axes, outcomes, changing(after_s).label, "belief")
+            axes.axvline(after_s, color="black", linestyle=":", linewidth=1.0, label="change of mind")
+            title(axes, f"change after {after_s:g} s")
+            axes.set_ylim(-0.03, 1.03)
+            _label([axes], y="belief in the true goal")
+            tidy(axes)
+    _label(panels[-1, :1], x="change after (s)")
+    _label(panels[-1, 1:], x="time (s)")
+    name_series(figure, *panels[0])
+    return figure
+
+
+def learners_figure(results: Sequence[CellResult], preset: Preset, tasks: Sequence[str]) -> "Drawing":
+    """State error and belief of people who learn over time, a row per arm, as in the paper's figure 11."""
+    figure = _figure(
+        ROW_MM * len(tasks) + FRAME_MM,
+        "People who learn while they drive, β = m t, mean with 95 % interval; people and arms simulated",
+    )
+    columns = [(what, name) for what in COURSES for name in preset.learners]
+    panels = figure.subplots(len(tasks), len(columns), sharex=True, squeeze=False)
+    for line, task in zip(panels, tasks, strict=True):
+        outcomes = outcomes_of(results, task, MODEL)
+        for axes, (what, name) in zip(line, columns, strict=True):
+            draw_course(axes, outcomes, learner(name, preset.learners[name]).label, what)
+            title(axes, f"{look_of(task).label}, {name}")
+            _label([axes], y=COURSES[what])
+            tidy(axes)
+    for what in COURSES:
+        alike = list(panels[:, [place for place, column in enumerate(columns) if column[0] == what]].flat)
+        top = max(axes.get_ylim()[1] for axes in alike) if what == "error" else 1.03
+        for axes in alike:
+            axes.set_ylim(0.0 if what == "error" else -0.03, top)
+    _label(panels[-1], x="time (s)")
+    name_series(figure, panels[0, 0])
+    return figure
+
+
+def slopes_figure(results: Sequence[CellResult], preset: Preset, tasks: Sequence[str]) -> "Drawing":
+    """Final error over the slope of learning, a row per arm and a column per model."""
+    figure = _figure(
+        ROW_MM * len(tasks) + FRAME_MM,
+        "Learners, β = m t, by slope with each model, mean with 95 % interval; people and arms simulated",
+    )
+    models = list(dict.fromkeys(result.cell.model for result in results))
+    panels = figure.subplots(len(tasks), len(models), sharex=True, sharey=True, squeeze=False)
+    people = preset.by_slope
+    for line, task in zip(panels, tasks, strict=True):
+        for axes, model in zip(line, models, strict=True):
+            draw_over(
+                axes, outcomes_of(results, task, model), [person.label for person in people.values()], MEASURE
+            )
+            axes.set_xticks(np.arange(len(people)), [f"{slope:.3g}" for slope in people])
+            tidy(axes)
+            title(axes, f"{look_of(model).label}, {look_of(task).label}")
+    _from_zero(panels.flat)
+    _label(panels[:, 0], y="final state error")
+    _label(panels[-1], x="slope m (1/m² per s)")
+    name_series(figure, panels[0, 0])
+    return figure
+
+
+def models_figure(results: Sequence[CellResult], preset: Preset, tasks: Sequence[str]) -> "Drawing":
+    """Final error over the time of the change, a row per arm and a column per model."""
+    figure = _figure(
+        ROW_MM * len(tasks) + FRAME_MM,
+        "A change of mind with each model, mean with 95 % interval; people and arms simulated",
+    )
+    models = list(dict.fromkeys(result.cell.model for result in results))
+    panels = figure.subplots(len(tasks), len(models), sharex=True, sharey=True, squeeze=False)
+    for line, task in zip(panels, tasks, strict=True):
+        for axes, model in zip(line, models, strict=True):
+            _draw_changes(axes, outcomes_of(results, task, model), preset)
+            title(axes, f"{look_of(model).label}, {look_of(task).label}")
+    _from_zero(panels.flat)
+    _label(panels[:, 0], y="final state error")
+    _label(panels[-1], x="change after (s)")
+    name_series(figure, panels[0, 0])
+    return figure
+
+
+def weights_figure(
+    found: Sequence[Figure], ablation: Ablation, person: str, tasks: Sequence[str]
+) -> "Drawing":
+    """Reconstruction and a person's final error over lambda_2, a line per arm."""
+    figure = _figure(WEIGHTS_MM, "Weight of the entropy, mean with 95 % interval; simulated", wide=False)
+    labels = [weight_label(weight) for weight in ablation.weights]
+    known = {(one.task, one.condition, one.measure): one.interval for one in found}
+    panels = figure.subplots(1, 2)
+    for axes, name, measure, label, conditions in (
+        (panels[0], "reconstruction", RECONSTRUCTION, "test error (% of PCA)", labels),
+        (panels[1], person, "final_state_error", "final state error", [f"{one}, {person}" for one in labels]),
+    ):
+        for index, task in enumerate(tasks):
+            places = np.arange(len(labels), dtype=np.float64) + WEIGHT_NUDGE * (index - (len(tasks) - 1) / 2)
+            _draw_series(axes, task, places, [known[task, condition, measure] for condition in conditions])
+        title(axes, name)
+        axes.set_ylim(bottom=0.0)
+        axes.set_xticks(range(len(labels)), [f"{weight:g}" for weight in ablation.weights])
+        _label([axes], "weight $\\lambda_2$", label)
+        tidy(axes)
+    name_series(figure, panels[0])
+    return figure
+
+
+def task_figure(task: TwoCups) -> "Drawing":
+    """The arm at its start, the goals before the cups and where the tool goes from there."""
+    figure = _figure(TASK_MM, f"Two cups, {look_of(task.name).label}; all simulated", wide=False)
+    demonstrations = task.demonstrate(DRAWN, np.random.default_rng(STREAM))
+    chain = task.robot.chain
+    paths = [chain.forward(episode.state).position for episode in demonstrations.episodes]
+    goals = np.stack([goal.pose.position for goal in task.goals])
+    nearest = [int(np.linalg.norm(path[:, None] - goals, axis=-1).min(axis=0).argmin()) for path in paths]
+    if isinstance(task, PlanarTwoCups):
+        axes: Axes = figure.add_subplot()
+        draw_planar_arm(axes, task.robot, task.start)
+        _draw_paths(axes, task, [path[:, :2] for path in paths], nearest)
+        places = np.concatenate([*(path[:, :2] for path in paths), arm_line(task.robot, task.start)])
+        low, high = places.min(axis=0) - MARGIN_M, places.max(axis=0) + MARGIN_M
+        plane(axes, ((low[0], high[0]), (low[1], high[1])))
+    else:
+        solid: Axes3D = figure.add_subplot(projection="3d", computed_zorder=False)
+        places = draw_solid_arm(solid, task.robot, task.start)
+        _draw_paths(solid, task, paths, nearest)
+        frame(solid, np.concatenate([places, *paths]))
+    name_series(figure, figure.axes[0], handle_length=1.0)
+    return figure
+
+
+def _draw_paths(axes: "Axes", task: TwoCups, paths: list[FloatArray], led_to: list[int]) -> None:
+    """Paths (T, 2) or (T, 3) in the colour of the cup that they lead to, and the goals."""
+    for path, cup in zip(paths, led_to, strict=True):
+        axes.plot(*path.T, color=GOAL_COLOURS[cup], linestyle=("-", "--")[cup], linewidth=0.8, zorder=4)
+    axis_count = paths[0].shape[1]
+    for cup, goal in enumerate(task.goals):
+        axes.plot(
+            *goal.pose.position[:axis_count, None],
+            color=GOAL_COLOURS[cup],
+            marker=GOAL_MARKERS[cup],
+            markeredgecolor="black",
+            markersize=4.0,
+            linestyle="none",
+            label=f"before the {goal.name}",
+            zorder=5,
+        )
+    cups = np.stack([task.pose(bearing, AT_THE_CUP).position for bearing in (BEARING_RAD, -BEARING_RAD)])
+    axes.plot(
+        *cups[:, :axis_count].T,
+        color="black",
+        marker="o",
+        markerfacecolor="none",
+        markersize=9.0,
+        linestyle="none",
+        label="cups",
+        zorder=3.5,
+    )
+
+
+def outcomes_of(results: Sequence[CellResult], task: str, model: str) -> Outcomes:
+    """Outcomes of the study proper."""
+    return {
+        (one.method, one.person.label): one
+        for result in results
+        if (result.cell.task, result.cell.model, result.cell.variant) == (task, model, None)
+        for one in result.outcomes
+    }
+
+
+def draw_over(
+    axes: "Axes", outcomes: Outcomes, people: Sequence[str], measure: str, at: FloatArray | None = None
+) -> None:
+    """Mean and 95 % interval of a measure over people, one line per method.
+
+    Args:
+        axes: the panel.
+        outcomes: by method and person.
+        people: labels, from left to right.
+        measure: which.
+        at: (N,), where each person stands; one after another, evenly, where None.
+    """
+    places = np.arange(len(people), dtype=float) if at is None else at
+    shift = NUDGE * float(np.ptp(places))
+    for index, method in enumerate(METHODS):
+        if (method, people[0]) in outcomes:
+            found = [interval(outcomes[method, person].figures[measure]) for person in people]
+            _draw_series(axes, method, places + (index - 1) * shift, found, zorder=3 + index)
+
+
+def draw_course(axes: "Axes", outcomes: Outcomes, person: str, what: str) -> None:
+    """State error or belief over time, one line per method with its 95 % interval as a band.
+
+    Args:
+        axes: the panel.
+        outcomes: by method and person.
+        person: label.
+        what: ``error`` or ``belief``.
+    """
+    for index, method in enumerate(METHODS):
+        if (method, person) not in outcomes:
+            continue
+        mean, low, high = band(getattr(outcomes[method, person], what))
+        time_s = STEP_S * np.arange(len(mean))
+        look = look_of(method)
+        axes.fill_between(time_s, low, high, color=look.colour, alpha=0.2, linewidth=0.0)
+        every = max(len(mean) // 5, 1)
+        axes.plot(
+            time_s,
+            mean,
+            color=look.colour,
+            linestyle=look.dash,
+            linewidth=1.1,
+            marker=look.marker,
+            markersize=3.4,
+            # Each method's markers stand elsewhere, so that lines on top of each other are seen.
+            markevery=(every * (index + 1) // 4, every),
+            label=look.label,
+            zorder=3 + index,
+        )
+
+
+def _draw_changes(axes: "Axes", outcomes: Outcomes, preset: Preset) -> None:
+    """Final error over the time of the change."""
+    people = [changing(after_s).label for after_s in preset.changes_s]
+    draw_over(axes, outcomes, people, "final_state_error", np.array(preset.changes_s))
+    tidy(axes)
+
+
+def _draw_series(
+    axes: "Axes", name: str, places: FloatArray, found: Sequence[Interval], zorder: float = 2.0
+) -> None:
+    """Means with their intervals."""
+    means, widths = [one.mean for one in found], [one.half_width for one in found]
+    draw_series(axes, name, places, means, widths, zorder=zorder)
+
+
+def _figure(height_mm: float, name: str, *, wide: bool = True) -> "Drawing":
+    figure = new_figure(height_mm, TWO_COLUMNS_MM) if wide else new_figure(height_mm)
+    figure.suptitle(name, fontsize=FONT_SIZE)
+    return figure
+
+
+def _from_zero(panels: "Iterable[Axes]") -> None:
+    """Begin the y axes at zero, once all is drawn: a limit ends the fitting of panels that share it."""
+    for axes in panels:
+        axes.set_ylim(bottom=0.0)
+
+
+def _label(panels: "Iterable[Axes]", x: str = "", y: str = "") -> None:
+    for axes in panels:
+        if x:
+            axes.set_xlabel(x, fontsize=FONT_SIZE)
+        if y:
+            axes.set_ylabel(y, fontsize=FONT_SIZE)

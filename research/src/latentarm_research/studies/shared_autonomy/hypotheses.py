@@ -1,0 +1,123 @@
+"""Tests of what the paper concludes in section 8.2, on the final state error; seeds are the units.
+
+H1: with shared autonomy people end nearer to their goal, at every rationality between the extremes (all
+methods are alike where people are perfect or at random), with entropy and without.
+
+H2: after the latest change of mind, people end nearer with entropy than without. Without it they are trapped
+at the wrong goal (an error near 1), with it they are not (an error below `REACHED`).
+
+H3: people who learn, slowly or quickly, end nearer with entropy than without.
+
+All tests are one-sided at `LEVEL` after Holm's correction over all tests of one hypothesis with one model.
+Two methods are compared seed by seed (paired t): the same demonstrations, starts and chances, and the same
+initial weights. H1 also asks that their 95 % intervals are apart.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+
+from latentarm.core.types import FloatArray
+from latentarm_research.studies.hypotheses import Comparison, corrected
+from latentarm_research.studies.shared_autonomy.cell import WITH_ENTROPY, WITH_HELP, WITHOUT_HELP, CellResult
+from latentarm_research.studies.shared_autonomy.intervals import interval
+from latentarm_research.studies.shared_autonomy.measures import ARRIVED
+from latentarm_research.studies.shared_autonomy.preset import Person, Preset, learner, of_fixed_expertise
+from latentarm_research.studies.statistics import Direction, paired
+
+MEASURE: Final = "final_state_error"
+
+REACHED: Final = ARRIVED
+"""Error below which people are at their goal."""
+
+TRAPPED: Final = 1.0 - REACHED
+"""Error above which people are at the other goal, which is 1 away: as near to it as `REACHED` means."""
+
+
+@dataclass(frozen=True)
+class Claim:
+    """One part of a hypothesis: a method's error against another's or against a mark, for one person."""
+
+    hypothesis: str
+    person: Person
+    method: str
+    against: str | float
+    direction: Direction = "less"
+
+
+def claims(preset: Preset) -> list[Claim]:
+    """All parts of H1, H2 and H3."""
+    latest = preset.latest_change
+    return [
+        *(
+            Claim("H1", of_fixed_expertise(beta), method, WITHOUT_HELP)
+            for beta in preset.betas[1:-1]
+            for method in (WITH_HELP, WITH_ENTROPY)
+        ),
+        Claim("H2", latest, WITH_ENTROPY, WITH_HELP),
+        Claim("H2", latest, WITH_ENTROPY, REACHED),
+        Claim("H2", latest, WITH_HELP, TRAPPED, "greater"),
+        *(
+            Claim("H3", learner(name, slope), WITH_ENTROPY, WITH_HELP)
+            for name, slope in preset.learners.items()
+        ),
+    ]
+
+
+Errors = Mapping[tuple[str, str], FloatArray]
+"""Errors of all drives (S, P) by method and person."""
+
+
+def compare_methods(results: Sequence[CellResult], preset: Preset) -> list[Comparison]:
+    """Every test that the results of the study proper allow, by hypothesis, then by model, then by task."""
+    errors = _errors(results)
+    return corrected(
+        [
+            _test(claim, task, model, found)
+            for model in dict.fromkeys(model for _, model in errors)
+            for (task, name), found in errors.items()
+            if name == model
+            for claim in claims(preset)
+        ]
+    )
+
+
+def _errors(results: Iterable[CellResult]) -> dict[tuple[str, str], Errors]:
+    """Errors by task and model."""
+    found: dict[tuple[str, str], dict[tuple[str, str], FloatArray]] = {}
+    for result in results:
+        if result.cell.variant is None:
+            here = found.setdefault((result.cell.task, result.cell.model), {})
+            here |= {(one.method, one.person.label): one.figures[MEASURE] for one in result.outcomes}
+    return dict(found)
+
+
+def _test(claim: Claim, task: str, model: str, errors: Errors) -> Comparison:
+    """One test, without correction."""
+    values = errors[claim.method, claim.person.label]
+    mark = None if isinstance(claim.against, str) else np.full_like(values, claim.against)
+    against = errors[str(claim.against), claim.person.label] if mark is None else mark
+    own, other = interval(values), interval(against)
+    statistic = paired(values.mean(axis=1), against.mean(axis=1), claim.direction)
+    if mark is not None:
+        statistic = replace(statistic, test=statistic.test.replace("paired", "one-sample"))
+    return Comparison(
+        hypothesis=claim.hypothesis,
+        family=model,
+        task=task,
+        model=model,
+        measure=MEASURE,
+        where=claim.person.label,
+        subject=claim.method,
+        against=str(claim.against) if mark is None else None,
+        direction=claim.direction,
+        mean=own.mean,
+        half_width=own.half_width,
+        mean_against=other.mean,
+        half_width_against=other.half_width,
+        n=len(values),
+        n_against=len(values) if mark is None else 1,
+        must_be_apart=claim.hypothesis == "H1",
+    ).tested(statistic)

@@ -1,0 +1,247 @@
+"""`latentarm reproduce shared-autonomy`: simulated people with help and without (section 8.2)."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, Final
+
+from latentarm_research.studies.hypotheses import Comparison, comparison_table, verdicts
+from latentarm_research.studies.page import render_page
+from latentarm_research.studies.shared_autonomy import choice, drive
+from latentarm_research.studies.shared_autonomy import measures as measures_of
+from latentarm_research.studies.shared_autonomy import preset as people
+from latentarm_research.studies.shared_autonomy.ablations import variants
+from latentarm_research.studies.shared_autonomy.cell import (
+    TASKS,
+    WITH_ENTROPY,
+    WITH_HELP,
+    WITHOUT_HELP,
+    Cell,
+    CellResult,
+    measure_cell,
+)
+from latentarm_research.studies.shared_autonomy.figures import (
+    changes_figure,
+    expertise_figure,
+    learners_figure,
+    models_figure,
+    slopes_figure,
+    task_figure,
+    weights_figure,
+)
+from latentarm_research.studies.shared_autonomy.hypotheses import MEASURE, REACHED, TRAPPED, compare_methods
+from latentarm_research.studies.shared_autonomy.intervals import FEWEST_SEEDS, band
+from latentarm_research.studies.shared_autonomy.measures import ARRIVED
+from latentarm_research.studies.shared_autonomy.preset import PRESETS, Preset
+from latentarm_research.studies.shared_autonomy.rows import MODEL, Figure, figures, rows_of
+from latentarm_research.studies.shared_autonomy.rows import STUDY as NAME
+from latentarm_research.studies.shared_autonomy.tables import Tables, summary_tables
+from latentarm_research.studies.shared_autonomy.targets import target_table, targets
+from latentarm_research.studies.statistics import LEVEL
+from latentarm_research.studies.study import Grid, Report, Request, Study, again
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure as Drawing
+
+MODELS: Final = (MODEL, "cvae")
+"""The paper's model, and that of its equation 16 in full."""
+
+MAIN: Final = (MEASURE, "time_s")
+"""Measures that are shown of the paper's model at once; the others are to be unfolded."""
+
+
+def cells_of(request: Request[Preset]) -> list[Cell]:
+    """The study proper, its longest cells first, and the ablations."""
+    preset = request.preset
+    proper = [
+        Cell(
+            task=task,
+            model=model,
+            entropy=entropy,
+            variant=None,
+            methods=(WITHOUT_HELP, WITH_HELP) if entropy is None else (WITH_ENTROPY,),
+            people=preset.people,
+            seeds=preset.seeds,
+            drives=preset.drives,
+            preset=preset,
+            seed=request.seed,
+        )
+        for model in reversed(MODELS)
+        for entropy in (None, preset.entropy)
+        for task in request.tasks
+    ]
+    return [*proper, *(cell for task in request.tasks for cell in _varied(request, task))]
+
+
+def _varied(request: Request[Preset], task: str) -> list[Cell]:
+    """The ablation of one arm."""
+    preset, ablation = request.preset, request.preset.ablation
+    if ablation is None:
+        return []
+    return [
+        Cell(
+            task=task,
+            model=MODEL,
+            entropy=entropy,
+            variant=name,
+            methods=(WITH_HELP,) if entropy is None else (WITH_ENTROPY,),
+            people=preset.varied_people,
+            seeds=ablation.seeds,
+            drives=ablation.drives,
+            preset=preset,
+            seed=request.seed,
+        )
+        for name, entropy in variants(ablation, preset.entropy).items()
+    ]
+
+
+def _measure(request: Request[Preset], grid: Grid) -> list[CellResult]:
+    measured = grid.run("Models, with entropy and without", measure_cell, cells_of(request), _label)
+
+    def place(result: CellResult) -> tuple[int, int, bool, bool]:
+        """By arm, model, the study before its ablations, without entropy first."""
+        cell = result.cell
+        proper = cell.variant is None
+        return (
+            request.tasks.index(cell.task),
+            MODELS.index(cell.model),
+            not proper,
+            proper and cell.entropy is not None,
+        )
+
+    return sorted(measured, key=place)
+
+
+def _label(cell: Cell) -> str:
+    trained = "with entropy" if cell.entropy else "without entropy"
+    return f"{cell.task}, {cell.model}, {cell.variant or trained}"
+
+
+def _report(request: Request[Preset], results: list[CellResult]) -> Report:
+    found = figures(results)
+    rows, tests = rows_of(found), compare_methods(results, request.preset)
+    drawings = _drawings(request, results, found)
+    return Report(
+        rows=rows,
+        page=_page(request, found, tests, drawings),
+        figures=drawings,
+        tests=tests,
+        documents={
+            "seeds.json": [_by_seed(figure) for figure in found],
+            "courses.json": _courses(results, request.preset),
+        },
+        timings={
+            "cells": [
+                {"cell": _label(one.cell), "fit_s": one.fit_s, "drive_s": one.drive_s} for one in results
+            ]
+        },
+        tables=summary_tables(rows),
+    )
+
+
+def _drawings(
+    request: Request[Preset], results: Sequence[CellResult], found: Sequence[Figure]
+) -> "dict[str, Drawing]":
+    preset, tasks = request.preset, request.tasks
+    drawings = {
+        "fixed_expertise": expertise_figure(results, preset, tasks),
+        "change_of_mind": changes_figure(results, preset, tasks),
+        "learners": learners_figure(results, preset, tasks),
+        "learner_slopes": slopes_figure(results, preset, tasks),
+        "models": models_figure(results, preset, tasks),
+    }
+    if preset.ablation is not None:
+        drawings["entropy_weight"] = weights_figure(found, preset.ablation, preset.latest_change.label, tasks)
+    return drawings | {task: task_figure(TASKS[task]()) for task in tasks}
+
+
+def _page(
+    request: Request[Preset],
+    found: Sequence[Figure],
+    tests: Sequence[Comparison],
+    drawings: "dict[str, Drawing]",
+) -> str:
+    preset = request.preset
+    measures = dict.fromkeys(one.measure for one in found if one.condition.startswith(f"{WITHOUT_HELP}, "))
+    return render_page(
+        "shared_autonomy/page.md",
+        command=again(STUDY, request),
+        preset=preset,
+        tasks=request.tasks,
+        model=MODEL,
+        models=MODELS,
+        drive=drive,
+        people=people,
+        verdicts=verdicts(tests),
+        figures=sorted(drawings),
+        tables=Tables(found, preset),
+        main=MAIN,
+        others=[measure for measure in measures if measure not in MAIN],
+        measures=list(measures),
+        few_seeds=preset.seeds < FEWEST_SEEDS,
+        arrived=ARRIVED,
+        reached=REACHED,
+        trapped=TRAPPED,
+        level=LEVEL,
+        target_table=target_table(targets(found, preset)),
+        choice=choice,
+        measures_of=measures_of,
+        belief=drive.RULE.keywords,
+        tests=tests,
+        test_table=comparison_table(tests),
+    )
+
+
+def _by_seed(figure: Figure) -> dict[str, Any]:
+    """Means of each seed's drives, and the interval that tables and figures show."""
+    over = figure.interval
+    return {
+        "task": figure.task,
+        "model": figure.model,
+        "condition": figure.condition,
+        "measure": figure.measure,
+        "values": figure.values.mean(axis=1).tolist(),
+        "mean": over.mean,
+        "half_width_95": over.half_width,
+        "over": over.over,
+    }
+
+
+def _courses(results: Sequence[CellResult], preset: Preset) -> list[dict[str, Any]]:
+    """What the figures show over time: state error and belief of the paper's model, mean and interval."""
+    shown = {person.label for person in preset.drawn_people}
+    return [
+        {
+            "task": result.cell.task,
+            "method": outcome.method,
+            "person": outcome.person.label,
+            **{
+                f"{what}_{part}": values.round(5).tolist()
+                for what, course in (("error", outcome.error), ("belief", outcome.belief))
+                for part, values in zip(("mean", "low_95", "high_95"), band(course), strict=True)
+            },
+        }
+        for result in results
+        if result.cell.model == MODEL and result.cell.variant is None
+        for outcome in result.outcomes
+        if outcome.person.label in shown
+    ]
+
+
+STUDY: Final = Study(
+    name=NAME,
+    command="reproduce shared-autonomy",
+    presets=PRESETS,
+    tasks=tuple(TASKS),
+    simulated=("arms", "people"),
+    measure=_measure,
+    report=_report,
+    figures=(
+        "fixed_expertise",
+        "change_of_mind",
+        "learners",
+        "learner_slopes",
+        "models",
+        "entropy_weight",
+        *TASKS,
+    ),
+    documents=("seeds.json", "courses.json"),
+)

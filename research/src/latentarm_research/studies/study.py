@@ -1,0 +1,272 @@
+"""Studies: their definition, a request for one, and the runner."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass, field, replace
+from pathlib import Path
+from time import perf_counter
+from typing import TYPE_CHECKING, Any, Final, Generic, Protocol, TypeVar
+
+from latentarm.core.errors import UserError
+from latentarm.core.files import write_text
+from latentarm.core.parallel.grid import check_processes, run_grid
+from latentarm.core.style import save_figure
+from latentarm.core.types import Row
+from latentarm.core.untrusted.console import VisibleConsole
+from latentarm.evaluation.results import write_results
+from latentarm.runs.checks import check_seed
+from latentarm.runs.results_folder import ResultsFolder, write_json
+from latentarm_research.studies.hypotheses import Comparison
+from latentarm_research.studies.page import SMOKE
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from rich.console import RenderableType
+
+ALWAYS_MADE: Final = ("results.json", "results.md", "hypotheses.json", "timings.json")
+"""Files that every study writes."""
+
+Cell = TypeVar("Cell")
+Result = TypeVar("Result")
+
+
+class Sizes(Protocol):
+    """What every preset has."""
+
+    @property
+    def name(self) -> str:
+        """What it is called on the command line."""
+        ...
+
+
+Preset = TypeVar("Preset", bound=Sizes)
+Measured = TypeVar("Measured")
+
+
+@dataclass(frozen=True)
+class Request(Generic[Preset]):
+    """What a study was asked for.
+
+    Attributes:
+        out: a new folder, or that of an earlier run of this study, which is replaced.
+        preset: sizes of the study.
+        tasks: which of the study's tasks; all of them where empty.
+        seed: of everything random.
+        jobs: processes side by side; -1 is one per core.
+        backend: where they run, a name in `latentarm.core.parallel.backends.BACKENDS`.
+        quiet: say nothing while working.
+        bars: show how far the grids are.
+
+    Raises:
+        UserError: seed, jobs or backend are out of range.
+    """
+
+    out: Path
+    preset: Preset
+    tasks: tuple[str, ...] = ()
+    seed: int = 0
+    jobs: int = -1
+    backend: str = "joblib"
+    quiet: bool = False
+    bars: bool = False
+
+    def __post_init__(self) -> None:
+        check_seed(self.seed)
+        check_processes(self.jobs, self.backend)
+
+
+@dataclass(frozen=True)
+class Keep(Generic[Cell, Result]):
+    """How the results of cells are kept in a study's folder, so that it goes on where it was stopped.
+
+    Attributes:
+        read: the kept result of a cell; None where there is none. Raises a `UserError` where it is damaged.
+        write: keeps the result of a cell, whole or not at all.
+    """
+
+    read: Callable[[Path, Cell], Result | None]
+    write: Callable[[Path, Cell, Result], None]
+
+
+class Grid:
+    """Runs grids of cells as a request says, and keeps how long that took.
+
+    Args:
+        request: what was asked for.
+    """
+
+    def __init__(self, request: Request[Any]) -> None:
+        self._request = request
+        self._console = VisibleConsole(stderr=True, quiet=request.quiet)
+        self.took_s = 0.0
+
+    def say(self, sentence: str) -> None:
+        """Report progress on standard error."""
+        self._console.print(sentence)
+
+    def run(
+        self,
+        what: str,
+        function: Callable[[Cell], Result],
+        cells: Sequence[Cell],
+        label: Callable[[Cell], str],
+        keep: Keep[Cell, Result] | None = None,
+    ) -> list[Result]:
+        """Measure cells side by side; see `latentarm.core.parallel.grid.run_grid`.
+
+        Args:
+            what: the grid in a few words.
+            function: measures one cell.
+            cells: all of them, the longest first.
+            label: what a cell is called when it fails or warns.
+            keep: where results are kept; those that are there are not measured again.
+        """
+        out = self._request.out
+        found = [None if keep is None else keep.read(out, cell) for cell in cells]
+        missing = [cell for cell, one in zip(cells, found, strict=True) if one is None]
+        there = f", {len(cells) - len(missing)} of them kept from before" if len(missing) < len(cells) else ""
+        self.say(f"{what}: {len(cells)} cells{there}.")
+        began = perf_counter()
+        measured = iter(
+            run_grid(
+                function,
+                missing,
+                jobs=self._request.jobs,
+                backend=self._request.backend,
+                label=label,
+                bars=self._request.bars,
+                keep=None if keep is None else lambda cell, result: keep.write(out, cell, result),
+            )
+        )
+        self.took_s += perf_counter() - began
+        return [next(measured) if one is None else one for one in found]
+
+
+@dataclass(frozen=True)
+class Report:
+    """The results of a study.
+
+    Attributes:
+        rows: for ``results.json``.
+        page: ``results.md``.
+        figures: PNGs by name, without suffix.
+        tests: of the hypotheses.
+        documents: further JSON files by name.
+        timings: how long parts took, s, apart from the grids.
+        tables: the study at a glance, for a terminal.
+    """
+
+    rows: list[Row]
+    page: str
+    figures: "Mapping[str, Figure]"
+    tests: Sequence[Comparison] = ()
+    documents: Mapping[str, object] = field(default_factory=dict)
+    timings: Mapping[str, object] = field(default_factory=dict)
+    tables: "Sequence[RenderableType]" = ()
+
+
+@dataclass(frozen=True)
+class Study(Generic[Preset, Measured]):
+    """A study: what it measures and how it reports that.
+
+    Attributes:
+        name: in rows and in the folder's ``config.json``.
+        command: the words after ``latentarm`` that run it.
+        presets: sizes by name.
+        tasks: names of all tasks; none where the request names what there is.
+        simulated: what of it is simulated, for ``config.json``.
+        measure: runs the study's grids.
+        report: makes rows, page, figures and documents of what was measured.
+        figures: names of all figures that it may draw.
+        documents: names of all JSON files that it may write in addition to `ALWAYS_MADE`.
+        depends_on: what else the figures depend on, for ``config.json``.
+        kept: folders of results of cells, see `Keep`.
+        options: names of the preset's fields that the command line may change. With the same ``out`` and
+            other values of these, or other tasks, a study goes on from what is kept.
+    """
+
+    name: str
+    command: str
+    presets: Mapping[str, Preset]
+    tasks: tuple[str, ...]
+    simulated: tuple[str, ...]
+    measure: Callable[[Request[Preset], Grid], Measured]
+    report: Callable[[Request[Preset], Measured], Report]
+    figures: tuple[str, ...]
+    documents: tuple[str, ...] = ()
+    depends_on: Callable[[Request[Preset]], Mapping[str, object]] = lambda request: {}
+    kept: tuple[str, ...] = ()
+    options: tuple[str, ...] = ()
+
+    def about(self, request: Request[Preset]) -> dict[str, object]:
+        """What the figures depend on."""
+        sizes = asdict(request.preset)  # pyright: ignore[reportArgumentType]
+        return {
+            "study": self.name,
+            **{name: sizes.pop(name) for name in self.options},
+            "preset": sizes,
+            "tasks": list(request.tasks),
+            "seed": request.seed,
+            **dict.fromkeys(self.simulated, "simulated"),
+            **self.depends_on(request),
+        }
+
+
+def run_study(study: Study[Preset, Measured], request: Request[Preset]) -> Report:
+    """Measure every cell of a study and write figures, tables and tests to ``request.out``.
+
+    ``results.json`` depends on preset, tasks and seed alone; how long it took stands in ``timings.json``.
+
+    Raises:
+        UserError: a task is unknown or named twice; the folder holds something else or cannot be written; the
+            backend is not available; or a cell cannot be measured as asked, then it says which.
+    """
+    request = _with_tasks(study, request)
+    made = (*ALWAYS_MADE, *study.documents, *(f"{name}.png" for name in study.figures))
+    about = study.about(request)
+    grows = ("tasks", *study.options) if study.kept else ()
+    ResultsFolder(study.name, made, study.kept, grows).claim(request.out, about)
+    grid = Grid(request)
+    measured = study.measure(request, grid)
+    grid.say("Drawing, testing the hypotheses, writing the page.")
+    report = study.report(request, measured)
+    tests = () if request.preset.name == SMOKE else report.tests
+    for name, figure in report.figures.items():
+        save_figure(figure, request.out / f"{name}.png")
+    write_text(request.out / "results.md", report.page)
+    write_json(request.out / "hypotheses.json", [one.as_json() for one in tests])
+    for name, document in report.documents.items():
+        write_json(request.out / name, document)
+    timings = {"backend": request.backend, "jobs": request.jobs, "grid_s": grid.took_s, **report.timings}
+    write_json(request.out / "timings.json", timings)
+    write_results(request.out / "results.json", report.rows, about)
+    return report
+
+
+def again(study: Study[Preset, Any], request: Request[Preset]) -> str:
+    """The command that repeats the study."""
+    usual = study.presets.get(request.preset.name)
+    words = [f" --task {task}" for task in request.tasks if request.tasks != study.tasks]
+    for name in study.options:
+        value = getattr(request.preset, name)
+        if usual is not None and value != getattr(usual, name):
+            words += [f" --{name} {one}" for one in (value if isinstance(value, tuple) else (value,))]
+    return f"latentarm {study.command} --preset {request.preset.name}{''.join(words)} --seed {request.seed}"
+
+
+def _with_tasks(study: Study[Preset, Any], request: Request[Preset]) -> Request[Preset]:
+    """The request with all tasks where it names none.
+
+    Raises:
+        UserError: a task is unknown or named twice.
+    """
+    if not study.tasks:
+        return request
+    if not request.tasks:
+        return replace(request, tasks=study.tasks)
+    names = ", ".join(study.tasks)
+    for task in request.tasks:
+        if task not in study.tasks:
+            raise UserError(f"There is no task {task!r}: choose from {names}.")
+    if len(set(request.tasks)) < len(request.tasks):
+        raise UserError(f"Name no task twice: choose from {names}.")
+    return request

@@ -1,0 +1,229 @@
+"""The study's cells: demonstrations, models that learn from them, and drives with these."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from time import perf_counter
+from typing import final
+
+from threadpoolctl import threadpool_limits
+
+from latentarm.core.errors import UserError
+from latentarm.core.types import Demonstrations, Episode
+from latentarm.demonstrations.validation import validate
+from latentarm.models.kind import TrainedModel
+from latentarm_research.drives.demonstrate import dataset_of, demonstrate_once
+from latentarm_research.drives.task_drive import TaskSetup, drive_task
+from latentarm_research.people.catalogue import PEOPLE
+from latentarm_research.people.names import OperatorName
+from latentarm_research.studies.fitting import fit_model, validation_episodes
+from latentarm_research.studies.streams import generator, integer, sequence
+from latentarm_research.studies.tasks.condition import Condition
+from latentarm_research.studies.tasks.moved import task_of
+from latentarm_research.studies.tasks.preset import CONTEXTS, Preset, Stream
+from latentarm_research.studies.tasks.runs import Driver, Run, choice_of, decoders_of, driven_run, shown_run
+
+
+@final
+@dataclass(frozen=True)
+class ShownCell:
+    """A run of the scripted demonstrator.
+
+    Attributes:
+        task: a name of `latentarm_research.studies.tasks.moved.TASKS`.
+        stream: what the run is for: `Stream.RUNS` or `Stream.DEMONSTRATIONS`.
+        number: of the run.
+        seed: of the study.
+    """
+
+    task: str
+    stream: Stream
+    number: int
+    seed: int
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Shown:
+    """What came of a `ShownCell`.
+
+    Attributes:
+        cell: what was asked for.
+        run: how it went.
+        episode: the demonstration; None where it failed.
+        objects: names of the things whose poses the episode holds.
+    """
+
+    cell: ShownCell
+    run: Run
+    episode: Episode | None
+    objects: tuple[str, ...]
+
+
+def show(cell: ShownCell) -> Shown:
+    """Let the scripted demonstrator do the task.
+
+    Raises:
+        UserError: the arm cannot be used.
+    """
+    task = task_of(cell.task, cell.stream)
+    with threadpool_limits(limits=1):
+        rng = generator(cell.seed, cell.task, cell.stream, cell.number)
+        shown = demonstrate_once(task, choice_of(task, cell.number), rng)
+    run = shown_run(task, cell.number, shown)
+    return Shown(cell, run, shown.episode if run.success else None, shown.objects)
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class TrainingCell:
+    """Models of one kind.
+
+    Attributes:
+        task: a name of `latentarm_research.studies.tasks.moved.TASKS`.
+        condition: which kind of model, what its decoder sees, and whether it has a way back.
+        demonstrations: to learn from.
+        preset: sizes of the study.
+        seed: of the study.
+    """
+
+    task: str
+    condition: Condition
+    demonstrations: Demonstrations
+    preset: Preset
+    seed: int
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Trained:
+    """What came of a `TrainingCell`.
+
+    Attributes:
+        task: a name of `latentarm_research.studies.tasks.moved.TASKS`.
+        condition: see `TrainingCell`.
+        model: with all its seeds.
+        fit_s: how long the fit took, s.
+    """
+
+    task: str
+    condition: Condition
+    model: TrainedModel
+    fit_s: float
+
+    @property
+    def driver(self) -> Driver:
+        """What a person steers with."""
+        return Driver(self.condition, decoders_of(self.model))
+
+    @property
+    def refused(self) -> bool:
+        """Whether a way back was asked for that is no better than none."""
+        return self.condition.way_back and not self.model.dimensions.way_back
+
+
+def train(cell: TrainingCell) -> Trained:
+    """Fit the models.
+
+    Raises:
+        UserError: the preset's sizes make no sense.
+    """
+    preset, condition = cell.preset, cell.condition
+    with threadpool_limits(limits=1):
+        began = perf_counter()
+        model = fit_model(
+            condition.model or "",
+            cell.demonstrations,
+            validation=validation_episodes(cell.demonstrations),
+            fit={"chain": task_of(cell.task, Stream.DEMONSTRATIONS).robot.chain},
+            latent_dim=2,
+            context=CONTEXTS[condition.name],
+            seeds=preset.seeds,
+            seed=integer(sequence(cell.seed, cell.task, Stream.NETWORKS)),
+            epochs=preset.epochs,
+            batch_size=preset.batch_size,
+            hidden=preset.hidden,
+            state_noise_rad=preset.state_noise_rad,
+            way_back_m=preset.way_back_m if condition.way_back else 0.0,
+        )
+        return Trained(cell.task, condition, model.trained_, perf_counter() - began)
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class DriveCell:
+    """A run of a simulated person who drives.
+
+    Attributes:
+        task: a name of `latentarm_research.studies.tasks.moved.TASKS`.
+        driver: what they steer with.
+        person: who they are.
+        number: of the run.
+        seed: of the study.
+    """
+
+    task: str
+    driver: Driver
+    person: OperatorName
+    number: int
+    seed: int
+
+    @property
+    def condition(self) -> Condition:
+        """What they steer with, and who they are."""
+        return self.driver.condition.by(self.person)
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Driven:
+    """What came of a `DriveCell`.
+
+    Attributes:
+        task: a name of `latentarm_research.studies.tasks.moved.TASKS`.
+        condition: see `DriveCell`.
+        run: how it went.
+        drive_s: how long the simulation took, s.
+    """
+
+    task: str
+    condition: Condition
+    run: Run
+    drive_s: float
+
+
+def drive(cell: DriveCell) -> Driven:
+    """Let the simulated person do the task.
+
+    Raises:
+        UserError: the arm cannot be used, or the decoder is for another arm.
+    """
+    task = task_of(cell.task, Stream.RUNS)
+    with threadpool_limits(limits=1):
+        began = perf_counter()
+        setup = TaskSetup(task, cell.driver.controller(task.robot, cell.number), PEOPLE[cell.person])
+        # The same number gives the same scene and start to the demonstrator and in every condition.
+        rng = generator(cell.seed, cell.task, Stream.RUNS, cell.number)
+        trace = drive_task(setup, choice_of(task, cell.number), rng)
+        run = driven_run(task, cell.number, trace)
+        return Driven(cell.task, cell.condition, run, perf_counter() - began)
+
+
+def training_set(task: str, shown: Sequence[Shown]) -> Demonstrations:
+    """The demonstrations of a task that succeeded, as a dataset.
+
+    Args:
+        task: a name of `latentarm_research.studies.tasks.moved.TASKS`.
+        shown: of that task.
+
+    Raises:
+        UserError: fewer than two succeeded, and a model needs one to learn from and one for validation.
+    """
+    episodes = [one.episode for one in shown if one.episode is not None]
+    if len(episodes) < 2:
+        raise UserError(
+            f"{len(episodes)} demonstrations of the task {task} succeeded, and a model needs two or more:"
+            " take a preset with more demonstrations."
+        )
+    dataset = dataset_of(task_of(task, Stream.DEMONSTRATIONS), episodes, shown[0].objects)
+    validate(dataset, f"The demonstrations of the task {task}")
+    return dataset

@@ -1,0 +1,183 @@
+"""Finished cells in the study's folder, so that it goes on where it was stopped. Nothing is unpickled.
+
+Each run is a JSON file, each demonstration that succeeded a safetensors file beside its own, and each kind of
+model a folder. What is read is checked like any file of a stranger.
+"""
+
+import hashlib
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, fields
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+from safetensors.numpy import save
+
+from latentarm.core.errors import UserError
+from latentarm.core.files import written_whole
+from latentarm.core.types import Episode, FloatArray
+from latentarm.models.reading import Section
+from latentarm.models.saving import CONFIG_LIMIT, CONFIG_NAME, read_model, read_tensors, write_model
+from latentarm.runs.results_folder import write_json
+from latentarm_research.baselines.learned_orientation import OrientationMap
+from latentarm_research.metrics.drives import Drive
+from latentarm_research.metrics.task_drives import TaskDrive
+from latentarm_research.studies.study import Keep
+from latentarm_research.studies.tasks.cell import DriveCell, Driven, Shown, ShownCell, Trained, TrainingCell
+from latentarm_research.studies.tasks.condition import ORIENTED
+from latentarm_research.studies.tasks.orientation import OrientationCell, Oriented
+from latentarm_research.studies.tasks.runs import Run, kept_in
+
+RUNS: Final = "runs"
+"""The folder of demonstrations and drives."""
+
+MODELS: Final = "models"
+"""The folder of the models."""
+
+LIMIT: Final = 1 << 16
+"""Bytes of a run's file."""
+
+_NONE: Final = np.zeros(0)
+
+
+def _shown_path(out: Path, cell: ShownCell) -> Path:
+    return out / RUNS / cell.task / cell.stream.name.lower() / f"{cell.number}.json"
+
+
+def _write_shown(out: Path, cell: ShownCell, shown: Shown) -> None:
+    path, episode = _shown_path(out, cell), shown.episode
+    about: dict[str, object] = {}
+    if episode is not None:
+        arrays = {"state": episode.state, "timestamp": episode.timestamp, **episode.extras}
+        about = {"text": episode.task, **_write_arrays(path, arrays)}
+    write_json(path, {**shown.run.as_json(), "objects": list(shown.objects), **about})
+
+
+def _read_shown(out: Path, cell: ShownCell) -> Shown | None:
+    path = _shown_path(out, cell)
+    if not path.exists():
+        return None
+    section = Section.of_file(path, LIMIT)
+    run = _run(section, cell.number)
+    objects = tuple(section.texts("objects"))
+    return Shown(cell, run, _episode(section, path) if run.success else None, objects)
+
+
+def _episode(section: Section, path: Path) -> Episode:
+    arrays = _read_arrays(section, path)
+    if not {"state", "timestamp"} <= arrays.keys():
+        raise UserError(f"{path} has no states of its demonstration: remove it, and it is run again.")
+    state, timestamp = arrays.pop("state"), arrays.pop("timestamp")
+    return Episode(state, timestamp, task=section.text("text"), extras=arrays)
+
+
+def _drive_path(out: Path, cell: DriveCell) -> Path:
+    return out / RUNS / cell.task / cell.person / cell.driver.condition.folder / f"{cell.number}.json"
+
+
+def _write_drive(out: Path, cell: DriveCell, driven: Driven) -> None:
+    write_json(_drive_path(out, cell), {**driven.run.as_json(), "drive_s": driven.drive_s})
+
+
+def _read_drive(out: Path, cell: DriveCell) -> Driven | None:
+    path = _drive_path(out, cell)
+    if not path.exists():
+        return None
+    section = Section.of_file(path, LIMIT)
+    drive = Drive(**_values(section, Drive))
+    figures = TaskDrive(drive, **_values(section, TaskDrive))
+    return Driven(cell.task, cell.condition, _run(section, cell.number, figures), section.number("drive_s"))
+
+
+def _write_model(out: Path, cell: TrainingCell, trained: Trained) -> None:
+    folder = out / MODELS / kept_in(cell.task, cell.condition)
+    write_model(folder, trained.model, {"preset": asdict(cell.preset), "fit_s": trained.fit_s})
+
+
+def _read_model(out: Path, cell: TrainingCell) -> Trained | None:
+    folder = out / MODELS / kept_in(cell.task, cell.condition)
+    if not (folder / CONFIG_NAME).exists():
+        return None
+    fit_s = Section.of_file(folder / CONFIG_NAME, CONFIG_LIMIT).number("fit_s")
+    return Trained(cell.task, cell.condition, read_model(folder), fit_s)
+
+
+def _orientation_path(out: Path, cell: OrientationCell) -> Path:
+    return out / MODELS / cell.task / f"{ORIENTED}.json"
+
+
+def _write_orientation(out: Path, cell: OrientationCell, oriented: Oriented) -> None:
+    path, learned = _orientation_path(out, cell), oriented.orientation
+    arrays = {
+        f"{index}.{part}": one
+        for index, layer in enumerate(learned.layers)
+        for part, one in zip(("weight", "bias"), layer, strict=True)
+    }
+    about = {
+        "objects": list(learned.objects),
+        "sees_gripper": learned.sees_gripper,
+        "fit_s": oriented.fit_s,
+        **_write_arrays(path, arrays),
+    }
+    write_json(path, about)
+
+
+def _read_orientation(out: Path, cell: OrientationCell) -> Oriented | None:
+    path = _orientation_path(out, cell)
+    if not path.exists():
+        return None
+    section = Section.of_file(path, LIMIT)
+    arrays = _read_arrays(section, path)
+    numbers = range(max(len(arrays) // 2, 1))
+    layers = [(arrays.get(f"{one}.weight", _NONE), arrays.get(f"{one}.bias", _NONE)) for one in numbers]
+    widths = [*(weight.shape[:1] for weight, _ in layers[1:]), (6,)]
+    ends = [(weight.shape[1:], bias.shape) for weight, bias in layers]
+    if ends != [(width, width) for width in widths]:
+        raise UserError(f"{path} holds no network: remove it, and it is learned again.")
+    learned = OrientationMap(tuple(section.texts("objects")), section.truth("sees_gripper"), layers)
+    return Oriented(cell.task, learned, section.number("fit_s"))
+
+
+def _write_arrays(path: Path, arrays: Mapping[str, FloatArray]) -> dict[str, object]:
+    """Write arrays beside a JSON file, which is to hold what is returned."""
+    plain = {name: np.ascontiguousarray(one, dtype=np.float64) for name, one in arrays.items()}
+    content = save(plain)
+    with written_whole(path.with_suffix(".safetensors")) as part:
+        part.write_bytes(content)
+    shapes = {name: list(one.shape) for name, one in plain.items()}
+    return {"shapes": shapes, "sha256": hashlib.sha256(content).hexdigest()}
+
+
+def _read_arrays(section: Section, path: Path) -> dict[str, FloatArray]:
+    shapes = section.section("shapes")
+    wanted = {name: tuple(shapes.integers(name, 0, longest=2)) for name in shapes.plain()}
+    return read_tensors(path.with_suffix(".safetensors"), wanted, section.text("sha256"))
+
+
+_READ: Final[Mapping[Any, Callable[[Section, str], Any]]] = {
+    bool: Section.truth,
+    int: lambda section, key: section.integer(key, 0),
+    float: Section.number,
+    str: Section.text,
+    tuple[str, ...]: lambda section, key: tuple(section.texts(key)),
+}
+
+
+def _values(section: Section, record: type) -> dict[str, Any]:
+    """The plain fields of a record as they stand in a file."""
+    return {
+        entry.name: _READ[entry.type](section, entry.name) for entry in fields(record) if entry.type in _READ
+    }
+
+
+def _run(section: Section, number: int, figures: TaskDrive | None = None) -> Run:
+    run = Run(**_values(section, Run), figures=figures)
+    if run.number != number or run.done > len(run.steps):
+        raise UserError(f"{section.where} is no run {number} of this study: remove it, and it is run again.")
+    return run
+
+
+KEEP_SHOWN: Final = Keep(_read_shown, _write_shown)
+KEEP_MODELS: Final = Keep(_read_model, _write_model)
+KEEP_ORIENTATIONS: Final = Keep(_read_orientation, _write_orientation)
+KEEP_DRIVES: Final = Keep(_read_drive, _write_drive)

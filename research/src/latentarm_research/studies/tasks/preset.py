@@ -1,0 +1,96 @@
+"""How large the study is, what is driven with, and its streams of randomness."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from enum import IntEnum
+from typing import Final, cast, final
+
+from latentarm.core.errors import UserError
+from latentarm.models.catalogue import DEFAULT_MODEL
+from latentarm_research.people.catalogue import PEOPLE
+from latentarm_research.people.names import OperatorName
+from latentarm_research.studies.tasks.condition import Condition
+
+CONTEXTS: Final[Mapping[str, tuple[str, ...]]] = {
+    "joints": ("joints",),
+    "joints objects": ("joints", "objects"),
+    "joints objects_in_tool": ("joints", "objects_in_tool"),
+}
+"""What a decoder may see, by the name of the condition; the model's parameter ``context`` for each."""
+
+
+@final
+@dataclass(frozen=True)
+class Preset:
+    """Sizes of the study.
+
+    Attributes:
+        name: what it is called on the command line.
+        runs: of each task by each person, with mode switching and with the default; by the scripted
+            demonstrator as many.
+        others: the same with everything else, at most.
+        demonstrations: further runs of the demonstrator, those that succeed train the models; a fifth of them
+            is for validation and decides which epoch is best.
+        models: kinds that are driven with, each without and with a way back.
+        context: what their decoders see, a name of `CONTEXTS`.
+        moved_contexts: the same, side by side, where things were moved.
+        seeds: models of each kind, used in turn, so that no figure depends on one of them.
+        epochs: passes over the training pairs, at most.
+        batch_size: pairs per step.
+        hidden: units of each hidden layer.
+        state_noise_rad: SD of the noise on training states, rad.
+        way_back_m: length of the way back, m.
+        people: who drives, names of `PEOPLE`.
+
+    Raises:
+        UserError: a person is unknown or named twice, nobody drives, or there are no runs.
+    """
+
+    name: str
+    runs: int = 50
+    others: int = 20
+    demonstrations: int = 60
+    models: tuple[str, ...] = ("cvae", "homogeneous", "low_turning")
+    context: str = "joints objects_in_tool"
+    moved_contexts: tuple[str, ...] = ("joints", "joints objects_in_tool")
+    seeds: int = 3
+    epochs: int = 60
+    batch_size: int = 256
+    hidden: tuple[int, ...] = (64, 64)
+    state_noise_rad: float = 0.01
+    way_back_m: float = 0.06
+    people: tuple[OperatorName, ...] = ("planning", "greedy", "unsteady", "reading", "learning")
+
+    def __post_init__(self) -> None:
+        for person in self.people:
+            if person not in PEOPLE:
+                raise UserError(f"There is no simulated person {person!r}: choose from {', '.join(PEOPLE)}.")
+        if not self.people or len(set(self.people)) < len(self.people):
+            raise UserError("Name at least one simulated person, and none twice.")
+        if self.runs < 1:
+            raise UserError(f"The number of runs is {self.runs}: it must be at least 1.")
+
+    @property
+    def default(self) -> Condition:
+        """The default model with the way back."""
+        return Condition(self.context, DEFAULT_MODEL, way_back=True)
+
+    def asked(self, people: tuple[str, ...], runs: int | None) -> "Preset":
+        """The preset with other people and runs, where any are named."""
+        named = cast(tuple[OperatorName, ...], people)
+        return replace(self, people=named or self.people, runs=self.runs if runs is None else runs)
+
+
+PRESETS: Final[dict[str, Preset]] = {
+    "paper": Preset("paper"),
+    "small": Preset("small", runs=2, demonstrations=40, models=("homogeneous", "low_turning"), seeds=1),
+    "smoke": Preset("smoke", runs=2, demonstrations=6, seeds=1, epochs=6, people=("planning",)),
+}
+
+
+class Stream(IntEnum):
+    """The uses of randomness."""
+
+    RUNS = 0
+    DEMONSTRATIONS = 1
+    NETWORKS = 2

@@ -1,0 +1,207 @@
+"""`latentarm reproduce tasks`: tasks with things in physics, shown and driven by simulated people."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from latentarm.core.types import Row
+from latentarm.evaluation.looks import look_of
+from latentarm.runs.results_folder import package_versions
+from latentarm_research.drives.guide import GuidingHand
+from latentarm_research.drives.task_drive import REARM_S, STUCK_S
+from latentarm_research.studies import fitting, streams
+from latentarm_research.studies.page import render_page
+from latentarm_research.studies.source import source_digest
+from latentarm_research.studies.study import Grid, Report, Request, Study, again
+from latentarm_research.studies.tasks import cell as measuring
+from latentarm_research.studies.tasks import moved, orientation, runs
+from latentarm_research.studies.tasks import preset as presets
+from latentarm_research.studies.tasks.cell import (
+    DriveCell,
+    Shown,
+    ShownCell,
+    Trained,
+    TrainingCell,
+    drive,
+    show,
+    train,
+    training_set,
+)
+from latentarm_research.studies.tasks.condition import DEMONSTRATOR, SWITCHING, Condition
+from latentarm_research.studies.tasks.figures import success_figure
+from latentarm_research.studies.tasks.kept import (
+    KEEP_DRIVES,
+    KEEP_MODELS,
+    KEEP_ORIENTATIONS,
+    KEEP_SHOWN,
+    MODELS,
+    RUNS,
+)
+from latentarm_research.studies.tasks.moved import MOVED, TASKS, task_of
+from latentarm_research.studies.tasks.orientation import OrientationCell, Oriented, orient
+from latentarm_research.studies.tasks.preset import PRESETS, Preset, Stream
+from latentarm_research.studies.tasks.rows import STUDY as NAME
+from latentarm_research.studies.tasks.rows import Measured, rows_of, runs_as_json
+from latentarm_research.studies.tasks.rule import Verdict, decide
+from latentarm_research.studies.tasks.runs import Driver, Run
+from latentarm_research.studies.tasks.tables import (
+    failure_table,
+    measure_table,
+    success_table,
+    summary_tables,
+    time_table,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+def _measure(request: Request[Preset], grid: Grid) -> Measured:
+    preset, seed = request.preset, request.seed
+    shown = grid.run("Demonstrations", show, _shown_cells(request), _shown_label, KEEP_SHOWN)
+    sets = {task: training_set(task, _trains(shown, task)) for task in request.tasks}
+    training = [
+        TrainingCell(task, Condition(context, model, way_back), demonstrations, preset, seed)
+        for task, demonstrations in sets.items()
+        for model in preset.models
+        for context in (preset.moved_contexts if task in MOVED else (preset.context,))
+        for way_back in (False, True)
+    ]
+    trained = grid.run(
+        "Models", train, training, lambda cell: f"{cell.task}, {cell.condition.label}", KEEP_MODELS
+    )
+    orienting = [OrientationCell(task, demonstrations, preset, seed) for task, demonstrations in sets.items()]
+    oriented = grid.run("Orientations", orient, orienting, lambda cell: cell.task, KEEP_ORIENTATIONS)
+    cells = _drive_cells(request, (*oriented, *trained))
+    driven = grid.run("Drives", drive, cells, _drive_label, KEEP_DRIVES)
+    return Measured(shown, trained, driven)
+
+
+def _shown_cells(request: Request[Preset]) -> list[ShownCell]:
+    preset = request.preset
+    return [
+        ShownCell(task, stream, number, request.seed)
+        for task in request.tasks
+        for stream, count in (
+            (Stream.DEMONSTRATIONS, preset.demonstrations),
+            (Stream.RUNS, preset.runs),
+        )
+        for number in range(count)
+    ]
+
+
+def _trains(shown: Sequence[Shown], task: str) -> list[Shown]:
+    return [one for one in shown if (one.cell.task, one.cell.stream) == (task, Stream.DEMONSTRATIONS)]
+
+
+def _drive_cells(request: Request[Preset], learned: Sequence[Trained | Oriented]) -> list[DriveCell]:
+    """Number by number, so that a study that was stopped has as many runs of each condition."""
+    preset = request.preset
+    return [
+        DriveCell(task, driver, person, number, request.seed)
+        for number in range(preset.runs)
+        for task in request.tasks
+        for driver in (
+            Driver(Condition(SWITCHING)),
+            *(one.driver for one in learned if one.task == task),
+        )
+        if number < preset.others or driver.condition in (Condition(SWITCHING), preset.default)
+        for person in preset.people
+    ]
+
+
+def _shown_label(cell: ShownCell) -> str:
+    return f"{cell.task}, {DEMONSTRATOR}, {cell.stream.name.lower()} {cell.number}"
+
+
+def _drive_label(cell: DriveCell) -> str:
+    return f"{cell.task}, {cell.driver.condition.label}, {cell.person}, run {cell.number}"
+
+
+def _report(request: Request[Preset], measured: Measured) -> Report:
+    by_task = {task: measured.runs(task) for task in request.tasks}
+    verdict = decide(by_task, measured.fit_s(request.preset.context))
+    rows = rows_of(by_task)
+    figures = {"success": success_figure(by_task)}
+    return Report(
+        rows=rows,
+        page=_page(request, measured, by_task, rows, figures, verdict),
+        figures=figures,
+        documents={"runs.json": runs_as_json(by_task), "verdict.json": verdict.as_json()},
+        timings=_timings(measured),
+        tables=[*summary_tables(by_task), f"Default by the rule: {verdict.sentence}."],
+    )
+
+
+def _page(
+    request: Request[Preset],
+    measured: Measured,
+    by_task: Mapping[str, Mapping[Condition, Sequence[Run]]],
+    rows: Sequence[Row],
+    figures: "Mapping[str, Figure]",
+    verdict: Verdict,
+) -> str:
+    tasks = {name: task_of(name, Stream.RUNS) for name in by_task}
+    return render_page(
+        "tasks/page.md",
+        command=again(STUDY, request),
+        preset=request.preset,
+        figures=figures,
+        verdict=verdict,
+        hand=GuidingHand(),
+        stuck_s=STUCK_S,
+        rearm_s=REARM_S,
+        tasks=tasks,
+        moved={name: MOVED[name].about for name in tasks if name in MOVED},
+        demonstrated={name: measured.demonstrated(name) for name in tasks},
+        refused=[
+            f"{look_of(one.task).label} ({one.condition.label})" for one in measured.trained if one.refused
+        ],
+        success_tables={name: success_table(runs) for name, runs in by_task.items()},
+        time_tables={name: time_table(runs) for name, runs in by_task.items()},
+        measure_tables={name: measure_table(rows, runs, name) for name, runs in by_task.items()},
+        failure_tables={name: failure_table(runs) for name, runs in by_task.items()},
+    )
+
+
+def _timings(measured: Measured) -> dict[str, object]:
+    """How long models were fitted and each condition was driven, s."""
+    drives: dict[tuple[str, str], float] = {}
+    for one in measured.driven:
+        place = one.task, f"{one.condition.label}, {one.condition.person}"
+        drives[place] = drives.get(place, 0.0) + one.drive_s
+    return {
+        "models": [
+            {"task": one.task, "condition": one.condition.label, "fit_s": one.fit_s}
+            for one in measured.trained
+        ],
+        "drives": [
+            {"task": task, "condition": condition, "drive_s": drive_s}
+            for (task, condition), drive_s in drives.items()
+        ],
+    }
+
+
+def _depends_on(request: Request[Preset]) -> dict[str, object]:
+    """The code that measures a cell, so that a study does not go on with other code."""
+    modules = [
+        Path(module.__file__ or "")
+        for module in (measuring, fitting, moved, orientation, presets, runs, streams)
+    ]
+    return {"code": source_digest(modules), "versions": package_versions()}
+
+
+STUDY: Final = Study(
+    name=NAME,
+    command="reproduce tasks",
+    presets=PRESETS,
+    tasks=TASKS,
+    simulated=("arms", "people", "things"),
+    measure=_measure,
+    report=_report,
+    figures=("success",),
+    documents=("runs.json", "verdict.json"),
+    depends_on=_depends_on,
+    kept=(RUNS, MODELS),
+    options=("people", "runs"),
+)

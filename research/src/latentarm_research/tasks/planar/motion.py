@@ -1,0 +1,183 @@
+"""What the four tasks of section 8.1 have in common."""
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import Final, Literal, final
+
+import numpy as np
+
+from latentarm.core.errors import UserError
+from latentarm.core.types import BoolArray, Demonstrations, Episode, FloatArray
+from latentarm.robots.robot import Robot
+from latentarm_research.tasks.planar.paths import Path
+from latentarm_research.tasks.planar.resolved_rate import Constraint, Recording, follow, settle
+
+DEMONSTRATION_S: Final = 4.0
+"""Duration of a demonstration that goes back and forth."""
+
+DRAWS: Final = 20
+"""How often postures are drawn, at most, before too few pass."""
+
+Places = Literal["freely", "nearest"]
+Pace = Literal["normal", "swing"]
+
+
+@dataclass(frozen=True)
+class Design:
+    """How a simulated person holds and moves the arm: the same on all tasks. The paper leaves all of it open.
+
+    Attributes:
+        spread_rad: SD of a demonstration's first posture about the nominal one: the arm has more joints than
+            the task needs, and nobody begins twice in the same posture.
+        placed: ``freely``: the joints that the task leaves free are drawn whatever the place, and the others
+            bring the tool there, so that the place says nothing about the posture. ``nearest``: all joints
+            are drawn and then move by the least to the place, so that the place says much about it.
+        least_conditioning: a demonstration in which the smallest singular value of the task's Jacobian falls
+            below this share of its value in the nominal posture is drawn anew: there the joints would have to
+            race, and a few such pairs would make up all of a mean.
+        pace: of the two tasks with one axis along a path. ``normal``: each stroke has its own joint speed,
+            normal about zero, so that speed tells neither place nor posture. ``swing``: the tool swings along
+            the path, fastest in the middle.
+        samples: state-action pairs of a demonstration, spread evenly over its duration.
+    """
+
+    spread_rad: float = 0.05
+    placed: Places = "freely"
+    least_conditioning: float = 2 / 3
+    pace: Pace = "normal"
+    samples: int = 10
+
+
+DESIGN: Final = Design()
+"""The design of the study."""
+
+
+def outline(middle: FloatArray, depth_m: float, width_m: float) -> FloatArray:
+    """The closed outline (5, 2) of a rectangle about a middle (2,), m: along x and along y."""
+    corner = np.array([[-1, -1], [-1, 1], [1, 1], [1, -1], [-1, -1]])
+    return middle + corner * (depth_m / 2, width_m / 2)
+
+
+class PlanarMotion(ABC):
+    """A continuous motion to be demonstrated and learned, without discrete goals.
+
+    Attributes:
+        robot: the arm, or the two arms.
+        design: how it is demonstrated.
+    """
+
+    def __init__(self, robot: Robot, design: Design) -> None:
+        self.robot, self.design = robot, design
+
+    @property
+    @abstractmethod
+    def name(self) -> str:
+        """Short name, in snake_case."""
+
+    @property
+    @abstractmethod
+    def latent_dim(self) -> int:
+        """Size d of the latent action that the paper gives the task."""
+
+    @property
+    @abstractmethod
+    def guides(self) -> tuple[FloatArray, ...]:
+        """Lines that show the task in a figure, each (K, 2) in the plane, m."""
+
+    @property
+    @abstractmethod
+    def words(self) -> str:
+        """What is done, in words."""
+
+    @property
+    @abstractmethod
+    def nominal(self) -> FloatArray:
+        """The nominal posture (n,), rad."""
+
+    @property
+    @abstractmethod
+    def closing(self) -> tuple[int, ...]:
+        """Joints that bring the tool to its place where the others are drawn freely."""
+
+    @property
+    @abstractmethod
+    def constraint(self) -> Constraint:
+        """What the task constrains."""
+
+    @property
+    def duration_s(self) -> float:
+        """Of a demonstration, s."""
+        return DEMONSTRATION_S
+
+    @abstractmethod
+    def paths(self, count: int, rng: np.random.Generator) -> Path:
+        """The paths of some demonstrations, each from its beginning."""
+
+    @final
+    def demonstrate(self, episodes: int, rng: np.random.Generator) -> Demonstrations:
+        """Demonstrations by a simulated person: in each ``design.samples`` states with the actions there.
+
+        Args:
+            episodes: how many.
+            rng: source of all variation.
+
+        Raises:
+            UserError: fewer than one episode is asked for, or nearly every posture is ill-conditioned.
+        """
+        return self._as_demonstrations(self.record(episodes, rng))
+
+    @final
+    def record(self, episodes: int, rng: np.random.Generator) -> Recording:
+        """As `demonstrate`, in arrays, and with where each path ends; the same arguments and errors."""
+        if episodes < 1:
+            raise UserError("Ask for at least one demonstration.")
+        kept: list[Recording] = []
+        missing = episodes
+        for _ in range(DRAWS):
+            recording = self._draw(missing + missing // 2 + 4, rng)
+            kept.append(recording.of(np.flatnonzero(recording.sound)[:missing]))
+            missing -= len(kept[-1].states)
+            if not missing:
+                return Recording.joined(kept)
+        raise UserError(
+            f"Too few postures of {self.name} pass a least conditioning of {self.design.least_conditioning:g}"
+            f" at a spread of {self.design.spread_rad:g} rad: lower one of them."
+        )
+
+    def _draw(self, count: int, rng: np.random.Generator) -> Recording:
+        """Some demonstrations, those among them that are to be drawn anew not yet left out."""
+        path = self.paths(count, rng)
+        posture = self.nominal + rng.normal(0.0, self.design.spread_rad, (count, self.robot.dof))
+        moved = np.arange(self.robot.dof)
+        if self.design.placed == "freely":
+            moved = np.array(self.closing)
+            posture[:, moved] = self.nominal[moved]
+        start = settle(posture, path.now, self.constraint, moved)
+        recording = follow(self.constraint, start, path, self.design.samples, self.duration_s)
+        return recording.judged(self._sound(recording.states))
+
+    def _sound(self, states: FloatArray) -> BoolArray:
+        """Which demonstrations (E, T, n) are well conditioned, within limits, and on the nominal branch.
+
+        Two ways to bend the closing joints lead to the same place; a person keeps to one.
+        """
+        jacobian, nominal = self.constraint.jacobian(states), self.constraint.jacobian(self.nominal)
+        least = np.sqrt(np.linalg.eigvalsh(nominal @ nominal.mT)[0]) * self.design.least_conditioning
+        conditioned = np.linalg.eigvalsh(jacobian @ jacobian.mT)[..., 0] > least**2
+        closing = np.array(self.closing)
+        branch = np.linalg.det(jacobian[..., closing]) * np.linalg.det(nominal[:, closing]) > 0
+        within = ~self.robot.limits.violation(states).any(axis=-1)
+        return (conditioned & branch & within).all(axis=-1)
+
+    def _as_demonstrations(self, recording: Recording) -> Demonstrations:
+        rate_hz = self.design.samples / self.duration_s
+        timestamp = np.arange(self.design.samples) / rate_hz
+        return Demonstrations(
+            episodes=tuple(
+                Episode(state=state, timestamp=timestamp, action=action, task=self.words)
+                for state, action in zip(recording.states, recording.actions, strict=True)
+            ),
+            rate_hz=rate_hz,
+            joint_names=self.robot.joint_names,
+            robot=self.robot.name,
+        )

@@ -1,0 +1,63 @@
+"""Sine: one arm moves its tool back and forth along a sine wave (1-D latent action).
+
+The wave has three half-periods about the tool's place in the nominal posture. It is so flat that what it asks
+of the joints is mostly the same everywhere; what differs, with the place and with the posture, is what PCA
+loses.
+"""
+
+from typing import Final, final
+
+import numpy as np
+
+from latentarm.core.types import FloatArray
+from latentarm_research.tasks.planar.motion import DEMONSTRATION_S
+from latentarm_research.tasks.planar.one_arm import OneArm
+from latentarm_research.tasks.planar.paths import Paced, Path, Timed, swings
+from latentarm_research.tasks.planar.resolved_rate import curled, plane_point
+
+AMPLITUDE_M: Final = 0.01
+WAVELENGTH_M: Final = 0.2
+HALF_LENGTH_M: Final = 0.15
+SPEED_RAD_S: Final = 0.4
+"""SD of the joint speed."""
+SWING_RAD_S: Final = (1.2, 2.4)
+"""Slowest and fastest angular frequency of the back-and-forth at the pace ``swing``."""
+
+
+@final
+class Sine(OneArm):
+    """Along ``y = A sin(2 pi x / wavelength)`` about the nominal place of the tool."""
+
+    @property
+    def name(self) -> str:
+        """``sine``."""
+        return "sine"
+
+    @property
+    def latent_dim(self) -> int:
+        """1: along the wave."""
+        return 1
+
+    @property
+    def guides(self) -> tuple[FloatArray, ...]:
+        """The wave."""
+        return (self.curve(np.linspace(-HALF_LENGTH_M, HALF_LENGTH_M, 200)),)
+
+    def curve(self, along: FloatArray) -> FloatArray:
+        """Points (..., 2) of the wave, m, at distances (...,) to the right of its middle, m."""
+        wave = AMPLITUDE_M * np.sin(2 * np.pi * along / WAVELENGTH_M)
+        return plane_point(self.robot, curled(self.robot)) + np.stack([along, wave], axis=-1)
+
+    @property
+    def words(self) -> str:
+        """See `PlanarMotion`."""
+        return "move along the sine wave"
+
+    def paths(self, count: int, rng: np.random.Generator) -> Path:
+        """Back and forth over the wave, or at the pace ``swing`` over a part of it."""
+        if self.design.pace == "normal":
+            begin = rng.uniform(-HALF_LENGTH_M, HALF_LENGTH_M, count)
+            ends = (-HALF_LENGTH_M, HALF_LENGTH_M)
+            return Paced(self.curve, begin, ends, SPEED_RAD_S, DEMONSTRATION_S, rng)
+        swing = swings(count, HALF_LENGTH_M, SWING_RAD_S, rng)
+        return Timed(lambda time: self.curve(swing(time)))

@@ -1,0 +1,158 @@
+"""The paper's own analysis, as printed, on our trials, so that its statistics can be compared with ours."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Final, final
+
+import numpy as np
+
+from latentarm.core.types import FloatArray
+from latentarm_research.studies.statistics import LEVEL, format_p, spreads
+from latentarm_research.user_studies.analysis.means import sides, tasks_of
+from latentarm_research.user_studies.hypothesis import Claim
+from latentarm_research.user_studies.printed import Printed, PrintedTest
+from latentarm_research.user_studies.record import Trial
+
+NOT_MEASURED: Final = "not measured"
+NOBODY_BOTH: Final = "nobody has met both conditions"
+
+
+@final
+@dataclass(frozen=True)
+class AsPrinted:
+    """One statistic of the paper, and the same of our trials.
+
+    Attributes:
+        printed: of the paper.
+        text: ours in the same form.
+        less: whether our subject has less; None where nothing was compared or measured.
+        significant: whether p is below .05; None where nothing was tested.
+    """
+
+    printed: Printed
+    text: str
+    less: bool | None = None
+    significant: bool | None = None
+
+    @property
+    def same_sign(self) -> bool | None:
+        """Whether the difference has the paper's sign; None where either is unknown."""
+        unknown = self.less is None or self.printed.less is None
+        return None if unknown else self.less == self.printed.less
+
+    @property
+    def same_significance(self) -> bool | None:
+        """Whether both are significant, or neither; None where either is unknown."""
+        unknown = self.significant is None or self.printed.significant is None
+        return None if unknown else self.significant == self.printed.significant
+
+    def as_json(self) -> dict[str, object]:
+        """Plain mapping."""
+        return {
+            "test": self.printed.test,
+            "measure": self.printed.measure,
+            "subject": list(self.printed.subject),
+            "against": list(self.printed.against),
+            "tasks": list(self.printed.tasks),
+            "paper": self.printed.text,
+            "ours": self.text,
+            "same_sign": self.same_sign,
+            "same_significance": self.same_significance,
+        }
+
+
+def as_printed(printed: Printed, trials: Sequence[Trial]) -> AsPrinted:
+    """Analyse our trials in the way in which the paper got a statistic.
+
+    Args:
+        printed: the paper's statistic.
+        trials: that count.
+    """
+    if not any(printed.measure in trial.measures for trial in trials):
+        return AsPrinted(printed, NOT_MEASURED)
+    if not printed.against:
+        return AsPrinted(printed, _described(printed, trials))
+    return _TESTS[printed.test](printed, trials)
+
+
+def _claim(printed: Printed) -> Claim:
+    return Claim(printed.measure, printed.subject, printed.against, "less", printed.tasks)
+
+
+def _values(printed: Printed, trials: Sequence[Trial], conditions: Sequence[str]) -> FloatArray:
+    """The measure in every trial of some conditions, as if they were independent."""
+    tasks = printed.tasks or tasks_of(trials, Claim(printed.measure, ("",), ("-",), "less"))
+    return np.array(
+        [
+            trial.measures[printed.measure]
+            for trial in trials
+            if trial.condition in conditions and trial.task in tasks and printed.measure in trial.measures
+        ]
+    )
+
+
+def _described(printed: Printed, trials: Sequence[Trial]) -> str:
+    values = _values(printed, trials, printed.subject)
+    if not len(values):
+        return NOT_MEASURED
+    if printed.test == "share":
+        return f"{int(values.sum())} of {len(values)} trials"
+    return f"{values.mean():.0f} s on average, {values.min():.0f} to {values.max():.0f} s"
+
+
+def _trials_t(printed: Printed, trials: Sequence[Trial]) -> AsPrinted:
+    from scipy.stats import ttest_ind
+
+    subject, against = (_values(printed, trials, side) for side in (printed.subject, printed.against))
+    if min(len(subject), len(against)) < 2 or not spreads(np.concatenate([subject, against])):
+        return AsPrinted(printed, "too few trials")
+    # The paper's t is positive where latent actions have less.
+    result: Any = ttest_ind(against, subject)
+    text = f"t({len(subject) + len(against) - 2}) = {result.statistic:.2f}, {_p(result.pvalue)}"
+    return _said(printed, text, float(subject.mean() - against.mean()), float(result.pvalue))
+
+
+def _between_f(printed: Printed, trials: Sequence[Trial]) -> AsPrinted:
+    from scipy.stats import f_oneway
+
+    both = sides(trials, _claim(printed))
+    n = len(both.people)
+    if not n:
+        return AsPrinted(printed, NOBODY_BOTH)
+    if n < 2 or not spreads(np.concatenate([both.subject, both.against])):
+        return AsPrinted(printed, "too few people")
+    result = f_oneway(both.subject, both.against)
+    text = f"F(1, {2 * n - 2}) = {result.statistic:.1f}, {_p(result.pvalue)}"
+    return _said(printed, text, float(both.differences.mean()), float(result.pvalue))
+
+
+def _paired(printed: Printed, trials: Sequence[Trial]) -> AsPrinted:
+    from scipy.stats import ttest_rel
+
+    both = sides(trials, _claim(printed))
+    n = len(both.people)
+    if not n:
+        return AsPrinted(printed, NOBODY_BOTH)
+    if n < 2 or not spreads(both.differences):
+        return AsPrinted(printed, "too few people, or no spread")
+    result = ttest_rel(both.subject, both.against)
+    text = f"t({n - 1}) = {result.statistic:.1f}, {_p(result.pvalue)}"
+    return _said(printed, text, float(both.differences.mean()), float(result.pvalue))
+
+
+_TESTS: Final[Mapping[PrintedTest, Callable[[Printed, Sequence[Trial]], AsPrinted]]] = {
+    "trials t": _trials_t,
+    "between F": _between_f,
+    "paired t": _paired,
+    "paired p": _paired,
+    "stars": _paired,
+}
+
+
+def _said(printed: Printed, text: str, difference: float, p: float) -> AsPrinted:
+    return AsPrinted(printed, text, difference < 0.0, p < LEVEL)
+
+
+def _p(p: float) -> str:
+    shown = format_p(p)
+    return f"p {shown}" if shown.startswith("<") else f"p = {shown}"

@@ -1,0 +1,107 @@
+"""People's means: one figure per person, which are independent where trials are not."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import final
+
+import numpy as np
+
+from latentarm.core.types import FloatArray
+from latentarm_research.user_studies.hypothesis import Claim
+from latentarm_research.user_studies.record import Trial
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Sides:
+    """The two sides of a comparison: the same people on both, in the same rows, or different ones.
+
+    Attributes:
+        people: numbers of the people on the subject's side.
+        subject: (n,), mean of each under the conditions that a claim is about.
+        against: (m,), of each on the other side, under the others.
+        people_against: numbers of the people there.
+    """
+
+    people: tuple[int, ...]
+    subject: FloatArray
+    against: FloatArray
+    people_against: tuple[int, ...]
+
+    @property
+    def differences(self) -> FloatArray:
+        """(n,), subject less against, where the same people stand on both sides."""
+        return self.subject - self.against
+
+
+def person_mean(
+    trials: Sequence[Trial], person: int, measure: str, conditions: Sequence[str], tasks: Sequence[str]
+) -> float:
+    """A person's mean: over trials, then over tasks, then over conditions.
+
+    Returns:
+        NaN where a condition or task has no figure.
+    """
+    cells = [
+        [
+            trial.measures[measure]
+            for trial in trials
+            if (trial.person, trial.condition, trial.task) == (person, condition, task)
+            and measure in trial.measures
+        ]
+        for condition in conditions
+        for task in tasks
+    ]
+    return float(np.mean([np.mean(cell) for cell in cells])) if all(cells) else np.nan
+
+
+def tasks_of(trials: Sequence[Trial], claim: Claim) -> tuple[str, ...]:
+    """The tasks that a claim is about: those that it names, or all that any trial has its measure for."""
+    return claim.tasks or tuple(
+        dict.fromkeys(trial.task for trial in trials if claim.measure in trial.measures)
+    )
+
+
+def sides(trials: Sequence[Trial], claim: Claim) -> Sides:
+    """Both sides of a claim, of all people who have both; nobody where the measure is missing.
+
+    Args:
+        trials: that count.
+        claim: what is compared.
+    """
+    tasks = tasks_of(trials, claim)
+    people = sorted({trial.person for trial in trials}) if tasks else []
+    by_person = {person: [trial for trial in trials if trial.person == person] for person in people}
+    both = np.array(
+        [
+            [
+                person_mean(by_person[person], person, claim.measure, side, tasks)
+                for side in (claim.subject, claim.against)
+            ]
+            for person in people
+        ]
+    ).reshape(-1, 2)
+    whole = np.flatnonzero(np.isfinite(both).all(axis=1))
+    numbers = tuple(people[row] for row in whole)
+    return Sides(numbers, both[whole, 0], both[whole, 1], numbers)
+
+
+def groups(trials: Sequence[Trial], claim: Claim) -> Sides:
+    """Both sides of a claim of a study in which each person meets one condition.
+
+    Args:
+        trials: that count.
+        claim: what is compared.
+    """
+    tasks = tasks_of(trials, claim)
+    found: list[tuple[tuple[int, ...], FloatArray]] = []
+    for side in (claim.subject, claim.against):
+        met = {trial.person: trial.condition for trial in trials if tasks and trial.condition in side}
+        means = {
+            person: person_mean(trials, person, claim.measure, (met[person],), tasks)
+            for person in sorted(met)
+        }
+        known = {person: mean for person, mean in means.items() if np.isfinite(mean)}
+        found.append((tuple(known), np.array(list(known.values()), dtype=float)))
+    (people, subject), (others, against) = found
+    return Sides(people, subject, against, others)

@@ -1,0 +1,228 @@
+"""A study as a frozen record: everything that is settled before the first person comes."""
+
+import hashlib
+import json
+from dataclasses import asdict, dataclass
+from typing import Literal, final
+
+from latentarm.core.errors import UserError
+from latentarm.evaluation.measures import label_of
+from latentarm_research.user_studies.exclusion import Exclusion
+from latentarm_research.user_studies.hypothesis import Claim, Hypothesis
+from latentarm_research.user_studies.printed import Printed
+from latentarm_research.user_studies.questionnaire import Scale
+
+Controls = Literal["modes", "two_sticks", "retargeting", "latent"]
+"""Two axes of the end-effector at a time; two sticks and a toggle; one stick retargeted to the tool's twist;
+latent actions."""
+
+Assists = Literal["none", "interpolation", "blending"]
+"""Nobody; HARMONIC's interpolation with a fixed weight; Algorithm 1 of the paper (equations 2 and 3)."""
+
+Design = Literal["within", "between"]
+"""Each person meets every condition, in an order of their own; or one condition alone."""
+
+Aligns = Literal["none", "no_priors", "all_priors"]
+"""z = u; the paper's network f learned from answers alone; and with its three priors."""
+
+
+@final
+@dataclass(frozen=True)
+class Condition:
+    """What people drive with.
+
+    Attributes:
+        name: as tables call it.
+        about: in words.
+        controls: what turns their input into motion.
+        model: a name of `latentarm.models.catalogue.KINDS`; empty without latent actions.
+        context: features that its decoder sees.
+        assists: who helps.
+        weight: of the help, where `assists` interpolates, in [0, 1].
+        aligns: what stands between input and latent action.
+
+    Raises:
+        UserError: the parts do not go together.
+    """
+
+    name: str
+    about: str
+    controls: Controls
+    model: str = ""
+    context: tuple[str, ...] = ()
+    assists: Assists = "none"
+    weight: float = 0.0
+    aligns: Aligns = "none"
+
+    def __post_init__(self) -> None:
+        latent = self.controls == "latent"
+        if latent != bool(self.model) or latent != bool(self.context):
+            raise UserError(f"The condition {self.name} needs model and context if it is latent, only then.")
+        if not latent and self.aligns != "none":
+            raise UserError(f"The condition {self.name} has nothing to align: it is not latent.")
+        if not 0.0 <= self.weight <= 1.0:
+            raise UserError(f"The weight of the condition {self.name} must be in [0, 1], not {self.weight}.")
+        if self.assists != "interpolation" and self.weight:
+            raise UserError(f"The condition {self.name} has a weight and does not interpolate.")
+
+
+@final
+@dataclass(frozen=True)
+class StudyTask:
+    """What people do.
+
+    Attributes:
+        name: in records.
+        label: as tables call it.
+        scene: a name that `latentarm_research.user_studies.scenes.scene_of` knows.
+        trials: in each condition.
+        choices: of the scene's task, in turn from trial to trial; each is driven in every trial where
+            `all_choices` is set, one after the other.
+        all_choices: whether a trial is all choices in one arrangement, its figures summed.
+        plates: things to the closest of which *Goal Error* is measured; empty where it is not measured.
+        queries: motions that people are asked about before it, where a condition aligns.
+        demonstrations_min: minutes of demonstrations from which its model learns.
+        trained_with: name of the task whose model it shares; its own where empty.
+        trial_s: how long people have for a trial, or for each choice where `all_choices` is set, s: after a
+            failure everything is set up anew and they begin again, until then. 0 is one attempt, with the
+            time limit of the scene's task.
+    """
+
+    name: str
+    label: str
+    scene: str
+    trials: int
+    choices: tuple[int, ...]
+    all_choices: bool = False
+    plates: tuple[str, ...] = ()
+    queries: int = 0
+    demonstrations_min: float = 0.0
+    trained_with: str = ""
+    trial_s: float = 0.0
+
+
+@final
+@dataclass(frozen=True)
+class Factor:
+    """One factor of a factorial design, with two levels.
+
+    Attributes:
+        name: as tables call it.
+        low: its first level and the conditions that have it.
+        high: its second.
+    """
+
+    name: str
+    low: tuple[str, tuple[str, ...]]
+    high: tuple[str, tuple[str, ...]]
+
+
+@final
+@dataclass(frozen=True)
+class Definition:
+    """A study.
+
+    Attributes:
+        name: on the command line.
+        title: of its page.
+        section: of the paper.
+        about: what is asked, in a sentence.
+        people: how many go through it.
+        papers_people: who went through the paper's, in words.
+        conditions: in the order of tables.
+        tasks: in the order in which people do them.
+        orders: of the conditions, person by person, repeated as needed; a seeded Williams design where empty.
+        practice_min: minutes of practice at most.
+        practice: when they practise, in words.
+        input: what people hold, in words.
+        measures: by name, in the order of tables.
+        questionnaire: after each condition.
+        hypotheses: with their tests.
+        exclusions: what does not count.
+        factors: two of a 2 x 2 design, or none.
+        printed: statistics of the paper.
+        departures: where this definition differs from what the paper did, each a sentence.
+        design: whether a person meets all conditions or one.
+
+    Raises:
+        UserError: a claim, an order or an exclusion names what the study does not have.
+    """
+
+    name: str
+    title: str
+    section: str
+    about: str
+    people: int
+    papers_people: str
+    conditions: tuple[Condition, ...]
+    tasks: tuple[StudyTask, ...]
+    orders: tuple[tuple[str, ...], ...]
+    practice_min: float
+    practice: str
+    input: str
+    measures: tuple[str, ...]
+    questionnaire: tuple[Scale, ...]
+    hypotheses: tuple[Hypothesis, ...]
+    exclusions: tuple[Exclusion, ...]
+    factors: tuple[Factor, ...]
+    printed: tuple[Printed, ...]
+    departures: tuple[str, ...]
+    design: Design = "within"
+
+    def __post_init__(self) -> None:
+        names = {condition.name for condition in self.conditions}
+        if len(names) < len(self.conditions) or len(names) < 2:
+            raise UserError(
+                f"The study {self.name} needs two conditions or more, each with a name of its own."
+            )
+        tasks = {task.name for task in self.tasks}
+        known = {*self.measures, *(scale.name for scale in self.questionnaire)}
+        for claim in self.claims:
+            unknown = {*claim.subject, *claim.against} - names or set(claim.tasks) - tasks
+            if unknown or claim.measure not in known:
+                missing = ", ".join(sorted(unknown)) or claim.measure
+                raise UserError(
+                    f"A claim of the study {self.name} is about {missing}, which it does not have."
+                )
+        for rule in self.exclusions:
+            if rule.measure not in self.measures:
+                raise UserError(
+                    f"An exclusion of the study {self.name} is by {rule.measure}, which it does not measure."
+                )
+        if self.design == "between" and self.orders:
+            raise UserError(
+                f"The study {self.name} has orders, but each person meets one condition: leave them empty."
+            )
+        for order in self.orders:
+            if len(set(order)) < len(order) or not set(order) <= names:
+                raise UserError(f"An order of the study {self.name} must name its conditions, each once.")
+        if self.people < 2:
+            raise UserError(f"The study {self.name} needs two people or more, not {self.people}.")
+
+    @property
+    def claims(self) -> tuple[Claim, ...]:
+        """Of all hypotheses, in order."""
+        return tuple(claim for hypothesis in self.hypotheses for claim in hypothesis.claims)
+
+    @property
+    def scales(self) -> tuple[str, ...]:
+        """Names of the questionnaire's scales."""
+        return tuple(scale.name for scale in self.questionnaire)
+
+    def condition(self, name: str) -> Condition:
+        """The condition of that name."""
+        return next(condition for condition in self.conditions if condition.name == name)
+
+    def label(self, measure: str) -> str:
+        """What tables call a scale of the questionnaire, or the measure's own label."""
+        return next((scale.label for scale in self.questionnaire if scale.name == measure), label_of(measure))
+
+    def as_json(self) -> dict[str, object]:
+        """Plain mapping of every field."""
+        return json.loads(json.dumps(asdict(self)))
+
+    @property
+    def digest(self) -> str:
+        """SHA-256 of every field, in hexadecimal."""
+        canonical = json.dumps(self.as_json(), sort_keys=True, separators=(",", ":"), ensure_ascii=False)
+        return hashlib.sha256(canonical.encode()).hexdigest()

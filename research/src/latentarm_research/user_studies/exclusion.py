@@ -1,0 +1,88 @@
+"""Which trials and people do not count, by rules that cannot see the condition."""
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final, Literal, final
+
+from latentarm.core.errors import UserError
+from latentarm_research.user_studies.record import Trial, UnlabelledTrial
+
+MOST_TRIALS: Final = 0.5
+"""A person of whom a larger share of trials is excluded is excluded."""
+
+
+@final
+@dataclass(frozen=True)
+class Exclusion:
+    """A rule that excludes a trial by one of its figures.
+
+    It is given an `UnlabelledTrial`, which has no condition.
+
+    Attributes:
+        measure: which figure; a trial without it stays.
+        side: excluded are trials with less than the limit, or with more.
+        limit: in the measure's unit.
+        why: the reason, in words.
+
+    Raises:
+        UserError: the limit is not finite.
+    """
+
+    measure: str
+    side: Literal["less", "more"]
+    limit: float
+    why: str
+
+    def __post_init__(self) -> None:
+        if not abs(self.limit) < float("inf"):
+            raise UserError(f"The limit of the exclusion by {self.measure} must be finite, not {self.limit}.")
+
+    def excludes(self, trial: UnlabelledTrial) -> bool:
+        """Whether the trial does not count."""
+        value = trial.measures.get(self.measure)
+        if value is None:
+            return False
+        return value < self.limit if self.side == "less" else value > self.limit
+
+
+@final
+@dataclass(frozen=True)
+class Excluded:
+    """What does not count.
+
+    Attributes:
+        trials: index of each excluded trial with the reason.
+        people: numbers of the people who do not count at all.
+    """
+
+    trials: tuple[tuple[int, str], ...]
+    people: tuple[int, ...]
+
+
+def excluded(rules: Sequence[Exclusion], trials: Sequence[UnlabelledTrial]) -> Excluded:
+    """Apply rules to all trials of a study.
+
+    Args:
+        rules: of the definition.
+        trials: of all people.
+    """
+    found = [
+        (index, next(rule.why for rule in rules if rule.excludes(trial)))
+        for index, trial in enumerate(trials)
+        if any(rule.excludes(trial) for rule in rules)
+    ]
+    had = Counter(trial.person for trial in trials)
+    lost = Counter(trials[index].person for index, _ in found)
+    people = tuple(sorted(person for person, count in lost.items() if count > MOST_TRIALS * had[person]))
+    return Excluded(tuple(found), people)
+
+
+def counted(rules: Sequence[Exclusion], trials: Sequence[Trial]) -> tuple[list[Trial], Excluded]:
+    """The trials that count, and what does not."""
+    out = excluded(rules, [trial.unlabelled() for trial in trials])
+    gone = {index for index, _ in out.trials}
+    kept = [
+        trial for index, trial in enumerate(trials) if index not in gone and trial.person not in out.people
+    ]
+    return kept, out

@@ -1,0 +1,52 @@
+"""A task that is cut off early, for runs that only show that something runs."""
+
+from typing import final
+
+import numpy as np
+
+from latentarm.robots.kinematics.obstacles import Obstacle
+from latentarm.robots.robot import Robot
+from latentarm.tasks.scene_task import Beginning, SceneTask
+
+
+@final
+class LimitedTime(SceneTask):
+    """Another task with a time limit that may be shorter than its own.
+
+    Args:
+        task: what is done.
+        time_limit_s: a run that takes longer has failed, s.
+    """
+
+    def __init__(self, task: SceneTask, time_limit_s: float) -> None:
+        self._task = task
+        self._time_limit_s = min(time_limit_s, task.time_limit_s)
+
+    @property
+    def name(self) -> str:
+        """That of the task."""
+        return self._task.name
+
+    @property
+    def robot(self) -> Robot:
+        """That of the task."""
+        return self._task.robot
+
+    @property
+    def choices(self) -> tuple[str, ...]:
+        """Those of the task."""
+        return self._task.choices
+
+    @property
+    def obstacles(self) -> tuple[Obstacle, ...]:
+        """Those of the task."""
+        return self._task.obstacles
+
+    @property
+    def time_limit_s(self) -> float:
+        """The shorter of the two."""
+        return self._time_limit_s
+
+    def begin(self, choice: int, rng: np.random.Generator) -> Beginning:
+        """One run of the task."""
+        return self._task.begin(choice, rng)

@@ -1,0 +1,86 @@
+"""What is kept of a person's trial: flat, the same for simulated and real people."""
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from math import isfinite
+from typing import Any, cast, final
+
+from latentarm.core.errors import UserError
+
+
+@final
+@dataclass(frozen=True)
+class Trial:
+    """One trial of one person.
+
+    Attributes:
+        person: their number.
+        condition: name of the condition.
+        task: what was to be done.
+        order: place of the condition in the person's order, from 0.
+        trial: number of the trial in this condition, from 0.
+        measures: figures by name; what was not measured is absent.
+    """
+
+    person: int
+    condition: str
+    task: str
+    order: int
+    trial: int
+    measures: Mapping[str, float]
+
+    def unlabelled(self) -> "UnlabelledTrial":
+        """The same without anything that tells the condition."""
+        return UnlabelledTrial(self.person, self.task, dict(self.measures))
+
+    def as_json(self) -> dict[str, object]:
+        """Plain mapping; figures that are not finite are None."""
+        known = {name: value if isfinite(value) else None for name, value in self.measures.items()}
+        return {**asdict(self), "measures": known}
+
+
+@final
+@dataclass(frozen=True)
+class UnlabelledTrial:
+    """A trial as exclusion rules see it: without condition, order and number.
+
+    Attributes:
+        person: their number.
+        task: what was to be done.
+        measures: figures by name.
+    """
+
+    person: int
+    task: str
+    measures: Mapping[str, float]
+
+
+def read_trial(entry: object, where: str) -> Trial:
+    """A trial from JSON.
+
+    Args:
+        entry: as `Trial.as_json` has it.
+        where: file and place, for messages.
+
+    Raises:
+        UserError: a field is missing or is not what it should be.
+    """
+    if not isinstance(entry, dict):
+        raise UserError(f"{where} is no trial: it must be an object.")
+    fields = cast(dict[str, Any], entry)
+    for name, kind in (("person", int), ("condition", str), ("task", str), ("order", int), ("trial", int)):
+        if not isinstance(fields.get(name), kind) or isinstance(fields.get(name), bool):
+            raise UserError(f"{where}: {name} must be {'a whole number' if kind is int else 'text'}.")
+    measures = fields.get("measures")
+    if not isinstance(measures, dict):
+        raise UserError(f"{where}: measures must be an object.")
+    known: dict[str, float] = {}
+    for name, value in cast(dict[str, object], measures).items():
+        if value is None:
+            continue
+        if isinstance(value, bool) or not isinstance(value, int | float) or not isfinite(value):
+            raise UserError(f"{where}: the measure {name} must be a finite number or null.")
+        known[name] = float(value)
+    return Trial(
+        fields["person"], fields["condition"], fields["task"], fields["order"], fields["trial"], known
+    )

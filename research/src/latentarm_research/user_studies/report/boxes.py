@@ -1,0 +1,137 @@
+"""Box plots of people's means, and times with the idle part shaded."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from latentarm.core.style import SMALL_FONT_SIZE, TWO_COLUMNS_MM, legend_below, literal, new_figure, tidy
+from latentarm.core.types import FloatArray
+from latentarm.evaluation.measures import unit_of
+from latentarm_research.user_studies.analysis.means import person_mean
+from latentarm_research.user_studies.definition import Definition, StudyTask
+from latentarm_research.user_studies.record import Trial
+from latentarm_research.user_studies.report.looks import colours
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+WHISKERS: Final = (10.0, 90.0)
+"""Percentiles at the ends of a box's whiskers, as in the paper."""
+
+ACROSS: Final = 3
+"""Panels in a row."""
+
+ROW_MM: Final = 52.0
+LEGEND_MM: Final = 9.0
+
+
+def means_of(trials: Sequence[Trial], condition: str, task: StudyTask, measure: str) -> FloatArray:
+    """Means (n,) of all people who have any."""
+    people = sorted({trial.person for trial in trials})
+    means = np.array([person_mean(trials, one, measure, (condition,), (task.name,)) for one in people])
+    return means[np.isfinite(means)]
+
+
+def box_figure(
+    definition: Definition, trials: Sequence[Trial], measures: Sequence[str], who: str
+) -> "Figure":
+    """A panel for each measure; in it the tasks side by side, and a box for each condition.
+
+    Args:
+        definition: of the study.
+        trials: that count.
+        measures: that have figures.
+        who: the people, in words.
+    """
+    from matplotlib.patches import Patch
+
+    rows = -(-len(measures) // ACROSS)
+    figure = new_figure(ROW_MM * rows + LEGEND_MM, TWO_COLUMNS_MM)
+    panels = figure.subplots(rows, min(ACROSS, len(measures)), squeeze=False).ravel()
+    for axes, measure in zip(panels, measures, strict=False):
+        _boxes(axes, definition, trials, measure)
+    for axes in panels[len(measures) :]:
+        axes.set_visible(False)
+    looks = colours(definition)
+    names = [one.name for one in definition.conditions]
+    handles = [Patch(facecolor=looks[name], edgecolor="black", linewidth=0.6) for name in names]
+    heading = f"{who}: dots are people's means; whiskers at 10 and 90 %"
+    legend_below(figure, handles, [literal(name) for name in names], heading=heading)
+    return figure
+
+
+def idle_figure(definition: Definition, trials: Sequence[Trial], who: str) -> "Figure":
+    """Mean time of each condition at each task, its part without input in a lighter shade.
+
+    Args:
+        definition: of the study.
+        trials: that count.
+        who: the people, in words.
+    """
+    from matplotlib.patches import Patch
+
+    figure = new_figure(60.0, TWO_COLUMNS_MM)
+    panels = figure.subplots(1, len(definition.tasks), squeeze=False)[0]
+    looks = colours(definition)
+    for axes, task in zip(panels, definition.tasks, strict=True):
+        for place, condition in enumerate(definition.conditions):
+            total, idle = (means_of(trials, condition.name, task, name) for name in ("time_s", "idle_s"))
+            if not len(total):
+                continue
+            busy, colour = float((total - idle).mean()), looks[condition.name]
+            axes.bar(place, busy, color=colour, width=0.7)
+            axes.bar(place, float(idle.mean()), bottom=busy, color=colour, alpha=0.35, width=0.7)
+            axes.plot(np.full(len(total), place), total, "o", color="black", markersize=1.6, alpha=0.6)
+        axes.set_title(task.label)
+        _name_conditions(axes, definition)
+        axes.set_ylabel("time (s)")
+        axes.set_ylim(bottom=0.0)
+        tidy(axes)
+        axes.grid(False, axis="x")
+    parts = [Patch(facecolor="#555555"), Patch(facecolor="#555555", alpha=0.35)]
+    heading = f"{who}: means; dots are people's total times"
+    legend_below(figure, parts, ["with input", "idle"], heading=heading)
+    return figure
+
+
+def _boxes(axes: "Axes", definition: Definition, trials: Sequence[Trial], measure: str) -> None:
+    looks, count = colours(definition), len(definition.conditions)
+    done = {one.task for one in trials if measure in one.measures}
+    with_figures = [task for task in definition.tasks if task.name in done]
+    for block, task in enumerate(with_figures):
+        for place, condition in enumerate(definition.conditions):
+            means = means_of(trials, condition.name, task, measure)
+            if not len(means):
+                continue
+            at = block * (count + 1) + place
+            drawn = axes.boxplot(
+                [means],
+                positions=[at],
+                widths=0.7,
+                whis=WHISKERS,
+                showfliers=False,
+                patch_artist=True,
+                medianprops={"color": "black", "linewidth": 1.0},
+                boxprops={"linewidth": 0.6},
+                whiskerprops={"linewidth": 0.6},
+                capprops={"linewidth": 0.6},
+            )
+            for box in drawn["boxes"]:
+                box.set_facecolor(looks[condition.name])
+                box.set_alpha(0.7)
+            spread = np.linspace(-0.18, 0.18, len(means)) if len(means) > 1 else np.zeros(1)
+            axes.plot(at + spread, means, "o", color="black", markersize=1.4, alpha=0.6)
+    middles = [block * (count + 1) + (count - 1) / 2 for block in range(len(with_figures))]
+    axes.set_xticks(middles, [task.label for task in with_figures])
+    axes.set_xlim(-0.8, len(with_figures) * (count + 1) - 1.2)
+    unit = unit_of(measure)
+    axes.set_title(definition.label(measure) + ("" if unit == "1" else f" ({unit.replace(' ', '·')})"))
+    tidy(axes)
+    axes.grid(False, axis="x")
+
+
+def _name_conditions(axes: "Axes", definition: Definition) -> None:
+    names = [literal(one.name).replace(" ", "\n").replace("-", "-\n") for one in definition.conditions]
+    axes.set_xticks(range(len(names)), names, fontsize=SMALL_FONT_SIZE - 1.0)

@@ -1,0 +1,102 @@
+"""All figures of a study's report, by name, with their captions."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, final
+
+from latentarm_research.user_studies.answers.scales import Ratings
+from latentarm_research.user_studies.definition import Definition
+from latentarm_research.user_studies.record import Trial
+from latentarm_research.user_studies.report.boxes import box_figure, idle_figure
+from latentarm_research.user_studies.report.likert import likert_figure
+from latentarm_research.user_studies.report.people_apart import MOST_PEOPLE, people_figure, people_measures
+from latentarm_research.user_studies.report.steps import step_figure
+from latentarm_research.user_studies.report.ways import plate_figure, stick_figure, way_figure
+from latentarm_research.user_studies.trace import Trace
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Drawn:
+    """A figure of the report.
+
+    Attributes:
+        name: of its file, without suffix.
+        figure: the drawing.
+        caption: what it shows, and of whom.
+    """
+
+    name: str
+    figure: "Figure"
+    caption: str
+
+
+def figure_names(definition: Definition) -> tuple[str, ...]:
+    """Names of all figures that a study's report may have."""
+    tasks = [task.name for task in definition.tasks]
+    return (
+        "measures",
+        "ratings",
+        "idle",
+        "plates",
+        "steps",
+        "people",
+        *(f"{kind}_{task}" for task in tasks for kind in ("ways", "stick")),
+    )
+
+
+def draw(
+    definition: Definition,
+    trials: Sequence[Trial],
+    traces: Sequence[Trace],
+    who: str,
+    ratings: Ratings | None = None,
+) -> list[Drawn]:
+    """Draw what there are figures for; nothing empty is drawn.
+
+    Args:
+        definition: of the study.
+        trials: that count.
+        traces: of all trials.
+        who: the people, in words, such as ``12 simulated people``.
+        ratings: of people's answers, if there are any.
+    """
+    measured = {name for trial in trials for name in trial.measures}
+    shown = [name for name in definition.measures if name in measured]
+    found: list[Drawn] = []
+    if shown:
+        caption = (
+            f"Every measure, {who}. Boxes hold the middle half, whiskers end at the 10 and 90 percentiles."
+        )
+        found.append(Drawn("measures", box_figure(definition, trials, shown, who), caption))
+    if ratings is not None:
+        caption = (
+            f"Answers to the questionnaire's scales, {who}: shares of all answers; agreement to the right."
+        )
+        found.append(Drawn("ratings", likert_figure(definition, ratings.rated, who), caption))
+    if {"time_s", "idle_s"} <= measured:
+        caption = f"Time taken, and in the lighter shade the part of it without input, {who}."
+        found.append(Drawn("idle", idle_figure(definition, trials, who), caption))
+    if any(trace.plate_m for trace in traces):
+        caption = f"Goal error: distance of the tool from the closest plate in the course of a trial, {who}."
+        found.append(Drawn("plates", plate_figure(definition, traces, who), caption))
+    if "preference_alignment" in measured and any(trace.aligned for trace in traces):
+        caption = (
+            f"Preference alignment in each step, {who}: how the tool points, compared with how the step needs"
+            " it. Dots are people's means, lines the mean of those who came so far."
+        )
+        found.append(Drawn("steps", step_figure(definition, traces, who), caption))
+    each = people_measures(measured)
+    if each and len({trial.person for trial in trials}) <= MOST_PEOPLE:
+        caption = f"Each of the {who} separately; in the lighter shade the time without input."
+        found.append(Drawn("people", people_figure(definition, trials, each, who), caption))
+    for task in definition.tasks:
+        if any(trace.task == task.name for trace in traces):
+            caption = f"Ways of the tool in {task.label}, {who}. The scene differs from person to person."
+            found.append(Drawn(f"ways_{task.name}", way_figure(definition, task, traces, who), caption))
+            caption = f"Where the stick was in {task.label}, {who}; rest does not count."
+            found.append(Drawn(f"stick_{task.name}", stick_figure(definition, task, traces, who), caption))
+    return found

@@ -1,0 +1,224 @@
+"""The report as one HTML page, which holds everything that it shows."""
+
+import base64
+from collections.abc import Sequence
+from dataclasses import dataclass
+from io import BytesIO
+from pathlib import Path
+from typing import TYPE_CHECKING, Final, final
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+from latentarm.core.style import FIGURE_DPI
+from latentarm.core.types import Row
+from latentarm.evaluation.measures import unit_of
+from latentarm.evaluation.table import ABSENT, format_figure
+from latentarm_research.studies.page import listed
+from latentarm_research.studies.statistics import format_p
+from latentarm_research.user_studies.analysis.analysis import Analysis
+from latentarm_research.user_studies.answers.scales import Ratings
+from latentarm_research.user_studies.definition import Definition
+from latentarm_research.user_studies.printed import WRONG
+from latentarm_research.user_studies.report.designs import WORDS, claim_head, order_words
+from latentarm_research.user_studies.report.figures import Drawn
+from latentarm_research.user_studies.report.people import HEAD as PEOPLE_HEAD
+from latentarm_research.user_studies.report.whose import QUOTED, PeopleWords
+from latentarm_research.user_studies.report.words import (
+    claim_line,
+    condition_parts,
+    exclusion_words,
+    task_words,
+    yes_no,
+)
+from latentarm_research.user_studies.sizes import Sizes
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+RATED_HEAD: Final = ("scale", "condition", "people", "score, mean ± SD", "Cronbach's α [95 %]")
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Content:
+    """What a report is about.
+
+    Attributes:
+        definition: of the study.
+        sizes: of the run.
+        analysis: of its trials.
+        rows: of ``results.json``.
+        people: what the people are like, lines below `latentarm_research.user_studies.report.people.HEAD`.
+        figures: to show.
+        who: the people, in words, such as ``12 simulated people``.
+        words: of these people.
+        command: that repeats the run.
+        ratings: of people's answers, if there are any.
+    """
+
+    definition: Definition
+    sizes: Sizes
+    analysis: Analysis
+    rows: Sequence[Row]
+    people: Sequence[tuple[str, ...]]
+    figures: Sequence[Drawn]
+    who: str
+    words: PeopleWords
+    command: str
+    ratings: Ratings | None = None
+
+
+def report_page(content: Content) -> str:
+    """The page."""
+    environment = Environment(
+        loader=FileSystemLoader(Path(__file__).parent, encoding="utf-8"),
+        undefined=StrictUndefined,
+        autoescape=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    definition, analysis = content.definition, content.analysis
+    return environment.get_template("page.html").render(
+        definition=definition,
+        sizes=content.sizes,
+        who=content.who,
+        command=content.command,
+        notice=f"{content.words.notice} {QUOTED}" if definition.printed else content.words.notice,
+        design=WORDS[definition.design],
+        practice=_practice(definition),
+        order_words=order_words(definition),
+        verdict_lines=[
+            (one.hypothesis.name, one.hypothesis.text, one.says, one.why) for one in analysis.verdicts
+        ],
+        condition_lines=[(one.name, one.about, *condition_parts(one)) for one in definition.conditions],
+        task_lines=[task_words(content.sizes.as_run(task)) for task in definition.tasks],
+        exclusion_lines=exclusion_words(definition),
+        excluded_words=_excluded_words(analysis, content.who),
+        departures=definition.departures,
+        people_head=PEOPLE_HEAD,
+        people_lines=content.people,
+        result_head=["task", "measure", *(one.name for one in definition.conditions)],
+        result_lines=_result_lines(definition, content.rows),
+        figures=[{"caption": one.caption, "data": _encoded(one.figure)} for one in content.figures],
+        claim_head=claim_head(definition),
+        claim_lines=[
+            claim_line(definition, tested, modelled)
+            for tested, modelled in zip(analysis.tested, analysis.modelled, strict=True)
+        ],
+        anova_lines=_anova_lines(definition, analysis),
+        printed_lines=_printed_lines(definition, analysis),
+        wrong_lines=_wrong_lines(analysis),
+        questionnaire_words=_questionnaire_words(content),
+        rated_head=RATED_HEAD,
+        rated_lines=_rated_lines(content),
+        item_lines=_item_lines(definition),
+    )
+
+
+def _practice(definition: Definition) -> str:
+    if not definition.practice_min:
+        return definition.practice
+    return f"up to {definition.practice_min:g} minutes, {definition.practice}"
+
+
+def _excluded_words(analysis: Analysis, who: str) -> str:
+    trials, people = len(analysis.excluded.trials), len(analysis.excluded.people)
+    return f"Of {who}, {trials} trials and {people} people are excluded; {len(analysis.trials)} trials count."
+
+
+def _result_lines(definition: Definition, rows: Sequence[Row]) -> list[list[str]]:
+    labels = {task.name: task.label for task in definition.tasks}
+    places = dict.fromkeys((row.task or "", row.measure) for row in rows)
+    found = {(row.task or "", row.measure, row.condition): row for row in rows}
+    lines: list[list[str]] = []
+    for task, measure in places:
+        unit = unit_of(measure)
+        name = definition.label(measure) + ("" if unit == "1" else f" ({unit})")
+        shown = [found.get((task, measure, one.name)) for one in definition.conditions]
+        cells = [ABSENT if row is None else format_figure(row.mean, row.sd) for row in shown]
+        lines.append([labels[task], name, *cells])
+    return lines
+
+
+def _anova_lines(definition: Definition, analysis: Analysis) -> list[tuple[str, ...]]:
+    return [
+        (
+            definition.label(measure),
+            effect.name,
+            f"F({effect.dof}, {effect.dof_error}) = {effect.f:.2f}",
+            format_p(effect.p),
+            f"{effect.eta:.2f}",
+        )
+        for measure, effects in analysis.effects.items()
+        for effect in effects
+    ]
+
+
+def _printed_lines(definition: Definition, analysis: Analysis) -> list[tuple[str, ...]]:
+    labels = {task.name: task.label for task in definition.tasks}
+    lines: list[tuple[str, ...]] = []
+    for one in analysis.as_printed:
+        printed = one.printed
+        where = f" ({listed(labels[task] for task in printed.tasks)})" if printed.tasks else ""
+        sides = [listed(side) for side in (printed.subject, printed.against) if side]
+        lines.append(
+            (
+                definition.label(printed.measure) + where,
+                " against ".join(sides),
+                printed.text,
+                one.text,
+                yes_no(one.same_sign),
+                yes_no(one.same_significance),
+            )
+        )
+    return lines
+
+
+def _wrong_lines(analysis: Analysis) -> list[str]:
+    """What is wrong with each way in which the paper got a statistic, after these statistics."""
+    texts: dict[str, list[str]] = {}
+    for one in analysis.as_printed:
+        texts.setdefault(WRONG[one.printed.test], []).append(one.printed.text)
+    return [f"{listed(printed)}: {wrong}" for wrong, printed in texts.items()]
+
+
+def _questionnaire_words(content: Content) -> str:
+    if content.ratings is None:
+        return content.words.unasked
+    return (
+        f"{content.ratings.answers} answers. A score is the mean of a scale's items, reversed ones turned; a"
+        " person who left out an item of a scale has no score of it. Alpha is computed over the people of one"
+        " condition, its interval is that of Feldt (1965)."
+    )
+
+
+def _rated_lines(content: Content) -> list[tuple[str, ...]]:
+    if content.ratings is None:
+        return []
+    return [
+        (
+            content.definition.label(one.scale),
+            one.condition,
+            str(one.n),
+            format_figure(one.mean, one.sd),
+            ABSENT if one.alpha is None else f"{one.alpha:.2f} [{one.alpha_low:.2f}, {one.alpha_high:.2f}]",
+        )
+        for one in content.ratings.rated
+    ]
+
+
+def _item_lines(definition: Definition) -> list[tuple[str, str]]:
+    return [
+        (scale.label, " · ".join(f"{item.text}{' (r)' if item.reversed else ''}" for item in scale.items))
+        for scale in definition.questionnaire
+    ]
+
+
+def _encoded(figure: "Figure") -> str:
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    FigureCanvasAgg(figure)
+    buffer = BytesIO()
+    figure.savefig(buffer, format="png", dpi=FIGURE_DPI)
+    return base64.b64encode(buffer.getvalue()).decode()

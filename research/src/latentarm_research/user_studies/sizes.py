@@ -1,0 +1,94 @@
+"""How large a run of a study with simulated people is; none of it belongs to the definition."""
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, replace
+from enum import IntEnum
+from math import isinf
+from typing import Final, final
+
+from latentarm_research.user_studies.definition import StudyTask
+
+
+@final
+@dataclass(frozen=True)
+class Sizes:
+    """Sizes of a run.
+
+    Attributes:
+        name: of the preset.
+        trial_s: a trial that takes longer has failed, s; the task's own limit where it is shorter.
+        most_trials: of each task in each condition, at most.
+        demonstrations_share: of the minutes of demonstrations that the definition asks for.
+        demonstration_s: a demonstration is cut off after so long, s; then it counts although it was not done.
+        epochs: passes over the training pairs, at most.
+        batch_size: pairs per step.
+        hidden: units of each hidden layer.
+        state_noise_rad: SD of the noise on training states, rad.
+        alignment_steps: of an alignment's training.
+    """
+
+    name: str
+    trial_s: float = float("inf")
+    most_trials: int = 1000
+    demonstrations_share: float = 1.0
+    demonstration_s: float = float("inf")
+    epochs: int = 60
+    batch_size: int = 256
+    hidden: tuple[int, ...] = (64, 64)
+    state_noise_rad: float = 0.01
+    alignment_steps: int = 400
+
+    @property
+    def not_judged(self) -> str:
+        """Why no claim is tested in a run of these sizes; empty where claims are."""
+        return "" if self.name == "paper" else f"preset {self.name}: it only shows that the study runs"
+
+    def people(self, number: int) -> str:
+        """Simulated people in words, with the preset where that is not the whole study."""
+        return f"{number} simulated people" + (f" (preset {self.name})" if self.not_judged else "")
+
+    def as_run(self, task: StudyTask) -> StudyTask:
+        """A task as a run of these sizes does it."""
+        return replace(
+            task,
+            trials=min(task.trials, self.most_trials),
+            trial_s=min(task.trial_s, self.trial_s),
+            demonstrations_min=task.demonstrations_min * self.demonstrations_share,
+        )
+
+    def as_json(self) -> dict[str, object]:
+        """Plain mapping; None for times that have no limit."""
+        known = {
+            name: None if isinstance(value, float) and isinf(value) else value
+            for name, value in asdict(self).items()
+        }
+        return {**known, "hidden": list(self.hidden)}
+
+
+PRESETS: Final[Mapping[str, Sizes]] = {
+    "paper": Sizes("paper"),
+    "smoke": Sizes(
+        "smoke",
+        trial_s=1.0,
+        most_trials=1,
+        demonstrations_share=0.01,
+        demonstration_s=2.0,
+        epochs=2,
+        hidden=(16,),
+        alignment_steps=4,
+    ),
+}
+"""``paper`` is the whole study. ``smoke`` only shows that it runs: its trials end after a second."""
+
+LEAST_DEMONSTRATIONS: Final = 2
+"""One to learn from and one for validation."""
+
+
+class Stream(IntEnum):
+    """The uses of randomness."""
+
+    ORDER = 0
+    TRIALS = 1
+    DEMONSTRATIONS = 2
+    NETWORKS = 3
+    QUESTIONS = 4

@@ -1,0 +1,103 @@
+"""What figures show of a trial: the tool's way, how far it was from the plates, and the stick."""
+
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any, Final, final
+
+import numpy as np
+
+from latentarm.core.types import FloatArray
+from latentarm_research.metrics.task_drives import StepAlignment
+from latentarm_research.user_studies.definition import StudyTask
+
+if TYPE_CHECKING:
+    from latentarm_research.drives.task_drive import TaskTrace
+
+POINTS: Final = 60
+"""Of a way and of a course over time, at most."""
+
+BINS: Final = 17
+"""Of a heat map along each axis."""
+
+DECIMALS: Final = 4
+
+
+@final
+@dataclass(frozen=True)
+class Trace:
+    """What is kept of a drive.
+
+    Attributes:
+        person: their number.
+        condition: name of the condition.
+        task: name of the task.
+        trial: number of the trial.
+        choice: what it was for.
+        success: whether it was done.
+        time_s: (K,), moments evenly over the drive, s.
+        position: (K, 3), the tool then, m.
+        plate_m: (K,), its distance from the closest plate, m; empty where that is not measured.
+        stick: (BINS, BINS), time that the first two axes were in each cell, s, first axis across; rest does
+            not count.
+        aligned: *Preference Alignment* in each step that was begun, in order; empty where it was not kept.
+    """
+
+    person: int
+    condition: str
+    task: str
+    trial: int
+    choice: int
+    success: bool
+    time_s: tuple[float, ...]
+    position: tuple[tuple[float, ...], ...]
+    plate_m: tuple[float, ...]
+    stick: tuple[tuple[float, ...], ...]
+    aligned: tuple[StepAlignment, ...] = ()
+
+    def as_json(self) -> dict[str, object]:
+        """Plain mapping."""
+        return asdict(self)
+
+
+def trace_of(person: int, condition: str, task: StudyTask, trial: int, driven: "TaskTrace") -> Trace:
+    """What is kept of a drive.
+
+    Args:
+        person: their number.
+        condition: name of the condition.
+        task: of the study.
+        trial: number of the trial.
+        driven: the drive.
+    """
+    moments = np.unique(np.linspace(0, len(driven.time_s) - 1, POINTS).astype(int))
+    position = driven.position[moments]
+    plate_m: FloatArray = np.zeros(0)
+    if task.plates:
+        plates = np.stack([driven.states[0].poses[name].position for name in task.plates])
+        plate_m = np.linalg.norm(position[:, None] - plates, axis=-1).min(axis=1)
+    return Trace(
+        person=person,
+        condition=condition,
+        task=task.name,
+        trial=trial,
+        choice=driven.choice,
+        success=driven.figures.success,
+        time_s=tuple(_rounded(driven.time_s[moments])),
+        position=tuple(tuple(row) for row in _rounded(position)),
+        plate_m=tuple(_rounded(plate_m)),
+        stick=tuple(tuple(row) for row in _rounded(_stick(driven))),
+        aligned=tuple(
+            StepAlignment(one.step, round(one.alignment, DECIMALS), one.ticks) for one in driven.aligned
+        ),
+    )
+
+
+def _stick(driven: "TaskTrace") -> FloatArray:
+    pushed = driven.input[driven.input.any(axis=-1)][:, :2]
+    edges = np.linspace(-1.0, 1.0, BINS + 1)
+    counts = np.histogram2d(pushed[:, 0], pushed[:, 1], bins=(edges, edges))[0]
+    period_s = float(np.median(np.diff(driven.time_s))) if len(driven.time_s) > 1 else 0.0
+    return counts.T * period_s
+
+
+def _rounded(values: FloatArray) -> list[Any]:
+    return np.round(values, DECIMALS).tolist()

@@ -1,0 +1,176 @@
+"""What conditions with latent actions need beforehand: demonstrations, models, and people's alignments."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Final, final
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from latentarm.assistance.annotation import annotate
+from latentarm.core.context import BELIEF
+from latentarm.core.errors import UserError
+from latentarm.core.types import Demonstrations, Goal
+from latentarm.models.decoder import Decoder
+from latentarm.models.kind import TrainedModel
+from latentarm.models.model import LatentActionModel
+from latentarm.tasks.scene_task import SceneTask
+from latentarm_research.drives.demonstrate import Demonstration, dataset_of, demonstrate_once
+from latentarm_research.people.traits import Traits
+from latentarm_research.studies.fitting import fit_model, validation_episodes
+from latentarm_research.studies.streams import generator, integer, sequence
+from latentarm_research.user_studies.alignments import PRIORS, Aligned, learn_alignments
+from latentarm_research.user_studies.definition import Aligns, Condition, Definition, StudyTask
+from latentarm_research.user_studies.limited_time import LimitedTime
+from latentarm_research.user_studies.scenes import scene_of
+from latentarm_research.user_studies.sizes import LEAST_DEMONSTRATIONS, Sizes, Stream
+
+MOST_TRIES: Final = 10
+"""Demonstrations for each that succeeds, at most."""
+
+ModelKey = tuple[str, tuple[str, ...]]
+"""Kind of a model and the features of its context."""
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class TrainingCell:
+    """The models of one task.
+
+    Attributes:
+        definition: of the study.
+        task: that is demonstrated.
+        people: who will drive, in order: where a condition aligns, they are asked what they mean.
+        sizes: of the run.
+        seed: of the run.
+    """
+
+    definition: Definition
+    task: StudyTask
+    people: tuple[Traits, ...]
+    sizes: Sizes
+    seed: int
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Trained:
+    """What came of a `TrainingCell`.
+
+    Attributes:
+        task: name of the task.
+        models: by kind and context.
+        aligned: what was learned of the people; None where no condition aligns.
+        episodes: demonstrations that were learned from.
+        seconds: how long these took together, s.
+    """
+
+    task: str
+    models: Mapping[ModelKey, TrainedModel]
+    aligned: Aligned | None
+    episodes: int
+    seconds: float
+
+    def decoder(self, condition: Condition) -> Decoder:
+        """What a condition drives with."""
+        return Decoder(self.models[condition.model, condition.context], 0)
+
+
+def train(cell: TrainingCell) -> Trained:
+    """Demonstrate, fit the models that the study's conditions need, and learn the people's alignments.
+
+    Raises:
+        UserError: too few demonstrations succeed, or the sizes make no sense.
+    """
+    latent = [condition for condition in cell.definition.conditions if condition.model]
+    keys = list(dict.fromkeys((condition.model, condition.context) for condition in latent))
+    aligns: list[Aligns] = [way for way in PRIORS if any(condition.aligns == way for condition in latent)]
+    with threadpool_limits(limits=1):
+        task = LimitedTime(scene_of(cell.task.scene), cell.sizes.demonstration_s)
+        belief = any(BELIEF in context for _, context in keys)
+        demonstrations, seconds = _demonstrated(cell, task, belief)
+        models = {key: _fitted(cell, task, demonstrations, *key) for key in keys}
+        aligned: Aligned | None = None
+        if aligns:
+            aligned = learn_alignments(
+                models[keys[0]],
+                demonstrations,
+                task.robot.chain,
+                cell.people,
+                aligns,
+                queries=cell.task.queries,
+                steps=cell.sizes.alignment_steps,
+                rng=generator(cell.seed, cell.task.name, Stream.QUESTIONS),
+            )
+        return Trained(
+            task=cell.task.name,
+            models={key: model.trained_ for key, model in models.items()},
+            aligned=aligned,
+            episodes=len(demonstrations.episodes),
+            seconds=seconds,
+        )
+
+
+def _demonstrated(cell: TrainingCell, task: SceneTask, belief: bool) -> tuple[Demonstrations, float]:
+    """Demonstrations of as many minutes as the definition asks for at most, and how long they took, s.
+
+    A belief is that over the goals of each demonstration, which stand elsewhere in every one.
+
+    Raises:
+        UserError: hardly any succeeds.
+    """
+    wanted_s = 60.0 * cell.task.demonstrations_min * cell.sizes.demonstrations_share
+    cut = np.isfinite(cell.sizes.demonstration_s)
+    choices = sorted(set(cell.task.choices))
+    least = max(LEAST_DEMONSTRATIONS, len(choices))
+    kept: list[Demonstration] = []
+    goals: list[tuple[Goal, ...]] = []
+    took_s, number = 0.0, 0
+    while took_s < wanted_s or len(kept) < least:
+        if number >= MOST_TRIES * (len(kept) + 1):
+            raise UserError(
+                f"{len(kept)} of {number} demonstrations of {cell.task.name} succeeded: too few to train a"
+                " model."
+            )
+        choice, stream = choices[number % len(choices)], (cell.seed, cell.task.name, number)
+        number += 1
+        shown = demonstrate_once(task, choice, _stream(*stream))
+        if not (shown.progress.succeeded or cut):
+            continue
+        if took_s + shown.seconds > wanted_s and len(kept) >= least:
+            break
+        kept.append(replace(shown, states=()))
+        goals.append(task.begin(choice, _stream(*stream)).goals)
+        took_s += shown.seconds
+    dataset = dataset_of(task, [one.episode for one in kept], kept[0].objects)
+    if belief:
+        with_belief = [
+            annotate(replace(dataset, episodes=(one.episode,), goals=of)).episodes[0]
+            for one, of in zip(kept, goals, strict=True)
+        ]
+        dataset = replace(dataset, episodes=tuple(with_belief))
+    return dataset, took_s
+
+
+def _stream(seed: int, task: str, number: int) -> np.random.Generator:
+    return generator(seed, task, Stream.DEMONSTRATIONS, number)
+
+
+def _fitted(
+    cell: TrainingCell, task: SceneTask, demonstrations: Demonstrations, kind: str, context: tuple[str, ...]
+) -> LatentActionModel:
+    sizes = cell.sizes
+    return fit_model(
+        kind,
+        demonstrations,
+        validation=validation_episodes(demonstrations),
+        fit={"chain": task.robot.chain},
+        latent_dim=2,
+        context=context,
+        seeds=1,
+        seed=integer(sequence(cell.seed, cell.task.name, Stream.NETWORKS)),
+        epochs=sizes.epochs,
+        batch_size=sizes.batch_size,
+        hidden=sizes.hidden,
+        state_noise_rad=sizes.state_noise_rad,
+    )

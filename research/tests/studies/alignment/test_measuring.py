@@ -1,0 +1,198 @@
+"""One decoder, one cell, one curve: what they hold, and that they are the same again."""
+
+from dataclasses import replace
+from functools import cache
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from latentarm.alignment.answers import Answers
+from latentarm.alignment.contract import identity
+from latentarm.alignment.queries import order_of_questions
+from latentarm_research.studies.alignment.cell import Cell, measure_cell
+from latentarm_research.studies.alignment.curves import (
+    AT_RANDOM,
+    CHOICES,
+    CHOSEN,
+    PRIORS_AT_RANDOM,
+    CurveCell,
+    measure_curve,
+)
+from latentarm_research.studies.alignment.preset import (
+    ALL_PRIORS,
+    CONDITIONS,
+    FEW_ANSWERS,
+    IDEAL,
+    LEARNED,
+    NO_ALIGN,
+    SINGLE_PRIORS,
+    Curves,
+    Preset,
+    Stream,
+)
+from latentarm_research.studies.alignment.rows import time_alignment
+from latentarm_research.studies.alignment.scene import DecoderCell, learn_decoder, scene_of
+from latentarm_research.studies.alignment.turning import person
+from latentarm_research.tasks.pouring.tasks import FAR_LEFT_M, NEAR_RIGHT_M
+
+TINY = Preset(
+    "tiny",
+    episodes=3,
+    test_episodes=2,
+    epochs=1,
+    hidden=(8,),
+    noises=(0.0, 0.5),
+    answers=4,
+    ideal_answers=30,
+    unlabelled=40,
+    test_motions=30,
+    runs=2,
+    steps=4,
+    ideal_steps=6,
+    ideal_runs=1,
+    surroundings=40,
+    curves=Curves(answers=(1, 4), networks=(4,), candidates=12),
+)
+
+
+@cache
+def learned_at(task):
+    """Several tests look at the same decoder."""
+    return learn_decoder(DecoderCell(task, "cae", TINY, 0))
+
+
+@cache
+def measured_at(task):
+    return measure_cell(Cell(learned_at(task), 0.5))
+
+
+@pytest.fixture(scope="module", params=["plane", "reach_and_pour"])
+def learned(request):
+    return learned_at(request.param)
+
+
+@pytest.fixture(scope="module")
+def scene(learned):
+    return scene_of(learned)
+
+
+def test_every_condition_has_an_error_for_each_run(learned):
+    result = measured_at(learned.cell.task)
+    assert list(result.errors) == list(CONDITIONS)
+    for name, errors in result.errors.items():
+        assert errors.shape == ((1,) if name in (NO_ALIGN, IDEAL) else (TINY.runs,))
+        assert np.isfinite(errors).all()
+        assert (errors > 0).all()
+    assert result.encoded > 0
+    assert set(result.learn_s) == set(CONDITIONS) - {NO_ALIGN, "Manual Align"}
+
+
+def test_a_cell_is_the_same_from_the_same_seed():
+    learned, result = learned_at("reach_and_pour"), measured_at("reach_and_pour")
+    again = measure_cell(Cell(learned, 0.5))
+    for name, errors in result.errors.items():
+        np.testing.assert_array_equal(errors, again.errors[name])
+    assert again.encoded == result.encoded
+    anew = learn_decoder(learned.cell)
+    for name, tensor in learned.model.trained_.tensors.items():
+        np.testing.assert_array_equal(tensor, anew.model.trained_.tensors[name])
+
+
+def test_another_seed_gives_another_decoder(learned):
+    other = learn_decoder(replace(learned.cell, seed=1))
+    assert any(
+        not np.array_equal(tensor, other.model.trained_.tensors[name])
+        for name, tensor in learned.model.trained_.tensors.items()
+    )
+
+
+def test_noise_changes_the_answers_and_not_the_questions(learned, scene):
+    exact, noisy = (scene.ask(8, noise, Stream.QUESTIONS, Stream.ANSWERS, 0) for noise in (0.0, 0.5))
+    np.testing.assert_array_equal(exact.motions.start, noisy.motions.start)
+    assert not np.array_equal(exact.u, noisy.u)
+    other = scene.ask(8, 0.0, Stream.QUESTIONS, Stream.ANSWERS, 1)
+    assert not np.array_equal(exact.motions.start, other.motions.start)
+    # Fewer questions are the first of more.
+    np.testing.assert_array_equal(
+        scene.ask(3, 0.5, Stream.QUESTIONS, Stream.ANSWERS, 0).u, noisy[np.arange(3)].u
+    )
+
+
+def test_alignments_are_judged_on_motions_that_trained_nothing(scene):
+    assert len(scene.test) == TINY.test_motions
+    shown = {tuple(state) for state in scene.shown.start}
+    assert not shown & {tuple(state) for state in scene.test.motions.start}
+    np.testing.assert_array_equal(scene.test.u, scene.preference.inputs(scene.test.motions))
+
+
+def test_z_u_of_a_person_who_means_what_the_decoder_does_is_perfect(scene):
+    """The error is that of the paper: 0 where u does just what was meant."""
+    motions = scene.test.motions
+    u = np.full((len(motions), 2), 0.3)
+    end = motions.start + motions.duration_s * scene.decoder.decode(u, motions.context)
+    met = replace(scene, test=Answers(replace(motions, end=end), u))
+    assert met.errors([identity])[0] == pytest.approx(0, abs=1e-20)
+
+
+def test_single_priors_weigh_what_they_weigh_among_all():
+    assert set(SINGLE_PRIORS) < set(FEW_ANSWERS)
+    for weight in ("proportional", "reversible", "consistent"):
+        alone = [getattr(priors, weight) for priors in SINGLE_PRIORS.values()]
+        assert sum(alone) == getattr(LEARNED[ALL_PRIORS], weight)
+        assert sorted(alone)[:2] == [0, 0]
+
+
+@pytest.fixture(scope="module")
+def curve():
+    return measure_curve(CurveCell(learned_at("reach_and_pour"), 0.0))
+
+
+def test_a_curve_has_a_point_for_every_number_and_choice(curve):
+    assert list(curve.errors) == list(CHOICES)
+    for choice, errors in curve.errors.items():
+        assert list(errors) == ([4] if choice == PRIORS_AT_RANDOM else [1, 4])
+        assert all(values.shape == (TINY.runs,) for values in errors.values())
+    assert not np.array_equal(curve.errors[AT_RANDOM][1], curve.errors[CHOSEN][1])
+
+
+def test_asking_stops_within_what_may_be_asked_and_has_the_error_there(curve):
+    assert ((curve.stopped_after >= 2) & (curve.stopped_after <= 4)).all()
+    for run, count in enumerate(curve.stopped_after):
+        if count == 4:
+            assert curve.stopped_at[run] == curve.errors[CHOSEN][4][run]
+
+
+def test_a_curve_is_the_same_again(curve):
+    again = measure_curve(curve.cell)
+    for choice, errors in curve.errors.items():
+        for count, values in errors.items():
+            np.testing.assert_array_equal(values, again.errors[choice][count])
+    np.testing.assert_array_equal(curve.stopped_after, again.stopped_after)
+    np.testing.assert_array_equal(curve.stopped_at, again.stopped_at)
+
+
+def test_four_chosen_questions_hold_both_parts_of_reach_and_pour():
+    """Where two things are meant in two places, each is asked about more than once."""
+    scene = scene_of(learn_decoder(DecoderCell("reach_and_pour", "pca", TINY, 0)))
+    asked = order_of_questions(scene.chain, scene.shown, 4)
+    there = scene.preference.is_there(scene.chain.forward(scene.shown.start[asked]).position)
+    assert there.sum() == 2
+
+
+def test_the_axes_of_some_people_turn_by_as_much_either_way(scene):
+    """By hand: at the middle of the table, and at its two ends along the way in which they turn."""
+    one = replace(person(scene, 0), axes=SimpleNamespace(inputs=lambda motions: np.tile([0.5, 0.0], (3, 1))))
+    low, high = np.array(NEAR_RIGHT_M), np.array(FAR_LEFT_M)
+    reach = np.sign(one.along) * (high - low) / 2
+    places = (low + high) / 2 + np.array([[0.0], [1.0], [-1.0]]) * reach
+    seen = SimpleNamespace(forward=lambda state: SimpleNamespace(position=np.pad(places, ((0, 0), (0, 1)))))
+    u = replace(one, chain=seen).inputs(SimpleNamespace(start=None))
+    angles = np.arctan2(u[:, 1], u[:, 0]) - one.middle_rad
+    np.testing.assert_allclose(np.exp(1j * angles), np.exp(1j * one.turn_rad * np.array([0, 1, -1])))
+    np.testing.assert_allclose(np.linalg.norm(u, axis=1), 0.5)
+
+
+def test_the_times_of_learning_and_of_a_call_are_taken():
+    took = time_alignment(learned_at("plane"))
+    assert min(took["all_priors_s"], took["tool_space_s"], took["tool_space_call_s"]) > 0

@@ -1,0 +1,140 @@
+import json
+from dataclasses import replace
+from io import StringIO
+from pathlib import Path
+
+import pytest
+from rich.console import Console
+
+from latentarm.evaluation.measures import MEASURES
+from latentarm.runs.results_folder import CONFIG
+from latentarm_research.studies.alignment.preset import (
+    CONDITIONS,
+    IDEAL,
+    PRESETS,
+    Curves,
+    Drives,
+    Preset,
+    Turning,
+)
+from latentarm_research.studies.alignment.study import STUDY, TASKS
+from latentarm_research.studies.alignment.tables import summary_tables
+from latentarm_research.studies.study import ALWAYS_MADE, Request, run_study
+
+TINY = Preset(
+    "tiny",
+    models=("cae", "scl"),
+    episodes=3,
+    test_episodes=2,
+    epochs=1,
+    hidden=(8,),
+    noises=(0.0, 0.5),
+    answers=4,
+    ideal_answers=30,
+    unlabelled=20,
+    test_motions=20,
+    runs=2,
+    steps=2,
+    ideal_runs=1,
+    ideal_steps=2,
+    surroundings=40,
+    curves=Curves(noises=(0.0,), answers=(1, 4), networks=(4,), candidates=8),
+    turning=Turning(people=2, noises=(0.0,), ideal_people=1),
+    drives=Drives(models=("cvae",), seeds=1, episodes=6, epochs=1, answers=2, to_each_goal=1, limit_s=0.2),
+)
+
+
+def tiny(out: Path, **changes) -> Request:
+    return replace(Request(out, TINY, ("plane",), jobs=1, quiet=True), **changes)
+
+
+@pytest.fixture(scope="module")
+def done(tmp_path_factory):
+    """A run on this process alone: its rows and its folder."""
+    out = tmp_path_factory.mktemp("alone") / "run"
+    return run_study(STUDY, tiny(out)).rows, out
+
+
+def test_every_model_condition_and_noise_has_its_row(done):
+    rows, out = done
+    assert json.loads((out / "results.json").read_text())["rows"] == [row.as_json() for row in rows]
+    assert {row.study for row in rows} == {"alignment"}
+    assert {row.task for row in rows} == {"plane"}
+    assert {row.measure for row in rows} <= set(MEASURES)
+    of = {(row.model, row.condition, row.measure): row for row in rows}
+    for model in TINY.models:
+        assert of[model, "the encoder's own choice", "relative_alignment_error"].n == 1
+        for noise in ("0", "0.5"):
+            for name in CONDITIONS:
+                row = of[model, f"{name}, noise {noise}", "relative_alignment_error"]
+                assert row.n == (1 if name in ("No Align", IDEAL) else TINY.runs)
+                assert row.mean > 0
+    assert of["cae", "Tool Space, chosen, 4 answers, noise 0", "relative_alignment_error"].n == TINY.runs
+    assert of["cae", "All Priors, at random, 4 answers, noise 0", "relative_alignment_error"].mean > 0
+    assert 2 <= of["cae", "Tool Space, chosen, stopped, noise 0", "answers"].mean <= 4
+    assert of["cae", "axes turn, Tool Space, chosen, noise 0", "relative_alignment_error"].n == 2
+
+
+def test_at_a_glance_are_the_papers_conditions_under_every_noise(done):
+    rows, _ = done
+    console = Console(width=100, file=StringIO())
+    console.print(*summary_tables(rows, TINY))
+    said = console.file.getvalue()
+    assert "Plane, cAE, simulated" in " ".join(said.split())
+    for words in (*CONDITIONS, "noise 0", "noise 0.5"):
+        assert words in said
+
+
+def test_noise_changes_nothing_for_who_asks_nothing(done):
+    rows, _ = done
+    for model in TINY.models:
+        same = {row.mean for row in rows if row.model == model and (row.condition or "")[:8] == "No Align"}
+        assert len(same) == 1
+
+
+def test_the_folder_holds_what_was_made_and_the_page_reads_by_itself(done):
+    _, out = done
+    assert {path.name for path in out.iterdir()} == {
+        CONFIG,
+        *ALWAYS_MADE,
+        *STUDY.documents,
+        *(f"{name}.png" for name in STUDY.figures if name != "drives"),
+    }
+    page = (out / "results.md").read_text()
+    assert "**simulated**" in page
+    assert "--preset tiny --task plane --seed 0" in page
+    for words in (
+        "H1",
+        "H2",
+        "H3",
+        *CONDITIONS,
+        "beyond the paper",
+        "Where asking stops",
+        "missed",
+        "axes turn",
+    ):
+        assert words in page
+    for name in STUDY.figures[:3]:
+        assert f"]({name}.png)" in page
+    assert "Drives to the goals" not in page
+    timings = json.loads((out / "timings.json").read_text())
+    assert timings["one_alignment"][0]["tool_space_call_s"] > 0
+    runs = json.loads((out / "runs.json").read_text())
+    assert all(len(one["values"]) in (1, 2) for one in runs)
+
+
+def test_drives_alone_are_a_page_of_their_own(tmp_path):
+    rows = run_study(STUDY, tiny(tmp_path / "run", tasks=("table_top",))).rows
+    assert "cVAE" in summary_tables(rows, TINY)[0].title
+    assert {row.task for row in rows} == {"table_top"}
+    page = (tmp_path / "run" / "results.md").read_text()
+    assert "## Drives to the goals of the demo" in page
+    assert "Tests of the hypotheses" not in page
+    assert {path.name for path in (tmp_path / "run").glob("*.png")} == {"drives.png"}
+
+
+def test_the_paper_preset_has_the_papers_numbers():
+    paper = PRESETS["paper"]
+    assert (paper.answers, paper.ideal_answers, paper.unlabelled, paper.runs) == (10, 1000, 1000, 10)
+    assert paper.noises == (0.0, 0.1, 0.5)
+    assert TASKS[:3] == ("plane", "pour", "reach_and_pour")

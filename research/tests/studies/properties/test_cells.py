@@ -1,0 +1,107 @@
+"""Which cells of the paper's table hold, and how many in each design."""
+
+from dataclasses import replace
+
+import pytest
+
+from latentarm.core.types import Row
+from latentarm_research.studies.properties.cells import (
+    Verdict,
+    cells_table,
+    count,
+    judge,
+    paper_cells,
+    sweep_table,
+)
+from latentarm_research.studies.properties.paper import OF_MEANS, PAPER
+from latentarm_research.studies.properties.preset import PRESETS
+from latentarm_research.studies.properties.sweep import AS_CHOSEN, designs
+
+FAVOUR, WITHIN, MISSED = Verdict.IN_FAVOUR, Verdict.WITHIN, Verdict.MISSED
+
+
+@pytest.mark.parametrize(
+    ("mean", "better", "sees_context", "verdict"),
+    [
+        # A model that sees the context: less loss is in the method's favour.
+        (5.0, "lower", True, FAVOUR),
+        (10.0, "lower", True, FAVOUR),
+        (12.0, "lower", True, WITHIN),
+        (12.1, "lower", True, MISSED),
+        # One that does not: more loss is, since the claim is that it fails.
+        (15.0, "lower", False, FAVOUR),
+        (8.0, "lower", False, WITHIN),
+        (7.9, "lower", False, MISSED),
+        # Of angles and R^2 more is better.
+        (11.0, "higher", True, FAVOUR),
+        (7.9, "higher", True, MISSED),
+        (9.0, "higher", False, FAVOUR),
+        (12.1, "higher", False, MISSED),
+    ],
+)
+def test_a_cell_holds_within_one_sd_or_beyond_it_in_the_methods_favour(mean, better, sees_context, verdict):
+    assert judge(mean, 10.0, 2.0, better, sees_context) is verdict
+    assert verdict.holds == (verdict is not MISSED)
+
+
+def rows_of_the_paper(condition=None):
+    """Rows that repeat what the paper prints."""
+    return [
+        Row("properties", measure, "%", paper, 0.1, 10, task=task, model=model, condition=condition)
+        for (task, model, measure), (paper, _) in PAPER.items()
+    ]
+
+
+def test_the_papers_own_figures_all_hold_and_its_yardsticks_are_no_cells():
+    cells = paper_cells(rows_of_the_paper())
+    assert count(cells) == (27, 27)
+    assert {(cell.row.model, cell.row.measure) for cell in cells if cell.row.model == "pca"} == {
+        ("pca", "r2")
+    }
+    assert not any(cell.row.measure.endswith("_of_vae") and cell.row.model == "vae" for cell in cells)
+
+
+def test_a_model_without_context_that_does_well_is_a_miss_and_the_table_says_so():
+    rows = [
+        replace(row, mean=34.0) if (row.task, row.model) == ("sine", "ae") else row
+        for row in rows_of_the_paper()
+    ]
+    cells = paper_cells(rows)
+    held, of = count(cells)
+    assert of - held == 2  # its loss and its distance
+    missed = [line for line in cells_table(cells).splitlines() if line.endswith("| missed |")]
+    assert len(missed) == 2
+    assert all(line.startswith("| sine |") and "| AE |" in line for line in missed)
+
+
+def test_means_are_judged_where_asked_for_and_other_conditions_never():
+    medians = rows_of_the_paper()
+    of_means = [replace(row, measure=OF_MEANS[row.measure]) for row in medians if row.measure in OF_MEANS]
+    assert len(paper_cells(of_means)) == 0
+    assert len(paper_cells(of_means, means=True)) == 16
+    assert paper_cells(rows_of_the_paper("noise 0.1 rad")) == []
+
+
+def test_the_sweep_counts_the_cells_of_each_design_and_names_those_missed():
+    rows = rows_of_the_paper("good") + [
+        replace(row, mean=34.0) if (row.task, row.model) == ("sine", "ae") else row
+        for row in rows_of_the_paper("bad")
+    ]
+    table = [
+        [cell.strip() for cell in line.strip("|").split("|")]
+        for line in sweep_table(rows, ["good", "bad"]).splitlines()
+    ]
+    assert [line[:2] for line in table[2:]] == [["good", "27 of 27"], ["bad", "25 of 27"]]
+    assert table[2][3] == "–"
+    assert table[3][3].count("AE 34.0") == 2
+
+
+def test_only_a_sweep_has_further_designs_and_each_differs_from_the_studys():
+    assert list(designs(PRESETS["paper"])) == [AS_CHOSEN]
+    swept = designs(PRESETS["sweep"])
+    first = swept.pop(AS_CHOSEN)
+    assert len(swept) > 5
+    assert all(preset != first for preset in swept.values())
+    assert len({repr(preset) for preset in swept.values()}) == len(swept)
+    few = swept["a tenth of the demonstrations, ten times the pairs of each"]
+    assert few.episodes * few.design.samples == first.episodes * first.design.samples

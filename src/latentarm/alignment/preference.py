@@ -1,0 +1,153 @@
+"""What a simulated person means by the axes of the stick."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Final, Protocol, final
+
+import numpy as np
+
+from latentarm.alignment.answers import Motions
+from latentarm.core.errors import UserError
+from latentarm.core.types import BoolArray, FloatArray
+from latentarm.robots.kinematics.chain import Chain
+from latentarm.robots.kinematics.rotations import pose_error
+
+AXES: Final = "xyz"
+
+
+class Preference(Protocol):
+    """The inputs with which a simulated person would ask for motions."""
+
+    def inputs(self, motions: Motions) -> FloatArray:
+        """The inputs (N, d) by which they would ask for N motions."""
+        ...
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class ToolAxes:
+    """A simulated person for whom each axis of the stick is one of the base frame: x, then y, then z.
+
+    They consider where the tool goes and ignore how it turns.
+
+    Attributes:
+        chain: the arm; its first tool is looked at.
+        axes: d, of the stick, 1 to 3.
+        speed_m_s: of the tool along an axis, for which they would push all the way, m/s.
+
+    Raises:
+        UserError: there are more axes than directions, or the speed is not positive.
+    """
+
+    chain: Chain
+    axes: int
+    speed_m_s: float
+
+    def __post_init__(self) -> None:
+        if not 1 <= self.axes <= len(AXES):
+            raise UserError(
+                f"The simulated person thinks in {', '.join(AXES)} and cannot answer for {self.axes} axes."
+            )
+        _check_speed(self.speed_m_s, "m/s")
+
+    def inputs(self, motions: Motions) -> FloatArray:
+        """The inputs (N, d) by which they would ask for N motions."""
+        moved = self.chain.forward(motions.end).position - self.chain.forward(motions.start).position
+        wanted = moved[:, : self.axes] / (self.speed_m_s * motions.duration_s)
+        return np.clip(wanted, -1.0, 1.0)
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class HeightAndTilt:
+    """A simulated person for whom one axis of the stick is up, and the other tilts about the base's x axis.
+
+    They ignore all other motion of the tool.
+
+    Attributes:
+        chain: the arm; its first tool is looked at.
+        speed_m_s: up, for which they would push all the way, m/s.
+        turn_rad_s: the same of the tilt, rad/s.
+
+    Raises:
+        UserError: a speed is not positive.
+    """
+
+    chain: Chain
+    speed_m_s: float
+    turn_rad_s: float
+
+    def __post_init__(self) -> None:
+        _check_speed(self.speed_m_s, "m/s")
+        _check_speed(self.turn_rad_s, "rad/s")
+
+    def inputs(self, motions: Motions) -> FloatArray:
+        """The inputs (N, 2) by which they would ask for N motions."""
+        change = pose_error(self.chain.forward(motions.start), self.chain.forward(motions.end))
+        wanted = change[:, [2, 3]] / (np.array([self.speed_m_s, self.turn_rad_s]) * motions.duration_s)
+        return np.clip(wanted, -1.0, 1.0)
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class ByPlace:
+    """A simulated person whose preference depends on the place.
+
+    Attributes:
+        chain: the arm; its first tool is looked at.
+        is_there: whether places (N, 3), m, are the place, (N,).
+        there: what they mean where a motion begins there.
+        elsewhere: what they mean where it does not.
+    """
+
+    chain: Chain
+    is_there: Callable[[FloatArray], BoolArray]
+    there: Preference
+    elsewhere: Preference
+
+    def inputs(self, motions: Motions) -> FloatArray:
+        """The inputs (N, d) by which they would ask for N motions."""
+        there = self.is_there(self.chain.forward(motions.start).position)
+        return np.where(there[:, None], self.there.inputs(motions), self.elsewhere.inputs(motions))
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Imprecise:
+    """A simulated person whose deflection of each axis varies randomly.
+
+    Attributes:
+        preference: what they mean.
+        variation: coefficient of variation, the SD of an answer as a share of it.
+        rng: source of the chances; each call draws anew.
+
+    Raises:
+        UserError: the variation is negative or not finite.
+    """
+
+    preference: Preference
+    variation: float
+    rng: np.random.Generator
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.variation) and self.variation >= 0):
+            raise UserError(
+                f"The coefficient of variation of answers must be zero or more, not {self.variation:g}."
+            )
+
+    def inputs(self, motions: Motions) -> FloatArray:
+        """The inputs (N, d) by which they ask for N motions this time."""
+        meant = self.preference.inputs(motions)
+        pushed = meant * (1.0 + self.variation * self.rng.normal(size=meant.shape))
+        return np.clip(pushed, -1.0, 1.0)
+
+
+def _check_speed(speed: float, unit: str) -> None:
+    """Check a speed.
+
+    Raises:
+        UserError: it is not positive or not finite.
+    """
+    if not (math.isfinite(speed) and speed > 0):
+        raise UserError(f"The simulated person's speed must be positive, not {speed:g} {unit}.")

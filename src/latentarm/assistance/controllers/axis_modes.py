@@ -1,0 +1,111 @@
+"""Control of a few axes of the tool at a time, and a button that switches which."""
+
+from abc import ABC
+from dataclasses import dataclass
+from typing import Final, final
+
+import numpy as np
+
+from latentarm.assistance.controllers.contract import Controller
+from latentarm.core.errors import UserError
+from latentarm.core.types import Context, FloatArray
+from latentarm.robots.robot import Robot
+
+
+@final
+@dataclass(frozen=True)
+class AxisModes:
+    """Which axes of the end-effector the person's inputs drive in each mode.
+
+    Attributes:
+        names: of the modes.
+        axes: for each mode, the row of the twist (x, y, z, roll, pitch, yaw) that each of the d input axes
+            drives.
+
+    Raises:
+        UserError: there is no mode, modes have different numbers of axes, or a row is not one of the six.
+    """
+
+    names: tuple[str, ...]
+    axes: tuple[tuple[int, ...], ...]
+
+    def __post_init__(self) -> None:
+        if not self.axes or len(self.names) != len(self.axes) or len({len(one) for one in self.axes}) != 1:
+            raise UserError("End-effector control needs modes, each with a name and the same number of axes.")
+        if not self.axes[0] or not {row for one in self.axes for row in one} <= set(range(6)):
+            raise UserError("A mode's axes are rows of the twist, 0 to 5.")
+
+    def twists(self, mode: int, scale: FloatArray, rotation: FloatArray) -> FloatArray:
+        """What a full input along each axis asks of the tool.
+
+        Args:
+            mode: index into `names`.
+            scale: (6,), speed along and about each axis, m/s and rad/s.
+            rotation: (..., 3, 3), of the tool.
+
+        Returns:
+            (..., d, 6), m/s and rad/s, in the base frame; turns are asked for in the tool's.
+        """
+        rows = self.axes[mode]
+        directions = np.zeros((len(rows), 6))
+        for direction, row in zip(directions, rows, strict=True):
+            direction[row] = scale[row]
+        turns = directions[:, 3:] @ rotation.mT
+        shifts = np.broadcast_to(directions[:, :3], turns.shape)
+        return np.concatenate([shifts, turns], axis=-1)
+
+
+PAIRS: Final = AxisModes(("x-y", "z-yaw", "roll-pitch"), ((0, 1), (2, 5), (3, 4)))
+"""One stick of two axes and three modes, those of HARMONIC (Newman et al.): the paper's first study."""
+
+TWO_STICKS: Final = AxisModes(("linear", "angular"), ((0, 1, 2), (3, 4, 5)))
+"""A stick of two axes, another of one, and a button that toggles between linear and angular motion: the
+paper's End-Effector (section 9.2)."""
+
+
+class AxisController(Controller, ABC):
+    """Turns an input into the twist that its mode asks of the tool; subclasses say how the joints follow.
+
+    Args:
+        robot: the arm; its first tool is driven.
+        linear_speed: of a full input along an axis, m/s.
+        angular_speed: of a full input about an axis, rad/s.
+        modes: which axes the inputs drive in each mode.
+
+    Raises:
+        UserError: a speed is not positive and finite.
+    """
+
+    def __init__(
+        self, robot: Robot, linear_speed: float = 0.15, angular_speed: float = 0.5, modes: AxisModes = PAIRS
+    ) -> None:
+        for name, value in (("linear_speed", linear_speed), ("angular_speed", angular_speed)):
+            if not 0 < value < np.inf:
+                raise UserError(f"The tool's {name} must be positive and finite, not {value}.")
+        self._chain = robot.chain
+        self._modes = modes
+        self._scale = np.array([linear_speed] * 3 + [angular_speed] * 3)
+
+    @property
+    @final
+    def modes(self) -> tuple[str, ...]:
+        """Names of the groups of axes."""
+        return self._modes.names
+
+    @property
+    @final
+    def input_dim(self) -> int:
+        """As many axes as a mode has."""
+        return len(self._modes.axes[0])
+
+    @final
+    def latent(self, u: FloatArray, context: Context, mode: int) -> FloatArray:
+        """The input as it is: there is nothing to align."""
+        return u
+
+    def _twists_and_jacobian(self, state: FloatArray, mode: int) -> tuple[FloatArray, FloatArray]:
+        """What a full input along each axis asks of the tool (..., d, 6), and its Jacobian (..., 6, n)."""
+        transforms = self._chain.link_transforms(state)
+        pose = self._chain.tool_pose(transforms)
+        twists = self._modes.twists(mode, self._scale, pose.rotation)
+        return twists, self._chain.jacobian_at(transforms, pose)

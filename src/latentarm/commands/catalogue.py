@@ -1,0 +1,112 @@
+"""The commands by the words that run them: ours, and those that other distributions register.
+
+A distribution registers a `CommandSet` as an entry point of the group ``latentarm.commands``. Only the
+module of the command that runs is imported.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pkgutil import resolve_name
+from typing import Final, final
+
+from latentarm.commands.configuration import Command
+from latentarm.core.plugins import Catalogue
+
+
+@final
+@dataclass(frozen=True)
+class Entry:
+    """A command as the command line lists it.
+
+    Attributes:
+        place: its function, as ``package.module:function``.
+        summary: the first line of its help.
+    """
+
+    place: str
+    summary: str
+
+    def load(self) -> Command:
+        """The function."""
+        return resolve_name(self.place)
+
+
+@final
+@dataclass(frozen=True)
+class CommandSet:
+    """Commands of one distribution.
+
+    Attributes:
+        commands: by the words that run each, in the order of the help.
+        groups: words that have commands under them, and their help.
+    """
+
+    commands: Mapping[str, Entry]
+    groups: Mapping[str, str]
+
+
+def _ours(module: str, summary: str) -> Entry:
+    return Entry(f"latentarm.commands.{module}", summary)
+
+
+OWN: Final = CommandSet(
+    {
+        "import": _ours(
+            "import_demonstrations:import_demonstrations",
+            "Turn recorded demonstrations into a native dataset (LeRobotDataset v3.0).",
+        ),
+        "inspect": _ours(
+            "inspect:inspect", "Show a dataset: episodes, rates, ranges, and a figure of the joints."
+        ),
+        "train": _ours("train:train", "Learn a latent action model from a dataset."),
+        "evaluate": _ours(
+            "evaluate:evaluate",
+            "Measure a trained model on held-out episodes: four properties, drift, reversal, and a verdict.",
+        ),
+        "align": _ours(
+            "align:align",
+            "Ask what a person means by their input, and keep it as their profile (section 6 of the paper).",
+        ),
+        "teleop": _ours(
+            "teleop:teleop",
+            "Drive an arm from a web page, simulated or real: stick, buttons, keyboard, gamepad or switches.",
+        ),
+        "export": _ours(
+            "export:export",
+            "List what was recorded, and export it to a native dataset (LeRobotDataset v3.0).",
+        ),
+        "replay": _ours(
+            "replay:replay",
+            "Decide again what an arm was commanded on the page, and compare every command to the bit.",
+        ),
+        "arms list": _ours(
+            "arms:list_arms",
+            "List what `--arm` takes: simulated arms by name, real ones by the scheme of their address.",
+        ),
+        "arms check": _ours(
+            "arms:check",
+            "Look at a real arm without moving it: what it is, whether it can be driven, and if not, why.",
+        ),
+        "robots": _ours("robots:robots", "List the robots, or show one: joints, limits and end-effector."),
+    },
+    {"arms": "List what can be driven, and look at a real arm before it moves; `arms --help` lists how."},
+)
+
+
+def _checked(name: str, thing: object) -> CommandSet:
+    if not isinstance(thing, CommandSet):
+        raise TypeError(f"{thing!r} is no latentarm.commands.catalogue.CommandSet")
+    return thing
+
+
+COMMAND_SETS: Final = Catalogue("latentarm.commands", "set of commands", {}, _checked)
+"""Those of other distributions."""
+
+
+def all_commands() -> CommandSet:
+    """Our commands, and then those of other distributions."""
+    sets = (OWN, *COMMAND_SETS.usable().values())
+    return CommandSet(
+        {words: entry for one in sets for words, entry in one.commands.items()},
+        {word: text for one in sets for word, text in one.groups.items()},
+    )

@@ -1,0 +1,145 @@
+"""Where the cells of a grid run: processes of this machine, or a cluster of machines.
+
+joblib is the one interface; Ray and Dask are joblib's own backends. Each of the context managers here
+makes its backend the active one and ends what it has started, and nothing else.
+"""
+
+import logging
+import os
+import socket
+from collections.abc import Callable, Generator
+from contextlib import AbstractContextManager, contextmanager
+from typing import TYPE_CHECKING, Any, Final, cast
+
+import joblib
+
+from latentarm.core.errors import UserError
+
+if TYPE_CHECKING:
+    from dask.distributed import Client
+
+EXTRA: Final = "pip install 'latentarm[cluster]'"
+
+ANSWER_S: Final = 10.0
+"""How long a cluster may take to answer at its address, s."""
+
+
+@contextmanager
+def _processes(jobs: int) -> Generator[int]:
+    """Processes of this machine."""
+    with joblib.parallel_config("loky"):
+        yield _available(jobs)
+
+
+@contextmanager
+def _ray(jobs: int) -> Generator[int]:
+    """A Ray cluster: that of ``RAY_ADDRESS``, or a new one on this machine."""
+    os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")  # no usage statistics
+    try:
+        import ray
+        from ray.util.joblib import register_ray
+    except ImportError as error:
+        raise UserError(f"Ray is not installed here: {EXTRA}.") from error
+    started = not ray.is_initialized()
+    try:
+        if started:
+            _start_ray()
+        register_ray()
+        with joblib.parallel_config("ray"):
+            # Ray's pool refuses to have more processes than the cluster has cores.
+            yield _at_most(jobs, _available(-1))
+    finally:
+        if started:
+            ray.shutdown()
+
+
+def _start_ray() -> None:
+    """Join the cluster that the environment names, or else start one.
+
+    Without an address Ray would look for a cluster on this machine, and wait for one that has ended.
+
+    Raises:
+        UserError: the cluster does not answer, or wants a token that the environment does not name.
+    """
+    import ray
+
+    address = os.environ.get("RAY_ADDRESS", "local")
+    if address.startswith("ray://"):
+        raise UserError(
+            f"RAY_ADDRESS is {address}: run on a machine of the cluster instead, with RAY_ADDRESS=host:port."
+        )
+    host, _, port = address.rpartition(":")
+    try:
+        if port.isdigit():  # and not "auto" or "local"
+            # Ray itself would try for a quarter of an hour.
+            socket.create_connection((host, int(port)), ANSWER_S).close()
+        ray.init(address, include_dashboard=False, log_to_driver=False, logging_level=logging.ERROR)
+    except OSError as error:
+        raise UserError(
+            f"The Ray cluster at {address} does not answer or does not let us in:"
+            " see RAY_ADDRESS and RAY_AUTH_MODE."
+        ) from error
+
+
+@contextmanager
+def _dask(jobs: int) -> Generator[int]:
+    """A Dask cluster: that of ``DASK_SCHEDULER_ADDRESS``, or a new one of processes on this machine."""
+    try:
+        import dask.config
+    except ImportError as error:
+        raise UserError(f"Dask is not installed here: {EXTRA}.") from error
+    address: str | None = dask.config.get("scheduler-address", None)
+    processes = _dask_processes(jobs) if address is None else _dask_cluster(address)
+    with processes as client, joblib.parallel_config("dask", client=client):
+        yield _at_most(jobs, _available(-1))
+
+
+@contextmanager
+def _dask_processes(jobs: int) -> Generator["Client"]:
+    """A client of a new Dask cluster on this machine, which ends with it."""
+    from dask.distributed import Client, LocalCluster
+
+    settings: dict[str, Any] = {"threads_per_worker": 1, "dashboard_address": None, "memory_limit": None}
+    with (
+        LocalCluster(n_workers=None if jobs == -1 else jobs, **settings) as cluster,
+        Client(cluster) as client,
+    ):
+        yield client
+
+
+@contextmanager
+def _dask_cluster(address: str) -> Generator["Client"]:
+    """A client of the Dask cluster at an address.
+
+    Raises:
+        UserError: it does not answer, or has no workers.
+    """
+    from dask.distributed import Client
+
+    try:
+        client = Client(address, timeout=ANSWER_S)
+    except (OSError, ValueError) as error:
+        raise UserError(f"No Dask scheduler answers at {address}: see DASK_SCHEDULER_ADDRESS.") from error
+    with client:
+        try:
+            client.wait_for_workers(1, timeout=ANSWER_S)
+        except TimeoutError as error:
+            raise UserError(f"The Dask scheduler at {address} has no workers: start some.") from error
+        yield client
+
+
+def _available(jobs: int) -> int:
+    """How many processes the active backend has for a number of jobs."""
+    return cast(int, joblib.effective_n_jobs(jobs))
+
+
+def _at_most(jobs: int, cores: int) -> int:
+    return cores if jobs == -1 else min(jobs, cores)
+
+
+BACKENDS: Final[dict[str, Callable[[int], AbstractContextManager[int]]]] = {
+    "joblib": _processes,
+    "ray": _ray,
+    "dask": _dask,
+}
+"""Each takes the processes wanted (-1: one per core) and yields how many there will be."""

@@ -1,0 +1,167 @@
+"""A grid of independent cells, measured side by side.
+
+A cell carries everything that it depends on, its seeds too, so that where it runs and what else runs
+there change nothing of its result.
+"""
+
+import traceback
+import warnings
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass
+from typing import Any, Generic, TypeVar, cast
+
+from joblib import Parallel, delayed
+from joblib.parallel import get_active_backend
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+from latentarm.core.errors import UserError
+from latentarm.core.parallel.backends import BACKENDS
+from latentarm.core.untrusted.console import VisibleConsole
+
+Cell = TypeVar("Cell")
+Result = TypeVar("Result")
+
+
+class CellError(Exception):
+    """A cell failed because of a bug; names the cell and holds the traceback."""
+
+
+@dataclass(frozen=True)
+class _Measured(Generic[Result]):
+    """What comes back from wherever a cell was measured.
+
+    Attributes:
+        index: of the cell.
+        result: what the function returned.
+        warnings: category and text of what was warned of meanwhile.
+    """
+
+    index: int
+    result: Result
+    warnings: tuple[tuple[type[Warning], str], ...]
+
+
+def run_grid(
+    function: Callable[[Cell], Result],
+    cells: Sequence[Cell],
+    *,
+    jobs: int,
+    backend: str,
+    label: Callable[[Cell], str],
+    bars: bool,
+    unit: str = "cells",
+    keep: Callable[[Cell, Result], None] | None = None,
+) -> list[Result]:
+    """Measure every cell, each on one process.
+
+    Warnings given while a cell is measured are given again here, after its name, in the order of the cells.
+
+    Args:
+        function: measures one cell; importable by name where it is to run in other processes.
+        cells: picklable.
+        jobs: processes side by side, as far as a cluster has them; -1 is one per core.
+        backend: a name in `BACKENDS`.
+        label: what a cell is called when it fails or warns.
+        bars: show on standard error how far the grid is.
+        unit: what a cell is called on the bar.
+        keep: is given each cell with its result as soon as there is one, in any order; with Ray at the end.
+
+    Returns:
+        The results in the order of the cells.
+
+    Raises:
+        UserError: jobs or backend are invalid, the backend is not available, one of joblib's processes was
+            killed, or a cell raised one; the message names the cell.
+        CellError: a cell raised anything else.
+    """
+    check_processes(jobs, backend)
+    with BACKENDS[backend](jobs) as workers, counting_bar(bars) as bar:
+        # One cell at a time per process: a cell takes seconds, and the bar then advances with each.
+        one_by_one: dict[str, Any] = {"batch_size": 1, "pre_dispatch": workers}
+        active: Any = get_active_backend()[0]
+        order = "generator_unordered" if active.supports_return_generator else "list"
+        parallel = Parallel(n_jobs=workers, return_as=order, **one_by_one)
+        found: dict[int, _Measured[Result]] = {}
+        try:
+            with warnings.catch_warnings():
+                # A process that has grown, as one that trained a model has, makes way for a new one.
+                warnings.filterwarnings("ignore", "A worker stopped while some jobs were given", UserWarning)
+                measured = parallel(
+                    delayed(_measure)(function, index, cell, label(cell))
+                    for index, cell in enumerate(_watched(cells, workers, bar, unit))
+                )
+                for entry in cast(Iterable[_Measured[Result]], measured):
+                    found[entry.index] = entry
+                    if keep is not None:
+                        keep(cells[entry.index], entry.result)
+        except BrokenProcessPool as error:
+            raise UserError(
+                "A process of the grid was killed, most likely because memory ran out: try fewer with --jobs."
+            ) from error
+    results = [found[index] for index in range(len(cells))]
+    for cell, entry in zip(cells, results, strict=True):
+        for category, text in entry.warnings:
+            warnings.warn(f"{label(cell)}: {text}", category, stacklevel=2)
+    return [entry.result for entry in results]
+
+
+def check_processes(jobs: int, backend: str) -> None:
+    """Check jobs and backend before any work is done.
+
+    Raises:
+        UserError: the number of jobs or the backend is invalid.
+    """
+    if jobs != -1 and jobs < 1:
+        raise UserError(f"The number of jobs is {jobs}: it must be at least 1, or -1 for one per core.")
+    if backend not in BACKENDS:
+        raise UserError(f"There is no backend {backend!r}: choose from {', '.join(BACKENDS)}.")
+
+
+def _measure(function: Callable[[Cell], Result], index: int, cell: Cell, name: str) -> _Measured[Result]:
+    """Measure one cell; runs in any process.
+
+    Errors are replaced by ones that hold only text, because others may not survive pickling.
+
+    Raises:
+        UserError: the cell raised one.
+        CellError: the cell raised anything else.
+    """
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", UserWarning)
+        warnings.simplefilter("always", RuntimeWarning)
+        try:
+            result = function(cell)
+        except UserError as error:
+            raise UserError(f"{name}: {error}") from error
+        except Exception as error:
+            raise CellError(f"{name} failed.\n{traceback.format_exc()}") from error
+    return _Measured(index, result, tuple((warning.category, str(warning.message)) for warning in caught))
+
+
+def _watched(cells: Sequence[Cell], workers: int, bar: Progress, unit: str) -> Iterator[Cell]:
+    """The cells as they are begun.
+
+    Every backend asks for the next one when a process is free, but not all of them tell what is done.
+    """
+    task = bar.add_task(unit, total=len(cells))
+    for begun, cell in enumerate(cells, start=1):
+        bar.update(task, completed=max(0, begun - workers))
+        yield cell
+
+
+def counting_bar(shown: bool) -> Progress:
+    """A bar on standard error that counts and goes away when it is done.
+
+    Args:
+        shown: whether there is one at all.
+    """
+    return Progress(
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+        console=VisibleConsole(stderr=True),
+        disable=not shown,
+        transient=True,
+    )

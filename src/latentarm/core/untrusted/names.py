@@ -1,0 +1,45 @@
+"""Names of people: any name in any script, in one form, and nothing that is no name."""
+
+import unicodedata
+from typing import Final
+
+from latentarm.core.errors import UserError
+from latentarm.core.untrusted.terminal import visible
+
+MOST_CHARACTERS: Final = 40
+
+
+def clean_name(text: str, most: int = MOST_CHARACTERS) -> str:
+    """The name as it is kept: composed (NFC), with single spaces inside and none around it.
+
+    Args:
+        text: as somebody typed it.
+        most: characters that it may have.
+
+    Raises:
+        UserError: it is empty or too long, has no letter, digit or symbol, or holds control characters,
+            ends of lines or characters that turn the direction of other text.
+    """
+    if len(text) > 4 * most:
+        raise _too_long(most)
+    name = " ".join(part for part in unicodedata.normalize("NFC", text).split(" ") if part)
+    if len(name) > most:
+        raise _too_long(most)
+    if "\n" in name or visible(name) != name:
+        raise UserError("The name holds characters that cannot be shown: type it without them.")
+    if not any(unicodedata.category(character)[0] in "LNS" for character in name):
+        raise UserError("The name has no letter: type a name.")
+    return name
+
+
+def same_name(one: str, other: str) -> bool:
+    """Whether two names look the same to people: case and compatible forms of characters do not count."""
+    return _folded(one) == _folded(other)
+
+
+def _folded(name: str) -> str:
+    return unicodedata.normalize("NFKC", unicodedata.normalize("NFKC", name).casefold())
+
+
+def _too_long(most: int) -> UserError:
+    return UserError(f"The name is longer than {most} characters: type a shorter one.")

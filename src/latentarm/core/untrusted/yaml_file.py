@@ -1,0 +1,65 @@
+"""YAML that this program may not have written: bounded before it is parsed, plain values only."""
+
+import re
+from collections.abc import Hashable
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from latentarm.core.errors import UserError
+from latentarm.core.untrusted.opening import read_bytes
+
+
+class _PlainLoader(yaml.SafeLoader):
+    """Plain values only: no aliases, which can make a small file huge, and no key twice."""
+
+    def compose_node(self, parent: Any, index: Any) -> Any:
+        if self.check_event(yaml.AliasEvent):
+            raise yaml.YAMLError("an alias (*) is not a plain value")
+        return super().compose_node(parent, index)
+
+    def construct_mapping(self, node: Any, deep: bool = False) -> dict[Hashable, Any]:
+        keys = [self.construct_object(key, deep=True) for key, _ in node.value]
+        for key in keys:
+            if keys.count(key) > 1:
+                raise yaml.YAMLError(f"{key!r} is given twice")
+        return super().construct_mapping(node, deep)
+
+
+# YAML 1.1 reads 1e-3 as text because it has no decimal point.
+_PlainLoader.add_implicit_resolver(
+    "tag:yaml.org,2002:float", re.compile(r"[-+]?[0-9]+[eE][-+]?[0-9]+"), list("-+0123456789")
+)
+
+
+def read_yaml(path: Path, limit: int, kind: str) -> object:
+    """The value that a file consists of; None where it is empty.
+
+    Args:
+        path: the file.
+        limit: bytes that it may have.
+        kind: what the file should be, for the message, such as ``a YAML file of options``.
+
+    Raises:
+        UserError: the file cannot be read, is too large, or is no plain YAML.
+    """
+    content = read_bytes(path, limit)
+    loader: _PlainLoader | None = None
+    try:
+        loader = _PlainLoader(content.decode())
+        return loader.get_single_data()
+    except (yaml.YAMLError, ValueError, TypeError, RecursionError) as error:
+        raise UserError(f"{path} is not {kind}: {_said(error)}.") from error
+    finally:
+        if loader is not None:
+            loader.dispose()
+
+
+def _said(error: Exception) -> str:
+    """An error in one line."""
+    if isinstance(error, yaml.MarkedYAMLError) and error.problem_mark is not None:
+        return f"{error.problem} in line {error.problem_mark.line + 1}"
+    if isinstance(error, RecursionError):
+        return "it is nested too deeply"
+    return " ".join(str(error).split()) or "it is damaged"

@@ -1,0 +1,75 @@
+"""Controllability: how close latent actions alone can bring the arm to another demonstrated state.
+
+Section 8.1: take pairs of start and goal states of the test set, solve for the latent actions that
+minimise the error to the goal, and report the least error. The solver is the greedy operator of
+`latentarm.evaluation.approach`, so the figure is an upper bound on what the latent space allows.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from latentarm.core.types import FloatArray
+from latentarm.evaluation.approach import SolverConfig, Target, approach, mean_distance, tool_places
+from latentarm.evaluation.contract import DecodesActions, PlacesTool
+from latentarm.evaluation.samples import StartGoalPairs
+
+
+@dataclass(frozen=True)
+class ReachConfig:
+    """The controllability test for the greedy operator.
+
+    Attributes:
+        pairs: number of start-goal pairs.
+        separation_s: time between start and goal in the demonstration, s.
+        solver: what it may do.
+    """
+
+    pairs: int = 200
+    separation_s: float = 3.0
+    solver: SolverConfig = field(default_factory=SolverConfig)
+
+
+@dataclass(frozen=True)
+class Reach:
+    """How close the arm came to each of P goals, for each of S seeds.
+
+    Attributes:
+        tool_error_m: (S, P), least distance of the tools from their places at the goal, mean over tools, m.
+        state_error_rad: (S, P), ‖s - s_j‖ at that moment, rad.
+        start_distance_m: (P,), distance of the tools at the start, mean over tools, m.
+    """
+
+    tool_error_m: FloatArray
+    state_error_rad: FloatArray
+    start_distance_m: FloatArray
+
+
+def reach_goals(
+    decoders: Sequence[DecodesActions],
+    pairs: StartGoalPairs,
+    chain: PlacesTool,
+    step_s: float,
+    config: SolverConfig,
+    tools: Sequence[int] = (0,),
+) -> Reach:
+    """Drive from every start towards its goal with every decoder.
+
+    Args:
+        decoders: S decoders.
+        pairs: P start-goal pairs.
+        chain: the robot's forward kinematics.
+        step_s: dt of the transition, s.
+        config: what the greedy operator may do.
+        tools: which end-effectors.
+    """
+    dof = pairs.goal.shape[1]
+    goal = Target(tool_places(chain, pairs.goal, tools), pairs.goal)
+    came = approach(decoders, pairs.start, goal, chain, step_s, config, tools)
+    first = tool_places(chain, pairs.start[:, :dof], tools)
+    return Reach(
+        tool_error_m=came.distance_m,
+        state_error_rad=np.linalg.norm(came.context[..., :dof] - pairs.goal, axis=-1),
+        start_distance_m=mean_distance(first, goal.places),
+    )

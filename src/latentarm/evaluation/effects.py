@@ -1,0 +1,125 @@
+"""What each latent axis does to the end-effector: the basis of consistency, scalability and angles."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from latentarm.core.types import FloatArray
+from latentarm.evaluation.contract import DecodesActions, PlacesTool, next_context
+from latentarm.robots.kinematics.rotations import rotation_vector
+
+
+def axis_grid(points: int) -> FloatArray:
+    """A fixed, even grid (K,) of latent actions over [-1, 1]."""
+    return np.linspace(-1.0, 1.0, points)
+
+
+def axis_effects(
+    decoders: Sequence[DecodesActions],
+    context: FloatArray,
+    grid: FloatArray,
+    chain: PlacesTool,
+    step_s: float,
+    tool: int = 0,
+) -> FloatArray:
+    """How far the end-effector moves in one step for each latent axis alone, the other axes at zero.
+
+    Args:
+        decoders: S decoders.
+        context: (N, c), contexts; their first entries are the state, rad.
+        grid: (K,), values that each axis takes in turn.
+        chain: the robot's forward kinematics.
+        step_s: how long each latent action is held, s.
+        tool: which end-effector, where there are several.
+
+    Returns:
+        (S, d, N, K, 3), displacement Psi(T(s, phi(z, s))) - Psi(s), m.
+    """
+    effects: list[FloatArray] = []
+    for decoder in decoders:
+        before, after = _axis_states(decoder, context, grid, step_s)
+        moved = chain.forward(after, tool).position - chain.forward(before, tool).position[:, None]
+        effects.append(moved)
+    return np.stack(effects)
+
+
+def axis_turns(
+    decoders: Sequence[DecodesActions],
+    context: FloatArray,
+    grid: FloatArray,
+    chain: PlacesTool,
+    step_s: float,
+    tools: Sequence[int] = (0,),
+) -> FloatArray:
+    """How far the end-effectors turn in one step for each latent axis alone, the other axes at zero.
+
+    Args:
+        decoders: S decoders.
+        context: (N, c), contexts; their first entries are the state, rad.
+        grid: (K,), values that each axis takes in turn.
+        chain: the robot's forward kinematics.
+        step_s: how long each latent action is held, s.
+        tools: T end-effectors, each of which counts as N further states.
+
+    Returns:
+        (S, d, T N, K, 3), rotation vectors in the base frame, rad.
+    """
+    turns: list[FloatArray] = []
+    for decoder in decoders:
+        before, after = _axis_states(decoder, context, grid, step_s)
+        of_tools = [
+            rotation_vector(
+                chain.forward(after, tool).rotation @ chain.forward(before, tool).rotation[:, None].mT
+            )
+            for tool in tools
+        ]
+        turns.append(np.concatenate(of_tools, axis=1))
+    return np.stack(turns)
+
+
+def _axis_states(
+    decoder: DecodesActions, context: FloatArray, grid: FloatArray, step_s: float
+) -> tuple[FloatArray, FloatArray]:
+    """States (N, n) before and (d, N, K, n) after one step of each axis alone, rad."""
+    dim = decoder.latent_dim
+    z = np.einsum("k,ij->ikj", grid, np.eye(dim))[:, None]  # (d, 1, K, d)
+    shape = (dim, len(context), len(grid))
+    repeated = np.broadcast_to(context[:, None], (*shape, context.shape[-1]))
+    action = decoder.decode(np.broadcast_to(z, (*shape, dim)), repeated)
+    dof = action.shape[-1]
+    return context[:, :dof], next_context(repeated, action, step_s)[..., :dof]
+
+
+def held_paths(
+    decoder: DecodesActions,
+    context: FloatArray,
+    z: FloatArray,
+    chain: PlacesTool,
+    step_s: float,
+    steps: int,
+    tool: int = 0,
+) -> FloatArray:
+    """Where the end-effector goes while a latent action is held.
+
+    Args:
+        decoder: one decoder.
+        context: (N, c), contexts to start from.
+        z: (L, d), the latent actions that are held, each from each start.
+        chain: the robot's forward kinematics.
+        step_s: dt of the transition, s.
+        steps: number of steps T.
+        tool: which end-effector, where there are several.
+
+    Returns:
+        (L, N, T + 1, 3), places of the tool, m.
+    """
+    latent = np.broadcast_to(z[:, None], (len(z), len(context), z.shape[-1]))
+    now = np.broadcast_to(context, (len(z), *context.shape))
+    action = decoder.decode(latent, now)
+    dof = action.shape[-1]
+    states = [now[..., :dof]]
+    for _ in range(steps):
+        now = next_context(now, action, step_s)
+        states.append(now[..., :dof])
+        action = decoder.decode(latent, now)
+    return chain.forward(np.stack(states, axis=2), tool).position

@@ -1,0 +1,267 @@
+"""All measures of a latent action model on held-out episodes, as rows with mean and SD over seeds."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Final, Literal, Protocol, final
+
+import numpy as np
+
+from latentarm.core.context import Named
+from latentarm.core.errors import UserError
+from latentarm.core.types import Demonstrations, Episode, FloatArray, Row
+from latentarm.demonstrations.pairs import make_pairs
+from latentarm.demonstrations.split import select_episodes
+from latentarm.evaluation.accuracy import Accuracy, accuracy
+from latentarm.evaluation.consistency import consistency, local_consistency
+from latentarm.evaluation.contract import DecodesActions, EncodesActions
+from latentarm.evaluation.controllability import ReachConfig, reach_goals
+from latentarm.evaluation.disentanglement import disentanglement_deg
+from latentarm.evaluation.drift import drift
+from latentarm.evaluation.effects import axis_effects, axis_grid
+from latentarm.evaluation.reversal import reversal
+from latentarm.evaluation.samples import (
+    StartGoalPairs,
+    evenly_spread,
+    moving_episodes,
+    spread_contexts,
+    start_goal_pairs,
+)
+from latentarm.evaluation.state_change import state_change
+from latentarm.evaluation.summary import Subject, summarise
+from latentarm.evaluation.turning import turning
+from latentarm.robots.robot import Robot
+
+HOLDS_S: Final = {"reversal_0_5_s": 0.5, "reversal_2_s": 2.0}
+"""Measure -> how long z and -z are each held for it, s: longer than any loss looks ahead."""
+
+
+class TrainedModel(EncodesActions, Protocol):
+    """A fitted model together with how its training pairs were made."""
+
+    @property
+    def latent_dim(self) -> int:
+        """Number of latent axes d."""
+        ...
+
+    @property
+    def learns_encoder(self) -> bool:
+        """Whether `encode` is a network that was trained."""
+        ...
+
+    @property
+    def context(self) -> Named:
+        """The features that it sees, see `latentarm.core.context.feature_names`."""
+        ...
+
+    @property
+    def actions(self) -> Literal["displacement", "recorded"]:
+        """Where its training pairs took their actions from."""
+        ...
+
+    @property
+    def window(self) -> int:
+        """Largest distance, in samples, between the two states that an action leads between."""
+        ...
+
+    @property
+    def state_noise_rad(self) -> float:
+        """SD of the noise that the states were given in training, rad."""
+        ...
+
+
+@dataclass(frozen=True)
+class EvaluationConfig:
+    """Settings of the measures; the same for all models that are compared.
+
+    Attributes:
+        state_noise_rad: SD of the noise on held-out states for the noisy error, rad;
+            None for the noise that the model was trained with.
+        step_s: dt of the transition s' = s + a dt, and how long z and -z are each held for `reversal`, s;
+            None for one sample of the demonstrations.
+        states: states for consistency, disentanglement and turning.
+        grid: values of z in [-1, 1] on each axis, at each of these states.
+        latents: held-out pairs whose nearest inputs are searched for: for what the decoder can express, for
+            drift, reversal and change in state.
+        held_latents: of these, for reversal after longer holds.
+        reach: what is asked for controllability.
+        tool: which end-effector, where there are several.
+    """
+
+    state_noise_rad: float | None = None
+    step_s: float | None = None
+    states: int = 25
+    grid: int = 21
+    latents: int = 2000
+    held_latents: int = 300
+    reach: ReachConfig = field(default_factory=ReachConfig)
+    tool: int = 0
+
+
+@dataclass(frozen=True)
+class Figures:
+    """The measures of a model for each seed, before averaging.
+
+    Attributes:
+        per_seed: measure -> (S,).
+        start_distance_m: (P,), of the tools from the goals before any drive, m.
+    """
+
+    per_seed: Mapping[str, FloatArray]
+    start_distance_m: FloatArray
+
+    def rows(self, subject: Subject) -> list[Row]:
+        """Mean and SD over seeds, one row per measure."""
+        rows = [summarise(subject, name, values) for name, values in self.per_seed.items()]
+        return [*rows, summarise(subject, "start_distance_m", self.start_distance_m)]
+
+
+def measure(
+    model: TrainedModel,
+    demonstrations: Demonstrations,
+    held_out: Sequence[int],
+    robot: Robot,
+    *,
+    rng: np.random.Generator,
+    config: EvaluationConfig | None = None,
+) -> Figures:
+    """Measure every seed of a model on held-out episodes.
+
+    Args:
+        model: a fitted model of S seeds.
+        demonstrations: the dataset that it was trained on; PCA is fitted to all of it that is not held out,
+            so also to validation episodes.
+        held_out: indices of the episodes that it has not seen.
+        robot: the arm that it moves.
+        rng: for the noise on held-out states.
+        config: how the measures are taken.
+
+    Raises:
+        UserError: no episode is held out, none is left for PCA, or the contexts lack a feature.
+    """
+    config = config or EvaluationConfig()
+    episodes = moving_episodes(demonstrations, held_out)
+    found = _measure_accuracy(model, demonstrations, held_out, rng, config)
+    probe = _probe(model.context, episodes, demonstrations.rate_hz, config, found.context, found.action)
+    behaviour = measure_behaviour(found.decoders, found.z, probe, robot, config)
+    return replace(behaviour, per_seed={**found.figures, **behaviour.per_seed})
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Probe:
+    """Held-out samples on which a model's behaviour is measured.
+
+    Attributes:
+        pairs: starts and goals for controllability.
+        states: (K, c), contexts for consistency, disentanglement and turning.
+        context: (L, c), contexts for drift, reversal and change in state.
+        action: (L, m), the actions there, rad/s.
+        step_s: dt of the transition, s.
+    """
+
+    pairs: StartGoalPairs
+    states: FloatArray
+    context: FloatArray
+    action: FloatArray
+    step_s: float
+
+
+def take_probe(model: TrainedModel, demonstrations: Demonstrations, held_out: Sequence[int]) -> Probe:
+    """The samples that `measure` takes by default, so that a run can keep them.
+
+    Args:
+        model: says how pairs of contexts and actions are made.
+        demonstrations: the dataset.
+        held_out: indices of the episodes that the model has not seen.
+
+    Raises:
+        UserError: no episode is held out, nothing moves in them, or the contexts lack a feature.
+    """
+    config = EvaluationConfig()
+    episodes = moving_episodes(demonstrations, held_out)
+    how = (model.context, np.random.default_rng(0), model.actions)
+    pairs = make_pairs(select_episodes(demonstrations, held_out), model.window, 0.0, *how)
+    chosen = evenly_spread(config.latents, len(pairs.action))
+    samples = (pairs.clean_context[chosen], pairs.action[chosen])
+    return _probe(model.context, episodes, demonstrations.rate_hz, config, *samples)
+
+
+def measure_behaviour(
+    decoders: Sequence[DecodesActions],
+    z: FloatArray,
+    probe: Probe,
+    robot: Robot,
+    config: EvaluationConfig | None = None,
+) -> Figures:
+    """All measures of `measure` but the errors of reconstruction, which need the demonstrations.
+
+    Args:
+        decoders: S decoders.
+        z: (S, L, d), the inputs whose actions are nearest to the probe's, see `nearest_latents`.
+        probe: what is measured on.
+        robot: the arm.
+        config: how the measures are taken.
+    """
+    config = config or EvaluationConfig()
+    figures: dict[str, FloatArray] = {}
+    reach = reach_goals(decoders, probe.pairs, robot.chain, probe.step_s, config.reach.solver, (config.tool,))
+    figures["controllability_m"] = reach.tool_error_m.mean(axis=1)
+    figures["controllability_state_error"] = reach.state_error_rad.mean(axis=1)
+
+    grid = axis_grid(config.grid)
+    effects = axis_effects(decoders, probe.states, grid, robot.chain, probe.step_s, config.tool)
+    for name, per_axis in (
+        ("r2", consistency(effects, grid)),
+        ("r2_local", local_consistency(effects, grid)),
+    ):
+        figures[name] = per_axis.mean(axis=1)
+        figures |= {f"{name}_axis_{axis}": per_axis[:, axis] for axis in range(per_axis.shape[1])}
+    figures["disentanglement_deg"] = disentanglement_deg(effects)
+    figures["drift"] = drift(decoders, z, probe.context)
+    figures["reversal"] = reversal(decoders, z, probe.context, probe.step_s)
+    held = evenly_spread(config.held_latents, len(probe.context))
+    for name, hold_s in HOLDS_S.items():
+        figures[name] = reversal(decoders, z[:, held], probe.context[held], probe.step_s, hold_s)
+    figures["state_change"] = state_change(decoders, z, probe.context)
+    if z.shape[-1] == 2:
+        turned = turning(decoders, probe.states, robot.chain, tool=config.tool).joints
+        count = np.isfinite(turned).sum(axis=(1, 2))
+        figures["motion_turn"] = np.divide(
+            np.nansum(turned, axis=(1, 2)), count, out=np.full(len(turned), np.nan), where=count > 0
+        )
+    return Figures(per_seed=figures, start_distance_m=reach.start_distance_m)
+
+
+def _probe(
+    names: Named,
+    episodes: Sequence[Episode],
+    rate_hz: float,
+    config: EvaluationConfig,
+    context: FloatArray,
+    action: FloatArray,
+) -> Probe:
+    pairs = start_goal_pairs(
+        episodes, names, separation_s=config.reach.separation_s, count=config.reach.pairs
+    )
+    states = spread_contexts(episodes, names, config.states)
+    return Probe(pairs, states, context, action, config.step_s or 1.0 / rate_hz)
+
+
+def _measure_accuracy(
+    model: TrainedModel,
+    demonstrations: Demonstrations,
+    held_out: Sequence[int],
+    rng: np.random.Generator,
+    config: EvaluationConfig,
+) -> Accuracy:
+    """Reconstruction errors with and without state noise, relative to PCA fitted to what is not held out."""
+    noise = model.state_noise_rad if config.state_noise_rad is None else config.state_noise_rad
+    trained_on = [index for index in range(len(demonstrations.episodes)) if index not in set(held_out)]
+    if not trained_on:
+        raise UserError("Every episode is held out: leave at least one to fit PCA, the baseline, to.")
+    how = (model.context, rng, model.actions)
+    training = make_pairs(select_episodes(demonstrations, trained_on), model.window, 0.0, *how)
+    pairs = make_pairs(select_episodes(demonstrations, held_out), model.window, noise, *how)
+    return accuracy(
+        model, training.action, pairs, learns_encoder=model.learns_encoder, searched=config.latents
+    )

@@ -1,0 +1,116 @@
+"""Figure: where the tool goes while one latent axis is held to either side, at a few states."""
+
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+
+from latentarm.core.style import FONT_SIZE, legend_below, new_figure, tidy
+from latentarm.core.types import FloatArray
+from latentarm.evaluation.contract import DecodesActions, PlacesTool
+from latentarm.evaluation.effects import held_paths
+from latentarm.evaluation.looks import look_of
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+AXIS_COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7")
+HOLD_S = 1.0
+BASE_AXES = "xyz"
+AWAY_M = 0.04
+"""How far from the starts the way back is drawn, m."""
+
+AROUND = 6
+"""In how many directions."""
+
+
+class LeadsBack(Protocol):
+    """A way back to the demonstrations."""
+
+    def leads(self, context: FloatArray, offset: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """See `latentarm.models.way_back.runtime.WayBack.leads`."""
+        ...
+
+
+def latent_effect_figure(
+    decoder: DecodesActions,
+    context: FloatArray,
+    chain: PlacesTool,
+    step_s: float,
+    model: str,
+    demonstrated: FloatArray | None = None,
+    tool: int = 0,
+    way_back: LeadsBack | None = None,
+) -> "Figure":
+    """Paths of the tool over one second of ±1 on each latent axis, from each of a few states.
+
+    A path ends in a filled marker for +1 and in an open one for -1. The view is along the base axis in
+    which the drawn paths differ least.
+
+    Args:
+        decoder: one seed's decoder.
+        context: (N, c), the states to start from, three or so.
+        chain: the robot's forward kinematics.
+        step_s: dt of the transition, s.
+        model: name of the model, for the title.
+        demonstrated: (T, 3), places of the tool in a demonstration to draw behind, m, or None.
+        tool: which end-effector, where there are several.
+        way_back: where it leads from around the starts is drawn with arrows, None for none.
+    """
+    dim = decoder.latent_dim
+    ends = np.concatenate([np.eye(dim), -np.eye(dim)])
+    paths = held_paths(decoder, context, ends, chain, step_s, max(1, round(HOLD_S / step_s)), tool)
+    behind = np.zeros((0, 3)) if demonstrated is None else demonstrated
+    places = np.concatenate([paths.reshape(-1, 3), behind])
+    across, up = sorted(np.argsort(np.ptp(places, axis=0))[1:])
+    figure = new_figure(height_mm=95.0)
+    axes = figure.subplots()
+    if len(behind):
+        axes.plot(behind[:, across], behind[:, up], color="#bbbbbb", linewidth=1.0, label="demonstrated")
+    if way_back is not None:
+        _draw_way_back(axes, way_back, context, (across, up))
+    for axis in range(dim):
+        _draw_axis(axes, paths[[axis, axis + dim]][..., [across, up]], axis)
+    axes.plot(paths[0, :, 0, across], paths[0, :, 0, up], "k+", markersize=7, label="start")
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.set_xlabel(f"{BASE_AXES[across]} (m)")
+    axes.set_ylabel(f"{BASE_AXES[up]} (m)")
+    axes.set_title(f"{look_of(model).label}, held for {HOLD_S:g} s")
+    tidy(axes)
+    legend_below(figure, *axes.get_legend_handles_labels())
+    axes.title.set_fontsize(FONT_SIZE)
+    return figure
+
+
+def _draw_way_back(axes: "Axes", way_back: LeadsBack, context: FloatArray, view: tuple[int, int]) -> None:
+    """Arrows from a ring around the tool's place in each context (N, c), seen along the third axis."""
+    turn = 2 * np.pi / AROUND * np.arange(AROUND)
+    offset = np.zeros((AROUND, 1, 3))
+    offset[..., view] = AWAY_M * np.stack([np.cos(turn), np.sin(turn)], axis=-1)[:, None]
+    context = np.broadcast_to(context, (AROUND, *context.shape))
+    here, there = (places.reshape(-1, 3)[:, view] for places in way_back.leads(context, offset))
+    for start, end in zip(here, there, strict=True):
+        arrow = {"arrowstyle": "->", "color": "#777777", "linewidth": 0.7, "shrinkA": 0.0, "shrinkB": 0.0}
+        axes.annotate("", end, start, arrowprops=arrow | {"mutation_scale": 3.5})
+    axes.plot(*here.T, ".", color="#777777", markersize=2.0)
+    label = f"way back from {100 * AWAY_M:g} cm away"
+    axes.plot([], [], color="#777777", linewidth=0.8, marker=">", markersize=3.0, markevery=[-1], label=label)
+
+
+def _draw_axis(axes: "Axes", paths: FloatArray, axis: int) -> None:
+    """Paths (2, N, T, 2) of one latent axis, m: first those of +1, then those of -1."""
+    colour = AXIS_COLOURS[axis % len(AXIS_COLOURS)]
+    for sign, side, dash in (("+", paths[0], "-"), ("-", paths[1], "--")):
+        for index, path in enumerate(side):
+            axes.plot(
+                path[:, 0],
+                path[:, 1],
+                color=colour,
+                linewidth=1.3,
+                linestyle=dash,
+                marker="o" if axis % 2 == 0 else "s",
+                markevery=[-1],
+                markersize=4.0,
+                markerfacecolor=colour if sign == "+" else "white",
+                label=f"$z_{axis + 1} = {sign}1$" if index == 0 else None,
+            )

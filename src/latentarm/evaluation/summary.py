@@ -1,0 +1,70 @@
+"""Summarises values per seed or per drive as the rows that every command prints."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from latentarm.core.types import Row
+from latentarm.evaluation.measures import unit_of
+
+HEADLINE: tuple[str, ...] = (
+    "search_error_percent_of_pca",
+    "search_noise_free_error_percent_of_pca",
+    "controllability_m",
+    "r2",
+    "r2_local",
+    "disentanglement_deg",
+    "drift",
+    "reversal",
+)
+"""The measures by which models are compared at a glance; the others are details of these."""
+
+
+@dataclass(frozen=True)
+class Subject:
+    """What a row is about.
+
+    Attributes:
+        study: the command or simulation that took the figures.
+        task: what was done, or None.
+        model: the model's name, or None.
+        condition: what was varied, or None.
+    """
+
+    study: str
+    task: str | None = None
+    model: str | None = None
+    condition: str | None = None
+
+
+def headline(rows: Iterable[Row]) -> list[Row]:
+    """Only the rows of the `HEADLINE` measures, for a figure or a short table."""
+    return [row for row in rows if row.measure in HEADLINE]
+
+
+def summarise(subject: Subject, measure: str, values: ArrayLike) -> Row:
+    """Mean and sample SD over runs.
+
+    Args:
+        subject: what the row is about.
+        measure: a name in `latentarm.evaluation.measures.MEASURES`.
+        values: (n,), one figure per run; runs without one (NaN) are left out and not counted.
+
+    Returns:
+        A row with SD absent for a single run, and mean absent where no run has a figure.
+    """
+    known = np.asarray(values, dtype=np.float64).reshape(-1)
+    known = known[np.isfinite(known)]
+    return Row(
+        study=subject.study,
+        measure=measure,
+        unit=unit_of(measure),
+        mean=float(known.mean()) if len(known) else None,
+        sd=float(known.std(ddof=1)) if len(known) > 1 else None,
+        n=len(known),
+        task=subject.task,
+        model=subject.model,
+        condition=subject.condition,
+    )

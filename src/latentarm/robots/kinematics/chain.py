@@ -1,0 +1,294 @@
+"""A kinematic tree in NumPy, batched: forward kinematics, geometric Jacobians, and capsules on its links."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import final
+
+import numpy as np
+
+from latentarm.core.types import BoolArray, FloatArray, IntArray, Pose
+
+# Row (i, j, k) -> -epsilon_ijk, so that v @ SKEW is [v]x row by row: ([v]x)_jk = -epsilon_ijk v_i.
+SKEW: FloatArray = np.array(
+    [
+        [0.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 1.0, 0.0],
+        [0.0, 0.0, 1.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0],
+        [0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+    ]
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """A frame that rides on a link, such as a tool.
+
+    Attributes:
+        name: the name of the site or body in the robot's model.
+        link: index of the link that carries it, -1 for the base.
+        transform: (4, 4), link frame -> this frame, m.
+    """
+
+    name: str
+    link: int
+    transform: FloatArray
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Chain:
+    """A kinematic tree with one moving link per joint; fixed bodies are merged into their parents.
+
+    Link i moves with joint i. At ``q = 0`` its frame is ``offset[i]`` in its parent link's frame.
+    The base frame is the world frame of the model that the chain was read from.
+
+    Attributes:
+        joint_names: n names.
+        parent: (n,), index of the parent link, -1 for the base; parents come before children.
+        offset: (n, 4, 4), parent link -> joint frame at q = 0, m.
+        axis: (n, 3), unit axis in the joint frame.
+        anchor: (n, 3), the point the joint turns about, in the joint frame, m.
+        slide: (n,), True where the joint is prismatic (its q is in m), else it turns (rad).
+        tools: the end-effectors; the first is "the" tool.
+    """
+
+    joint_names: tuple[str, ...]
+    parent: IntArray
+    offset: FloatArray
+    axis: FloatArray
+    anchor: FloatArray
+    slide: BoolArray
+    tools: tuple[Frame, ...]
+
+    @property
+    def dof(self) -> int:
+        """Number of joints n."""
+        return len(self.joint_names)
+
+    @cached_property
+    def moves(self) -> BoolArray:
+        """(n, n), whether joint j (column) moves link i (row)."""
+        moves = np.eye(self.dof, dtype=np.bool_)
+        for link, parent in enumerate(self.parent):
+            if parent >= 0:
+                moves[link] |= moves[parent]
+        return moves
+
+    def link_transforms(self, q: FloatArray) -> FloatArray:
+        """Pose of every link in the base frame.
+
+        Args:
+            q: (..., n), joint positions, rad (m for prismatic joints).
+
+        Returns:
+            (..., n, 4, 4), link frame -> base frame.
+        """
+        flat = q.reshape(-1, self.dof).T
+        constants = self.motion_constants
+        features = np.empty((*flat.shape, constants.shape[1]))
+        features[..., 0] = 1.0
+        np.sin(flat, out=features[..., 1])
+        np.cos(flat, out=features[..., 2])
+        if self._slides:
+            features[..., 3] = flat
+        transforms = (features @ constants).reshape(*flat.shape, 4, 4)
+        for link, parent in self._children:
+            transforms[link] = transforms[parent] @ transforms[link]
+        return transforms.swapaxes(0, 1).reshape(*q.shape, 4, 4)
+
+    def forward(self, q: FloatArray, tool: int = 0) -> Pose:
+        """Forward kinematics ``x = Psi(s)`` of a tool.
+
+        Args:
+            q: (..., n), joint positions, rad.
+            tool: index into `tools`.
+
+        Returns:
+            The tool's pose in the base frame, position (..., 3), m, and rotation (..., 3, 3).
+        """
+        return self.tool_pose(self.link_transforms(q), tool)
+
+    def tool_pose(self, transforms: FloatArray, tool: int = 0) -> Pose:
+        """Pose of a tool when the links' transforms are already known.
+
+        Args:
+            transforms: (..., n, 4, 4), from `link_transforms`.
+            tool: index into `tools`.
+
+        Returns:
+            The tool's pose in the base frame.
+        """
+        frame = self.tools[tool]
+        if frame.link < 0:
+            pose = np.broadcast_to(frame.transform, (*transforms.shape[:-3], 4, 4))
+        else:
+            pose = transforms[..., frame.link, :, :] @ frame.transform
+        return Pose(position=pose[..., :3, 3], rotation=pose[..., :3, :3])
+
+    def jacobian(self, q: FloatArray, tool: int = 0) -> FloatArray:
+        """Geometric Jacobian of a tool, in the base frame.
+
+        Args:
+            q: (..., n), joint positions, rad.
+            tool: index into `tools`.
+
+        Returns:
+            (..., 6, n); rows 0-2 give the tool point's velocity in m/s, rows 3-5 its angular
+            velocity in rad/s, per rad/s of each joint (per m/s where prismatic).
+        """
+        transforms = self.link_transforms(q)
+        return self.jacobian_at(transforms, self.tool_pose(transforms, tool), tool)
+
+    def jacobian_at(self, transforms: FloatArray, pose: Pose, tool: int = 0) -> FloatArray:
+        """`jacobian` when the links' transforms and the tool's pose are already known.
+
+        Args:
+            transforms: (..., n, 4, 4), from `link_transforms`.
+            pose: the tool's pose, from `tool_pose`.
+            tool: index into `tools`.
+
+        Returns:
+            (..., 6, n).
+        """
+        axes, origins = self.joint_axes(transforms)
+        mask = self._tool_moves[tool]
+        jacobian = np.empty((*transforms.shape[:-3], 6, self.dof))
+        jacobian[..., :3, :] = (_column_velocity(axes, pose.position[..., None, :] - origins)).mT
+        jacobian[..., 3:, :] = axes.mT
+        if self._slides:
+            jacobian[..., :3, :] = np.where(self.slide, axes.mT, jacobian[..., :3, :])
+            jacobian[..., 3:, :] *= ~self.slide
+        if mask is not None:
+            jacobian *= mask
+        return jacobian
+
+    def joint_axes(self, transforms: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Axes and anchors of all joints, in the base frame.
+
+        Args:
+            transforms: (..., n, 4, 4), from `link_transforms`.
+
+        Returns:
+            Unit axes (..., n, 3), and a point on each axis (..., n, 3), m.
+        """
+        both = transforms[..., :3, :] @ self.axis_and_anchor
+        return both[..., 0], both[..., 1]
+
+    def points(self, transforms: FloatArray, link: IntArray, local: FloatArray) -> FloatArray:
+        """Points that ride on links, in the base frame.
+
+        Args:
+            transforms: (..., n, 4, 4), from `link_transforms`.
+            link: (K,), the link that carries each point, -1 for the base.
+            local: (K, 3), the points in their link's frame, m.
+
+        Returns:
+            (..., K, 3), m.
+        """
+        carried = transforms.take(link, axis=-3, mode="wrap")
+        moved = (carried[..., :3, :3] @ local[:, :, None])[..., 0] + carried[..., :3, 3]
+        base = link < 0
+        if base.any():
+            moved[..., base, :] = local[base]
+        return moved
+
+    @cached_property
+    def motion_constants(self) -> FloatArray:
+        """(n, 3 or 4, 16), each joint's transform as a linear map of [1, sin q, cos q, q].
+
+        A turn by q about a unit axis is K² + I + sin(q) K - cos(q) K² with K = [axis]x (Rodrigues),
+        about an anchor c it also shifts by c - R c. A slide by q shifts by q axis. The column for q
+        itself is there only where some joint slides.
+        """
+        constants = np.zeros((self.dof, 4, 4, 4))
+        for joint in range(self.dof):
+            skew = (self.axis[joint] @ SKEW).reshape(3, 3)
+            if self.slide[joint]:
+                constants[joint, 0] = np.eye(4)
+                constants[joint, 3, :3, 3] = self.axis[joint]
+            else:
+                for power, turn in enumerate((skew @ skew + np.eye(3), skew, -skew @ skew)):
+                    constants[joint, power, :3, :3] = turn
+                    constants[joint, power, :3, 3] = -turn @ self.anchor[joint]
+                constants[joint, 0, :3, 3] += self.anchor[joint]
+                constants[joint, 0, 3, 3] = 1.0
+        features = 4 if self._slides else 3
+        return (self.offset[:, None] @ constants)[:, :features].reshape(self.dof, features, 16)
+
+    @cached_property
+    def _children(self) -> tuple[tuple[int, int], ...]:
+        """Links that another link carries, each with its parent, parents first."""
+        return tuple((link, int(parent)) for link, parent in enumerate(self.parent) if parent >= 0)
+
+    @cached_property
+    def _slides(self) -> bool:
+        return bool(self.slide.any())
+
+    @cached_property
+    def _moves_or_base(self) -> FloatArray:
+        """(n + 1, n), `moves` as factors, with a last row of zeros that link -1 finds."""
+        return np.vstack([self.moves, np.zeros((1, self.dof))]).astype(np.float64)
+
+    @cached_property
+    def _tool_moves(self) -> tuple[FloatArray | None, ...]:
+        """(n,) for each tool, which joints move it, as factors; None where all do."""
+        moves = (self._moves_or_base[tool.link] for tool in self.tools)
+        return tuple(None if row.all() else row for row in moves)
+
+    @cached_property
+    def axis_and_anchor(self) -> FloatArray:
+        """(n, 4, 2), homogeneous axis (a direction) and anchor (a point) of each joint."""
+        both = np.zeros((self.dof, 4, 2))
+        both[:, :3, 0] = self.axis
+        both[:, :3, 1] = self.anchor
+        both[:, 3, 1] = 1.0
+        return both
+
+
+def _column_velocity(axes: FloatArray, arms: FloatArray) -> FloatArray:
+    """Cross product axis × arm, several times faster than ``np.cross`` on small batches."""
+    skew = (axes @ SKEW).reshape(*axes.shape[:-1], 3, 3)
+    return (skew @ arms[..., None])[..., 0]
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Capsules:
+    """The shape of a robot for distances: K segments with a radius, each fixed to a link.
+
+    Attributes:
+        name: K names, for the person ("link 5", "hand").
+        link: (K,), the link that carries each capsule, -1 for the base.
+        start: (K, 3), one end of the segment in its link's frame, m.
+        end: (K, 3), the other end, m; equal to ``start`` for a sphere.
+        radius: (K,), m.
+    """
+
+    name: tuple[str, ...]
+    link: IntArray
+    start: FloatArray
+    end: FloatArray
+    radius: FloatArray
+
+    def __len__(self) -> int:
+        return len(self.name)
+
+    def placed(self, chain: Chain, transforms: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Ends of all segments in the base frame.
+
+        Args:
+            chain: the robot's chain.
+            transforms: (..., n, 4, 4), from its ``link_transforms``.
+
+        Returns:
+            Starts and ends, each (..., K, 3), m.
+        """
+        both = chain.points(transforms, self._links_twice, self._starts_and_ends)
+        return both[..., : len(self), :], both[..., len(self) :, :]
+
+    @cached_property
+    def _links_twice(self) -> IntArray:
+        return np.concatenate([self.link, self.link])
+
+    @cached_property
+    def _starts_and_ends(self) -> FloatArray:
+        return np.concatenate([self.start, self.end])

@@ -1,0 +1,235 @@
+"""Read a `Chain` from a MuJoCo model."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import final
+
+import mujoco
+import numpy as np
+
+from latentarm.core.errors import UserError
+from latentarm.core.types import BoolArray, FloatArray, IntArray
+from latentarm.robots.kinematics.chain import Chain, Frame
+
+_HINGE = int(mujoco.mjtJoint.mjJNT_HINGE)
+_SLIDE = int(mujoco.mjtJoint.mjJNT_SLIDE)
+_EQ_CONNECT = int(mujoco.mjtEq.mjEQ_CONNECT)
+_EQ_WELD = int(mujoco.mjtEq.mjEQ_WELD)
+_EQ_JOINT = int(mujoco.mjtEq.mjEQ_JOINT)
+_SITE = int(mujoco.mjtObj.mjOBJ_SITE)
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class ModelChain:
+    """A chain together with where its parts are in the model.
+
+    Attributes:
+        chain: the chain.
+        joints: (n,), the model's joint id of each of the chain's joints.
+        body_link: (nbody,), the link that each body rides on, -1 for the base.
+        body_transform: (nbody, 4, 4), body frame -> its link's frame, m.
+        base_bodies: ids of the fixed bodies, without the world, that carry the first moving links.
+    """
+
+    chain: Chain
+    joints: IntArray
+    body_link: IntArray
+    body_transform: FloatArray
+    base_bodies: tuple[int, ...]
+
+
+def read(model: mujoco.MjModel, end_effectors: Sequence[str]) -> ModelChain:
+    """Read the joints between the world and the end-effectors.
+
+    Joints off that path (fingers, say) are frozen where the model's "home" key frame has them, or
+    where the model starts if it has no such key frame. The base frame is the model's world frame.
+
+    Args:
+        model: a MuJoCo model.
+        end_effectors: names of sites or bodies.
+
+    Returns:
+        The chain and where its parts are in the model.
+
+    Raises:
+        UserError: an end-effector is unknown or does not move, or a joint on the way is neither
+            a hinge nor a slide, follows another joint, or is part of a closed chain.
+    """
+    tools = [_find(model, name) for name in end_effectors]
+    joints = _joints_on_the_way(model, [body for _, body, _ in tools])
+    _check_open(model, joints)
+    index = {int(joint): link for link, joint in enumerate(joints)}
+    data = mujoco.MjData(model)
+    data.qpos[:] = reference_positions(model)
+    addresses = model.jnt_qposadr[joints]
+    zero = model.qpos0[addresses]
+    data.qpos[addresses] = zero
+    mujoco.mj_kinematics(model, data)
+
+    placed = _homogeneous(data.xpos, data.xmat)
+    body_link = np.full(model.nbody, -1, dtype=np.int64)
+    for body in range(1, model.nbody):
+        body_link[body] = body_link[model.body_parentid[body]]
+        for joint in _joints_of(model, body):
+            body_link[body] = index.get(joint, int(body_link[body]))
+    link_placed = placed[model.jnt_bodyid[joints]]
+    parent = np.empty(len(joints), dtype=np.int64)
+    offset = np.empty((len(joints), 4, 4))
+    axis = model.jnt_axis[joints].copy()
+    anchor = model.jnt_pos[joints].copy()
+    slide = model.jnt_type[joints] == _SLIDE
+    for link, joint in enumerate(joints):
+        body = model.jnt_bodyid[joint]
+        siblings = [index[other] for other in _joints_of(model, body) if other in index and other < joint]
+        parent[link] = siblings[-1] if siblings else body_link[model.body_parentid[body]]
+        base = link_placed[parent[link]] if parent[link] >= 0 else np.eye(4)
+        offset[link] = np.linalg.inv(base) @ link_placed[link]
+    chain = Chain(
+        joint_names=tuple(model.joint(int(joint)).name or f"joint{joint}" for joint in joints),
+        parent=parent,
+        # The model's zero displacement is at `zero`; the chain's is at q = 0.
+        offset=offset @ _displacement(axis, anchor, slide, -zero),
+        axis=axis,
+        anchor=anchor,
+        slide=slide,
+        tools=(),
+    )
+    at_zero = chain.link_transforms(zero)
+    carriers = np.where(body_link[:, None, None] >= 0, at_zero[body_link], np.eye(4))
+    body_transform = np.linalg.inv(carriers) @ placed
+    frames = tuple(
+        Frame(name, int(body_link[body]), body_transform[body] @ local) for name, body, local in tools
+    )
+    return ModelChain(
+        chain=Chain(
+            joint_names=chain.joint_names,
+            parent=chain.parent,
+            offset=chain.offset,
+            axis=axis,
+            anchor=anchor,
+            slide=slide,
+            tools=frames,
+        ),
+        joints=joints,
+        body_link=body_link,
+        body_transform=body_transform,
+        base_bodies=_base_bodies(model, body_link, [body for _, body, _ in tools]),
+    )
+
+
+def reference_positions(model: mujoco.MjModel) -> FloatArray:
+    """(nq,), all positions of the model's "home" key frame, or where the model starts."""
+    key = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_KEY, "home")
+    return np.array(model.key_qpos[key] if key >= 0 else model.qpos0, dtype=np.float64)
+
+
+def _find(model: mujoco.MjModel, name: str) -> tuple[str, int, FloatArray]:
+    """Name, body and (4, 4) frame in that body of a site, or else of a body."""
+    site = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_SITE, name)
+    if site >= 0:
+        rotation = np.empty(9)
+        mujoco.mju_quat2Mat(rotation, model.site_quat[site])
+        local = _homogeneous(model.site_pos[site][None], rotation[None])[0]
+        return name, int(model.site_bodyid[site]), local
+    body = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, name)
+    if body >= 0:
+        return name, body, np.eye(4)
+    sites = [model.site(i).name for i in range(model.nsite) if model.site(i).name]
+    bodies = [model.body(i).name for i in range(1, model.nbody) if model.body(i).name]
+    known = ", ".join([*sites, *bodies][:40]) or "none"
+    raise UserError(f"The robot's model has no site or body named {name!r}; it has: {known}.")
+
+
+def _joints_of(model: mujoco.MjModel, body: int) -> range:
+    first = int(model.body_jntadr[body])
+    return range(first, first + int(model.body_jntnum[body]))
+
+
+def _joints_on_the_way(model: mujoco.MjModel, bodies: Sequence[int]) -> IntArray:
+    """Ids of the joints between the world and the bodies, parents first."""
+    found: set[int] = set()
+    for body in bodies:
+        mine = _joints_above(model, body)
+        if not mine:
+            raise UserError(f"No joint moves {model.body(body).name!r}: name an end-effector that does move.")
+        found |= mine
+    for joint in sorted(found):
+        if model.jnt_type[joint] not in (_HINGE, _SLIDE):
+            kind = mujoco.mjtJoint(int(model.jnt_type[joint])).name.removeprefix("mjJNT_").lower()
+            raise UserError(
+                f"Joint {model.joint(joint).name or joint!r} is a {kind} joint: only hinge and slide joints"
+                " can be driven between the world and the end-effector."
+            )
+    return np.array(sorted(found), dtype=np.int64)
+
+
+def _check_open(model: mujoco.MjModel, joints: IntArray) -> None:
+    """Refuse joints that cannot be driven each by itself.
+
+    Raises:
+        UserError: one follows another joint, or lies in a loop that the model closes.
+    """
+    driven = {int(joint) for joint in joints}
+    for i in np.flatnonzero(model.eq_active0):
+        kind, first, second = int(model.eq_type[i]), int(model.eq_obj1id[i]), int(model.eq_obj2id[i])
+        if kind == _EQ_JOINT and first in driven:
+            leader = f"joint {model.joint(second).name!r}" if second >= 0 else "a fixed position"
+            raise UserError(
+                f"Joint {model.joint(first).name!r} follows {leader}, so it cannot be driven by itself: name"
+                " an end-effector that it does not move."
+            )
+        if kind in (_EQ_CONNECT, _EQ_WELD):
+            if model.eq_objtype[i] == _SITE:
+                first, second = int(model.site_bodyid[first]), int(model.site_bodyid[second])
+            if model.body_mocapid[first] >= 0 or model.body_mocapid[second] >= 0:
+                continue  # a handle for dragging the simulated arm, not part of it
+            loop = (_joints_above(model, first) ^ _joints_above(model, second)) & driven
+            if loop:
+                raise UserError(
+                    f"Joint {model.joint(min(loop)).name!r} is part of a closed chain (<equality>): only arms"
+                    " whose joints move each by itself can be driven."
+                )
+
+
+def _joints_above(model: mujoco.MjModel, body: int) -> set[int]:
+    """Ids of the joints between the world and a body."""
+    found: set[int] = set()
+    while body > 0:
+        found.update(_joints_of(model, body))
+        body = int(model.body_parentid[body])
+    return found
+
+
+def _base_bodies(model: mujoco.MjModel, body_link: IntArray, tools: Sequence[int]) -> tuple[int, ...]:
+    found: set[int] = set()
+    for body in tools:
+        at = body
+        while at > 0:
+            if body_link[at] < 0:
+                found.add(at)
+            at = int(model.body_parentid[at])
+    return tuple(sorted(found))
+
+
+def _homogeneous(position: FloatArray, rotation: FloatArray) -> FloatArray:
+    """(K, 4, 4) from (K, 3) and (K, 9)."""
+    frames = np.zeros((len(position), 4, 4))
+    frames[:, :3, :3] = rotation.reshape(-1, 3, 3)
+    frames[:, :3, 3] = position
+    frames[:, 3, 3] = 1.0
+    return frames
+
+
+def _displacement(axis: FloatArray, anchor: FloatArray, slide: BoolArray, by: FloatArray) -> FloatArray:
+    """(n, 4, 4), what each joint does to its link's frame when it moves by ``by``."""
+    alone = Chain(
+        joint_names=tuple(str(i) for i in range(len(by))),
+        parent=np.full(len(by), -1, dtype=np.int64),
+        offset=np.broadcast_to(np.eye(4), (len(by), 4, 4)),
+        axis=axis,
+        anchor=anchor,
+        slide=slide,
+        tools=(),
+    )
+    return alone.link_transforms(by)

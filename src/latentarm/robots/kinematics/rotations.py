@@ -1,0 +1,91 @@
+"""Rotation vectors: the logarithm and exponential of rotation matrices, batched and fast."""
+
+import numpy as np
+
+from latentarm.core.types import FloatArray, Pose
+
+_DIAGONAL = np.arange(4)
+
+
+def _outer_product_map() -> FloatArray:
+    """(9, 16), the linear map from a rotation matrix R to 4 q qᵀ - I, both flattened row by row."""
+    signs = {
+        (0, 0): ((0, 0, 1), (1, 1, 1), (2, 2, 1)),
+        (1, 1): ((0, 0, 1), (1, 1, -1), (2, 2, -1)),
+        (2, 2): ((0, 0, -1), (1, 1, 1), (2, 2, -1)),
+        (3, 3): ((0, 0, -1), (1, 1, -1), (2, 2, 1)),
+        (0, 1): ((2, 1, 1), (1, 2, -1)),
+        (0, 2): ((0, 2, 1), (2, 0, -1)),
+        (0, 3): ((1, 0, 1), (0, 1, -1)),
+        (1, 2): ((1, 0, 1), (0, 1, 1)),
+        (1, 3): ((2, 0, 1), (0, 2, 1)),
+        (2, 3): ((2, 1, 1), (1, 2, 1)),
+    }
+    table = np.zeros((3, 3, 4, 4))
+    for (i, j), terms in signs.items():
+        for row, column, sign in terms:
+            table[row, column, i, j] = table[row, column, j, i] = sign
+    return table.reshape(9, 16)
+
+
+_OUTER = _outer_product_map()
+_ONE = np.eye(4).ravel()
+
+
+def rotation_vector(rotation: FloatArray) -> FloatArray:
+    """Logarithm of rotation matrices, accurate at 0 and at pi alike.
+
+    Goes over the unit quaternion with its largest component found first (Shepperd's method), so
+    that nothing is divided by something small.
+
+    Args:
+        rotation: (..., 3, 3).
+
+    Returns:
+        (..., 3), axis times angle, rad, with the angle in [0, pi].
+    """
+    turn = quaternion(rotation)
+    vector = turn[..., 1:]
+    sine = np.sqrt(np.vecdot(vector, vector))
+    angle = 2.0 * np.arctan2(sine, turn[..., 0])
+    # angle / sine -> 2 as both go to zero.
+    factor = np.divide(angle, sine, out=np.full_like(sine, 2.0), where=sine > 1e-12)
+    return vector * factor[..., None]
+
+
+def angle_between(first: FloatArray, second: FloatArray) -> FloatArray:
+    """Angle of the turn that takes one rotation to another.
+
+    Args:
+        first: (..., 3, 3).
+        second: (..., 3, 3).
+
+    Returns:
+        (...), rad, in [0, pi].
+    """
+    vector = rotation_vector(second @ first.mT)
+    return np.sqrt(np.vecdot(vector, vector))
+
+
+def pose_error(x_from: Pose, x_to: Pose) -> FloatArray:
+    """The twist that, held for one second, takes one pose to another.
+
+    Args:
+        x_from: where the frame is.
+        x_to: where it should be.
+
+    Returns:
+        (..., 6), m and rad, in the base frame: rows as in ``Chain.jacobian``.
+    """
+    turn = rotation_vector(x_to.rotation @ x_from.rotation.mT)
+    return np.concatenate([x_to.position - x_from.position, turn], axis=-1)
+
+
+def quaternion(rotation: FloatArray) -> FloatArray:
+    """Unit quaternions (..., 4), (w, x, y, z) with w >= 0, of rotation matrices (..., 3, 3)."""
+    # Row i of the outer product 4 q qᵀ is q times its own i-th component: take the largest.
+    outer = (rotation.reshape(-1, 9) @ _OUTER + _ONE).reshape(-1, 4, 4)
+    largest = outer[:, _DIAGONAL, _DIAGONAL].argmax(axis=-1)
+    row = outer[np.arange(len(outer)), largest]
+    row *= np.copysign(1.0 / np.sqrt(np.vecdot(row, row)), row[:, 0])[:, None]
+    return row.reshape(*rotation.shape[:-2], 4)

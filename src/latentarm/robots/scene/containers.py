@@ -1,0 +1,156 @@
+"""Containers made of thin boxes, and grains that begin in them."""
+
+from dataclasses import dataclass
+from typing import Final, final
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from latentarm.core.errors import UserError
+from latentarm.core.types import FloatArray, Pose
+from latentarm.robots.scene.interior import Interior
+from latentarm.robots.scene.thing import Part
+
+Colour = tuple[float, float, float, float]
+
+WALL_M: Final = 0.003
+"""Thickness of walls and floors: thick enough that no grain passes through one within a time step."""
+
+SIDES: Final = 12
+"""Walls of a round container; four of them stand across x and y, where a gripper takes hold."""
+
+_CHINA: Final = (0.92, 0.93, 0.95, 1.0)
+_WOOD: Final = (0.76, 0.60, 0.42, 1.0)
+_ROOM_ABOVE_PLATE_M: Final = 0.06
+_APART: Final = 1.02
+
+
+@final
+@dataclass(frozen=True)
+class Container:
+    """What a container is made of: its frame lies in the middle of its underside, z up.
+
+    Attributes:
+        parts: its floor and walls.
+        interior: the room in it.
+    """
+
+    parts: tuple[Part, ...]
+    interior: Interior
+
+
+def cup(
+    radius_m: float = 0.032, height_m: float = 0.09, colour: Colour = _CHINA, floor_m: float = WALL_M
+) -> Container:
+    """An upright cup.
+
+    Args:
+        radius_m: of the inside, m. A gripper must open by more than ``2 * (radius_m + WALL_M)`` to take it.
+        height_m: of the rim, m.
+        colour: red, green, blue, opacity.
+        floor_m: thickness of its floor, m: a thick one makes the room in it shallow.
+    """
+    return _round(radius_m, height_m, 0.0, colour, floor_m)
+
+
+def bowl(radius_m: float = 0.06, height_m: float = 0.05, colour: Colour = _CHINA) -> Container:
+    """A bowl, wider at its rim.
+
+    Args:
+        radius_m: of the floor, m.
+        height_m: of the rim, m.
+        colour: red, green, blue, opacity.
+    """
+    return _round(radius_m, height_m, np.deg2rad(20.0), colour)
+
+
+def plate(radius_m: float = 0.1, colour: Colour = _CHINA) -> Container:
+    """A plate with a low rim; its interior is where things lie on it.
+
+    Args:
+        radius_m: of the floor, m.
+        colour: red, green, blue, opacity.
+    """
+    made = _round(radius_m, 0.012, np.deg2rad(50.0), colour)
+    return Container(made.parts, Interior(radius_m, 0.0, WALL_M + _ROOM_ABOVE_PLATE_M))
+
+
+def box(half_m: tuple[float, float, float], colour: Colour = _WOOD) -> Container:
+    """A box without a lid. Its interior is the widest upright cylinder in it.
+
+    Args:
+        half_m: half lengths of the outside, along x, y, z, m.
+        colour: red, green, blue, opacity.
+    """
+    x, y, z = half_m
+    half = WALL_M / 2.0
+    walls = [Part("box", (x, y, half), (0.0, 0.0, half), colour=colour)]
+    for sign in (-1.0, 1.0):
+        walls.append(Part("box", (half, y, z), (sign * (x - half), 0.0, z), colour=colour))
+        walls.append(Part("box", (x, half, z), (0.0, sign * (y - half), z), colour=colour))
+    return Container(tuple(walls), Interior(min(x, y) - WALL_M, WALL_M, 2.0 * z))
+
+
+def _round(
+    radius_m: float, height_m: float, flare_rad: float, colour: Colour, floor_m: float = WALL_M
+) -> Container:
+    half = WALL_M / 2.0
+    parts = [Part("cylinder", (radius_m + WALL_M, floor_m / 2.0), (0.0, 0.0, floor_m / 2.0), colour=colour)]
+    lean = height_m * np.tan(flare_rad)
+    slant = height_m / np.cos(flare_rad)
+    width = (radius_m + WALL_M + lean) * np.tan(np.pi / SIDES)
+    for side in range(SIDES):
+        turn = Rotation.from_euler("ZY", [2.0 * np.pi * side / SIDES, flare_rad])
+        out = Rotation.from_euler("Z", 2.0 * np.pi * side / SIDES)
+        middle = out.apply([radius_m + half / np.cos(flare_rad) + lean / 2.0, 0.0, height_m / 2.0])
+        parts.append(
+            Part(
+                "box",
+                (half, float(width), float(slant / 2.0)),
+                (float(middle[0]), float(middle[1]), float(middle[2])),
+                _quaternion(turn),
+                colour,
+            )
+        )
+    return Container(tuple(parts), Interior(float(radius_m + lean), floor_m - half, height_m))
+
+
+def _quaternion(turn: Rotation) -> tuple[float, float, float, float]:
+    w, x, y, z = (float(one) for one in turn.as_quat(scalar_first=True))
+    return w, x, y, z
+
+
+def packed(room: Interior, pose: Pose, count: int, radius_m: float) -> FloatArray:
+    """Where grains begin that fill a container from its floor up, without touching each other.
+
+    Args:
+        room: the room in the container; as wide at its floor as at its rim.
+        pose: of the container.
+        count: how many grains.
+        radius_m: of a grain, m.
+
+    Returns:
+        (count, 3), their middles, m.
+
+    Raises:
+        UserError: the room is too small for them.
+    """
+    step = 2.0 * _APART * radius_m
+    most = room.radius_m - _APART * radius_m
+    layer = _rings(most, step) if most >= 0.0 else np.zeros((0, 2))
+    layers = int((room.top_m - room.bottom_m - step) / step) + 1
+    if len(layer) * max(layers, 0) < count:
+        raise UserError(f"{count} grains of {radius_m:g} m do not fit into a room {room.radius_m:g} m wide.")
+    heights = room.bottom_m + (np.arange(layers) + 0.5) * step
+    places = np.array([[x, y, z] for z in heights for x, y in layer])[:count]
+    return places @ pose.rotation.T + pose.position
+
+
+def _rings(most_m: float, step_m: float) -> FloatArray:
+    """Places (K, 2) in a circle, at least a step apart: its middle and full rings about that."""
+    places = [np.zeros((1, 2))]
+    for radius in np.arange(1, int(most_m / step_m) + 1) * step_m:
+        count = int(np.pi / np.arcsin(0.5 * step_m / radius) + 1e-9)
+        angle = 2.0 * np.pi * np.arange(count) / count
+        places.append(radius * np.stack([np.cos(angle), np.sin(angle)], axis=-1))
+    return np.concatenate(places)

@@ -1,0 +1,115 @@
+"""A scene: everything about the arm when a task begins, and how it stands later."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Final, final
+
+import numpy as np
+
+from latentarm.core.errors import UserError
+from latentarm.core.types import BoolArray, FloatArray, Pose
+from latentarm.robots.kinematics.obstacles import HalfSpace
+from latentarm.robots.scene.interior import Interior
+from latentarm.robots.scene.thing import Bond, Grains, Thing
+
+TABLE: Final = "table"
+"""Name of the table in `SceneState.force_n`."""
+
+TOOL: Final = "tool"
+"""Name of everything that the arm carries beyond its last joint, in `SceneState.force_n`."""
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """What stands about the arm when a task begins.
+
+    Attributes:
+        things: rigid things; later ones may stand on earlier ones.
+        grains: loose grains.
+        bonds: things that are one until they are cut apart.
+        table_m: height of the table top in the base frame of the arm, m.
+
+    Raises:
+        UserError: two of its parts have one name, or a bond names a thing that is not there.
+    """
+
+    things: tuple[Thing, ...] = ()
+    grains: tuple[Grains, ...] = ()
+    bonds: tuple[Bond, ...] = ()
+    table_m: float = 0.0
+
+    def __post_init__(self) -> None:
+        names = [one.name for one in (*self.things, *self.grains)]
+        doubled = sorted({name for name in names if names.count(name) > 1} | ({TABLE, TOOL} & set(names)))
+        if doubled:
+            raise UserError(f"A scene has several things named {doubled[0]!r}: give each its own name.")
+        known = set(self.names)
+        for bond in self.bonds:
+            for name in (bond.first, bond.second):
+                if name not in known:
+                    raise UserError(f"A bond of the scene names {name!r}, and there is no such thing.")
+
+    @property
+    def table(self) -> HalfSpace:
+        """The table top, for safety filters."""
+        return HalfSpace(TABLE, np.array([0.0, 0.0, self.table_m]), np.array([0.0, 0.0, 1.0]))
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of the things, in order."""
+        return tuple(thing.name for thing in self.things)
+
+    def thing(self, name: str) -> Thing:
+        """The thing of that name.
+
+        Raises:
+            UserError: the scene has no thing of that name.
+        """
+        for thing in self.things:
+            if thing.name == name:
+                return thing
+        raise UserError(f"The scene has no {name!r}; it has: {', '.join(self.names)}.")
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class SceneState:
+    """How everything stands at one moment; truth, not a measurement.
+
+    Attributes:
+        time_s: since the scene began, s.
+        tool: pose of the arm's end-effector.
+        poses: of every thing, by name.
+        speed_m_s: of every thing's middle, by name, m/s.
+        stabbed: names of what is on the tines of the arm's attachment.
+        gripped: names of what both fingers touch.
+        bonds: pairs of names that have not been cut apart.
+        grains: (K, 3), middles by the grains' name, m.
+        force_n: largest normal force between two of the tool (`TOOL`), the table (`TABLE`) and the things
+            since the state of an earlier moment, N; by pairs of names in alphabetical order, pairs without
+            contact left out.
+    """
+
+    time_s: float
+    tool: Pose
+    poses: Mapping[str, Pose]
+    speed_m_s: Mapping[str, float]
+    stabbed: frozenset[str]
+    gripped: frozenset[str]
+    bonds: frozenset[tuple[str, str]]
+    grains: Mapping[str, FloatArray]
+    force_n: Mapping[tuple[str, str], float]
+
+    def inside(self, grains: str, container: str, interior: Interior) -> BoolArray:
+        """Which grains are in a container, (K,).
+
+        Args:
+            grains: their name.
+            container: its name.
+            interior: the room in it.
+        """
+        pose = self.poses[container]
+        local = (self.grains[grains] - pose.position) @ pose.rotation
+        in_height = (local[:, 2] >= interior.bottom_m) & (local[:, 2] <= interior.top_m)
+        return in_height & (np.hypot(local[:, 0], local[:, 1]) <= interior.radius_m)

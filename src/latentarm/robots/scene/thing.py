@@ -1,0 +1,134 @@
+"""Things that an arm can touch, hold, stab and cut."""
+
+from dataclasses import dataclass
+from typing import Literal, final
+
+from latentarm.core.errors import UserError
+from latentarm.core.types import FloatArray, Pose
+from latentarm.robots.scene.interior import Interior
+
+Shape = Literal["box", "cylinder", "capsule", "sphere"]
+
+UPRIGHT = (1.0, 0.0, 0.0, 0.0)
+"""The quaternion of a part that is not turned."""
+
+
+@final
+@dataclass(frozen=True)
+class Part:
+    """One convex solid of a thing.
+
+    Attributes:
+        shape: which one.
+        size: m. Of a box its three half lengths; of a cylinder or capsule, along z, its radius and half the
+            length (of a capsule without its caps); of a sphere its radius.
+        position: its middle in the thing's frame, m.
+        quaternion: how it is turned in the thing's frame, (w, x, y, z).
+        colour: red, green, blue, opacity, each in [0, 1].
+    """
+
+    shape: Shape
+    size: tuple[float, ...]
+    position: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    quaternion: tuple[float, float, float, float] = UPRIGHT
+    colour: tuple[float, float, float, float] = (0.8, 0.8, 0.8, 1.0)
+
+
+@final
+@dataclass(frozen=True)
+class Food:
+    """How food behaves under a fork.
+
+    Attributes:
+        pierce_n: force along the tines that makes them enter, N.
+        depth_m: how deep the tines must be for the food to stay on them, m.
+        grip_n: pull that takes it off the tines again, N.
+    """
+
+    pierce_n: float
+    depth_m: float
+    grip_n: float
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Thing:
+    """A rigid thing.
+
+    Attributes:
+        name: what a person would call it; unique in its scene.
+        parts: the solids that it is made of.
+        mass_kg: its mass, kg; of no account where it is fixed.
+        pose: where its frame is when the scene begins, in the base frame of the arm.
+        friction: sliding friction of its surface.
+        fixed: whether it stands where it is, whatever pushes it.
+        food: how it behaves under a fork; None where tines do not enter it.
+        interior: the room in it, for a container; None for anything else.
+        soft: what gives way to everything, such as icing: it is seen, and never felt.
+    """
+
+    name: str
+    parts: tuple[Part, ...]
+    mass_kg: float
+    pose: Pose
+    friction: float = 0.6
+    fixed: bool = False
+    food: Food | None = None
+    interior: Interior | None = None
+    soft: tuple[Part, ...] = ()
+
+    @property
+    def room(self) -> Interior:
+        """The room in it.
+
+        Raises:
+            UserError: it is no container.
+        """
+        if self.interior is None:
+            raise UserError(f"{self.name!r} is no container: nothing can be in it.")
+        return self.interior
+
+
+@final
+@dataclass(frozen=True)
+class Bond:
+    """Two things that are one until they are cut apart, such as slices of tofu.
+
+    Attributes:
+        first: name of a thing; the cut lies in its frame.
+        second: name of the other.
+        point: any point of the plane of the cut, m.
+        normal: unit normal of that plane, from ``first`` to ``second``.
+        depth_m: how far an edge must come through the plane, downwards from the top, m.
+        angle_rad: how far an edge may be turned out of the plane, rad.
+    """
+
+    first: str
+    second: str
+    point: tuple[float, float, float]
+    normal: tuple[float, float, float]
+    depth_m: float
+    angle_rad: float
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Grains:
+    """Round grains: flour, eggs, coffee, rice.
+
+    Attributes:
+        name: what a person would call them; unique in its scene.
+        radius_m: of the largest grains, m.
+        mass_kg: of a grain, kg.
+        positions: (K, 3), their middles when the scene begins, in the base frame of the arm, m.
+        colour: red, green, blue, opacity, each in [0, 1].
+        sizes: radii of the grains as shares of the largest, in turn. Equal grains stand like a crystal and
+            then leave a cup all at once.
+    """
+
+    name: str
+    radius_m: float
+    mass_kg: float
+    positions: FloatArray
+    colour: tuple[float, float, float, float] = (0.9, 0.85, 0.7, 1.0)
+    sizes: tuple[float, ...] = (1.0,)

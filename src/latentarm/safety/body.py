@@ -1,0 +1,178 @@
+"""The arm as the safety filters see it: points fixed to links, and how far joints can move them."""
+
+from functools import cached_property
+from typing import final
+
+import numpy as np
+
+from latentarm.core.types import FloatArray, IntArray
+from latentarm.robots.kinematics.chain import SKEW
+from latentarm.robots.robot import Robot
+
+
+@final
+class Body:
+    """Constants of one arm: its points, and proven bounds on how they move.
+
+    The P points are the ends of all moving capsules (all starts, then all ends) and the tools.
+
+    ``lever[p, j]`` bounds the speed of point p per unit speed of joint j in *every* configuration:
+    the point lies in a ball about the nearest point of the joint's axis, whose radius grows from link
+    to link by what lies between their axes. With it the second derivative of p(q + t d) over t is
+    at most ``Σ_jk |d_j| |d_k| R[p, j, k]`` with ``R[p, j, k] = lever[p, the outer of j and k]``,
+    because ``∂²p/∂q_j∂q_k = w_j × (w_k × (p - o_k))`` for a joint k further out than j.
+
+    Args:
+        robot: the arm.
+
+    Attributes:
+        robot: as given.
+        capsule: (K,), index into the robot's capsules of each moving capsule.
+        link: (P,), the link that carries each point.
+        radius: (P,), m; zero for tools.
+        moves: (n, P), whether joint j moves point p.
+        lever: (P, n), m (1 where the joint is prismatic).
+    """
+
+    def __init__(self, robot: Robot) -> None:
+        self.robot = robot
+        capsules, chain = robot.capsules, robot.chain
+        self.capsule: IntArray = np.flatnonzero(capsules.link >= 0)
+        tools = [tool for tool in chain.tools if tool.link >= 0]
+        links = capsules.link[self.capsule]
+        self.link: IntArray = np.concatenate(
+            [links, links, np.array([t.link for t in tools], dtype=np.int64)]
+        )
+        self.local: FloatArray = np.concatenate(
+            [
+                capsules.start[self.capsule],
+                capsules.end[self.capsule],
+                np.array([t.transform[:3, 3] for t in tools]).reshape(-1, 3),
+            ]
+        )
+        radius = capsules.radius[self.capsule]
+        self.radius: FloatArray = np.concatenate([radius, radius, np.zeros(len(tools))])
+        self.moves = np.ascontiguousarray(chain.moves[self.link].T)
+        self.lever: FloatArray = np.array(
+            [self._levers(int(link), point) for link, point in zip(self.link, self.local, strict=True)]
+        ).reshape(-1, chain.dof)
+
+    @property
+    def count(self) -> int:
+        """Number of moving capsules K."""
+        return len(self.capsule)
+
+    def curvature(self, lever: FloatArray) -> FloatArray:
+        """R of the class's docstring, (..., n, n), from levers (..., n)."""
+        dof = lever.shape[-1]
+        slide = self.robot.chain.slide
+        outer = np.maximum(np.arange(dof)[:, None], np.arange(dof))
+        inner = np.minimum(np.arange(dof)[:, None], np.arange(dof))
+        both = (lever[..., :, None] > 0.0) & (lever[..., None, :] > 0.0)
+        return np.where(both & ~slide[inner], lever[..., outer], 0.0)
+
+    @cached_property
+    def point_curvature(self) -> FloatArray:
+        """(P, n, n), R for each point."""
+        return self.curvature(self.lever)
+
+    @cached_property
+    def surface_lever(self) -> FloatArray:
+        """(P, n), `lever` for the worst point on the capsule's surface about each point."""
+        turns = self.moves.T & ~self.robot.chain.slide
+        return self.lever + turns * self.radius[:, None]
+
+    @cached_property
+    def surface_curvature(self) -> FloatArray:
+        """(P, n, n), R for the worst point on the capsule's surface about each point."""
+        return self.curvature(self.surface_lever)
+
+    def bent(self, joints: FloatArray) -> FloatArray:
+        """`surface_curvature` times joint figures (n,), (P, n)."""
+        return (self._flat_curvature @ joints).reshape(-1, len(joints))
+
+    @cached_property
+    def _flat_curvature(self) -> FloatArray:
+        return np.ascontiguousarray(self.surface_curvature.reshape(-1, self.robot.dof))
+
+    @cached_property
+    def moves_factor(self) -> FloatArray:
+        """(n, 1, P), `moves` as factors."""
+        return self.moves[:, None, :].astype(np.float64)
+
+    @cached_property
+    def turns(self) -> FloatArray:
+        """(n, 1), one where a joint turns, zero where it slides."""
+        return (~self.robot.chain.slide).astype(np.float64)[:, None]
+
+    def _levers(self, link: int, point: FloatArray) -> FloatArray:
+        """Levers (n,) of one point, walking from its link to the base with a ball that holds it."""
+        chain, limits = self.robot.chain, self.robot.limits
+        lever = np.zeros(chain.dof)
+        centre, radius = point, 0.0
+        while link >= 0:
+            axis = chain.axis[link]
+            if chain.slide[link]:
+                lever[link] = 1.0
+                centre = centre + axis * 0.5 * (limits.lower[link] + limits.upper[link])
+                radius += 0.5 * float(limits.upper[link] - limits.lower[link])
+            else:
+                on_axis = chain.anchor[link] + axis * float(axis @ (centre - chain.anchor[link]))
+                away = centre - on_axis
+                radius += float(np.sqrt(away @ away))
+                lever[link] = radius
+                centre = on_axis
+            offset = chain.offset[link]
+            centre = offset[:3, :3] @ centre + offset[:3, 3]
+            link = int(chain.parent[link])
+        return lever
+
+
+@final
+class Placement:
+    """The arm in one configuration: where its points are and how joint velocities move them.
+
+    Args:
+        body: the arm.
+        q: (n,), rad.
+
+    Attributes:
+        body: as given.
+        q: as given.
+        points: (P, 3), m, base frame.
+        jacobian: (n, 6, P), what a unit speed of joint j does at point p: rows 0-2 its velocity, m/s,
+            rows 3-5 the angular velocity of its link, rad/s.
+    """
+
+    __slots__ = ("_flat", "body", "jacobian", "points", "q")
+
+    def __init__(self, body: Body, q: FloatArray) -> None:
+        chain = body.robot.chain
+        self.body = body
+        self.q = q
+        transforms = chain.link_transforms(q)
+        self.points = chain.points(transforms, body.link, body.local)
+        axes, origins = chain.joint_axes(transforms)
+        turn = axes * body.turns
+        skew = (turn @ SKEW).reshape(-1, 3, 3)
+        shift = axes - turn - (skew @ origins[:, :, None])[:, :, 0]
+        jacobian = np.empty((len(axes), 6, len(self.points)))
+        jacobian[:, :3] = skew @ self.points.T
+        jacobian[:, :3] += shift[:, :, None]
+        jacobian[:, 3:] = turn[:, :, None]
+        jacobian *= body.moves_factor
+        self.jacobian = jacobian
+        self._flat = jacobian.reshape(len(axes), -1)
+
+    def speeds(self, velocity: FloatArray) -> FloatArray:
+        """Largest speed of any point on the surface about each point, (P,), m/s.
+
+        The speed within a rigid capsule is largest at an end of its segment; its surface adds at most
+        radius times angular speed.
+
+        Args:
+            velocity: (n,), rad/s.
+        """
+        moved = (velocity @ self._flat).reshape(2, 3, -1)
+        linear, angular = np.sqrt(np.add.reduce(moved * moved, axis=1))
+        return linear + self.body.radius * angular

@@ -1,0 +1,253 @@
+"""What a safety filter is, what it knows, and the filters that keep a velocity's direction."""
+
+import math
+from abc import ABC, abstractmethod
+from typing import final
+
+import numpy as np
+
+from latentarm.core.types import FloatArray, Stop
+from latentarm.safety.body import Body, Placement
+from latentarm.safety.bounds import Bounds
+from latentarm.safety.proximity import Contacts, Proximity
+from latentarm.safety.small import largest, smallest, some
+from latentarm.safety.zone_distances import ZoneDistances
+
+_DRIFT_RAD = 0.05
+"""A placement computed farther away than this is not reused."""
+
+
+@final
+class Surroundings:
+    """One arm with its limits and everything it must keep clear of.
+
+    Args:
+        bounds: the limits.
+        body: the arm.
+
+    Attributes:
+        bounds: as given.
+        body: as given.
+        proximity: its near pairs.
+        zones: how far it is from where it must be slow.
+        reference: where the arm was placed last.
+    """
+
+    def __init__(self, bounds: Bounds, body: Body) -> None:
+        self.bounds = bounds
+        self.body = body
+        self.proximity = Proximity(
+            body, bounds.config.obstacles, bounds.config.link_speed, bounds.nearest_m, bounds.horizon_s
+        )
+        self.zones = ZoneDistances(body, bounds.config.zones)
+        self.reference: Placement | None = None
+
+
+@final
+class Situation:
+    """What the filters know at one tick; expensive quantities are computed once, on first use.
+
+    Args:
+        surroundings: the arm and what is about it.
+        state: (n,), measured joint positions, rad, finite.
+        velocity: (n,), the last command, rad/s.
+        acceleration: (n,), the acceleration that the last command was reached with, rad/s².
+        input_age_s: age of the newest input, s.
+
+    Attributes:
+        bounds: the limits.
+        room: (2, n), distance to the lowest position (zero or below inside) and to the highest, rad.
+        nearest_limit: the smallest of these distances in size, negative where a limit is passed, rad.
+    """
+
+    def __init__(
+        self,
+        surroundings: Surroundings,
+        state: FloatArray,
+        velocity: FloatArray,
+        acceleration: FloatArray,
+        input_age_s: float = 0.0,
+    ) -> None:
+        self.surroundings = surroundings
+        self.bounds = surroundings.bounds
+        self.state = state
+        self.velocity = velocity
+        self.acceleration = acceleration
+        self.input_age_s = input_age_s
+        self.room = self.bounds.positions - state
+        below, above = self.room
+        self.nearest_limit = min(smallest(above), -largest(below))
+        self._nearby: tuple[Placement, FloatArray] | None = None
+        self._asked = velocity
+        self._contacts: Contacts | None = None
+        self._zone_distances: tuple[FloatArray, FloatArray] | None = None
+
+    @property
+    def placement(self) -> Placement:
+        """The arm's points at the measured state."""
+        reference = self.surroundings.reference
+        if reference is None or some(reference.q != self.state):
+            reference = self.surroundings.reference = Placement(self.surroundings.body, self.state)
+        return reference
+
+    def nearby(self) -> tuple[Placement, FloatArray]:
+        """A placement of the arm that may be a few ticks old, for bounds that account for its age.
+
+        Returns:
+            The placement, and how far each joint has moved since, (n,), rad, zero or more.
+        """
+        reference = self.surroundings.reference
+        if self._nearby is None or self._nearby[0] is not reference:
+            drift = None if reference is None else np.abs(self.state - reference.q)
+            if reference is None or drift is None or largest(drift) > _DRIFT_RAD:
+                reference, drift = self.placement, np.zeros_like(self.state)
+            self._nearby = reference, drift
+        return self._nearby
+
+    def contacts(self, speed: FloatArray) -> Contacts:
+        """What the arm could come too close to if no joint is faster than this; may be a few ticks old.
+
+        Args:
+            speed: (n,), rad/s, zero or more.
+        """
+        if self._contacts is None or some(speed > self._asked):
+            # Include what ordinary motion passes through next, so that this is computed once.
+            self._asked = np.maximum(speed, np.abs(self.velocity)) + self.bounds.quickening
+            self._contacts = self.surroundings.proximity.held(self.state, self._asked)
+            if self._contacts is None:
+                return self.contacts_now()
+        return self._contacts
+
+    def contacts_now(self) -> Contacts:
+        """The same for the speed that was asked for last, measured at this very state."""
+        if self._contacts is None or not self._contacts.fresh:
+            self._contacts = self.surroundings.proximity.measured(self.placement, self._asked)
+        return self._contacts
+
+    def zone_distances(self) -> tuple[FloatArray, FloatArray]:
+        """How far the arm's parts are from the zones at least, and at most, (Z, K + T), m.
+
+        As far as is known without measuring, see `ZoneDistances`.
+        """
+        if self._zone_distances is None:
+            self._zone_distances = self.surroundings.zones.bounded(self.state)
+        return self._zone_distances
+
+    def zone_distances_now(self, zone: int) -> FloatArray:
+        """How far the arm's parts are from one zone, (K + T,), m, measured at this very state."""
+        self._zone_distances = None
+        return self.surroundings.zones.measured(zone, self.placement)
+
+
+class SafetyFilter(ABC):
+    """Makes a velocity safe in one respect, or rejects it."""
+
+    @property
+    @abstractmethod
+    def name(self) -> str:
+        """What the person is told when this filter has changed a command."""
+
+    @abstractmethod
+    def apply(self, velocity: FloatArray, situation: Situation) -> FloatArray | Stop:
+        """The velocity as far as it is safe.
+
+        Args:
+            velocity: (n,), rad/s, what is wanted.
+            situation: what is known at this tick.
+
+        Returns:
+            (n,), rad/s, ``velocity`` itself where nothing had to change; or why the arm must stop.
+        """
+
+
+@final
+class Finite(SafetyFilter):
+    """Stops where a velocity is not a number, not finite, or not one for each joint."""
+
+    @property
+    def name(self) -> str:
+        """See the base class."""
+        return "finite"
+
+    def apply(self, velocity: FloatArray, situation: Situation) -> FloatArray | Stop:
+        """See the base class."""
+        if velocity.shape != situation.state.shape:
+            return Stop(
+                f"The controller gave {velocity.shape} numbers for {len(situation.state)} joints.",
+                code="controller_invalid",
+            )
+        if not all(map(math.isfinite, velocity.tolist())):
+            return Stop(
+                "The controller gave a velocity that is not a finite number.", code="controller_invalid"
+            )
+        return velocity
+
+
+@final
+class Freshness(SafetyFilter):
+    """Stops where the newest input is too old (or its age is not a number).
+
+    The stop is ramped. To continue, the person releases the stick and enables the arm again, so that the arm
+    never starts to move by surprise when a connection returns.
+    """
+
+    @property
+    def name(self) -> str:
+        """See the base class."""
+        return "freshness"
+
+    def apply(self, velocity: FloatArray, situation: Situation) -> FloatArray | Stop:
+        """See the base class."""
+        return self.refusal(situation.input_age_s, situation.bounds.config.input_timeout_s) or velocity
+
+    @staticmethod
+    def refusal(age_s: float, timeout_s: float) -> Stop | None:
+        """Why an input of this age may not move the arm, or None."""
+        if 0.0 <= age_s <= timeout_s:
+            return None
+        if age_s > timeout_s:
+            return Stop(f"No input came for more than {1000 * timeout_s:.0f} ms.", code="input_late")
+        return Stop("The input's age is not known.", code="input_invalid")
+
+
+@final
+class JointVelocity(SafetyFilter):
+    """Slows the whole arm down until its fastest joint is within the limit; the direction is kept."""
+
+    @property
+    def name(self) -> str:
+        """See the base class."""
+        return "joint velocity"
+
+    def apply(self, velocity: FloatArray, situation: Situation) -> FloatArray:
+        """See the base class."""
+        speed, limit = np.abs(velocity), situation.bounds.speed
+        if largest(speed) <= situation.bounds.slowest:
+            return velocity
+        # Written so that nothing overflows, neither at 1e308 nor at zero.
+        share = smallest(limit / np.maximum(speed, limit))
+        return velocity if share == 1.0 else velocity * share
+
+
+HEADROOM = 0.95
+"""Shaping aims for this share of the limit: the rest is for what turning links add before the next tick."""
+
+
+@final
+class LinkSpeed(SafetyFilter):
+    """Slows the whole arm down until no point on any link, nor the tool, is too fast."""
+
+    @property
+    def name(self) -> str:
+        """See the base class."""
+        return "link speed"
+
+    def apply(self, velocity: FloatArray, situation: Situation) -> FloatArray:
+        """See the base class."""
+        limit = HEADROOM * situation.bounds.config.link_speed
+        nearby, drift = situation.nearby()
+        bend = nearby.body.bent(drift) @ np.abs(velocity)
+        if largest(nearby.speeds(velocity) + bend) <= limit:
+            return velocity
+        fastest = largest(situation.placement.speeds(velocity))
+        return velocity if fastest <= limit else velocity * (limit / fastest)

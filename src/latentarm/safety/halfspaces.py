@@ -1,0 +1,107 @@
+"""Projections that keep a velocity from closing distances too fast."""
+
+import daqp
+import numpy as np
+
+from latentarm.core.types import BoolArray, FloatArray
+from latentarm.safety.small import some
+
+_LEAN = 0.2
+"""Beyond a limit, at least this share of the motion must lead away from it, where that is possible."""
+
+_UNFELT = 1e-9
+"""A distance that no joint changes by more than this, in m per rad, has no direction."""
+
+_ROUNDING = 1e-6
+"""A velocity of which no greater share is left is rest."""
+
+_SOFTNESS = 1e-10
+"""The solver may miss half-spaces by this times their force, or it finds no way between opposite ones."""
+
+
+def slide(
+    velocity: FloatArray,
+    limits: tuple[FloatArray, FloatArray],
+    rows: FloatArray,
+    floor: FloatArray,
+    passed: BoolArray,
+) -> tuple[FloatArray, BoolArray]:
+    """The velocity nearest to what was asked for that approaches nothing too fast.
+
+    Rest is within the half-spaces ``rows @ v >= floor`` and the ``limits``, so there is a nearest velocity P:
+    an arm that is pushed obliquely at a table slides along it. P is rest only where every velocity d within
+    them leads backwards, ``d @ velocity <= 0``. Where a distance is too small already, what is left leans
+    away if it can, because a path along a curved surface would come nearer. The result is never longer than
+    what was asked for nor turned against it.
+
+    Args:
+        velocity: (n,), rad/s.
+        limits: lowest and highest speeds of the joints, (n,) each, with zero between them, rad/s.
+        rows: (C, n), how joint velocities change C distances, m/s per rad/s.
+        floor: (C,), the smallest rate of each distance, zero or below, m/s.
+        passed: (C,), whether the distance is too small already.
+
+    Returns:
+        (n,), rad/s, ``velocity`` itself where nothing is too fast; which of n + C limits changed it.
+    """
+    clipped = np.clip(velocity, *limits)
+    acting = np.concatenate([clipped != velocity, passed & False])
+    if not some(passed | (rows @ clipped < floor)):
+        return (clipped if some(acting) else velocity), acting
+    norm = np.maximum(np.sqrt(np.vecdot(rows, rows)), _UNFELT)
+    rows, floor = rows / norm[:, None], floor / norm
+    slid, acting = _nearest(velocity, limits, rows, floor)
+    size = float(np.sqrt(velocity @ velocity))
+    if slid @ slid <= (_ROUNDING * size) ** 2:
+        return np.zeros_like(velocity), acting
+    lean = np.where(passed & (norm > _UNFELT), _LEAN * np.sqrt(slid @ slid), floor)
+    leaning, leant = _nearest(slid, limits, rows, lean)
+    if leaning @ velocity > 0.0 and not some(rows @ leaning < np.minimum(0.5 * lean, lean) - 1e-9):
+        slid, acting = leaning * min(1.0, size / float(np.sqrt(leaning @ leaning))), acting | leant
+    return (slid if some(acting) else velocity), acting
+
+
+def _nearest(
+    velocity: FloatArray, limits: tuple[FloatArray, FloatArray], rows: FloatArray, floor: FloatArray
+) -> tuple[FloatArray, BoolArray]:
+    """The velocity within limits and half-spaces of unit rows that is nearest, and which hold it."""
+    kinds = np.repeat(np.array([0, 8], dtype=np.int32), [len(velocity), len(rows)])  # hard, soft
+    nearest, _, flag, info = daqp.solve(
+        np.eye(len(velocity)),
+        -velocity,
+        rows,
+        np.concatenate([limits[1], np.full(len(rows), np.inf)]),
+        np.concatenate([limits[0], floor]),
+        kinds,
+        primal_tol=1e-10,
+        rho_soft=_SOFTNESS,
+    )
+    if flag <= 0:
+        return np.zeros_like(velocity), kinds >= 0
+    return np.clip(nearest, *limits), info["lam"] != 0.0
+
+
+def unbent(
+    velocity: FloatArray, rows: FloatArray, room: FloatArray, bend: FloatArray, time_s: float
+) -> float:
+    """The share of a velocity that is slow enough to treat paths as straight.
+
+    Over ``time_s`` at share s of the velocity a distance changes by at least ``s g t - s² c t² / 2`` with
+    its rate g and its bend c. That must not use up more than the room left. The largest such share
+    has a closed form.
+
+    Args:
+        velocity: (n,), rad/s.
+        rows: (C, n), as in `slide`.
+        room: (C,), distance that may still be lost, above zero, m.
+        bend: (C,), second derivative of each distance at full velocity, zero or more, m/s².
+        time_s: s.
+
+    Returns:
+        The share, in [0, 1].
+    """
+    rate = rows @ velocity
+    root = np.sqrt(rate * rate + 2.0 * bend * room)
+    # A bend below this loses less than a nanometre in a tenth of a second.
+    share = (rate + root) / (np.maximum(bend, 1e-7) * time_s)
+    return float(min(1.0, np.where(bend > 1e-7, share, 1.0).min(initial=1.0)))

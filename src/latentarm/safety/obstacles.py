@@ -1,0 +1,123 @@
+"""Validation of obstacles for the safety filters, and common obstacles by name."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from latentarm.core.errors import UserError
+from latentarm.core.types import FloatArray
+from latentarm.robots.kinematics.obstacles import Box, Capsule, HalfSpace, Obstacle, Sphere
+
+_FAR_M = 100.0
+"""Coordinates beyond this are a mistake in units, not an obstacle."""
+
+
+def table(height: float) -> HalfSpace:
+    """A table top (or floor) that fills everything below ``height``, m, in the base frame.
+
+    Raises:
+        UserError: the height is not finite.
+    """
+    plane = HalfSpace(name="table", point=np.array([0.0, 0.0, height]), normal=np.array([0.0, 0.0, 1.0]))
+    checked_obstacle(plane)
+    return plane
+
+
+def checked_obstacle(obstacle: object) -> Obstacle:
+    """The obstacle with float arrays, validated.
+
+    Raises:
+        UserError: a figure is not finite or absurd, a size is not positive, a normal is not of unit
+            length, or a rotation is not one.
+    """
+    # An obstacle without a case below would be ignored silently.
+    if not isinstance(obstacle, Obstacle):
+        raise UserError(f"{obstacle!r} is not an obstacle: use HalfSpace, Sphere, Capsule or Box.")
+    return checked_shape(obstacle, f"The obstacle {obstacle.name!r}")
+
+
+def checked_shape(obstacle: Obstacle, what: str) -> Obstacle:
+    """The shape with float arrays, validated.
+
+    Args:
+        obstacle: any of the shapes, whatever it stands for.
+        what: what messages call it, the subject of a sentence.
+
+    Raises:
+        UserError: as for `checked_obstacle`.
+    """
+    match obstacle:
+        case HalfSpace():
+            return replace(
+                obstacle, point=_point(what, "point", obstacle.point), normal=_unit(what, obstacle.normal)
+            )
+        case Sphere():
+            return replace(
+                obstacle,
+                centre=_point(what, "centre", obstacle.centre),
+                radius=_size(what, "radius", obstacle.radius),
+            )
+        case Capsule():
+            return replace(
+                obstacle,
+                start=_point(what, "start", obstacle.start),
+                end=_point(what, "end", obstacle.end),
+                radius=_size(what, "radius", obstacle.radius),
+            )
+        case Box():
+            extents = _point(what, "half_extents", obstacle.half_extents)
+            for extent in extents:
+                _size(what, "half_extents", float(extent))
+            return replace(
+                obstacle,
+                centre=_point(what, "centre", obstacle.centre),
+                rotation=_rotation(what, obstacle.rotation),
+                half_extents=extents,
+            )
+
+
+def as_array(value: object) -> NDArray[Any]:
+    """The value as an array; of objects where it is ragged."""
+    try:
+        return np.asarray(value)
+    except ValueError:
+        return np.asarray(None)
+
+
+def _numbers(what: str, field: str, value: FloatArray, shape: tuple[int, ...]) -> FloatArray:
+    given = as_array(value)
+    if given.shape != shape or given.dtype.kind not in "iuf" or not np.isfinite(given).all():
+        count = "×".join(map(str, shape))
+        raise UserError(f"{what} needs {count} finite numbers as its {field}.")
+    return given.astype(np.float64)
+
+
+def _point(what: str, field: str, value: FloatArray) -> FloatArray:
+    point = _numbers(what, field, value, (3,))
+    if np.abs(point).max() > _FAR_M:
+        raise UserError(f"{what} has its {field} over {_FAR_M:g} m away: give metres.")
+    return point
+
+
+def _unit(what: str, value: FloatArray) -> FloatArray:
+    normal = _numbers(what, "normal", value, (3,))
+    if abs(float(normal @ normal) - 1.0) > 1e-6:
+        raise UserError(f"{what} needs a normal of length 1.")
+    return normal / np.sqrt(normal @ normal)
+
+
+def _rotation(what: str, value: FloatArray) -> FloatArray:
+    rotation = _numbers(what, "rotation", value, (3, 3))
+    if np.abs(rotation @ rotation.T - np.eye(3)).max() > 1e-6 or np.linalg.det(rotation) < 0.0:
+        raise UserError(f"{what} needs a rotation matrix as its rotation.")
+    return rotation
+
+
+def _size(what: str, field: str, value: object) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float | np.integer | np.floating):
+        raise UserError(f"{what} needs a number as its {field}.")
+    if not 0.0 < value <= _FAR_M:
+        raise UserError(f"{what} has {field} {value}: it must be above 0 and at most {_FAR_M:g} m.")
+    return float(value)

@@ -1,0 +1,137 @@
+"""An arm that was stopped because something holds it draws back a little, and rests."""
+
+import math
+from collections import deque
+from typing import Final, final
+
+import numpy as np
+
+from latentarm.core.types import FloatArray
+from latentarm.safety.body import Body
+from latentarm.safety.bounds import Bounds
+from latentarm.safety.small import largest
+
+YIELDING: Final = "yielding"
+"""Stands among the limits of each command that draws back."""
+
+FARTHEST_M: Final = 0.03
+"""Once a point of the arm has gone back this far, the arm slows down and rests."""
+
+LONGEST_S: Final = 1.0
+"""No command draws back for longer than this, s; the last one is ramped down as any other."""
+
+PACE: Final = 0.5
+"""Commands are taken back at this share of their speed, and joints go to where they are at this share."""
+
+LOOK_S: Final = 0.5
+"""An arm that does not stand still so long after its stop does not draw back, s."""
+
+_STILL_RAD: Final = 2e-3
+_REMEMBERED_S: Final = LOOK_S + 1.0
+
+
+@final
+class Yielding:
+    """After a following error that looks like contact, leads the arm back over the last second.
+
+    A command to stand still does not relieve what the arm presses on: its servo goes on towards the position
+    that was commanded, inside the thing. So the arm is commanded to where it is measured, then back along its
+    last commands, until a point of it has gone back by `FARTHEST_M`, for at most `LONGEST_S`.
+
+    Contact is not measured. What counts as contact: the arm stands still, a joint is still off, in readings
+    that change, and it or the farthest point is behind where it was commanded to go. A frozen encoder repeats
+    itself, late readings catch up, and what is pushed along is not behind.
+
+    Args:
+        bounds: the limits.
+        body: the arm.
+    """
+
+    def __init__(self, bounds: Bounds, body: Body) -> None:
+        self._body = body
+        self._dt_s = bounds.dt_s
+        self._margin_rad = bounds.config.following_error
+        self._looks = math.ceil(max(bounds.lag_s, bounds.stop_s) / bounds.dt_s)
+        # Each reading with the command since the one before, the newest last.
+        self._past: deque[tuple[FloatArray, FloatArray]] = deque(maxlen=round(_REMEMBERED_S / bounds.dt_s))
+        self._fastest = PACE * bounds.speed
+        self._looked: int | None = None
+        self._way_back: list[FloatArray] | None = None
+        self._start_m: FloatArray = np.zeros((0, 3))
+
+    @property
+    def on(self) -> bool:
+        """Whether the arm draws back, or is looked at to decide whether it should."""
+        return self._looked is not None
+
+    def end(self) -> None:
+        """Rest, and forget the past."""
+        self._looked = self._way_back = None
+        self._past.clear()
+
+    def saw(self, q: FloatArray, velocity: FloatArray) -> None:
+        """Remember a reading (n,), rad, and the command since the one before, (n,), rad/s."""
+        if self._way_back is None:
+            self._past.append((q, velocity))
+
+    def begin(self) -> None:
+        """A following error has just stopped the arm."""
+        self._looked = 0
+
+    def wanted(self, q: FloatArray) -> FloatArray | None:
+        """What to ask of the filters now; call this in every tick in which the arm is stopped.
+
+        Args:
+            q: (n,), measured joint positions, rad.
+
+        Returns:
+            (n,), rad/s; None where the arm is to stand still.
+        """
+        if self._looked is None:
+            return None
+        if self._way_back is None:
+            self._looked += 1
+            self._way_back = self._decided(self._looked)
+            self._start_m = self._points(q)
+            if self._way_back is None:
+                if self._looked * self._dt_s >= LOOK_S:
+                    self.end()
+                return None
+        gone = largest(np.linalg.norm(self._points(q) - self._start_m, axis=1))
+        if gone >= FARTHEST_M or not self._way_back:
+            self.end()
+            return None
+        return self._way_back.pop()
+
+    def _decided(self, looked: int) -> list[FloatArray] | None:
+        """Velocities that lead back, the last one first, rad/s; None where nothing seems to hold the arm.
+
+        Args:
+            looked: for how many ticks the arm has been looked at.
+        """
+        if looked <= self._looks or len(self._past) <= looked + self._looks:
+            return None
+        q, velocity = (np.array(part) for part in zip(*self._past, strict=True))
+        if largest(np.abs(q[-1] - q[-1 - self._looks // 2])) > _STILL_RAD:
+            return None
+        way = self._dt_s * velocity
+        commanded = q[0] + way[1:].sum(axis=0)
+        before = commanded - way[-looked - self._looks :].sum(axis=0)
+        ahead, going = commanded - q[-1], commanded - before
+        joint = int(np.abs(ahead).argmax())
+        ahead_m = self._points(commanded) - self._points(q[-1])
+        point = int(np.linalg.norm(ahead_m, axis=1).argmax())
+        going_m = self._points(commanded)[point] - self._points(before)[point]
+        behind = ahead[joint] * going[joint] > 0.0 or ahead_m[point] @ going_m > 0.0
+        alive = np.count_nonzero(np.diff(q[-1 - looked :, joint])) >= 0.25 * looked
+        if not (behind and alive and abs(ahead[joint]) > self._margin_rad):
+            return None
+        to_measured = math.ceil(largest(np.abs(ahead) / self._fastest) / self._dt_s)
+        taken_back = np.repeat(-PACE * velocity[velocity.any(axis=1)], round(1.0 / PACE), axis=0)
+        back = [*taken_back, *([-ahead / (to_measured * self._dt_s)] * to_measured)]
+        return back[-round(LONGEST_S / self._dt_s) :]
+
+    def _points(self, q: FloatArray) -> FloatArray:
+        """(P, 3), m."""
+        chain = self._body.robot.chain
+        return chain.points(chain.link_transforms(q), self._body.link, self._body.local)

@@ -1,0 +1,99 @@
+import hypothesis.extra.numpy as hnp
+import numpy as np
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from latentarm.assistance.controllers.end_effector import EndEffectorController
+from latentarm.core.errors import UserError
+from latentarm.core.types import Context
+from latentarm.robots.catalogue import load_robot
+from latentarm.robots.kinematics.resolved_rates import Damping
+from latentarm.robots.kinematics.rotations import pose_error
+
+PANDA = load_robot("panda")
+SPEED, TURN = 0.12, 0.4
+CONTROLLER = EndEffectorController(PANDA, SPEED, TURN)
+NO_BELIEF = np.zeros(0)
+
+near_home = hnp.arrays(float, 7, elements=st.floats(-0.4, 0.4)).map(lambda moved: PANDA.home + moved)
+inputs = hnp.arrays(float, 2, elements=st.floats(-1, 1))
+
+
+def asked_twist(u, mode, rotation):
+    """m/s along the base's axes and rad/s about the tool's, in the base frame."""
+    match CONTROLLER.modes[mode]:
+        case "x-y":
+            return np.array([*(SPEED * u), 0, 0, 0, 0])
+        case "z-yaw":
+            return np.array([0, 0, SPEED * u[0], *(TURN * u[1] * rotation[:, 2])])
+        case "roll-pitch":
+            return np.array([0, 0, 0, *(TURN * (u[0] * rotation[:, 0] + u[1] * rotation[:, 1]))])
+
+
+@pytest.mark.parametrize("mode", range(3))
+@given(state=near_home, u=inputs)
+def test_away_from_singularities_the_tool_moves_as_asked(mode, state, u):
+    jacobian = PANDA.chain.jacobian(state)
+    assume(np.linalg.svd(jacobian, compute_uv=False)[-1] > Damping().threshold)
+    action = CONTROLLER.action(u, Context(state, NO_BELIEF), mode)
+    asked = asked_twist(u, mode, PANDA.chain.forward(state).rotation)
+    assert jacobian @ action == pytest.approx(asked, abs=1e-10)
+    # And so it does when the arm really takes a short step.
+    dt = 1e-5
+    before, after = PANDA.chain.forward(state), PANDA.chain.forward(state + dt * action)
+    assert pose_error(before, after) / dt == pytest.approx(asked, abs=1e-4)
+
+
+@pytest.mark.parametrize("mode", range(3))
+@given(state=near_home, u=inputs)
+def test_motion_is_in_proportion_to_the_input(mode, state, u):
+    context = Context(state, NO_BELIEF)
+    whole, half = (CONTROLLER.action(share * u, context, mode) for share in (1.0, 0.5))
+    assert half == pytest.approx(whole / 2, abs=1e-12)
+    assert not CONTROLLER.action(np.zeros(2), context, mode).any()
+
+
+STRETCHED = np.array([0.0, 0.0, 0.0, -0.07, 0.0, 0.0, 0.0])
+WRIST_ALIGNED = np.array([0.0, -0.3, 0.0, -2.0, 0.0, 0.0, 0.0])
+
+
+@pytest.mark.parametrize("singular", [np.zeros(7), STRETCHED, WRIST_ALIGNED])
+@pytest.mark.parametrize("mode", range(3))
+def test_through_singular_configurations_joint_speeds_stay_bounded(singular, mode):
+    rng = np.random.default_rng(0)
+    damping = Damping()
+    largest = np.hypot(SPEED, TURN) * np.sqrt(2) / min(damping.threshold, damping.factor)
+    for distance in (0.0, 1e-12, 1e-6, 1e-3, 1e-2, 0.1):
+        context = Context(singular + distance * rng.normal(size=7), NO_BELIEF)
+        action = CONTROLLER.action(np.array([[1.0, 1.0], [1.0, -1.0]]), context, mode)
+        assert np.isfinite(action).all()
+        assert (np.linalg.norm(action, axis=-1) <= largest).all()
+
+
+@given(st.floats(0.0, 3.0), st.floats(0.0, 1e-6))
+def test_the_damped_reciprocal_has_no_jump_and_no_peak(singular, further):
+    damping = Damping()
+    here, there = damping.inverse(np.array([singular, singular + further]))
+    assert 0.0 <= here <= 1 / damping.threshold + 1e-9
+    assert abs(there - here) <= 1e-3
+
+
+def test_a_planar_arm_moves_in_its_plane_exactly_though_it_has_no_other_axis():
+    planar = load_robot("planar")
+    state = planar.home + np.linspace(0.1, 0.5, planar.dof)
+    action = EndEffectorController(planar, 0.1, 0.5).action(
+        np.array([0.6, -0.8]), Context(state, NO_BELIEF), 0
+    )
+    assert planar.chain.jacobian(state)[:2] @ action == pytest.approx([0.06, -0.08], abs=1e-9)
+
+
+@pytest.mark.parametrize("wrong", [{"linear_speed": 0.0}, {"angular_speed": float("nan")}])
+def test_speeds_that_are_none_are_refused(wrong):
+    with pytest.raises(UserError, match=next(iter(wrong))):
+        EndEffectorController(PANDA, **wrong)
+
+
+def test_damping_that_is_none_is_refused():
+    with pytest.raises(UserError, match="factor"):
+        Damping(factor=-1.0)
