@@ -9,7 +9,7 @@ import yaml
 from hypothesis import given
 from hypothesis import strategies as st
 
-from latentarm.cli import COMMANDS
+from latentarm.commands.catalogue import all_commands
 from latentarm.commands.configuration import read_options
 from latentarm.commands.train import train
 from latentarm.core.errors import UserError
@@ -17,7 +17,7 @@ from latentarm.core.errors import UserError
 Run = Callable[..., tuple[int, str, str]]
 
 
-@pytest.mark.parametrize("name", COMMANDS)
+@pytest.mark.parametrize("name", all_commands().commands)
 def test_every_command_takes_a_file_and_refuses_what_it_does_not_know(
     run: Run, workplace: Path, name: str
 ) -> None:

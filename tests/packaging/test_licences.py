@@ -36,6 +36,7 @@ def needed_by(name: str, found: dict[str, set[str]], extras: frozenset[str] = fr
 def runtime_distributions() -> list[str]:
     found: dict[str, set[str]] = {}
     needed_by("latentarm", found)
+    needed_by("latentarm-research", found)
     return sorted(name for name in found if not OF_CUDA.match(name))
 
 

@@ -60,13 +60,13 @@ def test_the_sdist_holds_what_a_build_and_the_tests_need(built: Path) -> None:
         names = {name.partition("/")[2] for name in archive.getnames()}
     assert {f"src/{name}" for name in sources()} <= names
     assert {"pyproject.toml", "constraints.txt", "Makefile", "LICENSE", "README.md", "CHANGELOG.md"} <= names
-    assert {"tests/conftest.py", "examples/your_own_loop.py", "docs/index.md"} <= names
+    assert {"conftest.py", "tests/command_line.py", "examples/your_own_loop.py", "docs/index.md"} <= names
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("python", PYTHONS)
 def test_the_wheel_runs_in_an_empty_environment(python: str, built: Path, tmp_path: Path) -> None:
-    """Outside the source tree: the command line, the import, a training and a drive."""
+    """Outside the source tree: the core without torch; then a training, and a drive with the research."""
     (wheel,) = built.glob("*.whl")
     environment = {
         key: value for key, value in os.environ.items() if key not in ("PYTHONPATH", "VIRTUAL_ENV")
@@ -90,13 +90,26 @@ def test_the_wheel_runs_in_an_empty_environment(python: str, built: Path, tmp_pa
     run(*uv, "venv", "--quiet", "--python", python, "venv")
     run(*uv, "pip", "install", "--quiet", "--python", binaries / "python", wheel)
 
-    assert "reproduce" in run(binaries / "latentarm", "--help")
+    assert "latentarm[research]" in run(binaries / "latentarm", "--help")
     assert run(binaries / "latentarm", "--version").strip().endswith(latentarm.__version__)
     home = run(
         binaries / "python", "-c", "import latentarm as la; print(la.__file__, len(dir(la)), la.ControlLoop)"
     )
     assert str(tmp_path) in home
     run(binaries / "python", "-c", DEMONSTRATIONS)
+    run(binaries / "latentarm", "inspect", "table")
+    with pytest.raises(AssertionError, match=r"latentarm\[train\]"):
+        run(binaries / "latentarm", "train", "--demonstrations", "table")
+    run(
+        *uv,
+        "pip",
+        "install",
+        "--quiet",
+        "--python",
+        binaries / "python",
+        f"{wheel}[train]",
+        ROOT / "research",
+    )
     train = ["train", "--demonstrations", "table", "--model", "cvae", "--epochs", "2", "--out", "run"]
     run(binaries / "latentarm", *train)
     run(binaries / "latentarm", "drive", "run", "--drives", "1", "--time-limit-s", "30", "--out", "driven")

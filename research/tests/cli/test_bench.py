@@ -2,7 +2,7 @@
 
 import pytest
 
-from latentarm.commands import bench_step as bench
+from latentarm_research.commands import bench_step as bench
 
 
 def test_bench_gives_every_figure_and_equal_losses(monkeypatch: pytest.MonkeyPatch) -> None:

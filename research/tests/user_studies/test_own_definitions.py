@@ -13,7 +13,7 @@ from latentarm_research.user_studies.catalogue import NAMES, load_definition
 from latentarm_research.user_studies.own.checks import check_definition
 from latentarm_research.user_studies.own.definition_file import find_definition, read_definition
 
-EXAMPLE = Path(__file__).parents[2] / "examples" / "pie_apart.json"
+EXAMPLE = Path(__file__).parents[3] / "examples" / "pie_apart.json"
 OWN: dict[str, Any] = json.loads(EXAMPLE.read_text(encoding="utf-8"))
 
 

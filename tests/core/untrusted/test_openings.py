@@ -5,8 +5,9 @@ from functools import cache
 from pathlib import Path
 
 import latentarm
+import latentarm_research
 
-SOURCE = Path(latentarm.__file__).parent
+SOURCES = (Path(latentarm.__file__).parent, Path(latentarm_research.__file__).parent)
 
 OPENS = {"open", "read_text", "read_bytes"}
 """Methods and functions that open a file."""
@@ -41,24 +42,24 @@ CHECKED = {
 NAMES = OPENS | {name.rsplit(".", 1)[-1] for name in PARSES | CHECKED}
 
 ALLOWED = {
-    "untrusted/opening.py": {"os.open"},
-    "untrusted/documents.py": {"json.loads"},
-    "untrusted/memory.py": {"_STATUS.read_text"},
-    "files.py": {"os.open", "part.open"},  # what it writes itself
-    "control/call_log.py": {"path.open"},  # the same
+    "core/untrusted/opening.py": {"os.open"},
+    "core/untrusted/documents.py": {"json.loads"},
+    "core/untrusted/memory.py": {"_STATUS.read_text"},
+    "core/files.py": {"os.open", "part.open"},  # what it writes itself
+    "core/call_log.py": {"path.open"},  # the same
     "web/arm_process/incident.py": {"path.open"},  # copies, in a folder of its own
     "cli.py": {"os.open"},  # the null device
     "demonstrations/npz_file.py": {"archive.open"},  # a member of an archive that was opened within bounds
     "web/records/exchange.py": {"archive.open"},  # the same
     "runs/results_folder.py": {"json.loads"},  # what it has just written
-    "runs/source.py": {"path.read_bytes"},  # part of the package
+    "research/studies/source.py": {"path.read_bytes"},  # part of the packages
     "web/server/assets.py": {"path.read_bytes"},  # part of the package, or of NiceGUI
     "web/words/catalogue.py": {"file.read_text", "json.loads"},  # part of the package
-    "operators/calibration.py": {
+    "research/people/calibration.py": {
         "(files('latentarm_research.people') / 'calibration.json').read_text",
         "json.loads",
     },  # part of the package
-    "user_studies/definition.py": {"json.loads"},  # what it has just written
+    "research/user_studies/definition.py": {"json.loads"},  # what it has just written
     "arms/franka/link.py": {"_REALTIME_FILE.read_text"},  # the kernel's
     "arms/helper_process.py": {"json.loads"},  # what our own process says
     "arms/lerobot/keeper.py": {"self._bus.open"},  # a serial port
@@ -71,6 +72,16 @@ ALLOWED = {
 
 IN_MEMORY = {"web/records/exchange.py"}
 """Modules that give such a library bytes within bounds, and paths only to write."""
+
+
+MODULES = [module for source in SOURCES for module in source.rglob("*.py")]
+
+
+def _place(module: Path) -> str:
+    core, research = SOURCES
+    if module.is_relative_to(core):
+        return module.relative_to(core).as_posix()
+    return f"research/{module.relative_to(research).as_posix()}"
 
 
 @cache
@@ -90,12 +101,7 @@ def opens_unbounded(call: str) -> bool:
 
 
 def test_no_module_opens_untrusted_files_another_way() -> None:
-    found = {
-        (str(module.relative_to(SOURCE)), call)
-        for module in SOURCE.rglob("*.py")
-        for call in calls(module)
-        if opens_unbounded(call)
-    }
+    found = {(_place(module), call) for module in MODULES for call in calls(module) if opens_unbounded(call)}
     allowed = {(module, call) for module, some in ALLOWED.items() for call in some}
     assert found - allowed == set(), "use opening and documents of latentarm.core.untrusted"
     assert allowed - found == set(), "no longer needed"
@@ -103,8 +109,8 @@ def test_no_module_opens_untrusted_files_another_way() -> None:
 
 def test_libraries_that_open_paths_are_given_checked_ones() -> None:
     unchecked = {
-        str(module.relative_to(SOURCE))
-        for module in SOURCE.rglob("*.py")
+        _place(module)
+        for module in MODULES
         if calls(module) & CHECKED and "latentarm.core.untrusted." not in module.read_text(encoding="utf-8")
     }
     assert unchecked == IN_MEMORY

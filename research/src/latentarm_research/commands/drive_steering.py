@@ -18,8 +18,8 @@ from latentarm.runs.folder import Run, weights_fingerprint
 from latentarm.runs.tasks import usual_arm
 from latentarm_research.baselines.retargeting import RetargetingController
 from latentarm_research.commands.drive_options import MODE_SWITCHED, DriveOptions
-from latentarm_research.people.catalogue import PEOPLE
-from latentarm_research.people.names import OperatorName, usual_operator
+from latentarm_research.people.catalogue import PEOPLE, usual_operator
+from latentarm_research.people.names import OperatorName
 from latentarm_research.people.person import Person
 
 USUAL_BELIEF: Final = "boltzmann"

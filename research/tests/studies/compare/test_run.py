@@ -13,7 +13,7 @@ from latentarm_research.studies.compare.preset import Preset
 from latentarm_research.studies.compare.study import compare_study
 from latentarm_research.studies.study import ALWAYS_MADE, Report, Request, run_study
 
-POUR = Path(__file__).parents[4] / "shared" / "demonstrations" / "panda_pour_coffee.npz"
+POUR = Path(__file__).parents[5] / "shared" / "demonstrations" / "panda_pour_coffee.npz"
 
 
 def compared(table: Path, sizes: Preset, out: Path, ours: str = "cae") -> Report:

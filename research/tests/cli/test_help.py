@@ -8,8 +8,8 @@ import pytest
 
 from latentarm.assistance.blending import ConfidenceAlpha, FixedAlpha
 from latentarm.assistance.catalogue import BELIEFS
-from latentarm.cli import COMMANDS as PLACES
-from latentarm.cli import GROUPS, _load, main
+from latentarm.cli import main
+from latentarm.commands.catalogue import all_commands
 from latentarm.core.parallel.backends import BACKENDS
 from latentarm_research.studies.alignment import preset as alignment_preset
 from latentarm_research.studies.alignment import study as alignment
@@ -22,22 +22,22 @@ from latentarm_research.studies.tasks import preset as tasks_preset
 from latentarm_research.tasks.planar.catalogue import MOTIONS
 
 COMMANDS = [
-    "demo",
     "import",
     "inspect",
     "train",
     "evaluate",
-    "compare",
     "align",
-    "drive",
     "teleop",
     "export",
     "replay",
+    "arms",
+    "robots",
+    "demo",
+    "compare",
+    "drive",
     "reproduce",
     "study",
     "bench",
-    "arms",
-    "robots",
 ]
 STUDIES = ["properties", "shared-autonomy", "alignment", "tasks"]
 VERBS = ["list", "show", "run", "power"]
@@ -68,10 +68,10 @@ def test_the_list_of_commands(run: Run) -> None:
     assert "{" + ",".join(COMMANDS) + "}" in out
 
 
-@pytest.mark.parametrize("name", PLACES)
+@pytest.mark.parametrize("name", all_commands().commands)
 def test_the_list_says_of_a_command_what_its_own_help_says(name: str) -> None:
-    place, summary = PLACES[name]
-    assert _load(place).__doc__.splitlines()[0] == summary
+    entry = all_commands().commands[name]
+    assert (entry.load().__doc__ or "").splitlines()[0] == entry.summary
 
 
 def test_the_version(run: Run) -> None:
@@ -111,7 +111,8 @@ def test_a_drive_offers_every_belief_and_says_the_usual_alphas(run: Run) -> None
 
 
 def test_no_help_loads_anything_heavy() -> None:
-    asked = [[*name.split(), "--help"] for name in ("", *GROUPS, *PLACES)]
+    known = all_commands()
+    asked = [[*name.split(), "--help"] for name in ("", *known.groups, *known.commands)]
     script = (
         "import sys, latentarm.cli\n"
         f"for words in {asked}:\n"

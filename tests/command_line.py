@@ -1,3 +1,5 @@
+"""Fixtures of tests that run commands."""
+
 import shutil
 from collections.abc import Callable
 from pathlib import Path
