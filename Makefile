@@ -23,7 +23,7 @@ PARALLEL := --numprocesses $(WORKERS) --dist loadfile --no-loadscope-reorder
 IN_PAIRS := --numprocesses $(if $(filter 1,$(WORKERS)),1,2) --dist loadfile --no-loadscope-reorder
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-all test-thorough check message-types format bench docs dist lock arms lerobot clean
+.PHONY: help demo test test-research test-all test-thorough check message-types format bench docs dist lock arms lerobot clean
 
 help: ## Show what can be made.
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 16
@@ -57,10 +57,13 @@ check: $(VENV)/installed-dev node_modules/installed ## Lint, formatting, types a
 message-types: $(VENV)/installed-dev ## Write the types of the page's messages for its JavaScript.
 	$(BIN)/python scripts/message_types.py
 
-test: check ## Everything that must hold, in minutes.
+test: check ## Everything that must hold of the core, in minutes.
 	$(BIN)/node --test 'tests/web/js/*.test.js'
-	$(PYTEST) -m "not slow and not clock" $(PARALLEL)
+	$(PYTEST) -m "not slow and not clock" $(PARALLEL) tests
 	$(PYTEST) -m "not slow and clock" $(IN_PAIRS) tests/arms tests/web
+
+test-research: $(VENV)/installed-dev ## The same of the research: simulated people, drives and studies, in smoke sizes.
+	$(PYTEST) -m "not slow and not clock" $(PARALLEL) research/tests
 
 test-all: check ## The slow tests too: kill tests, real lerobot, hundreds of approaches.
 	$(PYTEST) -m "not clock and not browser" $(PARALLEL)
@@ -92,8 +95,8 @@ docs: $(VENV)/installed ## The documentation as a site, in site/; any warning is
 lock: $(VENV)/installed ## Pin the newest version of every package, direct or not, in constraints.txt.
 	sed -n '/^torch==/p' constraints.txt > .torch
 	$(BIN)/python scripts/uv.py pip compile --quiet --upgrade --no-annotate --no-header --all-extras \
-		--constraint .torch --output-file .lock pyproject.toml
-	{ grep '^#' constraints.txt; sed 's/+[a-z0-9.]*$$//' .lock; } > .torch && mv .torch constraints.txt && rm .lock
+		--constraint .torch --output-file .lock pyproject.toml research/pyproject.toml
+	{ grep '^#' constraints.txt; sed '/latentarm/d; s/+[a-z0-9.]*$$//' .lock; } > .torch && mv .torch constraints.txt && rm .lock
 
 dist: $(VENV)/installed-dev ## Build the wheel and the sdist in dist/.
 	rm -rf dist

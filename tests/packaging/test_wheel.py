@@ -25,9 +25,10 @@ la.write_dataset(la.TableTop().demonstrate(6, np.random.default_rng(0)), Path("t
 
 @pytest.fixture(name="built", scope="module")
 def fixture_built(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with the wheel and the sdist."""
+    """A folder with the wheels and sdists of both distributions."""
     out = tmp_path_factory.mktemp("dist")
-    subprocess.run([sys.executable, "-m", "hatchling", "build", "-d", str(out)], cwd=ROOT, check=True)
+    for folder in (ROOT, ROOT / "research"):
+        subprocess.run([sys.executable, "-m", "hatchling", "build", "-d", str(out)], cwd=folder, check=True)
     return out
 
 
@@ -43,7 +44,7 @@ def sources() -> set[str]:
 
 
 def test_the_wheel_holds_every_file_of_the_package_and_no_other(built: Path) -> None:
-    (wheel,) = built.glob("*.whl")
+    (wheel,) = built.glob("latentarm-*.whl")
     metadata = f"latentarm-{latentarm.__version__}.dist-info/"
     with zipfile.ZipFile(wheel) as archive:
         names = set(archive.namelist())
@@ -55,7 +56,7 @@ def test_the_wheel_holds_every_file_of_the_package_and_no_other(built: Path) -> 
 
 
 def test_the_sdist_holds_what_a_build_and_the_tests_need(built: Path) -> None:
-    (sdist,) = built.glob("*.tar.gz")
+    (sdist,) = built.glob("latentarm-*.tar.gz")
     with tarfile.open(sdist) as archive:
         names = {name.partition("/")[2] for name in archive.getnames()}
     assert {f"src/{name}" for name in sources()} <= names
@@ -67,7 +68,8 @@ def test_the_sdist_holds_what_a_build_and_the_tests_need(built: Path) -> None:
 @pytest.mark.parametrize("python", PYTHONS)
 def test_the_wheel_runs_in_an_empty_environment(python: str, built: Path, tmp_path: Path) -> None:
     """Outside the source tree: the core without torch; then a training, and a drive with the research."""
-    (wheel,) = built.glob("*.whl")
+    (wheel,) = built.glob("latentarm-*.whl")
+    (research,) = built.glob("latentarm_research-*.whl")
     environment = {
         key: value for key, value in os.environ.items() if key not in ("PYTHONPATH", "VIRTUAL_ENV")
     }
@@ -88,7 +90,8 @@ def test_the_wheel_runs_in_an_empty_environment(python: str, built: Path, tmp_pa
     binaries = tmp_path / "venv" / "bin"
     uv = [sys.executable, ROOT / "scripts" / "uv.py"]
     run(*uv, "venv", "--quiet", "--python", python, "venv")
-    run(*uv, "pip", "install", "--quiet", "--python", binaries / "python", wheel)
+    install = [*uv, "pip", "install", "--quiet", "--python", binaries / "python"]
+    run(*install, wheel)
 
     assert "latentarm[research]" in run(binaries / "latentarm", "--help")
     assert run(binaries / "latentarm", "--version").strip().endswith(latentarm.__version__)
@@ -100,16 +103,7 @@ def test_the_wheel_runs_in_an_empty_environment(python: str, built: Path, tmp_pa
     run(binaries / "latentarm", "inspect", "table")
     with pytest.raises(AssertionError, match=r"latentarm\[train\]"):
         run(binaries / "latentarm", "train", "--demonstrations", "table")
-    run(
-        *uv,
-        "pip",
-        "install",
-        "--quiet",
-        "--python",
-        binaries / "python",
-        f"{wheel}[train]",
-        ROOT / "research",
-    )
+    run(*install, f"{wheel}[train]", research)
     train = ["train", "--demonstrations", "table", "--model", "cvae", "--epochs", "2", "--out", "run"]
     run(binaries / "latentarm", *train)
     run(binaries / "latentarm", "drive", "run", "--drives", "1", "--time-limit-s", "30", "--out", "driven")
