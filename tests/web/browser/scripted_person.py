@@ -22,6 +22,7 @@ LOOK: Final = """() => {
   };
 }"""
 
+WAY: Final = re.compile(r"(Up|Down|Left|Right) ([\d.]+) ?(cm|°)")
 KEYS: Final = {"Up": "ArrowUp", "Down": "ArrowDown", "Left": "ArrowLeft", "Right": "ArrowRight"}
 OPPOSITE: Final = {"Up": "Down", "Down": "Up", "Left": "Right", "Right": "Left"}
 LEVELS: Final = ({"cm": 1.0, "°": 10.0}, {"cm": 0.5, "°": 5.0}, {"cm": 0.3, "°": 3.0})
@@ -119,12 +120,8 @@ class Person:
 
 def ways(pairs: list[list[str]]) -> list[Left]:
     """Read the distances that the page lists by pair of directions."""
-    found: list[Left] = []
-    for pair, parts in enumerate(pairs):
-        for part in parts[1:]:
-            if match := re.fullmatch(r"(Up|Down|Left|Right) ([\d.]+) ?(cm|°)", part):
-                found.append(Left(pair, match[1], float(match[2]), match[3]))
-    return found
+    read = [(pair, WAY.fullmatch(part)) for pair, parts in enumerate(pairs) for part in parts[1:]]
+    return [Left(pair, way[1], float(way[2]), way[3]) for pair, way in read if way]
 
 
 def choose(left: list[Left], pair: int) -> Left | None:
