@@ -1,4 +1,4 @@
-"""Write the tables of docs/simulated_people.md: the simulated people, their calibration, and held-out people.
+"""Write docs/evidence/simulated_people.md: the simulated people, their calibration, and held-out people.
 
 python scripts/people_tables.py
 """
@@ -11,7 +11,7 @@ from typing import Any, Final
 from latentarm_research.people.calibration import PROVENANCE
 from latentarm_research.people.population import MIRRORED, TRAITS
 
-PAGE: Final = Path(__file__).parents[1] / "docs" / "simulated_people.md"
+PAGE: Final = Path(__file__).parents[1] / "docs" / "evidence" / "simulated_people.md"
 LOGS: Final = Path(__file__).with_name("people_from_logs.json")
 """Written by `people_from_logs.py`."""
 

@@ -19,13 +19,6 @@ from playwright.sync_api import Browser, Page, sync_playwright
 
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 SOFTWARE_GL = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
-USUAL_GL = ()
-TELEOP = ("-m", "latentarm", "teleop")
-"""What Python is told to serve the page."""
-
-NO_GL = ("--disable-3d-apis",)
-"""The page then says that it cannot draw the views, and everything else works."""
-VIEWPORT = {"width": 1280, "height": 800}
 START_S = 60.0
 AT_START = "way_back.at_start"
 
@@ -44,21 +37,18 @@ class Site:
 
 
 @contextmanager
-def served(
-    run: Path | None, out: Path | None = None, options: Sequence[str] = (), program: Sequence[str] = TELEOP
-) -> Iterator[Site]:
+def served(run: Path, out: Path | None = None, options: Sequence[str] = ()) -> Iterator[Site]:
     """`latentarm teleop RUN` as long as the block lasts.
 
     Args:
         run: a trained run.
         out: keeps what is recorded.
         options: further words of the command.
-        program: what Python is told to serve the page.
     """
     with tempfile.TemporaryDirectory() as folder:
         said = Path(folder) / "said"
-        words = [] if run is None else [str(run)]
-        command = [sys.executable, *program, *words, *options, "--port", "0", "--out", str(out or folder)]
+        command = [sys.executable, "-m", "latentarm", "teleop", str(run), *options]
+        command += ["--port", "0", "--out", str(out or folder)]
         with said.open("w") as file:
             server = subprocess.Popen(command, stdout=file, stderr=subprocess.STDOUT)
         try:
@@ -88,14 +78,12 @@ def _answers(address: str) -> bool:
 
 
 @contextmanager
-def chromium(drawing: Sequence[str] = SOFTWARE_GL) -> Iterator[Browser]:
-    """A Chromium of this machine, without a window.
-
-    Args:
-        drawing: arguments that say how it draws in three dimensions; without a graphics processor at first.
-    """
+def chromium() -> Iterator[Browser]:
+    """A Chromium of this machine, without a window, that draws without a graphics processor."""
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=find_chromium(), args=[*drawing, *sandboxed()])
+        browser = playwright.chromium.launch(
+            executable_path=find_chromium(), args=[*SOFTWARE_GL, *sandboxed()]
+        )
         yield browser
         browser.close()
 
@@ -115,15 +103,6 @@ def find_chromium() -> str:
 def sandboxed() -> tuple[str, ...]:
     """Arguments without which Chromium does not run here: as root, as in containers, it has no sandbox."""
     return ("--no-sandbox",) if os.getuid() == 0 else ()
-
-
-def tell(figures: dict[str, object], out: Path | None) -> None:
-    """Print figures, with how busy this machine is, and write them to a file if there is to be one."""
-    load = {"cores": os.cpu_count(), "load_average": os.getloadavg()[0]}
-    text = json.dumps(figures | load, indent=2)
-    print(text)
-    if out:
-        out.write_text(text + "\n", encoding="utf-8")
 
 
 def drive_back(page: Page) -> None:

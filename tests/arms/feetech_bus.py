@@ -63,7 +63,6 @@ class _Bus:
     def __init__(self) -> None:
         self.servos = {number: Servo(number) for number in range(1, 7)}
         self.written: deque[tuple[float, int, int, list[int]]] = deque(maxlen=10_000)
-        self.places: deque[tuple[float, list[int]]] = deque(maxlen=4000)
         self.silent = False
         self.late = 0
         self.powerless: set[int] = set()
@@ -81,8 +80,6 @@ class _Bus:
             now_s = time.monotonic()
             for servo in self.servos.values():
                 servo.elapse(now_s - before_s)
-            if not self.places or now_s - self.places[-1][0] >= 0.001:
-                self.places.append((now_s, [servo.get(PRESENT) for servo in self.servos.values()]))
             before_s = now_s
             if self._master in ready:
                 waiting = self._answer(waiting + os.read(self._master, 4096))
@@ -117,8 +114,6 @@ class _Bus:
                 self.late = order["times"]
             case "written":
                 return list(self.written)
-            case "places":
-                return list(self.places)
             case _:
                 raise ValueError(order)
         return None
@@ -231,10 +226,6 @@ class FeetechBus:
     def written(self) -> list[tuple[float, int, int, bytes]]:
         """The newest writes as time (monotonic, s), servo, address and data."""
         return [(at_s, number, address, bytes(data)) for at_s, number, address, data in self._do("written")]
-
-    def trace(self) -> list[tuple[float, list[int]]]:
-        """The last seconds: time (monotonic, s), and what the servos' encoders said."""
-        return [(at_s, places) for at_s, places in self._do("places")]
 
     def _do(self, what: str, **order: object) -> Any:
         assert self._process.stdin is not None

@@ -5,7 +5,6 @@ limits allow, without jerk limits or lag, and nothing pulls at it. It is no meas
 """
 
 import time
-from collections import deque
 from dataclasses import dataclass, field
 
 CYCLE_S = 0.004
@@ -32,7 +31,6 @@ class XArmModel:
 
     def __post_init__(self) -> None:
         self.v = [0.0] * 7
-        self.trace: deque[tuple[float, list[float], float]] = deque(maxlen=30_000)
         self.gripper = 850.0
         self.gripper_target = 850.0
         self.gripper_speed = 2000.0
@@ -117,14 +115,12 @@ class XArmModel:
                 self.q[joint] = min(max(self.q[joint], self.lower), self.upper)
                 self.v[joint] = 0.0
                 self.fail(23)
-        fastest = max(map(abs, self.v))
         if self.state < 3:
-            self.state = MOVING if fastest > 0.0 else READY
+            self.state = MOVING if any(self.v) else READY
         reach = self.gripper_speed * CYCLE_S * 0.2
         towards = min(max(self.gripper_target - self.gripper, -reach), reach)
         if self.gripper_on and not (self.holding() and towards < 0.0):
             self.gripper += towards
-        self.trace.append((self.now_s, self.q[: self.axes], fastest))
 
     def holding(self) -> bool:
         """Whether something stands between the fingers that are closing."""

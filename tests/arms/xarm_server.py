@@ -231,8 +231,6 @@ class _Server:
                 for name, value in order.items():
                     fitting = tuple(value) if name == "firmware" else value
                     setattr(self if hasattr(self, name) else model, name, fitting)
-            case "trace":
-                return [row for row in model.trace if row[0] >= order["since_s"]]
             case "requests":
                 told, self.requests = self.requests, []
                 return told
@@ -298,11 +296,6 @@ class XArmServer:
             **options,
         }
         return f"xarm://127.0.0.1:{self.ports[CONTROL]}?" + "&".join(f"{k}={v}" for k, v in given.items())
-
-    @property
-    def pid(self) -> int:
-        """Of the process."""
-        return self._process.pid
 
     def do(self, what: str, **order: Any) -> Any:
         """Give an order; the server's time, s, or what was asked for."""

@@ -17,7 +17,6 @@ NOT_RUN = {
     "make demo": "tests/simulation runs it in its smallest size",
     "make test": "this is it",
     "make dist": "tests/packaging builds both files",
-    "python scripts/seeds_in_turn.py sine cae": "twenty minutes",
 }
 """Lines of shell blocks that no test runs, each with the reason."""
 

@@ -1,4 +1,4 @@
-"""The tables of docs/simulated_people.md are those of the simulated people."""
+"""The tables of docs/evidence/simulated_people.md are those of the simulated people."""
 
 import runpy
 
@@ -6,5 +6,5 @@ from documentation import ROOT
 
 
 def test_the_tables_are_as_the_script_writes_them():
-    page = (ROOT / "docs/simulated_people.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs/evidence/simulated_people.md").read_text(encoding="utf-8")
     assert runpy.run_path(str(ROOT / "scripts/people_tables.py"))["written"](page) == page

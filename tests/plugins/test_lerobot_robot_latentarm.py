@@ -116,8 +116,8 @@ def test_from_an_so101_dataset_to_driving_and_back_through_lerobots_tools(tmp_pa
     model = _so101(tmp_path)
     assert load_robot(str(model)).dof == 5
     done = subprocess.run(
-        [python, str(ROOT / "scripts/lerobot_round_trip.py"), str(tmp_path / "out"), "--quick"],
-        env=plugin_environment(wheel) | {"LATENTARM_SO101": str(model)},
+        [python, str(Path(__file__).with_name("lerobot_round_trip.py")), str(tmp_path / "out"), str(model)],
+        env=plugin_environment(wheel),
         capture_output=True,
         text=True,
         check=False,

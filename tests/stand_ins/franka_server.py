@@ -1,11 +1,11 @@
 """A stand-in for a Franka: franky-sim in a process of its own, with what it leaves out of the real arm.
 
 franky-sim 1.0.4 speaks the arm's protocol over MuJoCo, gripper included. Added here, in its own terms: a stop
-button, reflexes and how they are recovered from, the arm's stop after cycles without a message (where a test
-asks for it, because a busy machine is late), and the hand's answer to a move that it was told to stop. Left
-out are contacts that the real arm does not have. No limits are enforced.
+button, reflexes and how they are recovered from, the arm's stop after cycles without a message (only while a
+test cuts the network, because a busy machine is late), and the hand's answer to a move that it was told to
+stop. Left out are contacts that the real arm does not have. No limits are enforced.
 
-As a program (``python franka_server.py HOST CYCLES CATCHES_UP [CLOCK]``) it takes orders by line on standard
+As a program (``python franka_server.py HOST``) it takes orders by line on standard
 input and answers in JSON; `FrankaStandIn` is its other end.
 """
 
@@ -15,7 +15,6 @@ import subprocess
 import sys
 import threading
 import time
-from pathlib import Path
 
 import numpy as np
 
@@ -46,28 +45,19 @@ class FrankaStandIn:
 
     Args:
         host: loopback address to listen on, one that nobody else uses.
-        lost_cycles: stop after so many cycles without a message; 0 for never.
-        catches_up_s: how much lost time it makes up for, at most, by cycles without a pause between them. A
-            real arm's controller is a computer of its own, which goes on while ours stands still. Where the
-            driver goes by the arm's clock, nothing must be made up for.
-        clock_file: where the arm's clock is kept for `ArmClock`, if anywhere.
     """
 
-    def __init__(
-        self, host: str, lost_cycles: int = 0, catches_up_s: float = 0.0, clock_file: Path | None = None
-    ) -> None:
+    def __init__(self, host: str) -> None:
         self.host = host
-        self._lost_cycles = lost_cycles
-        self._catches_up_s = catches_up_s
-        self._clock_file = clock_file
         self.start()
 
     def start(self) -> None:
-        command = [sys.executable, __file__, self.host, str(self._lost_cycles), str(self._catches_up_s)]
-        if self._clock_file is not None:
-            command.append(str(self._clock_file))
         self._process = subprocess.Popen(
-            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, bufsize=1
+            [sys.executable, __file__, self.host],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+            bufsize=1,
         )
         self._lock = threading.Lock()
         self._answer()
@@ -88,10 +78,6 @@ class FrankaStandIn:
 
     def __exit__(self, *_: object) -> None:
         self.close()
-
-    @property
-    def pid(self) -> int:
-        return self._process.pid
 
     def ask(self, order: str) -> dict:
         with self._lock:
@@ -140,7 +126,7 @@ class FrankaStandIn:
         self.ask("repair")
 
 
-def _servers(lost_cycles: int):
+def _servers():
     """The classes of franky-sim with what is added to them."""
     from franky_sim import franka_gripper_server, franka_robot_server, simulation_server
     from franky_sim.franka_gripper_protocol import GripperCommandStatus
@@ -219,8 +205,7 @@ def _servers(lost_cycles: int):
             if not self.current_motion_id or not self._heard:
                 return
             self.silent += 1
-            allowed = LOST_CYCLES if self.is_cut else lost_cycles
-            if allowed and self.silent > allowed:
+            if self.is_cut and self.silent > LOST_CYCLES:
                 self.errors = (_COMMUNICATION,)
                 self.abort(MoveStatus.kReflexAborted)
 
@@ -257,19 +242,6 @@ def part_forearm(model) -> None:
         kinds[solid & (bodies == forearm)] = others[solid & (bodies == forearm)] = _FOREARM
 
 
-class _Log:
-    """Where the joints, the tool and the clock were in each cycle, while it is on."""
-
-    def __init__(self) -> None:
-        self.rows: list[np.ndarray] = []
-        self.on = False
-
-    def add(self, cycle, robot) -> None:
-        if self.on:
-            tool = robot.kinematics(np.array(robot.inner_state.q)).translation
-            self.rows.append(np.array([cycle * 1e-3, *robot.inner_state.q, *robot.inner_state.dq, *tool]))
-
-
 class _Hand:
     """A person's, that pushes the joints towards where it wants them, as hard as a hand can."""
 
@@ -287,7 +259,7 @@ class _Hand:
             self._robot._data.qfrc_applied[self._robot._dof_addrs] += pull
 
 
-def _obey(order, server, robot, log, hand, cycle) -> dict:
+def _obey(order, server, robot, hand, cycle) -> dict:
     arm = server.robot_servers[0]
     name, *rest = order.split()
     answer = {"t": cycle * 1e-3}
@@ -309,20 +281,11 @@ def _obey(order, server, robot, log, hand, cycle) -> dict:
         arm.is_cut = True
     elif name == "repair":
         arm.is_cut = False
-    elif name == "log":
-        log.on, log.rows = True, []
-    elif name == "save":
-        log.on = False
-        np.save(Path(rest[0]), np.array(log.rows))
     return answer
 
 
-def _serve(host: str, lost_cycles: int, catches_up_s: float, clock_file: str | None) -> None:
-    cycles = np.zeros(1, np.int64)
-    if clock_file is not None:
-        # It goes on where an earlier process has left it.
-        cycles = np.memmap(clock_file, np.int64, "r+", shape=(1,))
-    simulation_server = _servers(lost_cycles)
+def _serve(host: str) -> None:
+    simulation_server = _servers()
     from franky_sim.mujoco_simulator import MujocoSimulator
 
     orders: queue.SimpleQueue[str] = queue.SimpleQueue()
@@ -333,7 +296,7 @@ def _serve(host: str, lost_cycles: int, catches_up_s: float, clock_file: str | N
         orders.put("end")
 
     threading.Thread(target=listen, daemon=True).start()
-    log, cycle = _Log(), 0
+    cycle = 0
     with MujocoSimulator() as simulator:
         robot = simulator.add_robot(initial_q=START, kp=STIFFNESS, kv=DAMPING)
         hand = _Hand(robot)
@@ -347,7 +310,7 @@ def _serve(host: str, lost_cycles: int, catches_up_s: float, clock_file: str | N
                     order = orders.get()
                     if order == "end":
                         return
-                    print(json.dumps(_obey(order, server, robot, log, hand, cycle)), flush=True)  # noqa: T201
+                    print(json.dumps(_obey(order, server, robot, hand, cycle)), flush=True)  # noqa: T201
                 # As franky-sim's run_once, which gives its processor away in each cycle.
                 for arm in server.robot_servers:
                     arm.process_commands()
@@ -355,14 +318,11 @@ def _serve(host: str, lost_cycles: int, catches_up_s: float, clock_file: str | N
                 for arm in server.robot_servers:
                     arm.send_state()
                 cycle += 1
-                cycles[0] += 1
-                log.add(cycle, robot)
-                # What cannot be caught up on shifts all later cycles.
-                due_s = max(due_s + 1e-3, time.monotonic() - catches_up_s)
+                # A late cycle shifts all later ones.
+                due_s = max(due_s + 1e-3, time.monotonic())
                 if (ahead_s := due_s - time.monotonic()) > 0.0:
                     time.sleep(ahead_s)
 
 
 if __name__ == "__main__":
-    host, lost_cycles, catches_up_s, *clock = sys.argv[1:]
-    _serve(host, int(lost_cycles), float(catches_up_s), clock[0] if clock else None)
+    _serve(sys.argv[1])

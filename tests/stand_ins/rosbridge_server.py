@@ -10,13 +10,11 @@ import contextlib
 import importlib.util
 import json
 import math
-import multiprocessing
 import socket
 import threading
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass
-from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any, Final
 
@@ -25,7 +23,6 @@ from ros2_controllers import SimulatedController, SimulatedGripper
 from websockets.asyncio.server import ServerConnection, serve
 from websockets.exceptions import ConnectionClosed
 
-from latentarm.core.punctuality import short_collections
 from latentarm.core.types import FloatArray
 from latentarm.robots.robot import Robot
 from latentarm.testing.real_arms import StandIn
@@ -90,7 +87,6 @@ class RosbridgeServer(StandIn):
 
     Attributes:
         port: where it listens, on the loopback address.
-        trace: times, s, and joint positions, rad, of the arm itself, while ``recording``.
     """
 
     def __init__(self, robot: Robot, setup: Setup | None = None) -> None:
@@ -104,8 +100,6 @@ class RosbridgeServer(StandIn):
         self._order = self._names[::-1]  # of the controller: never that of the joint states
         self._module = load_watchdog()
         self.start_watchdog()
-        self.recording = False
-        self.trace: list[tuple[float, FloatArray]] = []
         self.goals = self.aborted = 0
         self.publishers = 1
         self.clock_s = time.time() - now_s
@@ -339,8 +333,6 @@ class RosbridgeServer(StandIn):
             await asyncio.sleep(due_s - time.monotonic())
             now_s = time.monotonic()
             self.arm.advance(now_s)
-            if self.recording:
-                self.trace.append((now_s, self.arm.q.copy()))
             if count % 2:
                 continue
             self.gripper.advance(now_s)
@@ -415,58 +407,6 @@ class RosbridgeServer(StandIn):
         for client in self._clients:
             if topic in client.topics:
                 client.send({"op": "publish", "topic": topic, "msg": message})
-
-
-class ServerProcess:
-    """The same server in a process of its own, for whoever drives it from another one.
-
-    Args:
-        robot: the arm.
-        setup: what there is about it.
-    """
-
-    def __init__(self, robot: Robot, setup: Setup | None = None) -> None:
-        context = multiprocessing.get_context("spawn")
-        self._pipe, theirs = context.Pipe()
-        self._process = context.Process(target=_serve_process, args=(robot, setup, theirs), daemon=True)
-
-    def __enter__(self) -> "ServerProcess":
-        self._process.start()
-        self.address: str = self._pipe.recv()
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._pipe.send(None)
-        self._process.join(10.0)
-
-    @property
-    def pid(self) -> int:
-        """Of the process."""
-        assert self._process.pid is not None
-        return self._process.pid
-
-    def ask(self, what: str, *arguments: object) -> Any:
-        """Call a method of the server, or read an attribute, and bring back what it gives."""
-        self._pipe.send((what, arguments))
-        return self._pipe.recv()
-
-    def take_trace(self) -> tuple[FloatArray, FloatArray]:
-        """Times (T,), s, and positions (T, n), rad, since the last time that somebody took them."""
-        return self.ask("take_trace")
-
-
-def _serve_process(robot: Robot, setup: Setup | None, pipe: Connection) -> None:
-    with RosbridgeServer(robot, setup) as server, short_collections():
-        server.recording = True
-        pipe.send(server.address)
-        while (asked := pipe.recv()) is not None:
-            what, arguments = asked
-            if what == "take_trace":
-                taken, server.trace = server.trace, []
-                pipe.send((np.array([t for t, _ in taken]), np.array([q for _, q in taken])))
-                continue
-            found = getattr(server, what)
-            pipe.send(found(*arguments) if callable(found) else found)
 
 
 @contextlib.contextmanager

@@ -51,7 +51,7 @@ export class Drawing {
     this._late = () => false;
     // Until it is known where the arm is.
     scene.scene.visible = false;
-    // For scripts that measure how long an input takes to be seen.
+    // For tests, which wait for it.
     this._views.afterFrame.push(() => {
       document.dispatchEvent(new CustomEvent("arm-drawn", { detail: { tick: this._tick, tool: scene.tool.toArray() } }));
     });

