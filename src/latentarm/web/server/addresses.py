@@ -1,4 +1,4 @@
-"""Where a page is served, and under which names."""
+"""The address and port on which a page is served."""
 
 import ipaddress
 import socket
@@ -12,7 +12,6 @@ from latentarm.web.arm_process.drive_setup import Spec
 from latentarm.web.cameras.sources import CameraSource
 
 _BACKLOG: Final = 2048
-"""Backlog of connections that are not accepted yet; large, so that bursts are not refused."""
 
 _OWN_PORTS: Final = {"http": 80, "https": 443}
 
@@ -20,16 +19,13 @@ _OWN_PORTS: Final = {"http": 80, "https": 443}
 @final
 @dataclass(frozen=True)
 class TeleopConfig:
-    """What `latentarm teleop` was asked for; its ``--help`` says the same of each field.
+    """The options of `latentarm teleop`, see its ``--help``.
 
     Attributes:
-        spec: what is driven.
-        host: the address that people open, by name or number.
+        host: the address that people open: a name or a number.
         port: 0 takes any free one.
         certfile: for TLS, PEM.
         keyfile: its private key, PEM.
-        pins: whether people may protect their records by a PIN.
-        cameras: what is seen of the arm, besides the drawing.
 
     Raises:
         UserError: the address cannot be one that people open, or only one file for TLS is named.
@@ -56,7 +52,7 @@ class TeleopConfig:
 
     @property
     def scheme(self) -> str:
-        """``http``, or ``https`` with a certificate."""
+        """The URL scheme: ``https`` with a certificate."""
         return "http" if self.certfile is None else "https"
 
     @property
@@ -69,10 +65,10 @@ class TeleopConfig:
 
 
 def listen(config: TeleopConfig) -> socket.socket:
-    """A socket on the address, before anything else is started.
+    """Open a listening socket.
 
     Raises:
-        UserError: the address is taken, or not this machine's.
+        UserError: the address is taken, or is not this machine's.
     """
     try:
         family, kind, protocol, _, address = socket.getaddrinfo(
@@ -96,7 +92,7 @@ def listen(config: TeleopConfig) -> socket.socket:
 
 
 def check_certificate(config: TeleopConfig) -> None:
-    """Check that the files for TLS can be used.
+    """Check that the certificate and its key can be used.
 
     Raises:
         UserError: they cannot.
@@ -113,7 +109,7 @@ def check_certificate(config: TeleopConfig) -> None:
 
 
 def origin(scheme: str, host: str, port: int) -> str:
-    """What a browser calls the page's origin."""
+    """The page's web origin."""
     name = f"[{host}]" if ":" in host else host.lower()
     return f"{scheme}://{name}" if port == _OWN_PORTS[scheme] else f"{scheme}://{name}:{port}"
 

@@ -1,4 +1,4 @@
-"""How requests about records are read and answered: JSON objects with known fields, and errors as notices."""
+"""Requests about records: JSON objects with known fields. Errors are answered as notices."""
 
 from collections.abc import Awaitable, Callable
 from typing import Final, TypeVar
@@ -12,7 +12,7 @@ from latentarm.core.untrusted.documents import parse_object
 from latentarm.web.protocol.notice import Message, NoticeError, notice_of
 
 NO_STORE: Final = {"cache-control": "no-store"}
-"""Header of answers with what is kept of people."""
+"""Header of answers with personal data."""
 
 _STATUS: Final = {
     "person_unknown": 404,
@@ -27,7 +27,7 @@ Asked = TypeVar("Asked", bound=Message)
 
 
 def guarded(answer: Answer) -> Answer:
-    """The same, with an error of the user's as a notice."""
+    """Wrap a handler so that a `UserError` is answered as a notice."""
 
     async def guarded(request: Request) -> Response:
         try:
@@ -39,7 +39,7 @@ def guarded(answer: Answer) -> Answer:
 
 
 def refusal(error: UserError) -> Response:
-    """The answer that says why not, as a notice."""
+    """The answer to a request that failed, as a notice."""
     notice = notice_of(error)
     return json_answer({"notice": notice.model_dump()}, _STATUS.get(notice.code, 400))
 
@@ -50,10 +50,10 @@ def json_answer(content: object, status: int = 200) -> Response:
 
 
 def object_in(body: bytes) -> dict[str, object]:
-    """The object that a request holds.
+    """The JSON object of a request.
 
     Raises:
-        NoticeError: it holds none.
+        NoticeError: the body is not a JSON object.
     """
     try:
         return parse_object(body, "The request")
@@ -62,10 +62,10 @@ def object_in(body: bytes) -> dict[str, object]:
 
 
 async def body_of(request: Request, kind: type[Asked]) -> Asked:
-    """What a request asks for.
+    """A request's body, validated.
 
     Raises:
-        NoticeError: it is not of that kind.
+        NoticeError: the body is invalid.
     """
     body = await request.body()
     object_in(body)

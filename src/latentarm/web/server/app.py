@@ -63,13 +63,11 @@ from latentarm.web.server.states import States
 _LOG: Final = logging.getLogger(__name__)
 
 _LOOK_S: Final = 1.0
-"""How often to look whether the control process has ended, s."""
 
 _LOCK: Final = ".teleop.lock"
-"""Locked in the folder of records while a server runs."""
+"""Locked in the output folder while a server runs."""
 
 _STARTED_S: Final = 0.01
-"""How often to check whether uvicorn has started, s."""
 
 
 def serve(
@@ -82,12 +80,8 @@ def serve(
 ) -> None:
     """Serve the page until Ctrl-C, then say how to use what was recorded.
 
-    Args:
-        config: what was asked for.
-        say: tells the person who started it.
-        ready: called once with the address to open first: the page's, or a link that works once.
-        draws: whether the terminal can show a QR code.
-        calendar: dates what is kept of people and drives.
+    ``say`` prints a line for the person who started the server. ``ready`` is called once with the address to
+    open first: the page's, or a one-time link. ``draws``: whether the terminal can show a QR code.
 
     Raises:
         UserError: the run or profile cannot be loaded, another server records to the folder, the address is
@@ -169,7 +163,7 @@ def _serve_alone(
 
 @final
 class _Server(uvicorn.Server):
-    """Ends whole within a second or two: uvicorn cuts itself off, with a traceback, at a second Ctrl-C."""
+    """Ends cleanly: at a second Ctrl-C uvicorn would break off with a traceback."""
 
     def handle_exit(self, sig: int, frame: FrameType | None) -> None:
         self.should_exit = True
@@ -177,7 +171,7 @@ class _Server(uvicorn.Server):
 
 @contextmanager
 def _ended_by_signals(server: _Server) -> Generator[None]:
-    """Let Ctrl-C and SIGTERM end the server, even while a starting library could swallow an interrupt."""
+    """Let Ctrl-C and SIGTERM end the server, even while a library that is starting could swallow them."""
     signals = (signal.SIGINT, signal.SIGTERM)
     before = {number: signal.signal(number, server.handle_exit) for number in signals}
     try:
@@ -190,10 +184,10 @@ def _ended_by_signals(server: _Server) -> Generator[None]:
 def _looked_at(
     config: TeleopConfig, setup: DriveSetup, say: Callable[[str], None]
 ) -> tuple[TeleopConfig, DriveSetup]:
-    """What is known of a real arm from now on; the control process connects to it afterwards.
+    """Query a real arm once; the control process connects to it later.
 
     Raises:
-        UserError: it cannot be driven.
+        UserError: the arm cannot be driven.
     """
     robot = setup.task.robot
     found = look_at(make_real_arm(setup.arm, robot, MonotonicClock().now_s), robot, PERIOD_S)
@@ -211,11 +205,7 @@ def _looked_at(
 
 
 def _cameras(config: TeleopConfig, listening: socket.socket) -> CameraProcess | None:
-    """The cameras, each of which has given a picture; None where none were asked for.
-
-    Raises:
-        UserError: one gives none; nothing listens then.
-    """
+    """Start the cameras; closes ``listening`` if one gives no picture."""
     if not config.cameras:
         return None
     try:
@@ -226,12 +216,7 @@ def _cameras(config: TeleopConfig, listening: socket.socket) -> CameraProcess | 
 
 
 async def tell_end(control: ControlProcess, history: History) -> None:
-    """Log that the control process has ended, where it does before the server does; so has its drive.
-
-    Args:
-        control: what is watched.
-        history: logs what is driven.
-    """
+    """Log that the control process has ended before the server, and end its drive."""
     while control.alive:
         await asyncio.sleep(_LOOK_S)
     history.end("broken_off")
@@ -245,15 +230,7 @@ def build_app(
     calendar: Calendar,
     cameras: CameraProcess | None = None,
 ) -> Starlette:
-    """The application: the pages and what they load, the scene, and the socket that drives.
-
-    Args:
-        setup: what is driven.
-        control: drives it.
-        config: says whether people may have PINs.
-        calendar: dates what is kept of people and drives.
-        cameras: sends pictures to pages; None without cameras.
-    """
+    """The application: pages, their assets, the scene, and the socket that drives."""
     sessions = Sessions()
     spec = setup.spec
     run_list = RunList(spec.out, spec.run)
@@ -323,7 +300,6 @@ def build_app(
 
 
 async def _in_json(_: Request, error: Exception) -> Response:
-    """A refusal of the router: nothing is at this address, or not with this method."""
     refused = cast(HTTPException, error)
     return JSONResponse({"detail": refused.detail}, refused.status_code, refused.headers)
 
@@ -336,16 +312,7 @@ def gated(
     keys: Keys | None,
     invite: Callable[[], str],
 ) -> Gate:
-    """The application behind its gate.
-
-    Args:
-        app: from `build_app`.
-        control: stops the arm on a POST to `STOP`.
-        config: says by which names the page is reached.
-        port: that it listens on.
-        keys: None on the loopback.
-        invite: see `Gate`.
-    """
+    """The application behind its gate. ``keys`` is None on the loopback."""
     names = ["127.0.0.1", "localhost", config.host] if config.loopback else [config.host]
     origins = frozenset(origin(config.scheme, name, port) for name in names)
     hosts = frozenset(origin.split("//")[1] for origin in origins)
@@ -364,13 +331,7 @@ def gated(
 def server_config(
     app: ASGIApp, config: TeleopConfig, log_config: dict[str, Any] | None = None
 ) -> uvicorn.Config:
-    """Configuration of uvicorn: everything bounded, nothing compressed, no proxy trusted.
-
-    Args:
-        app: from `gated`.
-        config: says where it is served.
-        log_config: how what happens is logged; None leaves it as it is.
-    """
+    """Configuration of uvicorn: everything bounded, nothing compressed, no proxy trusted."""
     return uvicorn.Config(
         app,
         log_config=log_config,
@@ -391,12 +352,7 @@ def server_config(
 
 
 async def serve_on(listening: socket.socket, server: uvicorn.Server, limits: ConnectionLimits) -> None:
-    """Serve until the server is told to exit.
-
-    Args:
-        listening: where connections come in.
-        server: of `server_config`.
-        limits: for connections.
+    """Serve until the server is asked to exit.
 
     Raises:
         OSError: no connections can be accepted any more.

@@ -15,9 +15,9 @@ from latentarm.core.errors import UserError
 
 FOLDER: Final = Path(__file__).parent.parent / "pages"
 THREE: Final = "three/three.module.min.js"
-"""Where three.js is among the assets."""
+"""Path of three.js among the assets."""
 _THREE: Final = FOLDER.parent / "three"
-"""Filled when the package is built: see hatch_build.py."""
+"""Filled when the package is built, see hatch_build.py."""
 
 _TYPES: Final = {
     ".js": "text/javascript",
@@ -28,7 +28,6 @@ _TYPES: Final = {
 }
 _IMPORT: Final = re.compile(rb'^(?:import|export)\s[^"]*"(\.[^"]+\.js)"', re.MULTILINE)
 _COMMENT: Final = re.compile(rb"^[ \t]*/\*\*(?:[^*]|\*(?!/))*\*/", re.MULTILINE)
-"""A comment with nothing before it on its line."""
 
 _KEPT: Final = "private, max-age=31536000, immutable"
 
@@ -43,17 +42,12 @@ class _Asset:
 
 @final
 class Assets:
-    """Everything that a page loads besides its HTML, each under a path with a hash of them all.
+    """Everything that a page loads besides its HTML.
 
-    A browser may keep it for as long as it likes: another version of the program has other paths.
+    Each path holds a hash of all assets, so that browsers may cache them for ever.
     """
 
     def __init__(self) -> None:
-        """Read them.
-
-        Raises:
-            UserError: three.js is missing.
-        """
         found = {
             path.relative_to(FOLDER).as_posix(): path
             for path in sorted(FOLDER.rglob("*"))
@@ -69,10 +63,7 @@ class Assets:
         self._version = digest.hexdigest()[:16]
 
     def path(self, name: str) -> str:
-        """Where an asset is served.
-
-        Args:
-            name: its path in the folder of the pages.
+        """The URL of an asset, by its path in the folder of the pages.
 
         Raises:
             KeyError: there is no such asset.
@@ -82,11 +73,7 @@ class Assets:
         return f"/static/{self._version}/{name}"
 
     def modules(self, script: str) -> list[str]:
-        """A script and everything that it imports, near or far, but nothing that it loads later.
-
-        Args:
-            script: its path in the folder of the pages.
-        """
+        """A script and everything that it imports, directly or not, but nothing that it loads later."""
         found = [script]
         for module in found:
             folder = posixpath.dirname(module)

@@ -1,4 +1,4 @@
-"""The address under which a page asks to see the cameras."""
+"""The address at which a page asks for the cameras."""
 
 import asyncio
 from typing import Annotated, Final, final
@@ -27,12 +27,7 @@ class _Offer(Message):
 
 @final
 class CameraRoutes:
-    """Lets pages see the cameras while they are connected to `/drive`, and no longer.
-
-    Args:
-        cameras: sends the pictures.
-        sessions: who is there.
-    """
+    """Shows pages the cameras while they are connected to `/drive`."""
 
     def __init__(self, cameras: CameraProcess, sessions: Sessions) -> None:
         self._cameras = cameras
@@ -40,11 +35,11 @@ class CameraRoutes:
         self._looking: set[str] = set()
 
     def routes(self) -> list[Route]:
-        """Where everything here is served."""
+        """The routes."""
         return [Route(CAMERAS, guarded(self._offer), methods=["POST"])]
 
     async def follow(self) -> None:
-        """Take the pictures from pages that have gone, until cancelled."""
+        """Drop the viewers of pages that have gone, until cancelled."""
         while True:
             for page in [one for one in self._looking if self._sessions.named(one) is None]:
                 self._looking.discard(page)

@@ -1,8 +1,8 @@
-"""Connections to the server: a new one is always accepted, and none may keep others waiting.
+"""Accept every new connection, and let none keep others waiting.
 
-uvicorn has no deadline for a request's headers, and its cap on connections counts those that say nothing
-against those that ask for something. So connections are accepted here and handed to uvicorn's HTTP protocol;
-where there are too many, the one that has waited longest without a whole request has to go.
+uvicorn has no deadline for a request's headers, and its limit on connections counts idle ones too. So
+connections are accepted here and handed to uvicorn's HTTP protocol. If there are too many, the one that has
+waited longest without a whole request is dropped.
 """
 
 import asyncio
@@ -24,7 +24,7 @@ except ImportError:  # Windows has no such limit
     resource = None
 
 HEAD_LIMIT: Final = 1 << 14
-"""The longest request line with its headers, bytes."""
+"""The longest request line with headers, bytes."""
 
 _SLICE: Final = 1 << 12
 _OUT_OF_RESOURCES: Final = (errno.EMFILE, errno.ENFILE, errno.ENOBUFS, errno.ENOMEM)
@@ -41,16 +41,14 @@ _Phase = Literal["head", "body", "answer", "socket", "closing"]
 @final
 @dataclass(frozen=True)
 class ConnectionLimits:
-    """How many connections there may be, and how long a peer may take.
+    """How many connections there may be, and how long a peer may take, s.
 
     Attributes:
-        most: connections in all; far above what `Gate` lets be at work, so that only idle ones have to go.
-        head_s: for the handshake of TLS, and again for a request's headers, s. Also how long a connection may
-            wait for its next request.
-        body_s: for a request's body, s.
-        stalled_s: how long a peer may read nothing of what it is sent, s.
-        closing_s: time to read the rest after the server has closed the connection, s.
-        look_s: how often all this is checked, s.
+        most: connections in all; far above what `Gate` admits, so that only idle ones are dropped.
+        head_s: for the TLS handshake, and again for a request's headers or until the next request.
+        stalled_s: how long a peer may read nothing that it is sent.
+        closing_s: for reading the rest after the server has closed the connection.
+        look_s: how often this is checked.
     """
 
     most: int = 384
@@ -62,7 +60,7 @@ class ConnectionLimits:
 
 
 def limits_here() -> ConnectionLimits:
-    """The limits, lower where this process may open few files: each connection takes one descriptor."""
+    """The limits, lower if this process may open few files: each connection takes one descriptor."""
     if resource is None:
         return ConnectionLimits()
     soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
@@ -77,11 +75,7 @@ def limits_here() -> ConnectionLimits:
 class Connections:
     """Accepts connections, and ends those that take too long.
 
-    Args:
-        listening: a listening socket.
-        serve: a new protocol of uvicorn's for a connection.
-        tls: how connections are encrypted; None for plain HTTP.
-        limits: see there.
+    ``serve`` makes a uvicorn protocol for a new connection; ``tls`` is None for plain HTTP.
     """
 
     def __init__(
@@ -103,7 +97,7 @@ class Connections:
         """Accept connections until cancelled.
 
         Raises:
-            OSError: the listening socket is of no use any more.
+            OSError: the listening socket has failed.
         """
         self._listening.setblocking(False)
         loop = asyncio.get_running_loop()
@@ -131,7 +125,7 @@ class Connections:
                 connection.give_up_opening()
 
     def _make_room(self, most: int) -> None:
-        """Drop idle connections, the oldest first, until there are no more than ``most``."""
+        """Drop idle connections, the oldest first, until ``most`` are left."""
         for connection in list(self._open) if len(self._open) > most else ():
             if len(self._open) <= most:
                 return
@@ -140,7 +134,7 @@ class Connections:
                 del self._open[connection]
 
     async def _look(self) -> None:
-        """End connections that take too long, and drop closed ones, until cancelled."""
+        """Drop closed and slow connections, until cancelled."""
         while True:
             now_s = time.monotonic()
             for connection in list(self._open):
@@ -164,14 +158,7 @@ class Connections:
 
 @final
 class _Connection:
-    """One connection, from when it was accepted.
-
-    Args:
-        accepted: its socket.
-        serve: see `Connections`.
-        tls: see `Connections`.
-        limits: see `Connections`.
-    """
+    """One accepted connection."""
 
     def __init__(
         self,
@@ -190,12 +177,12 @@ class _Connection:
 
     @property
     def gone(self) -> bool:
-        """Whether it is closed and its descriptor free again."""
+        """Whether it is closed and its descriptor free."""
         return self._socket.fileno() < 0
 
     @property
     def phase(self) -> _Phase:
-        """What it is in: a request's headers (or before), its body, the answer, a WebSocket, or its end."""
+        """A request's headers (or before them), its body, the answer, a WebSocket, or closing."""
         if self._transport is None:
             return "head"
         if self._transport.is_closing():
@@ -209,11 +196,7 @@ class _Connection:
         return "body" if state is h11.SEND_BODY else "answer"
 
     def has_gone_on(self, now_s: float) -> bool:
-        """Whether something has happened since this was asked last.
-
-        Args:
-            now_s: the time, s; monotonic.
-        """
+        """Whether something has happened since the last call; ``now_s`` is monotonic, s."""
         phase = self.phase
         unsent = 0 if self._transport is None else self._transport.get_write_buffer_size()
         taken = unsent < self._unsent or (phase in ("answer", "socket") and unsent == 0)
@@ -226,11 +209,7 @@ class _Connection:
         return went_on
 
     def late(self, now_s: float) -> bool:
-        """Whether nothing has happened for longer than its phase allows.
-
-        Args:
-            now_s: the time, s; monotonic.
-        """
+        """Whether nothing has happened for longer than the phase allows; ``now_s`` is monotonic, s."""
         limits = self._limits
         allowed_s = {
             "head": limits.head_s,
@@ -242,13 +221,12 @@ class _Connection:
         return now_s - self._since_s > allowed_s[self.phase]
 
     def drop(self) -> None:
-        """End it at once."""
         self.give_up_opening()
         if self._transport is not None:
             self._transport.abort()
 
     def give_up_opening(self) -> None:
-        """End it where uvicorn does not know of it yet."""
+        """Abort a connection that uvicorn has not got yet."""
         self._opening.cancel()
 
     async def _open(self, serve: Callable[[], H11Protocol], tls: ssl.SSLContext | None) -> None:
@@ -269,22 +247,16 @@ class _Connection:
 
 @final
 class _Sliced(asyncio.Protocol):
-    """uvicorn's HTTP protocol, fed little by little: h11 looks at its limit only between two pieces.
-
-    Args:
-        inner: uvicorn's.
-    """
+    """uvicorn's HTTP protocol, fed in small pieces: h11 checks its limit only between two pieces."""
 
     def __init__(self, inner: H11Protocol) -> None:
         self.inner = inner
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
-        """See the base class."""
         self._transport = cast(asyncio.Transport, transport)
         self.inner.connection_made(self._transport)
 
     def data_received(self, data: bytes) -> None:
-        """See the base class."""
         for at in range(0, len(data), _SLICE):
             if self._transport.is_closing():
                 return
@@ -296,17 +268,13 @@ class _Sliced(asyncio.Protocol):
             receiver.data_received(data[at : at + _SLICE])
 
     def eof_received(self) -> bool | None:
-        """See the base class."""
         return self.inner.eof_received()
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """See the base class."""
         self.inner.connection_lost(exc)
 
     def pause_writing(self) -> None:
-        """See the base class."""
         self.inner.pause_writing()
 
     def resume_writing(self) -> None:
-        """See the base class."""
         self.inner.resume_writing()

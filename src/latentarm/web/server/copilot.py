@@ -1,11 +1,11 @@
-"""The driver's co-pilot: who asks, who was accepted, and what they leave of the driver's speed."""
+"""The driver's co-pilot: who asks, who was accepted, and the share of the driver's speed that they allow."""
 
 from typing import Final, final
 
 from latentarm.web.protocol.orders import Paced
 
 FULL_PACE: Final = 1.0
-"""A new co-pilot slows nobody down yet."""
+"""A new co-pilot slows nobody down."""
 
 
 @final
@@ -13,9 +13,9 @@ class Copilot:
     """At most one page is the driver's co-pilot, after it has asked and the driver has accepted.
 
     Attributes:
-        page: id of the co-pilot's page, or None.
-        asking: id of the page that asks, or None.
-        paced: what the co-pilot has said last; None without one.
+        page: id of the co-pilot's page; None without one.
+        asking: id of the page that asks; None for none.
+        paced: the co-pilot's newest pace; None without one.
     """
 
     def __init__(self) -> None:
@@ -25,16 +25,12 @@ class Copilot:
         self._count = 0
 
     def ask(self, page: str) -> None:
-        """A page asks; only the first to ask is remembered, and nobody is while there is a co-pilot."""
+        """Note that a page asks; only the first counts, and none while there is a co-pilot."""
         if self.page is None and self.asking is None:
             self.asking = page
 
     def accept(self, to: str) -> bool:
-        """The driver accepts the page that asks.
-
-        Returns:
-            Whether that page is the co-pilot now.
-        """
+        """Make the page that asks the co-pilot; returns whether ``to`` is that page."""
         if self.asking is None or self.asking != to:
             return False
         self.page, self.asking = to, None
@@ -44,26 +40,18 @@ class Copilot:
         return True
 
     def says(self, page: str, pace: float, nonce: str) -> None:
-        """The co-pilot's page says what it leaves of the driver's speed; others are ignored."""
+        """Set the pace; pages other than the co-pilot's are ignored."""
         if page == self.page:
             self.paced = Paced(copilot=self._count, pace=pace, nonce=nonce)
 
     def leaves(self, page: str) -> bool:
-        """A page ends what it is or what it asks for.
-
-        Returns:
-            Whether it was the co-pilot's.
-        """
+        """Withdraw a page's request or role; returns whether it was the co-pilot's."""
         if page == self.asking:
             self.asking = None
         return page == self.page and self.end()
 
     def end(self) -> bool:
-        """Nobody is the co-pilot, or asks to be.
-
-        Returns:
-            Whether there was a co-pilot.
-        """
+        """Remove the co-pilot and any request; returns whether there was a co-pilot."""
         was = self.page is not None
         self.page = self.asking = self.paced = None
         return was

@@ -1,4 +1,4 @@
-"""The socket that pages drive through, and what they all see."""
+"""The WebSocket that pages drive through."""
 
 import asyncio
 import secrets
@@ -70,14 +70,14 @@ HANG_UP_WITHIN_S: Final = 1.0
 
 DRIVER_PERIOD_S: Final = 0.02
 WATCHER_PERIOD_S: Final = 0.033
-"""How often a page is sent a state; the start of a motion is sent at once. The driver's is also
-what makes the next input fresh."""
+"""How often a page is sent a state, s; the start of a motion is sent at once. The driver's next input is
+fresh through these states."""
 
 _FULL: Final = 1013
-"""The code that asks a page to try again later."""
+"""WebSocket close code: try again later."""
 
 _BEING_REFUSED: Final = 8
-"""So many pages more are told at once that there is no room; any others are not even accepted."""
+"""So many further pages are accepted to be refused with a reason; more are not accepted."""
 
 
 async def _hang_up(socket: WebSocket, code: int, why: Notice) -> None:
@@ -90,18 +90,7 @@ async def _hang_up(socket: WebSocket, code: int, why: Notice) -> None:
 
 @final
 class DriveSocket:
-    """The endpoint of ``/drive``.
-
-    Args:
-        control: the control process.
-        states: what pages see.
-        sessions: who is there.
-        learning: what is recorded, trained and chosen.
-        people: whose records there are.
-        pins: says whose records a visitor may open.
-        history: logs what is driven.
-        poses: that people have saved.
-    """
+    """The endpoint of ``/drive``."""
 
     def __init__(
         self,
@@ -142,7 +131,7 @@ class DriveSocket:
             self._open -= 1
 
     def stop(self, page: Page, why: Literal["pressed", "page"]) -> None:
-        """Stop the arm, in the name of a page; see `PressStop`."""
+        """Stop the arm in the name of a page; see `PressStop`."""
         self._control.stop(_of(page, "stop_pressed_by" if why == "pressed" else "page_stopped"))
 
     async def _serve(self, socket: WebSocket) -> None:
@@ -190,9 +179,9 @@ class DriveSocket:
             self._driver_changed(_of(page, "driver_gone"))
 
     async def _send_states(self, socket: WebSocket, page: Page) -> None:
-        """States as fast as the page takes them, always the newest: nothing queues up.
+        """Send states as fast as the page takes them, always the newest.
 
-        They are preceded by what is driven and the state of learning, and again when those change.
+        What is driven and the state of learning come first, and again when they change.
         """
         shown = PageMemory()
         loaded = None
@@ -219,7 +208,7 @@ class DriveSocket:
                 await self._states.pause(DRIVER_PERIOD_S if drives else WATCHER_PERIOD_S)
 
     def _take(self, page: Page, message: ClientMessage) -> None:
-        """Carry out a page's message; orders reserved for the driver are ignored from others."""
+        """Carry out a page's message; only the driver's orders count."""
         if isinstance(message, Hello) or not self._suits(message):
             raise ViolationError
         if isinstance(message, PressStop):
@@ -246,7 +235,6 @@ class DriveSocket:
                     self._copilot_changed("copilot_ended", page)
 
     def _suits(self, message: ClientMessage) -> bool:
-        """Whether an input or an answer has no more axes than what is driven."""
         return (
             not isinstance(message, DriverInput | AnswerQuestion)
             or len(message.u) <= self._states.loaded.input_dim
@@ -330,25 +318,24 @@ class DriveSocket:
             self._poses.save(page.person, self._states.loaded.robot_name, name, report.q)
 
     def _end_drive(self, ending: Ending) -> None:
-        """A drive ends where the arm is put elsewhere, which it is only at rest."""
+        """End the drive if the arm is at rest, since only then it is reset."""
         if self._learning.at_rest:
             self._history.end(ending)
 
     def _note_profile(self, page: Page) -> None:
-        """A profile that was just kept belongs to the person who drives."""
         kept, run = self._learning.personalising.look(), self._states.loaded.name
         if kept is not None and kept.phase == "kept" and page.person is not None and run is not None:
             self._history.keep_profile(page.person, run, kept.name)
 
     def _driver_changed(self, why: Notice) -> None:
-        """The arm stops for it, and an episode is one driver's."""
+        """Stop the arm, and end the episode: it has one driver."""
         self._asked = None
         self._history.end("driver_changed")
         self._control.stop(why)
         self._control.order(Record(on=False, task=""))
 
     def _copilot_changed(self, why: NoticeCode, copilot: Page) -> None:
-        """The arm stops for it: nobody's speed changes without their knowledge."""
+        """Stop the arm: nobody's speed changes without their knowledge."""
         self._control.stop(Notice(code=why, parameters={"name": copilot.name}))
 
     def _give(self, message: DriverInput) -> None:
@@ -374,10 +361,10 @@ class DriveSocket:
 
 
 def _of(page: Page, code: NoticeCode) -> Notice:
-    """What this page has done; its id lets it tell its own person so."""
+    """A notice about a page; its id lets the page recognise itself."""
     return Notice(code=code, parameters={"name": page.name, "page": page.id})
 
 
 def _recorded_as(page: Page) -> str:
-    """What an episode says of who drove it: their id, else their name; "" for a guest without one."""
+    """The id of an episode's driver, else the name; "" for a guest without one."""
     return page.person or (page.name if isinstance(page.name, str) else "")

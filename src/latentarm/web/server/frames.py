@@ -1,7 +1,7 @@
-"""WebSocket frames of every kind count against what a page may send: text, fragments, pings and pongs.
+"""Count WebSocket frames of every kind against what a page may send: text, fragments, pings and pongs.
 
-uvicorn answers pings itself and joins fragments, so that the application sees neither. They are counted here,
-on the bytes as they arrive.
+uvicorn answers pings itself and joins fragments, so the application sees neither. They are counted here, in
+the bytes as they arrive.
 """
 
 import asyncio
@@ -15,13 +15,13 @@ from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIO
 from uvicorn.server import ServerState
 
 RATE: Final = 100.0
-"""Frames a second that a page may send."""
+"""Frames per second that a page may send."""
 
 BURST: Final = 100.0
-"""Frames that may come at once, as after a moment without network."""
+"""Frames that may come at once, such as after a network outage."""
 
 TOO_MANY: Final = 1008
-"""The code that a connection with too many frames is closed with; RFC 6455 calls it a policy violation."""
+"""Close code for too many frames; RFC 6455 calls it a policy violation."""
 
 _BAD_REQUEST: Final = b"HTTP/1.1 400 Bad Request\r\nConnection: close\r\nContent-Length: 0\r\n\r\n"
 
@@ -35,11 +35,7 @@ _CLOSE_FOR_TOO_MANY: Final = _CLOSE + struct.pack("!H", TOO_MANY) + _REASON
 
 @final
 class Allowance:
-    """A token bucket with `BURST` tokens that gains `RATE` a second.
-
-    Args:
-        now_s: the time, s; monotonic.
-    """
+    """A token bucket with `BURST` tokens that gains `RATE` per second."""
 
     def __init__(self, now_s: Callable[[], float] = time.monotonic) -> None:
         self._now_s = now_s
@@ -59,11 +55,7 @@ class Allowance:
 
 @final
 class FrameMeter:
-    """Finds where frames begin in a stream of bytes, and spends an allowance on each (RFC 6455, section 5.2).
-
-    Args:
-        allowance: of the page.
-    """
+    """Finds where frames begin in a stream of bytes, and spends a token on each (RFC 6455, section 5.2)."""
 
     def __init__(self, allowance: Allowance) -> None:
         self._allowance = allowance
@@ -71,14 +63,11 @@ class FrameMeter:
         self._left = 0
 
     def pass_on(self, data: bytes) -> tuple[bytes, bool]:
-        """Return which of some bytes may be passed on.
-
-        Args:
-            data: that arrived, cut anywhere.
+        """Count the frames in ``data``, which may be cut anywhere.
 
         Returns:
-            The bytes up to the first frame that is one too many, and whether there was none such. A frame's
-            head is held back until it is whole, so that what was passed on never ends inside of one.
+            The bytes before the first frame that is one too many, and whether there was none such. An
+            incomplete frame head is held back, so that what is passed on never ends inside one.
         """
         passed = bytearray()
         at = 0
@@ -103,7 +92,7 @@ class FrameMeter:
 
 
 def _frame_length(head: bytearray) -> int | None:
-    """Bytes of a frame after its head, or None while the head is not whole; frames of pages are masked."""
+    """Bytes of a frame after its head; None while the head is incomplete."""
     if len(head) < 2:
         return None
     short = head[1] & 0x7F
@@ -116,15 +105,10 @@ def _frame_length(head: bytearray) -> int | None:
 
 @final
 class MeteredSocket(asyncio.Protocol):
-    """uvicorn's WebSocket, behind a `FrameMeter`.
+    """uvicorn's WebSocket behind a `FrameMeter`.
 
-    To uvicorn and the application it looks as if a page that sends too many frames had closed its connection
-    with `TOO_MANY`; uvicorn answers the page with the same code.
-
-    Args:
-        config: uvicorn's.
-        server_state: uvicorn's.
-        app_state: uvicorn's.
+    If a page sends too many frames, uvicorn and the application see a connection that the page closed with
+    `TOO_MANY`; uvicorn answers the page with the same code.
     """
 
     def __init__(self, config: Config, server_state: ServerState, app_state: dict[str, Any]) -> None:

@@ -1,4 +1,4 @@
-"""Every drive of the page, from its first report to the disk."""
+"""Logs every drive, and writes it to the disk."""
 
 import asyncio
 from collections.abc import Callable
@@ -16,21 +16,15 @@ from latentarm.web.server.sessions import Sessions
 from latentarm.web.server.states import States
 
 SO_FAR_S: Final = 5.0
-"""How often what is known of the drive under way is written, s of the arm's process."""
+"""How often the drive under way is written, s of the control process's clock."""
 
 PURGE_S: Final = 60.0
-"""How often what was deleted is removed for good, s."""
+"""How often deleted records are removed for good, s."""
 
 
 @final
 class History:
-    """Logs what is driven; drives are written by another thread.
-
-    Args:
-        states: tells every report.
-        sessions: says who drives.
-        records: where they are kept.
-        calendar: dates them.
+    """Logs what is driven; another thread writes it.
 
     Attributes:
         problem: why the last drive was not kept; None if it was.
@@ -47,7 +41,7 @@ class History:
         states.heard.append(self._hear)
 
     async def follow(self) -> None:
-        """Remove what can no longer be restored, until cancelled."""
+        """Purge deleted records, until cancelled."""
         while True:
             await asyncio.sleep(PURGE_S)
             try:
@@ -57,27 +51,27 @@ class History:
 
     @property
     def person(self) -> str | None:
-        """Id of the person whose drive is under way, or None."""
+        """Id of the person whose drive is under way."""
         about = self._log.under_way
         return None if about is None else about.person
 
     def given(self, u: tuple[float, ...], source: str, *, gripper: bool) -> None:
-        """Note an input of the driver's; see `DriveLog.given`."""
+        """Note an input of the driver; see `DriveLog.given`."""
         self._log.given(u, source, gripper=gripper)
 
     def end(self, why: Ending) -> None:
-        """End the drive under way, if there is one."""
+        """End the drive under way, if any."""
         logged = self._log.end(why)
         if logged is None:
             return
         self._do(partial(self._write, logged))
 
     def keep_profile(self, person: str, run: str, name: str) -> None:
-        """Note that a profile that has just been kept is a person's."""
+        """Note that a new profile is a person's."""
         self._do(partial(self._records.people.add_profile, person, run, name))
 
     async def settled(self) -> None:
-        """Wait until every drive that has ended is on the disk."""
+        """Wait until every drive that has ended is on disk."""
         await asyncio.gather(*self._keeping)
 
     async def close(self) -> None:

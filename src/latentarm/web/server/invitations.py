@@ -1,4 +1,4 @@
-"""Links that let the next person in: printed in the terminal, and shown to the host's page as a QR code."""
+"""One-time links for the next person: printed in the terminal, and shown to the host's page as a QR code."""
 
 import io
 import json
@@ -10,18 +10,15 @@ from starlette.responses import Response
 
 ENTRY: Final = "/enter"
 INVITATION: Final = "/invitation"
-"""A GET says whether a page may invite people; a POST makes a link, which voids the one before."""
+"""GET: whether a page may invite people. POST: make a link, which voids the one before."""
 
 
 @final
 class Invitations:
-    """Makes links that work once, and says each in the terminal.
+    """Makes one-time links and prints them in the terminal.
 
-    Args:
-        new_key: a new key; the one before becomes invalid.
-        base: the page's origin.
-        say: tells the person who started the server.
-        draws: whether their terminal can show a QR code.
+    ``new_key`` makes a key and voids the one before; ``base`` is the page's origin; ``draws``: whether the
+    terminal can show a QR code.
     """
 
     def __init__(
@@ -33,18 +30,18 @@ class Invitations:
         self._draws = draws
 
     def first(self) -> str:
-        """The host's own link, which the caller says."""
+        """The host's own link; the caller prints it."""
         return self._new_link()
 
     def draw(self, link: str) -> None:
-        """Draw a link in the terminal, where that is possible."""
+        """Draw a link as a QR code, if the terminal can."""
         if self._draws:
             drawn = io.StringIO()
             segno.make_qr(link).terminal(drawn, compact=True)
             self._say(drawn.getvalue().rstrip("\n"))
 
     def next(self) -> str:
-        """A link for the next person, said in the terminal as well."""
+        """Make and print a link for the next person."""
         link = self._new_link()
         self._say(f"For the next person, a link that works once: {link}")
         self.draw(link)
@@ -55,13 +52,7 @@ class Invitations:
 
 
 def answer(method: str, is_host: bool, invite: Callable[[], str]) -> Response:
-    """The answer to a request for `INVITATION`.
-
-    Args:
-        method: of the request.
-        is_host: whether it comes from the page of the person who started the server.
-        invite: makes a link.
-    """
+    """Answer a request for `INVITATION`; only the host, who started the server, may invite."""
     if method == "GET":
         return _json({"may": is_host})
     if method != "POST":

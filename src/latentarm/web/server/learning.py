@@ -1,4 +1,4 @@
-"""Recordings, trainings and runs, and what pages are told of them."""
+"""Recordings, trainings and runs, and their state for pages."""
 
 import asyncio
 from pathlib import Path
@@ -25,14 +25,7 @@ LOOK_S: Final = 0.2
 
 @final
 class Learning:
-    """Recordings, trainings, runs, and people's alignments.
-
-    Args:
-        control: the control process, which records and drives.
-        states: says what is recorded and what is loaded.
-        run_list: the runs.
-        out: folder that holds ``datasets`` and ``runs``.
-    """
+    """Recordings, trainings, runs, and people's alignments. ``out`` holds ``datasets`` and ``runs``."""
 
     def __init__(self, control: "ControlProcess", states: States, run_list: RunList, out: Path) -> None:
         self._control = control
@@ -57,7 +50,7 @@ class Learning:
 
     @property
     def text(self) -> str:
-        """All of it as JSON, for a page."""
+        """The state as JSON, for pages."""
         return self._text
 
     @property
@@ -66,7 +59,7 @@ class Learning:
         return self._driven().at_rest
 
     async def follow(self) -> None:
-        """Keep it up to date until cancelled."""
+        """Update the state, until cancelled."""
         while True:
             await self._list_recordings()
             if self._job is not None:
@@ -106,7 +99,7 @@ class Learning:
             self._cancelling = asyncio.create_task(self._cancel(self._job))
 
     def choose_run(self, name: str) -> None:
-        """Try another run, then drive it. Names that are not in the list are ignored."""
+        """Try another run, then drive it. Unknown names are ignored."""
         run = self._run_list.runs().get(name)
         report = self._states.report
         if run is None:
@@ -127,7 +120,7 @@ class Learning:
             await asyncio.to_thread(self._job.cancel)
 
     async def _try_run(self, name: str, run: Path) -> None:
-        """Drive a run once a child process has loaded it; until then driving continues as before."""
+        """Drive a run once a child process has loaded it."""
         trial = Trial(self._states.loaded.spec, run, name)
         try:
             self._states.say(Notice(code="checking_run", parameters={"name": name}), WITHIN_S)
@@ -149,11 +142,6 @@ class Learning:
         return Driven(loaded.spec.run, loaded.latent_dim, self._states.report)
 
     def _end_effector(self) -> str | None:
-        """That of the arm, where a run says it.
-
-        Raises:
-            UserError: the run has gone.
-        """
         run = self._states.loaded.spec.run
         return None if run is None else read_run(run).end_effector
 

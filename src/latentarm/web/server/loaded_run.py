@@ -1,4 +1,4 @@
-"""What is driven, as the server shows it, made anew for every run; and which runs there are to drive."""
+"""What is driven, as the server shows it, built anew for every run; and the runs to choose from."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -26,22 +26,17 @@ from latentarm.web.protocol.server_messages import (
 )
 
 Beginning = tuple[str | None, int, int]
-"""The run that is driven, its seed, and what is to be done: they decide how everything stands at first."""
+"""The run, its seed and what is to be done: they decide how everything stands at first."""
 
 
 def beginning_of(report: Report) -> Beginning:
-    """What a report is about."""
+    """The beginning that a report belongs to."""
     return report.run, report.seed, report.task.choice
 
 
 @final
 class LoadedRun:
-    """A loaded setup, its scene, and what follows from both.
-
-    Args:
-        setup: what is driven.
-        name: what pages call its run; None without one.
-    """
+    """A loaded setup, its scene, and what follows from both. ``name`` is the run's name on pages."""
 
     def __init__(self, setup: DriveSetup, name: str | None) -> None:
         self.name = name
@@ -64,12 +59,7 @@ class LoadedRun:
         self._poses: dict[BuiltInPose, FloatArray] = {**home, **tuck}
 
     def built_in(self, pose: BuiltInPose, name: str) -> PoseToGoTo | None:
-        """A pose of the robot's own; None where its model states none.
-
-        Args:
-            pose: which.
-            name: what people call it.
-        """
+        """A pose of the robot's own; None where its model states none. ``name`` is what people call it."""
         q = self._poses.get(pose)
         return None if q is None else PoseToGoTo(name=name, q=tuple(q.tolist()))
 
@@ -84,12 +74,7 @@ class LoadedRun:
         return beginning_of(report) == (run, self.spec.seed, self.spec.choice)
 
     def welcome(self, page: str, server: str) -> Welcome:
-        """What a page is told first.
-
-        Args:
-            page: its id.
-            server: the server's.
-        """
+        """The first message to a page."""
         setup = self._setup
         gripper = setup.task.robot.gripper
         return Welcome(
@@ -131,12 +116,7 @@ def _found(setup: DriveSetup) -> RealArm:
 
 
 def load_reported_run(spec: Spec, report: Report, name: str | None) -> LoadedRun:
-    """Load the run that a report names.
-
-    Args:
-        spec: what was driven before.
-        report: says what is driven now.
-        name: what pages call the run.
+    """Load the run that a report names, called ``name`` on pages.
 
     Raises:
         UserError: see `load_setup`.
@@ -148,13 +128,9 @@ def load_reported_run(spec: Spec, report: Report, name: str | None) -> LoadedRun
 
 @final
 class RunList:
-    """Runs that were trained on the page, and the one that the server was started with.
+    """Runs that were trained on the page, and ``first``, with which the server was started.
 
     Pages name a run by its name here, never by a path.
-
-    Args:
-        out: folder that holds ``runs``.
-        first: the run that the server was started with, or None.
     """
 
     def __init__(self, out: Path, first: Path | None) -> None:
@@ -162,7 +138,7 @@ class RunList:
         self._first = first
 
     def runs(self) -> dict[str, Path]:
-        """Folders by name, in the order of the names; whole runs alone."""
+        """Folders of complete runs by name, sorted by name."""
         found = {path.parent.name: path.parent for path in self._out.glob("runs/*/config.json")}
         if self._first is not None:
             name = self._first.resolve().name
@@ -172,7 +148,7 @@ class RunList:
         return dict(sorted(found.items()))
 
     def name_of(self, run: Path | None) -> str | None:
-        """What pages call a run; None for None."""
+        """The name of a run on pages; None for None."""
         if run is None:
             return None
         return next((name for name, path in self.runs().items() if _same(path, run)), run.resolve().name)

@@ -1,4 +1,4 @@
-"""What the server and its libraries log, as the operator's terminal may show it."""
+"""Logging of the server and its libraries, safe for a terminal."""
 
 import logging
 from typing import Any, Final
@@ -8,7 +8,7 @@ from latentarm.core.untrusted.terminal import one_line, visible
 _TRACEBACKS: Final = logging.Formatter()
 
 _OTHERS: Final = ("uvicorn", "uvicorn.error")
-"""Loggers of libraries; their handlers, if any, are removed."""
+"""Loggers of libraries."""
 
 LOGGING: Final[dict[str, Any]] = {
     "version": 1,
@@ -26,17 +26,13 @@ LOGGING: Final[dict[str, Any]] = {
     # These warn of every request for a missing page or that is not HTTP: strangers could flood the terminal.
     "loggers": {name: {"level": "ERROR"} for name in _OTHERS},
 }
-"""For `logging.config.dictConfig`: warnings and errors, with nothing in them that a terminal would obey."""
+"""For `logging.config.dictConfig`: warnings and errors, without control characters."""
 
 
 def make_printable(record: logging.LogRecord) -> bool:
-    """Escape what a terminal would obey in a record's message and traceback: both quote what strangers send.
+    """Escape control characters in a record's message and traceback: both quote what strangers send.
 
-    Args:
-        record: changed in place.
-
-    Returns:
-        True: the record is logged.
+    Changes the record in place and returns True: it is logged.
     """
     record.msg = one_line(record.getMessage())
     record.args = ()

@@ -22,8 +22,7 @@ class Page:
     """One page of the site.
 
     Attributes:
-        path: where it is served.
-        name: of its folder in ``pages/``, of the template, script and style sheet in it, and of its words.
+        name: of its folder in ``pages/``, of the template, script and style sheet there, and of its words.
     """
 
     path: str
@@ -31,17 +30,17 @@ class Page:
 
     @property
     def template(self) -> str:
-        """Its template."""
+        """The template's path."""
         return f"{self.name}/{self.name}.html"
 
     @property
     def script(self) -> str:
-        """Its module."""
+        """The module's path."""
         return f"{self.name}/{self.name}.js"
 
     @property
     def styles(self) -> tuple[str, ...]:
-        """Its style sheets, in the order in which they apply."""
+        """Paths of the style sheets, in the order in which they apply."""
         return "layout/tokens.css", "layout/page.css", "layout/controls.css", f"{self.name}/{self.name}.css"
 
 
@@ -57,13 +56,7 @@ PAGES: Final = (
 @final
 @dataclass(frozen=True)
 class ModelChoice:
-    """A kind of model on the Teach page.
-
-    Attributes:
-        name: in the catalogue of models.
-        title: for people.
-        help: when to use it, in a sentence or two.
-    """
+    """A kind of model on the Teach page: name in the catalogue, title, and when to use it."""
 
     name: str
     title: str
@@ -74,10 +67,7 @@ class ModelChoice:
 class Pages:
     """Every page in every language.
 
-    Args:
-        assets: what pages load.
-        models: names in the catalogue of models, in the order of the Teach page.
-        cameras: names of the cameras, shown as text.
+    ``models`` are names in the catalogue, in the order of the Teach page; ``cameras`` names of the cameras.
     """
 
     def __init__(self, assets: Assets, models: Sequence[str], cameras: Sequence[str] = ()) -> None:
@@ -119,7 +109,7 @@ class Pages:
 
 
 def _choice(model: str, words: Words) -> ModelChoice:
-    """A model's name: from the page's texts, or else as its plug-in says."""
+    """A model's title and help: from the page's texts, else from its plug-in."""
     if f"model.{model}" in words.texts:
         return ModelChoice(model, words.say(f"model.{model}"), words.say(f"model.{model}.help"))
     title, about = model, ""

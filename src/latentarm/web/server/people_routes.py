@@ -1,7 +1,7 @@
 """The addresses under ``/records/people``: people, their settings and PINs, export and import.
 
-Requests are JSON objects with known fields; answers are JSON, or a notice with a status of 4xx. The gate in
-front has checked where each request comes from and how long it is.
+Requests are JSON objects with known fields; answers are JSON, or a notice with a status of 4xx. The gate has
+checked the origin and the length of each request.
 """
 
 import asyncio
@@ -29,7 +29,7 @@ from latentarm.web.server.pins import OPEN_S, Pins, cookie_of
 from latentarm.web.server.security import COOKIE
 
 IMPORT: Final = "/records/import"
-"""Takes longer bodies than all else: see `latentarm.web.records.exchange.IMPORT_LIMIT`."""
+"""Takes longer bodies than other addresses: see `latentarm.web.records.exchange.IMPORT_LIMIT`."""
 
 
 @final
@@ -43,7 +43,7 @@ class _Pinned(Message):
 
 
 _BROWSER: Final = "latentarm_browser"
-"""Cookie that tells browsers of this machine apart where the gate gives none."""
+"""Cookie that tells browsers of this machine apart if the gate gives none."""
 
 _SETTINGS: Final[TypeAdapter[dict[str, bool | float | str]]] = TypeAdapter(Settings)
 
@@ -52,12 +52,8 @@ _SETTINGS: Final[TypeAdapter[dict[str, bool | float | str]]] = TypeAdapter(Setti
 class PeopleRoutes:
     """Answers requests about people.
 
-    Args:
-        records: what is kept.
-        history: logs the drive under way.
-        busy: whether the arm is enabled for a person, or with a profile of theirs.
-        let_go: makes the arm drive without the profiles of a person who is about to be deleted.
-        pins: says whose records a visitor may open.
+    ``busy``: whether the arm is enabled for a person, or with their profile. ``let_go`` drops a person's
+    profile from the arm before the person is deleted.
     """
 
     def __init__(
@@ -75,7 +71,7 @@ class PeopleRoutes:
         self._pins = pins
 
     def routes(self) -> list[Route]:
-        """Where everything here is served."""
+        """The routes."""
         answers = {
             "/records/people": {"GET": self._people, "POST": self._add},
             "/records/people/{person}": {"GET": self._person, "PUT": self._rename, "DELETE": self._erase},
@@ -122,7 +118,7 @@ class PeopleRoutes:
         return json_answer({**_shown(person), "settings": person.settings, **contents.model_dump()})
 
     def _found(self, request: Request) -> PersonRecord:
-        """The person whom a request names, and whose record the visitor may open.
+        """The person whom a request names, if the visitor may open their record.
 
         Raises:
             NoticeError: nobody has this id, or their PIN must be given first.
@@ -133,11 +129,6 @@ class PeopleRoutes:
         return person
 
     def _named(self, request: Request) -> PersonRecord:
-        """The person whom a request names.
-
-        Raises:
-            NoticeError: nobody has this id.
-        """
         person = self._records.people.find(request.path_params["person"])
         if person is None:
             raise NoticeError("person_unknown")
@@ -211,7 +202,7 @@ class PeopleRoutes:
 
 
 def _with_key(request: Request, person: str, key: str) -> Response:
-    """An answer that opens a person's record for this browser."""
+    """An answer whose cookie opens a person's record."""
     answer = Response(status_code=204, headers=NO_STORE)
     secure = request.url.scheme == "https"
     answer.set_cookie(
@@ -225,7 +216,6 @@ def _shown(person: PersonRecord) -> dict[str, object]:
 
 
 def _history_of(person: PersonRecord, drives: Sequence[DriveRecord]) -> dict[str, object]:
-    """How often somebody has driven, and when last."""
     theirs = [drive for drive in drives if drive.person == person.id]
     return {"drives": len(theirs), "last": theirs[0].started if theirs else None}
 

@@ -1,4 +1,4 @@
-"""A person's alignment from the first question to the profile that is kept or not."""
+"""A person's alignment, from the first question until the profile is kept or discarded."""
 
 import asyncio
 from collections.abc import Callable
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from latentarm.web.arm_process.process import ControlProcess
 
 STICK_AXES: Final = 2
-"""A page's stick cannot answer for more."""
+"""Axes of a page's stick."""
 
 
 @final
@@ -48,9 +48,8 @@ class Driven:
     """What Personalise must know about what is driven.
 
     Attributes:
-        run: its folder, or None.
         latent_dim: d; 0 without a run.
-        report: the newest of it, or None before the first.
+        report: the newest; None before the first.
     """
 
     run: Path | None
@@ -59,23 +58,18 @@ class Driven:
 
     @property
     def at_rest(self) -> bool:
-        """Whether the arm stands disengaged."""
+        """Whether the arm is disengaged and at rest."""
         return self.report is not None and self.report.phase in ("disengaged", "neutral_needed")
 
     @property
     def profile(self) -> str | None:
-        """Whose alignment is used."""
+        """The person whose alignment is used."""
         return None if self.report is None else self.report.profile
 
 
 @final
 class Personalising:
-    """At most one person is asked at a time; what was learned of them can be tried before it is kept.
-
-    Args:
-        driven: says what is driven now.
-        control: the control process.
-    """
+    """Asks at most one person at a time; their alignment can be tried before it is kept."""
 
     def __init__(self, driven: Callable[[], Driven], control: "ControlProcess") -> None:
         self._driven = driven
@@ -104,7 +98,7 @@ class Personalising:
         return self._state
 
     def take(self, message: PersonaliseMessage) -> None:
-        """Carry out an order of the driver's page, or say in `look` why it cannot be done."""
+        """Carry out an order of the driver's page, or report in `look` why it cannot be done."""
         try:
             self._obey(message)
         except UserError as error:
@@ -193,7 +187,7 @@ class Personalising:
         self._job = self._run = self._state = None
 
     def _give_back(self, driven: Driven) -> None:
-        """Go back to the alignment from before the trial, and discard what was tried.
+        """Restore the alignment from before the trial, and discard the trial.
 
         Raises:
             UserError: the arm must be stopped first, or files cannot be deleted.
@@ -206,7 +200,6 @@ class Personalising:
             discard_trial(driven.run)
 
     def _forget(self) -> None:
-        """Its state, if any."""
         job, run = self._job, self._run
         self._job = self._run = self._state = None
         self._tried = False
@@ -219,11 +212,6 @@ class Personalising:
 
 
 def _alignable(driven: Driven) -> Path:
-    """The run.
-
-    Raises:
-        UserError: nobody can be asked about what is driven, or not now.
-    """
     if driven.run is None:
         raise NoticeError("no_run")
     if driven.latent_dim > STICK_AXES:
@@ -238,7 +226,6 @@ def _check_at_rest(driven: Driven) -> None:
 
 
 def _clean(job: PersonaliseJob | None, run: Path) -> None:
-    """End a job, and remove what it has learned."""
     if job is not None:
         job.end()
     with suppress(UserError):  # what cannot be deleted is replaced by the next

@@ -1,4 +1,4 @@
-"""Whose records a visitor may open: those without a PIN, and those whose PIN they have given."""
+"""Which records a visitor may open: those without a PIN, and those whose PIN they have given."""
 
 import secrets
 import threading
@@ -12,21 +12,20 @@ from latentarm.web.records.people import People, PersonRecord
 from latentarm.web.records.pin import fits
 
 TRIES: Final = 5
-"""So many wrong PINs of a person are allowed from a client before it has to wait."""
+"""Wrong PINs of a person that a client may give before it has to wait."""
 
 WAIT_S: Final = 60.0
-"""How long the client then waits, s: twice as long after each further one, up to `LONGEST_WAIT_S`."""
+"""How long the client then waits, s; doubles with each further one, up to `LONGEST_WAIT_S`."""
 
 LONGEST_WAIT_S: Final = 3600.0
-"""The longest that a client waits, s."""
 
 FORGOTTEN_S: Final = 24 * 3600.0
-"""So long after its last wrong PIN a client's tries are forgotten, s."""
+"""A client's tries are forgotten so long after its last wrong PIN, s."""
 
 MOST_CLIENTS: Final = 40
-"""So many clients at once may have given wrong PINs of a person, besides those that have opened the record
-before. Together they try at most 1,400 PINs on the first day and 960 on each further one: all PINs of four
-digits take them ten days."""
+"""Clients that may have given wrong PINs of a person at the same time, besides those that have opened the
+record before. Together they try at most 1,400 PINs on the first day and 960 on each further one: all PINs of
+four digits take them ten days."""
 
 OPEN_S: Final = 8 * 3600.0
 """How long a record stays open, s."""
@@ -44,12 +43,9 @@ class _Tries:
 
 @final
 class Pins:
-    """Keeps which browsers have given which PIN; only until the server ends.
+    """Remembers which browsers have given which PIN, until the server ends.
 
-    Args:
-        people: whose records there are.
-        wanted: whether the host wants PINs; else nobody is asked, which is the way out for a forgotten one.
-        now_s: the time, s; monotonic.
+    ``wanted``: whether the host wants PINs. Otherwise nobody is asked: the way out for a forgotten PIN.
     """
 
     def __init__(self, people: People, *, wanted: bool, now_s: Callable[[], float] = time.monotonic) -> None:
@@ -73,18 +69,13 @@ class Pins:
         return of == person.id and self._now_s() < until_s
 
     def unlock(self, person: PersonRecord, pin: str, client: str) -> str:
-        """Open a record. Waits for the hash, some 50 ms.
-
-        Args:
-            person: whose.
-            pin: as it was given.
-            client: who gives it: an address and a browser.
+        """Open a record; takes some 50 ms for the hash. ``client`` is an address and a browser.
 
         Returns:
             The value of the cookie `cookie_of`.
 
         Raises:
-            NoticeError: the PIN is wrong, or there were too many wrong ones, or clients that gave them.
+            NoticeError: the PIN is wrong, or there were too many wrong ones or clients that gave them.
         """
         with self._lock:
             # Counted before it is looked at: tries at the same time count too.
@@ -101,10 +92,10 @@ class Pins:
         self._keys.pop(cookies.get(cookie_of(person), ""), None)
 
     def change(self, person: str, pin: str | None) -> str:
-        """Give a record a PIN, or none; it is closed for everybody else.
+        """Set or remove a record's PIN, and close the record for everybody else.
 
         Returns:
-            The value of the cookie `cookie_of` for who changes it.
+            The value of the cookie `cookie_of` for the visitor who changed it.
 
         Raises:
             NoticeError: the host wants no PINs.

@@ -1,4 +1,4 @@
-"""The saved poses of everybody who drives, read once and written in a thread of their own."""
+"""The saved poses of everybody who drives, read once and written in a thread."""
 
 import asyncio
 from pathlib import Path
@@ -14,12 +14,7 @@ from latentarm.web.records.poses import SavedPose, read_poses, with_pose, withou
 
 @final
 class PoseBook:
-    """Saved poses by person; guests share theirs.
-
-    Args:
-        people: whose folders hold them.
-        shared: folder of those of guests.
-    """
+    """Saved poses by person; guests share those in the folder ``shared``."""
 
     def __init__(self, people: People, shared: Path) -> None:
         self._people = people
@@ -31,12 +26,7 @@ class PoseBook:
         self.number = 0
 
     def told(self, person: str | None, robot: str) -> Poses:
-        """What a page is told.
-
-        Args:
-            person: id of its person; None for a guest.
-            robot: name of what is driven.
-        """
+        """The message about a person's poses for a robot; guests are None."""
         names = tuple(one.name for one in self._of(person) if one.robot == robot)
         return Poses(names=names, problem=self._problem)
 
@@ -48,14 +38,7 @@ class PoseBook:
         return None
 
     def save(self, person: str | None, robot: str, name: str, q: tuple[float, ...]) -> None:
-        """Keep a pose; what cannot be kept is told as the problem.
-
-        Args:
-            person: id of who drives; None for a guest.
-            robot: name of what is driven.
-            name: what the pose is called.
-            q: (n,), where the joints are, rad.
-        """
+        """Save joint positions ``q``, (n,), rad; a failure is reported as the problem."""
         try:
             self._keep(person, with_pose(self._of(person), robot, name, q))
         except UserError as error:
@@ -66,7 +49,7 @@ class PoseBook:
         self._keep(person, without_pose(self._of(person), robot, name))
 
     async def settled(self) -> None:
-        """Wait until everything is on the disk."""
+        """Wait until everything is on disk."""
         await asyncio.gather(*self._writing)
 
     def _of(self, person: str | None) -> tuple[SavedPose, ...]:

@@ -1,4 +1,4 @@
-"""What a page sends over its socket, or why it is not listened to any more."""
+"""Receive a page's messages, or learn why the page is refused."""
 
 from typing import Final
 
@@ -9,11 +9,11 @@ from latentarm.web.server.frames import TOO_MANY
 from latentarm.web.server.security import EXPIRED
 
 _PROTOCOL_BROKEN: Final = (1002, 1003, 1007, TOO_MANY, 1009)
-"""Codes with which the server below us hangs up: no frame, no text, too many frames, or one far too long."""
+"""Close codes of uvicorn: no frame, no text, too many frames, or one far too long."""
 
 
 class ViolationError(Exception):
-    """A page has sent something that it must not."""
+    """A page has sent something forbidden."""
 
 
 class ExpiredError(Exception):
@@ -25,7 +25,7 @@ async def receive(socket: WebSocket) -> ClientMessage:
 
     Raises:
         ViolationError: it is invalid, or there are too many.
-        ExpiredError: the page may not be here any longer.
+        ExpiredError: the page's cookie has expired.
         WebSocketDisconnect: the page has gone.
     """
     event = await socket.receive()

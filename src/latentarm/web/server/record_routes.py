@@ -1,8 +1,4 @@
-"""The addresses of drives, scenes and recordings under ``/records``, for the page History.
-
-Requests are JSON objects with known fields; answers are JSON, or a notice with a status of 4xx. The gate in
-front has checked where each request comes from and how long it is.
-"""
+"""The addresses of drives, scenes and recordings under ``/records``, for the page History."""
 
 import asyncio
 import csv
@@ -58,13 +54,7 @@ class _Titled(Message):
 
 @final
 class RecordRoutes:
-    """Answers requests about drives and recordings.
-
-    Args:
-        records: what is kept.
-        history: logs the drive under way.
-        pins: says whose records a visitor may open.
-    """
+    """Answers requests about drives and recordings; see `people_routes` for their form."""
 
     def __init__(self, records: Records, history: History, pins: Pins) -> None:
         self._records = records
@@ -72,7 +62,7 @@ class RecordRoutes:
         self._pins = pins
 
     def routes(self) -> list[Route]:
-        """Where everything here is served."""
+        """The routes."""
         answers = {
             "/records/drives": {"GET": self._drives},
             "/records/drives.csv": {"GET": self._csv},
@@ -130,7 +120,7 @@ class RecordRoutes:
         """Id of the drive that a request names.
 
         Raises:
-            NoticeError: it is a drive of somebody whose PIN must be given first.
+            NoticeError: its driver's PIN must be given first.
         """
         name = str(request.path_params["drive"])
         drive = self._records.drives.find(name)
@@ -207,7 +197,6 @@ def _scene_id(request: Request) -> str:
 
 
 def _row(drive: DriveRecord, names: dict[str, str]) -> list[object]:
-    """A line of the table; empty where nothing is known."""
     values = {
         **drive.model_dump(),
         "person": names.get(drive.person or "", ""),

@@ -1,8 +1,8 @@
-"""Loading a run first in a child process, so that a broken one costs neither the arm nor the server.
+"""Loading a run in a child process first, so that a broken one harms neither the arm nor the server.
 
-What a run names is read by libraries in C (Parquet, meshes), which a malicious file could crash or keep busy
-for ever. That may happen to the child; only what it has loaded in time is then loaded by the server and the
-arm's process.
+Libraries in C read the files that a run names (Parquet, meshes). A malicious file could crash them or keep
+them busy for ever. Only a run that the child has loaded in time is loaded by the server and the arm's
+process.
 """
 
 import asyncio
@@ -26,22 +26,15 @@ WITHIN_S: Final = 60.0
 
 _LOOK_S: Final = 0.05
 _SIZE: Final = 64 << 20
-"""Bytes that a run is taken to have: those that its copy of a robot may have, see `bounded_memory`.
+"""Bytes that a run is assumed to have: those that its copy of a robot may have, see `bounded_memory`.
 
-Each of its files is bounded by its own size besides. The meshes of an SO-101, 16 MB, take 1.7 GB for a moment
-while MuJoCo reads them.
-"""
+Each file has its own bound too. The meshes of an SO-101, 16 MB, take 1.7 GB for a moment while MuJoCo
+reads them."""
 
 
 @final
 class Trial:
-    """A run being loaded in a child process.
-
-    Args:
-        spec: what is driven now.
-        run: the run to try instead.
-        name: what pages call it.
-    """
+    """A run being loaded in a child process; ``spec`` is driven now, ``name`` is the run's name on pages."""
 
     def __init__(self, spec: Spec, run: Path, name: str) -> None:
         self._name = name
@@ -60,12 +53,12 @@ class Trial:
         return self._job.failure
 
     def end(self) -> None:
-        """End it at any point; takes up to two seconds."""
+        """End it; takes up to two seconds."""
         self._job.end()
 
 
 def try_to_load(wire: Wire, spec: Spec, name: str) -> None:
-    """What the child does: load all that the control process and the server will load.
+    """The child's work: load all that the control process and the server will load.
 
     Raises:
         UserError: see `load_setup`.

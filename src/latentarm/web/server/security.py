@@ -21,22 +21,22 @@ from latentarm.web.server.invitations import answer as invitation_answer
 
 COOKIE: Final = "latentarm"
 LIFE_S: Final = 8 * 3600
-"""How long a cookie is valid, s."""
+"""Validity of a cookie, s."""
 
 BODY_LIMIT: Final = 1 << 16
-"""The longest body of a request, bytes."""
+"""The longest request body, bytes."""
 
 MOST_REQUESTS: Final = 64
-"""Requests that may be at work at once; `STOP` is not among them."""
+"""Requests that may be in progress at once, apart from `STOP`."""
 
 DRIVE: Final = "/drive"
 """The only WebSocket."""
 
 EXPIRED: Final = 4401
-"""The code that a WebSocket is closed with when its cookie has expired, out of those for applications."""
+"""Close code of a WebSocket whose cookie has expired, from the range for applications."""
 
 EXPIRED_WHY: Final = "expired"
-"""The reason that goes with it, a code as `latentarm.web.protocol.notice` has them."""
+"""The reason that goes with it, a `NoticeCode`."""
 
 STOP: Final = "/stop"
 """Needs no cookie: anyone who can reach the page may stop the arm."""
@@ -68,11 +68,7 @@ _WELCOME: Final = (
 
 @final
 class Keys:
-    """One-time links, and the cookies that they were exchanged for; only hashes are kept.
-
-    Args:
-        now_s: the time, s; monotonic.
-    """
+    """One-time links, and the cookies that they are exchanged for; only hashes are kept."""
 
     def __init__(self, now_s: Callable[[], float] = time.monotonic) -> None:
         self._now_s = now_s
@@ -81,7 +77,7 @@ class Keys:
         self._host: bytes | None = None
 
     def new_link(self) -> str:
-        """A key for the next visitor, 256 random bits; the previous one becomes invalid."""
+        """A key for the next visitor, 256 random bits; voids the previous one."""
         key = secrets.token_urlsafe(32)
         self._link = _hash(key)
         return key
@@ -101,7 +97,7 @@ class Keys:
         return cookie
 
     def is_host(self, cookie: str) -> bool:
-        """Whether this cookie is the first one given: that of the person who started the server."""
+        """Whether this is the first cookie given: that of the person who started the server."""
         if self._host is None or self.opens_for(cookie) is None:
             return False
         return hmac.compare_digest(self._host, _hash(cookie))
@@ -123,20 +119,20 @@ class Keys:
 
 @final
 class Gate:
-    """Stands before the whole application and its socket.
+    """Guards the whole application and its socket.
 
-    It answers `STOP` itself, before anything is counted, looked up or built. The application behind it sees
-    only whole requests.
+    It answers `STOP` itself, before anything is counted, looked up or built. The application receives only
+    complete requests.
 
     Args:
-        app: what is behind.
+        app: the application.
         hosts: exact ``Host`` headers, with the port where it is not the scheme's own.
         origins: exact ``Origin`` headers.
-        keys: who may enter; None lets everybody in, for a server on the loopback.
+        keys: None admits everybody, for a server on the loopback.
         secure: whether the cookie is for TLS alone.
         stop: stops the arm.
-        long_bodies: paths that take longer bodies than `BODY_LIMIT`, with how long, bytes.
-        invite: makes a link for the next person; called when a link has been used, and for the host's page.
+        long_bodies: paths that take bodies longer than `BODY_LIMIT`, with their limits, bytes.
+        invite: makes a link for the next person; called when a link was used, and for the host's page.
     """
 
     def __init__(
@@ -213,7 +209,6 @@ class Gate:
         return PlainTextResponse("Open the link that latentarm has printed; each one works once.", 401)
 
     def _own_answer(self, scope: Scope) -> Response | None:
-        """Stop, links, and the exchange of a link for a cookie."""
         if scope["path"] == STOP:
             if scope["method"] != "POST":
                 return PlainTextResponse("Stop is a POST.", 405, headers={"allow": "POST"})
@@ -237,7 +232,7 @@ class Gate:
 
 
 async def _whole_body(receive: Receive) -> bytes | None:
-    """A request's body, or None where the peer has gone before it was whole."""
+    """A request's body; None if the peer has gone before it was complete."""
     body = bytearray()
     while True:
         message = await receive()
@@ -249,7 +244,7 @@ async def _whole_body(receive: Receive) -> bytes | None:
 
 
 def _once(body: bytes, receive: Receive) -> Receive:
-    """What an application receives of a request whose body has been read already."""
+    """A ``receive`` that gives a body that was read already."""
     given = False
 
     async def receive_body_first() -> Message:
@@ -263,7 +258,7 @@ def _once(body: bytes, receive: Receive) -> Receive:
 
 
 def _until_expired(receive: Receive, left_s: float) -> Receive:
-    """A socket's messages until its cookie expires; then it is as if the page had hung up with `EXPIRED`."""
+    """A socket's messages until its cookie expires; then a disconnect with `EXPIRED`."""
     until_s = time.monotonic() + left_s
 
     async def receive_in_time() -> Message:
@@ -289,7 +284,7 @@ def _with_headers(send: Send) -> Send:
 
 
 def _short(headers: Headers, limit: int) -> bool:
-    """Whether the declared length of a body is within the limit; an unknown one is not."""
+    """Whether the declared length of a body is known and within the limit."""
     if "transfer-encoding" in headers:
         return False
     length = headers.get("content-length", "0")

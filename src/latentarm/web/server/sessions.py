@@ -17,8 +17,8 @@ class Page:
     """A connected page.
 
     Attributes:
-        id: for this connection alone.
-        name: what its person is called; a guest without a name is their number.
+        id: of this connection.
+        name: a guest without a name is called by a number.
         person: id of their record; None for a guest.
     """
 
@@ -31,12 +31,8 @@ class Page:
 class Sessions:
     """At most one page drives; handing over is explicit on both sides.
 
-    The first page drives. Later ones ask: they drive if nobody does, or else when the driver hands over or
-    lets others drive. `turn` counts the changes; inputs with an older turn are ignored. A co-pilot is one
-    driver's: with the driver it changes.
-
-    Attributes:
-        copilot: the driver's.
+    The first page drives. Later ones ask: they drive if nobody does, or when the driver hands over or lets
+    others drive. Inputs with an older `turn` are ignored. The co-pilot goes when the driver changes.
     """
 
     def __init__(self) -> None:
@@ -53,12 +49,12 @@ class Sessions:
 
     @property
     def driver(self) -> Page | None:
-        """Who drives."""
+        """The page that drives."""
         return None if self._driver is None else self._pages[self._driver]
 
     @property
     def asking(self) -> Page | None:
-        """Who asks to drive."""
+        """The page that asks to drive."""
         return None if self._asking is None else self._pages[self._asking]
 
     def named(self, page_id: str | None) -> Page | None:
@@ -71,11 +67,11 @@ class Sessions:
         return len(self._pages)
 
     def drives(self, page: Page) -> bool:
-        """Whether this page is the driver's."""
+        """Whether this page drives."""
         return self._driver == page.id
 
     def join(self, name: str | None, person: str | None = None) -> Page | None:
-        """A new page, or None if there are too many."""
+        """A new page; None if there are too many."""
         if len(self._pages) >= MOST:
             return None
         page = Page(
@@ -89,11 +85,7 @@ class Sessions:
         return page
 
     def leave(self, page: Page) -> bool:
-        """Remove a page.
-
-        Returns:
-            Whether it was the driver's.
-        """
+        """Remove a page; returns whether it drove."""
         was_driver = self._driver == page.id
         if self._asking == page.id:
             self._asking = None
@@ -103,29 +95,21 @@ class Sessions:
         return was_driver
 
     def ask(self, page: Page) -> None:
-        """A page asks to drive; only the first to ask is remembered."""
+        """Note that a page asks to drive; only the first counts."""
         if self._driver is None:
             self._give_to(page.id)
         elif self._driver != page.id and self._asking is None:
             self._asking = page.id
 
     def hand_over(self, page: Page, to: str) -> bool:
-        """The driver hands over to the page that has asked to drive.
-
-        Returns:
-            Whether the driver changed.
-        """
+        """Hand over to the page that has asked to drive; returns whether the driver changed."""
         if self._driver != page.id or self._asking is None or self._asking != to:
             return False
         self._give_to(to)
         return True
 
     def release(self, page: Page) -> bool:
-        """The driver stops driving: the page that has asked to drives, or nobody.
-
-        Returns:
-            Whether the driver changed.
-        """
+        """Stop driving: the page that has asked to drives, or nobody. Returns whether the driver changed."""
         if self._driver != page.id:
             return False
         self._give_to(self._asking)

@@ -1,4 +1,4 @@
-"""State of the arm for the pages: the newest report, made into one message for all."""
+"""The arm's state for pages: the newest report, made into one message for all."""
 
 import asyncio
 import json
@@ -32,30 +32,30 @@ if TYPE_CHECKING:
     from latentarm.web.arm_process.process import ControlProcess
 
 POLL_S: Final = 0.0025
-"""How often the control process's slot is read, s."""
+"""How often the report is read, s."""
 
 SILENT_S: Final = 0.5
-"""A control process that is silent for this long is considered broken, s."""
+"""A control process that is silent for so long is considered broken, s."""
 
 NOTE_S: Final = 6.0
 """How long a refusal is shown, s."""
 
 AWAY_PERIOD_S: Final = 0.2
-"""How often pages hear why there is nothing new of the arm, s."""
+"""How often pages receive the reason why there is no new report, s."""
 
 _SAME_M: Final = 1e-3
 
 
 @final
 class PageMemory:
-    """The ghosts and things that a page was last sent, so that it is sent only changes."""
+    """The ghosts and things that a page was sent last, so that it is sent only changes."""
 
     def __init__(self) -> None:
         self._ghosts: Ghosts | None = None
         self._things: Things | None = None
 
     def new_ghosts(self, ghosts: Ghosts) -> bool:
-        """Whether any has come or gone, or moved by more than 1 mm; if so they are remembered as shown."""
+        """Whether any has appeared, gone or moved by more than 1 mm; if so they are remembered."""
         before = self._ghosts
         if ghosts == before:
             return False
@@ -65,24 +65,18 @@ class PageMemory:
         return True
 
     def new_things(self, things: Things) -> bool:
-        """Whether any has moved; if so it is remembered as shown."""
+        """Whether any has moved; if so it is remembered."""
         before, self._things = self._things, things
         return things is not before and things != before
 
 
 @final
 class States:
-    """The newest state of the arm, for pages to wait for and to be sent.
-
-    Args:
-        loaded: what is driven at first.
-        control: the control process.
-        sessions: who is there.
-        run_list: knows what runs are called.
+    """The newest state of the arm, for pages to wait for.
 
     Attributes:
         standstill: why the arm may not be enabled; None if it may.
-        heard: called with every report of what `loaded` shows.
+        heard: called with every report about `loaded`.
     """
 
     def __init__(
@@ -128,17 +122,13 @@ class States:
             await asyncio.sleep(POLL_S)
 
     async def after(self, number: int) -> int:
-        """Wait for a state that is newer than the one with this number.
-
-        Returns:
-            The newest one's number.
-        """
+        """Wait for a state newer than this number, and return the newest one's number."""
         while self._number <= number or self._report is None:
             await self._changed.wait()
         return self._number
 
     async def pause(self, span_s: float) -> None:
-        """Wait for this long, s, or until the arm starts to move, which is shown at once."""
+        """Wait for this long, s, or until the arm starts to move."""
         with suppress(TimeoutError):
             async with asyncio.timeout(span_s):
                 await self._set_off.wait()
@@ -149,16 +139,16 @@ class States:
         self._note_until_s = time.monotonic() + for_s
 
     def clear_trail(self) -> None:
-        """Tell every page to empty its trail."""
+        """Empty the trail on every page."""
         self._trail += 1
 
     @property
     def report(self) -> Report | None:
-        """The newest report of what `loaded` shows."""
+        """The newest report about `loaded`."""
         return self._report
 
     def journal(self) -> Path | None:
-        """What is recorded to, or was last; None if nothing ever was."""
+        """The journal that is or was last recorded to; None if nothing ever was."""
         recording = None if self._report is None else self._report.recording
         return None if recording is None else Path(recording.journal)
 
@@ -169,7 +159,7 @@ class States:
 
     @property
     def loading(self) -> bool:
-        """Whether something else to drive is being loaded, here or in the control process."""
+        """Whether another setup is being loaded, here or in the control process."""
         return self._loading
 
     def text(self, page: Page, shown: PageMemory) -> str:
@@ -191,7 +181,7 @@ class States:
         return f'{texts[new]},"you":{json.dumps(drives)}}}'
 
     def _take(self, report: Report) -> None:
-        """Keep a report; if it is about another run or beginning, load that here first."""
+        """Keep a report; if it is about another run or beginning, load that first."""
         if self._loaded.shows(report):
             moved = self._report is not None and _rounded(report.tool) != _rounded(self._report.tool)
             if moved and not self._moves:
@@ -298,7 +288,6 @@ class States:
         return self._loading or now_s - self._heard_s > SILENT_S
 
     def _why_away(self) -> Notice:
-        """Why the newest report is out of date."""
         if not self._control.alive:
             return Notice(code="arm_process_ended")
         if not self._loading:
@@ -314,7 +303,7 @@ class States:
         return tuple(tuple(round(value, 4) for value in pose) for pose in pose_of(frames).tolist())
 
     def _bound_m(self, report: Report) -> float | None:
-        """The bound about the likeliest goal as the tool's distance, by the Jacobian at the goal."""
+        """The bound about the likeliest goal as a distance of the tool, m, by the Jacobian at the goal."""
         if report.bound_rad is None or not report.belief:
             return None
         likeliest = int(np.argmax(report.belief))
@@ -341,5 +330,5 @@ def _rounded(point: tuple[float, float, float]) -> tuple[float, float, float]:
 
 
 def _shown_gripper(gripper: GripperState) -> GripperState:
-    """With its width in tenths of a millimetre."""
+    """With its width rounded to tenths of a millimetre."""
     return gripper.model_copy(update={"width_m": round(gripper.width_m, 4)})

@@ -1,8 +1,8 @@
-"""The texts of the pages in one language, and the choice of a language.
+"""The texts of the pages in each language, and the choice of a language.
 
-A language is a file ``<code>.json`` in this folder: a flat object of keys and texts. ``{name}`` in a text
-stands for a parameter; a text that depends on the parameter ``count`` is an object of plural forms instead,
-named as `Intl.PluralRules` names them. Adding a file adds the language to every page.
+A language is a file ``<code>.json`` in this folder: a flat object of keys and texts. ``{name}`` in a text is
+a parameter; a text that depends on the parameter ``count`` is an object of plural forms, named as in
+`Intl.PluralRules`. Adding a file adds the language to every page.
 """
 
 import json
@@ -16,7 +16,7 @@ from typing import Final, final
 
 DEFAULT: Final = "en"
 COOKIE: Final = "latentarm_language"
-"""Cookie that holds the language chosen under Settings."""
+"""Holds the language chosen under Settings."""
 
 _MOST_CHARACTERS: Final = 200
 """Characters of an ``Accept-Language`` header that are read."""
@@ -45,11 +45,7 @@ class Words:
         return self.say("language.name")
 
     def say(self, key: str, parameters: Mapping[str, str | int] = MappingProxyType({})) -> str:
-        """A text.
-
-        Args:
-            key: of the text.
-            parameters: what it names; with a ``count`` of 1 the singular is taken where there is one.
+        """A text; with a ``count`` of 1 the singular is taken where there is one.
 
         Raises:
             KeyError: there is no such text, or it names other parameters.
@@ -62,7 +58,7 @@ class Words:
 
 @cache
 def languages() -> dict[str, Words]:
-    """Every language that there is, by its code, in the order of the codes; English fills its gaps."""
+    """Every language by its code, sorted; English fills the gaps."""
     texts = {
         file.name.removesuffix(".json"): json.loads(file.read_text(encoding="utf-8"))
         for file in files("latentarm.web.words").iterdir()
@@ -72,22 +68,14 @@ def languages() -> dict[str, Words]:
 
 
 def chosen_language(cookie: str, accepted: str) -> Words:
-    """The words for a person: in the language of their choice, else in one that their browser asks for.
-
-    Args:
-        cookie: value of `COOKIE`; "" where there is none.
-        accepted: the ``Accept-Language`` header.
-
-    Returns:
-        English if none of their languages is available.
-    """
+    """The language of the `COOKIE` ("" for none), else of the ``Accept-Language`` header, else English."""
     known = languages()
     wanted = [cookie, *_wanted(accepted[:_MOST_CHARACTERS])]
     return known[next((code for code in wanted if code in known), DEFAULT)]
 
 
 def _wanted(accepted: str) -> list[str]:
-    """Codes of languages (without regions), the most wanted first."""
+    """Language codes (without regions), the most wanted first."""
     found = [match for part in accepted.split(",") if (match := _RANGE.fullmatch(part))]
     by_weight = sorted(found, key=lambda match: -float(match[2] or 1.0))
     return [match[1].lower() for match in by_weight if float(match[2] or 1.0) > 0.0]
