@@ -1,11 +1,12 @@
 """Requests about records: JSON objects with known fields. Errors are answered as notices."""
 
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Mapping
 from typing import Final, TypeVar
 
 from pydantic import ValidationError
 from starlette.requests import Request
 from starlette.responses import JSONResponse, Response
+from starlette.routing import Route
 
 from latentarm.core.errors import UserError
 from latentarm.core.untrusted.documents import parse_object
@@ -36,6 +37,15 @@ def guarded(answer: Answer) -> Answer:
             return refusal(error)
 
     return guarded
+
+
+def guarded_routes(answers: Mapping[str, Mapping[str, Answer]]) -> list[Route]:
+    """Guarded routes from handlers by path and method."""
+    return [
+        Route(path, guarded(answer), methods=[method])
+        for path, methods in answers.items()
+        for method, answer in methods.items()
+    ]
 
 
 def refusal(error: UserError) -> Response:

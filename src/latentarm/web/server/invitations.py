@@ -1,12 +1,13 @@
 """One-time links for the next person: printed in the terminal, and shown to the host's page as a QR code."""
 
 import io
-import json
 from collections.abc import Callable
 from typing import Final, final
 
 import segno
 from starlette.responses import Response
+
+from latentarm.web.server.answers import json_answer
 
 ENTRY: Final = "/enter"
 INVITATION: Final = "/invitation"
@@ -54,7 +55,7 @@ class Invitations:
 def answer(method: str, is_host: bool, invite: Callable[[], str]) -> Response:
     """Answer a request for `INVITATION`; only the host, who started the server, may invite."""
     if method == "GET":
-        return _json({"may": is_host})
+        return json_answer({"may": is_host})
     if method != "POST":
         return Response(status_code=405, headers={"allow": "GET, POST"})
     if not is_host:
@@ -63,8 +64,4 @@ def answer(method: str, is_host: bool, invite: Callable[[], str]) -> Response:
     rows = list(segno.make_qr(link).matrix_iter())
     dark = [(x, y) for y, row in enumerate(rows) for x, module in enumerate(row) if module]
     path = "".join(f"M{x} {y}h1v1h-1z" for x, y in dark)
-    return _json({"link": link, "size": len(rows), "path": path})
-
-
-def _json(content: object) -> Response:
-    return Response(json.dumps(content), media_type="application/json", headers={"cache-control": "no-store"})
+    return json_answer({"link": link, "size": len(rows), "path": path})

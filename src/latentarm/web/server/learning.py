@@ -25,7 +25,12 @@ LOOK_S: Final = 0.2
 
 @final
 class Learning:
-    """Recordings, trainings, runs, and people's alignments. ``out`` holds ``datasets`` and ``runs``."""
+    """Recordings, trainings, runs, and people's alignments. ``out`` holds ``datasets`` and ``runs``.
+
+    Attributes:
+        text: the state as JSON, for pages.
+        number: changes with every change of `text`.
+    """
 
     def __init__(self, control: "ControlProcess", states: States, run_list: RunList, out: Path) -> None:
         self._control = control
@@ -39,19 +44,9 @@ class Learning:
         self._cancelling: asyncio.Task[None] | None = None
         self._choosing: asyncio.Task[None] | None = None
         self.personalising = Personalising(self._driven, control)
-        self._text = ""
-        self._number = 0
+        self.text = ""
+        self.number = 0
         self._tell(run_list.runs())
-
-    @property
-    def number(self) -> int:
-        """Changes with every change of `text`."""
-        return self._number
-
-    @property
-    def text(self) -> str:
-        """The state as JSON, for pages."""
-        return self._text
 
     @property
     def at_rest(self) -> bool:
@@ -77,15 +72,15 @@ class Learning:
         try:
             if journal is None:
                 raise NoticeError("nothing_recorded")
-            name = wish.name.strip()
+            run = self._states.loaded.spec.run
             plan = TrainingPlan(
                 journal=journal,
                 episodes=wish.episodes,
-                name=name,
+                name=wish.name.strip(),
                 model=wish.model,
                 latent_dim=wish.latent_dim,
                 out=self._out,
-                end_effector=self._end_effector(),
+                end_effector=None if run is None else read_run(run).end_effector,
             )
             self._job = TrainingJob(plan)
             self._training = self._job.look()
@@ -141,10 +136,6 @@ class Learning:
         loaded = self._states.loaded
         return Driven(loaded.spec.run, loaded.latent_dim, self._states.report)
 
-    def _end_effector(self) -> str | None:
-        run = self._states.loaded.spec.run
-        return None if run is None else read_run(run).end_effector
-
     async def _list_recordings(self) -> None:
         report = self._states.report
         recording = None if report is None else report.recording
@@ -173,6 +164,6 @@ class Learning:
             run=self._states.loaded.name,
             profiles=self._states.loaded.profiles,
         ).model_dump_json()
-        if text != self._text:
-            self._text = text
-            self._number += 1
+        if text != self.text:
+            self.text = text
+            self.number += 1

@@ -98,7 +98,9 @@ class LoadedRun:
             keep_out=tuple(one.name for one in setup.spec.keep_out),
             end_effector_modes=setup.axes,
             limits=Limits(latch_max_s=LATCH_MAX_S),
-            real=_found(setup) if self.real else None,
+            real=RealArm(facts=tuple(FoundFact(name=name, value=value) for name, value in setup.spec.found))
+            if self.real
+            else None,
             poses=tuple(self._poses),
             gripper_width_m=None if gripper is None else gripper.width_m,
             task=TaskToDo(
@@ -109,10 +111,6 @@ class LoadedRun:
                 steps=tuple(StepToDo(kind=step.kind, thing=step.thing) for step in setup.todo.steps),
             ),
         )
-
-
-def _found(setup: DriveSetup) -> RealArm:
-    return RealArm(facts=tuple(FoundFact(name=name, value=value) for name, value in setup.spec.found))
 
 
 def load_reported_run(spec: Spec, report: Report, name: str | None) -> LoadedRun:

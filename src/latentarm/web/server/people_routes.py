@@ -23,7 +23,7 @@ from latentarm.web.records.drives import Wanted
 from latentarm.web.records.people import PersonRecord, Settings
 from latentarm.web.records.pin import PIN
 from latentarm.web.records.records import Records
-from latentarm.web.server.answers import NO_STORE, body_of, guarded, json_answer, object_in, refusal
+from latentarm.web.server.answers import NO_STORE, body_of, guarded_routes, json_answer, object_in, refusal
 from latentarm.web.server.history import History
 from latentarm.web.server.pins import OPEN_S, Pins, cookie_of
 from latentarm.web.server.security import COOKIE
@@ -82,11 +82,7 @@ class PeopleRoutes:
             "/records/people/{person}/export": {"GET": self._export},
             IMPORT: {"POST": self._import},
         }
-        return [
-            Route(path, guarded(answer), methods=[method])
-            for path, methods in answers.items()
-            for method, answer in methods.items()
-        ]
+        return guarded_routes(answers)
 
     async def _people(self, _: Request) -> Response:
         await self._history.settled()

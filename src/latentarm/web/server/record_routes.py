@@ -14,7 +14,7 @@ from latentarm.web.protocol.notice import Message, NoticeError
 from latentarm.web.records.drive_record import DriveRecord
 from latentarm.web.records.drives import Wanted
 from latentarm.web.records.records import Records
-from latentarm.web.server.answers import NO_STORE, body_of, guarded, json_answer
+from latentarm.web.server.answers import NO_STORE, body_of, guarded_routes, json_answer
 from latentarm.web.server.history import History
 from latentarm.web.server.pins import Pins
 
@@ -75,11 +75,7 @@ class RecordRoutes:
             "/records/recordings/{name}": {"PUT": self._entitle_recording, "DELETE": self._delete_recording},
             "/records/recordings/{name}/restore": {"POST": self._restore_recording},
         }
-        return [
-            Route(path, guarded(answer), methods=[method])
-            for path, methods in answers.items()
-            for method, answer in methods.items()
-        ]
+        return guarded_routes(answers)
 
     async def _drives(self, request: Request) -> Response:
         await self._history.settled()

@@ -32,20 +32,16 @@ class Sessions:
     """At most one page drives; handing over is explicit on both sides.
 
     The first page drives. Later ones ask: they drive if nobody does, or when the driver hands over or lets
-    others drive. Inputs with an older `turn` are ignored. The co-pilot goes when the driver changes.
+    others drive. `turn` counts the changes of the driver: inputs with an older turn are ignored. The co-pilot
+    goes when the driver changes.
     """
 
     def __init__(self) -> None:
         self._pages: dict[str, Page] = {}
         self._driver: str | None = None
         self._asking: str | None = None
-        self._turn = 0
+        self.turn = 0
         self.copilot = Copilot()
-
-    @property
-    def turn(self) -> int:
-        """Changes with every change of the driver."""
-        return self._turn
 
     @property
     def driver(self) -> Page | None:
@@ -76,7 +72,7 @@ class Sessions:
             return None
         page = Page(
             secrets.token_hex(8),
-            (name or "").strip() or self._turn + len(self._pages) + 1,
+            (name or "").strip() or self.turn + len(self._pages) + 1,
             person,
         )
         self._pages[page.id] = page
@@ -117,7 +113,7 @@ class Sessions:
 
     def _give_to(self, page_id: str | None) -> None:
         self._driver = page_id
-        self._turn += 1
+        self.turn += 1
         self.copilot.end()
         if self._asking == page_id:
             self._asking = None

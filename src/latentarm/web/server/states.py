@@ -16,7 +16,7 @@ from latentarm.core.untrusted.terminal import one_line
 from latentarm.robots.kinematics.pose_rows import STORED
 from latentarm.web.protocol.copilot_messages import CopilotState, Person
 from latentarm.web.protocol.notice import Notice, notice_of
-from latentarm.web.protocol.report import Ghosts, GripperState, Report, Things
+from latentarm.web.protocol.report import Ghosts, Report, Things
 from latentarm.web.protocol.scene import pose_of
 from latentarm.web.protocol.server_messages import RecordingState, State
 from latentarm.web.server.loaded_run import (
@@ -75,6 +75,9 @@ class States:
     """The newest state of the arm, for pages to wait for.
 
     Attributes:
+        loaded: the setup that is driven.
+        loading: whether another setup is being loaded, here or in the control process.
+        report: the newest about `loaded`; None before the first.
         standstill: why the arm may not be enabled; None if it may.
         heard: called with every report about `loaded`.
     """
@@ -82,16 +85,16 @@ class States:
     def __init__(
         self, loaded: LoadedRun, control: "ControlProcess", sessions: Sessions, run_list: RunList
     ) -> None:
-        self._loaded = loaded
+        self.loaded = loaded
         self._control = control
         self._sessions = sessions
         self.standstill: Notice | None = None
         self.heard: list[Callable[[Report], None]] = []
         self._run_list = run_list
-        self._loading = False
+        self.loading = False
         self._failed: tuple[Beginning, Notice] | None = None
         self._changing: asyncio.Task[None] | None = None
-        self._report: Report | None = None
+        self.report: Report | None = None
         self._heard_s = time.monotonic()
         self._trail = 0
         self._changed = asyncio.Event()
@@ -123,7 +126,7 @@ class States:
 
     async def after(self, number: int) -> int:
         """Wait for a state newer than this number, and return the newest one's number."""
-        while self._number <= number or self._report is None:
+        while self._number <= number or self.report is None:
             await self._changed.wait()
         return self._number
 
@@ -142,29 +145,14 @@ class States:
         """Empty the trail on every page."""
         self._trail += 1
 
-    @property
-    def report(self) -> Report | None:
-        """The newest report about `loaded`."""
-        return self._report
-
     def journal(self) -> Path | None:
         """The journal that is or was last recorded to; None if nothing ever was."""
-        recording = None if self._report is None else self._report.recording
+        recording = None if self.report is None else self.report.recording
         return None if recording is None else Path(recording.journal)
-
-    @property
-    def loaded(self) -> LoadedRun:
-        """What is driven."""
-        return self._loaded
-
-    @property
-    def loading(self) -> bool:
-        """Whether another setup is being loaded, here or in the control process."""
-        return self._loading
 
     def text(self, page: Page, shown: PageMemory) -> str:
         """The newest state as JSON, for a page."""
-        report = self._report
+        report = self.report
         if report is None:
             raise RuntimeError("there is no report yet")
         ghosts = report.ghosts is not None and shown.new_ghosts(report.ghosts)
@@ -182,28 +170,28 @@ class States:
 
     def _take(self, report: Report) -> None:
         """Keep a report; if it is about another run or beginning, load that first."""
-        if self._loaded.shows(report):
-            moved = self._report is not None and _rounded(report.tool) != _rounded(self._report.tool)
+        if self.loaded.shows(report):
+            moved = self.report is not None and _rounded(report.tool) != _rounded(self.report.tool)
             if moved and not self._moves:
                 self._set_off.set()
                 self._set_off.clear()
             self._moves = moved
-            self._report = report
+            self.report = report
             self._things = report.things or self._things
-            self._loading = report.loading
+            self.loading = report.loading
             self._failed = None
             for hear in self.heard:
                 hear(report)
         elif self._changing is None and (self._failed is None or self._failed[0] != beginning_of(report)):
             self._failed = None
-            self._loading = True
+            self.loading = True
             self._changing = asyncio.create_task(self._change(report))
 
     async def _change(self, report: Report) -> None:
         name = self._run_list.name_of(None if report.run is None else Path(report.run))
         try:
-            self._loaded = await asyncio.to_thread(load_reported_run, self._loaded.spec, report, name)
-            self._report = report
+            self.loaded = await asyncio.to_thread(load_reported_run, self.loaded.spec, report, name)
+            self.report = report
             self._things = None
         except UserError as error:
             self._failed = beginning_of(report), notice_of(error)
@@ -244,7 +232,8 @@ class States:
             profile=report.profile,
             bodies=self._bodies(report),
             tool=_rounded(report.tool),
-            gripper=report.gripper and _shown_gripper(report.gripper),
+            gripper=report.gripper
+            and report.gripper.model_copy(update={"width_m": round(report.gripper.width_m, 4)}),
             task=report.task,
             things=self._things if things else None,
             ghosts=report.ghosts if ghosts else None,
@@ -285,20 +274,20 @@ class States:
 
     def _away(self, now_s: float) -> bool:
         """Whether the newest report is out of date."""
-        return self._loading or now_s - self._heard_s > SILENT_S
+        return self.loading or now_s - self._heard_s > SILENT_S
 
     def _why_away(self) -> Notice:
         if not self._control.alive:
             return Notice(code="arm_process_ended")
-        if not self._loading:
+        if not self.loading:
             return Notice(code="arm_process_silent")
         if self._failed is not None:
             return self._failed[1]
-        connecting = self._report is not None and self._report.lost
+        connecting = self.report is not None and self.report.lost
         return Notice(code="reconnecting" if connecting else "loading_run")
 
     def _bodies(self, report: Report) -> tuple[tuple[float, ...], ...]:
-        links = self._loaded.chain.link_transforms(np.array(report.q))
+        links = self.loaded.chain.link_transforms(np.array(report.q))
         frames = np.concatenate([np.eye(4)[None], links])
         return tuple(tuple(round(value, 4) for value in pose) for pose in pose_of(frames).tolist())
 
@@ -307,7 +296,7 @@ class States:
         if report.bound_rad is None or not report.belief:
             return None
         likeliest = int(np.argmax(report.belief))
-        return round(report.bound_rad * self._loaded.goals_m_per_rad[likeliest], 4)
+        return round(report.bound_rad * self.loaded.goals_m_per_rad[likeliest], 4)
 
 
 def _moved(before: Ghosts, after: Ghosts) -> float:
@@ -327,8 +316,3 @@ def _moved(before: Ghosts, after: Ghosts) -> float:
 def _rounded(point: tuple[float, float, float]) -> tuple[float, float, float]:
     x, y, z = point
     return round(x, 4), round(y, 4), round(z, 4)
-
-
-def _shown_gripper(gripper: GripperState) -> GripperState:
-    """With its width rounded to tenths of a millimetre."""
-    return gripper.model_copy(update={"width_m": round(gripper.width_m, 4)})
