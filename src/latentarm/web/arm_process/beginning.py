@@ -22,20 +22,20 @@ from latentarm.tasks.place import Place, ScenePlace
 from latentarm.web.arm_process.task_run import Todo, goal_to_reach, things_to_do
 
 FREE: Final = "free"
-"""What is done where no task is named: nothing in particular."""
+"""Name of the task where none is named: nothing in particular is to be done."""
 
 MOST_THINGS: Final = 200
 MOST_GRAINS: Final = 2000
-"""Largest sizes that fit into the report of a tick."""
+"""Largest numbers that fit into a tick's report."""
 
 
 @final
 @dataclass(frozen=True)
 class RobotOptions:
-    """Which robot is driven, where the run or the task is not to say.
+    """Which robot is driven, where neither run nor task says so.
 
     Attributes:
-        robot: its name or model file.
+        robot: a name or a model file.
         end_effector: site, body or link of a model file.
         limits: a limits file.
     """
@@ -46,10 +46,10 @@ class RobotOptions:
 
     @property
     def stated(self) -> StatedLimits | None:
-        """What the limits file says.
+        """The limits file's content.
 
         Raises:
-            UserError: it cannot be read.
+            UserError: the file cannot be read.
         """
         return None if self.limits is None else read_limits(self.limits)
 
@@ -57,13 +57,11 @@ class RobotOptions:
 @final
 @dataclass(frozen=True, eq=False)
 class Begun:
-    """How a run of a task begins.
+    """The initial state of a task run.
 
     Attributes:
-        place: where the arm is driven.
         start: (n,), where a simulated arm starts, and where the way back leads, rad.
-        todo: what is to be done.
-        scene: what stands about a simulated arm, or None where things are of no account.
+        scene: the things about a simulated arm; None where they do not count.
     """
 
     place: Place
@@ -81,9 +79,9 @@ def begin(
         run: what is driven, or None.
         task: a name of the catalogue; None for the run's own, or a table.
         arm: a name of `latentarm.arms.catalogue`.
-        choice: index of what is done.
-        robot: where it is not that of the run or the task.
-        rng: of where the arm starts and where things stand.
+        choice: index of what is to be done.
+        robot: used where neither run nor task names one.
+        rng: for where the arm starts and where things stand.
 
     Raises:
         UserError: any of these does not exist, or they do not fit each other.
@@ -107,14 +105,14 @@ def begin(
 def begin_real(run: Run | None, task: str | None, choice: int, robot: RobotOptions) -> Begun:
     """Begin with a real arm, wherever it is.
 
-    Nobody sees what stands about a real arm. Of a task with things only the robot and what it must keep clear
-    of count; goals are those of a run's demonstrations, or of a task that was named.
+    Nothing detects the things about a real arm. Of a task with things only the robot and its obstacles count;
+    goals are those of a run's demonstrations, or of a task that was named.
 
     Args:
         run: what is driven, or None.
         task: a name of the catalogue; None for the run's own, or for nothing in particular.
-        choice: index of what is done.
-        robot: where it is not that of the run or the task.
+        choice: index of what is to be done.
+        robot: used where neither run nor task names one.
 
     Raises:
         UserError: any of these does not exist, or they do not fit each other.

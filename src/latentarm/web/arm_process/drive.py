@@ -57,7 +57,7 @@ NOTE_S: Final = 6.0
 """How long a refusal is shown instead of the arm's state, s."""
 
 Change = ChooseProfile | ChooseRun | Reset | BeginTask | Reconnect
-"""Orders that end the loop so that it can start again with another setup."""
+"""Orders that end the loop, to restart it with another setup."""
 
 _HELD_BACK: Final[dict[str, HeldBack]] = {
     "clearance": "clearance",
@@ -71,12 +71,12 @@ _ORDERS_PER_TICK: Final = 4
 _LOOK_EVERY: Final = 10
 _STATISTICS_EVERY: Final = 100
 _SPARE_S: Final = 0.004
-"""Deferrable work is done in a tick only if this much of the tick is left."""
+"""Deferrable work needs this much time before the next tick, s."""
 
 
 @final
 class Drive:
-    """Everything that the control loop's thread does with one setup, apart from the control loop itself.
+    """The work of the control loop's thread for one setup, apart from the loop itself.
 
     It takes a few hundred microseconds a tick. Stops are checked in every tick, however full the pipe of
     orders is.
@@ -88,13 +88,13 @@ class Drive:
         clock: the loop's.
         writer: records.
         orphaned: whether the page's server is gone.
-        steering: goes on from the drive before.
+        steering: state from the drive before.
         note: shown to the person first; None for nothing.
         observers: also called after every command.
-        calls: where everything that the arm's `Step` is told is recorded; None for nowhere.
+        calls: records every call of the arm's `Step`; None for nowhere.
 
     Attributes:
-        change: the order that ended the loop to start it again; None if it ended for good.
+        change: the order that ended the loop to restart it; None if it ended for good.
     """
 
     def __init__(
@@ -148,14 +148,7 @@ class Drive:
         self._choose(steering.mode, steering.axes, steering.help)
 
     def run(self, ticks: int | None = None) -> Change | None:
-        """Drive until something else is to be driven, or the process is to end.
-
-        Args:
-            ticks: to end after so many.
-
-        Returns:
-            See `change`.
-        """
+        """Drive until `change` is due or the process ends; ``ticks`` limits it."""
         # The loop begins anew, and would begin in the first mode.
         self._loop.run(ticks, self._mode_index)
         return self.change
@@ -209,7 +202,7 @@ class Drive:
         self._loop.stop(reason.text)
 
     def _end_guiding(self, reason: Notice) -> None:
-        """End it where it is under way; the arm may not move for this reason."""
+        """End guiding by hand, if it is under way, and keep the arm stopped for this reason."""
         if self._standing.end_guiding():
             self._step.refuse(Stop(reason.text))
             self._reasons[reason.text] = reason
@@ -283,7 +276,7 @@ class Drive:
         self._step.choose_mode(self._mode_index)
 
     def _choose_help(self, level: HelpLevel) -> None:
-        """A level for now where latent actions are driven, and else for when they will be."""
+        """Set the level now if latent actions are driven, else for the next time that they are."""
         if "assisted" not in self._setup.modes:
             return
         if self._steering.mode == "end_effector":
@@ -313,7 +306,7 @@ class Drive:
         self._choose(self._steering.mode, self._steering.axes, self._steering.help)
 
     def _follow_way_back(self, record: StepRecord) -> None:
-        """End the way back where it is over, or the arm was stopped."""
+        """End the way back when it is over or the arm was stopped."""
         if not self._way_back.on:
             if record.input.any() and self._note is not None and self._note == self._ended:
                 self._note_until_s = -math.inf
@@ -357,7 +350,6 @@ class Drive:
 
     @property
     def _mode_index(self) -> int:
-        """Which of the controller's modes the person has chosen."""
         return self._setup.mode_index(self._steering.mode, self._steering.axes)
 
     def _phase(self) -> Phase:
@@ -369,7 +361,6 @@ class Drive:
         return "neutral_needed" if self._inputs.fresh and self._inputs.deflected else "disengaged"
 
     def _reason(self, stop: Stop | None) -> Notice | None:
-        """Why the arm may not move."""
         if stop is None:
             return None
         return self._reasons.get(stop.reason) or notice_of_stop(stop)

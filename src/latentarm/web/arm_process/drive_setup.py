@@ -1,4 +1,4 @@
-"""What a page drives: the task, its modes and their controllers. Used by both processes."""
+"""The setup of a drive: the task, its modes and their controllers. Both processes use it."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
@@ -42,10 +42,9 @@ from latentarm.web.arm_process.task_run import Todo
 from latentarm.web.protocol.orders import HelpLevel, ModeName
 
 SEEDS: Final = 2**31
-"""How many seeds there are."""
 
 PERIOD_S: Final = 0.01
-"""Period of the control loop: 100 Hz, the highest rate at which a real arm is driven from Python."""
+"""Period of the control loop: 100 Hz, the highest rate at which Python drives a real arm."""
 
 BELIEF_PERIOD_S: Final = 0.1
 """How often the belief is updated, s."""
@@ -59,10 +58,10 @@ RELEASE_FRACTION: Final = 0.8
 
 MOST_JOINTS: Final = 64
 MOST_GOALS: Final = 200
-"""Largest sizes that fit into the report of a tick."""
+"""Largest numbers that fit into a tick's report."""
 
 COMMAND_PERIODS: Final = 5.0
-"""How many periods a command lasts: a shared computer may hold the loop up for 50 ms before the arm stops."""
+"""Periods that a command lasts: a shared computer may hold the loop up for 50 ms before the arm stops."""
 
 
 @final
@@ -73,19 +72,17 @@ class Spec:
     Attributes:
         run: a trained run, or None for end-effector control alone at the table-top task.
         profile: the person whose alignment is used, or None.
-        seed: of where the arm starts and where things stand.
+        seed: for where the arm starts and where things stand.
         out: folder for recordings.
-        journal: how much room a recording may take.
-        arm: what moves, a name of `latentarm.arms.catalogue` or the address of a real arm; None for the
-            task's usual one.
+        arm: a name of `latentarm.arms.catalogue` or the address of a real arm; None for the task's usual one.
         task: a name of `latentarm.tasks.catalogue`; None for the run's own, or the table-top task.
         choice: index of what is done first, of the task's choices or goals.
-        robot: which robot, where the run or the task is not to say.
-        found: what was found out about a real arm, names and values.
+        robot: used where neither run nor task names one.
+        found: names and values found out about a real arm.
         zones: where the arm is slow.
-        keep_out: what it must keep clear of, besides what the task says.
-        speeds: how fast it may move anywhere.
-        incidents: whether what the arm is told is kept for a while, see `latentarm.web.arm_process.incident`.
+        keep_out: obstacles besides the task's.
+        speeds: limits everywhere.
+        incidents: whether calls are kept for a while, see `latentarm.web.arm_process.incident`.
         seat: where a person without a profile sits, see `latent_controller`; None for z = u.
 
     Raises:
@@ -117,29 +114,25 @@ class Spec:
             )
 
     def seated(self, seat: Seat | None) -> Seat | None:
-        """What ``seat`` becomes where a person says where they sit, or None says nothing; z = u stays."""
+        """The seat after a person says where they sit, or None for nothing; z = u stays."""
         return self.seat and (seat or self.seat)
 
 
 @final
 @dataclass(frozen=True, eq=False)
 class DriveSetup:
-    """Everything that a spec names, loaded.
+    """A spec, loaded.
 
     Attributes:
-        spec: what was asked for.
-        arm: what moves, a name of `latentarm.arms.catalogue` or the address of a real arm.
-        task: the robot, its goals and what it must keep clear of.
-        controller: all modes: the latent actions first where there are any, then the pairs of axes of the
+        arm: a name of `latentarm.arms.catalogue` or the address of a real arm.
+        controller: all modes: the latent actions first, if there are any, then the pairs of axes of the
             end-effector.
         latent_dim: d, axes of the latent actions; 0 without a run.
         axes: names of the pairs of axes of end-effector control.
-        help: how much the robot helps.
-        start: (n,), where a simulated arm starts, and where the way back leads, rad; of a real arm where it
+        start: (n,), where a simulated arm starts, and where the way back leads, rad; for a real arm where it
             stood when it was connected.
-        todo: what is to be done.
         run_fingerprint: of the run's weights; "" without a run.
-        scene: what stands about the arm, or None where things are of no account.
+        scene: the things about the arm; None where they do not count.
     """
 
     spec: Spec
@@ -156,12 +149,12 @@ class DriveSetup:
 
     @property
     def real(self) -> bool:
-        """Whether the arm exists: it is where it is, and nobody sees what stands about it."""
+        """Whether the arm is real: it stays where it is, and nothing detects the things about it."""
         return is_address(self.arm)
 
     @property
     def obstacles(self) -> tuple[Obstacle, ...]:
-        """What the arm must keep clear of."""
+        """The task's obstacles and those of the spec."""
         return (*self.task.obstacles, *self.spec.keep_out)
 
     @property
@@ -172,26 +165,21 @@ class DriveSetup:
         return ("latent", "assisted", "end_effector") if self.task.goals else ("latent", "end_effector")
 
     def first_mode(self, help_: HelpLevel) -> ModeName:
-        """How the arm is steered at first: by the latent actions, with help unless it is ``off``."""
+        """The mode at first: latent actions, with help unless it is ``off``."""
         return "assisted" if "assisted" in self.modes and help_ != "off" else self.modes[0]
 
     @property
     def objects(self) -> tuple[str, ...]:
-        """Names of the things that matter for the task; empty where it does not say."""
+        """Names of the things that matter for the task; empty if it does not say."""
         return self.task.objects if isinstance(self.task, ScenePlace) else ()
 
     @property
     def shown(self) -> Scene | None:
-        """What pages draw about the arm: what is in physics, or else what the task says stands there."""
+        """The scene that pages draw: the one in physics, else the task's."""
         return self.task.shown if self.scene is None and isinstance(self.task, Task) else self.scene
 
     def mode_index(self, mode: ModeName, axes: int) -> int:
-        """Index into the controller's modes.
-
-        Args:
-            mode: one of `modes`.
-            axes: which pair of axes end-effector control moves.
-        """
+        """Index into the controller's modes; ``axes`` is a pair of axes of end-effector control."""
         return (1 if self.latent_dim else 0) + axes if mode == "end_effector" else 0
 
     def episode(self, things: tuple[str, ...], controller: str, task: str, person: str) -> EpisodeHeader:
@@ -200,8 +188,8 @@ class DriveSetup:
         Args:
             things: names of those whose poses are recorded.
             controller: how the arm is steered, or `BY_HAND`.
-            task: what is done, in words.
-            person: who drives; "" where that is unknown.
+            task: in words.
+            person: who drives; "" if unknown.
         """
         robot, spec = self.task.robot, self.spec
         return EpisodeHeader(
@@ -227,19 +215,15 @@ class DriveSetup:
 
     @property
     def way_back(self) -> int:
-        """Index of the mode that `step` has after those of the controller: slow motions to a pose."""
+        """Index of the mode after those of the controller: slow motions to a pose."""
         return len(self.controller.modes)
 
     def to_pose(self) -> ToPose:
-        """Slow motions to a pose; to the start at first."""
+        """A controller of slow motions to a pose; to the start at first."""
         return ToPose(self.task.robot, self.start)
 
     def surroundings(self, arm: Arm | None) -> Callable[[], FloatArray] | None:
-        """What tells `step` where the things are that the controller looks at.
-
-        Args:
-            arm: what is driven, which says where they are by now; None for where they begin.
-        """
+        """Where the things are that the controller uses; None for ``arm`` takes their initial poses."""
         objects = self.controller.objects
         if self.scene is None:
             return surroundings_of(self.task, objects)
@@ -258,7 +242,7 @@ class DriveSetup:
 
         Args:
             surroundings: see `Step`; None for things that stand where they begin.
-            to_pose: the controller of the slow motions; None where nobody tells it where to lead.
+            to_pose: the controller of the slow motions; None for one that leads to the start.
             calls: see `Step`.
         """
         goals = np.array([goal.configuration for goal in self.task.goals])
@@ -285,15 +269,10 @@ class DriveSetup:
 
 
 def with_profile(setup: DriveSetup, profile: str | None, seat: Seat | None) -> DriveSetup:
-    """The same setup with another person's alignment; neither dataset nor robot is read again.
-
-    Args:
-        setup: what is driven.
-        profile: whose alignment, or None.
-        seat: see `Spec`.
+    """The same setup with another alignment and seat; neither dataset nor robot is read again.
 
     Raises:
-        UserError: no run is driven, or the profile or the model cannot be used.
+        UserError: the profile or the model cannot be used.
     """
     spec = replace(setup.spec, profile=profile, seat=seat)
     if spec.run is None:
@@ -304,7 +283,7 @@ def with_profile(setup: DriveSetup, profile: str | None, seat: Seat | None) -> D
 
 
 def load_setup(spec: Spec) -> DriveSetup:
-    """Load what a spec names.
+    """Load a spec.
 
     Raises:
         UserError: the arm, the run, its dataset or the profile cannot be loaded, or do not fit each other.
@@ -345,7 +324,7 @@ def load_setup(spec: Spec) -> DriveSetup:
 
 
 def _check_blind(run: Run, setup: DriveSetup) -> None:
-    """Refuse a model that must know of things or goals which nobody sees about a real arm."""
+    """Refuse a model that needs things or goals, which nothing detects about a real arm."""
     if setup.controller.objects:
         raise UserError(
             f"{run.folder} looks at where {', '.join(setup.controller.objects)} are, and nothing sees them"

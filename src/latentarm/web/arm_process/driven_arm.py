@@ -1,4 +1,4 @@
-"""The arm that a control process drives: a simulated one is made anew for each start, a real one never."""
+"""The arm of a control process: a simulated one is made anew for each start, a real one never."""
 
 from dataclasses import replace
 
@@ -13,7 +13,7 @@ from latentarm.web.arm_process.drive_setup import DriveSetup
 
 
 def first_arm(setup: DriveSetup, clock: Clock) -> Arm:
-    """The arm of a setup, connected.
+    """Make and connect the arm of a setup.
 
     Raises:
         UserError: it cannot be made or connected.
@@ -28,24 +28,13 @@ def first_arm(setup: DriveSetup, clock: Clock) -> Arm:
 
 
 def from_where_it_stands(setup: DriveSetup, arm: Arm) -> DriveSetup:
-    """The setup whose way back leads to where a real arm stands now; a simulated arm has its own start.
-
-    Args:
-        setup: what is driven.
-        arm: connected.
-    """
+    """The setup whose way back leads to where a real arm stands now; a simulated arm has its own start."""
     q = arm.read().q
     return replace(setup, start=np.array(q)) if setup.real and np.isfinite(q).all() else setup
 
 
 def next_arm(setup: DriveSetup, before: DriveSetup, arm: Arm, clock: Clock) -> Arm:
-    """The arm for what is driven next: a real one stays as it is, and where it is.
-
-    Args:
-        setup: what is driven next.
-        before: what was driven.
-        arm: what moved then.
-        clock: the loop's.
+    """The arm for the next setup: a simulated one is new, a real one stays.
 
     Raises:
         UserError: the arm is real and connected as another robot, or a simulated one cannot be made.
@@ -62,7 +51,7 @@ def next_arm(setup: DriveSetup, before: DriveSetup, arm: Arm, clock: Clock) -> A
 
 
 def _alike(one: Robot, other: Robot) -> bool:
-    """Whether a driver that was made for one robot is right for the other, whatever they are called."""
+    """Whether a driver that was made for one robot suits the other, whatever they are called."""
     here, there = one.limits, other.limits
     return (
         one.joint_names == other.joint_names

@@ -1,4 +1,4 @@
-"""When an episode of a drive begins and ends, and what it is called."""
+"""Begins and ends the episodes of a drive."""
 
 from typing import final
 
@@ -14,15 +14,7 @@ from latentarm.web.protocol.orders import Record
 
 @final
 class Episodes:
-    """An episode is one motion of one person's: driven, or guided by hand.
-
-    Args:
-        setup: what is driven.
-        writer: records.
-        steering: knows the mode, and whether the episode under way is to end.
-        inputs: know which devices were used.
-        whereabouts: of the things.
-    """
+    """An episode is one motion by one person: driven, or guided by hand."""
 
     def __init__(
         self,
@@ -41,7 +33,7 @@ class Episodes:
 
     @property
     def by_hand(self) -> bool:
-        """Whether an episode is under way in which the arm is guided by hand."""
+        """Whether an episode by hand is under way."""
         return self._writer.on and self._by_hand
 
     def begin(self, order: Record) -> None:
@@ -63,12 +55,7 @@ class Episodes:
         self._steering.ending_episode = False
 
     def follow(self, record: StepRecord, *, at_rest: bool) -> None:
-        """Add a step.
-
-        Args:
-            record: the step.
-            at_rest: whether the arm is told to stand still.
-        """
+        """Add a step; ``at_rest``: whether the arm's command is to stand still."""
         self._writer.add(record)
         if self._steering.ending_episode and at_rest:
             self.end()

@@ -1,4 +1,4 @@
-"""How much is in the cups and bowls of a task in which something is poured."""
+"""How full the cups and bowls of a pouring task are."""
 
 from dataclasses import dataclass
 from typing import Final, final
@@ -10,19 +10,19 @@ from latentarm.tasks.scene_task import Beginning
 from latentarm.web.protocol.report import Fill
 
 SETTLES_S: Final = 1.0
-"""What is poured falls for no longer than this, s."""
+"""Poured grains settle within this time, s."""
 
 
 @final
 @dataclass(frozen=True)
 class Vessel:
-    """What something is poured from, or into.
+    """A vessel to pour from or into.
 
     Attributes:
         name: of the container.
-        room: in it.
+        room: its interior.
         grains: name of what is poured.
-        enough: share of the grains that must be in it, in (0, 1]; None for what is poured from.
+        enough: share of the grains that must be in it, in (0, 1]; None for the vessel poured from.
     """
 
     name: str
@@ -32,11 +32,7 @@ class Vessel:
 
 
 def vessels(begun: Beginning) -> tuple[Vessel, ...]:
-    """What is poured from and into in a run, in the order of its steps.
-
-    Args:
-        begun: how the run begins.
-    """
+    """The vessels of a run, in the order of its steps."""
     found: dict[str, Vessel] = {}
     for step in begun.steps:
         poured = step.done
@@ -50,10 +46,11 @@ def vessels(begun: Beginning) -> tuple[Vessel, ...]:
 
 @final
 class Fills:
-    """How full the vessels of a run are, and whether what is left is enough.
+    """How full the vessels of a run are, and whether too little is left to pour.
 
-    Args:
-        found: from `vessels`.
+    Attributes:
+        now: the newest levels.
+        short: whether too little is left.
     """
 
     def __init__(self, found: tuple[Vessel, ...]) -> None:
@@ -63,12 +60,7 @@ class Fills:
         self.short = False
 
     def see(self, state: SceneState, time_s: float) -> None:
-        """Take how things stand.
-
-        Args:
-            state: of the scene.
-            time_s: the clock, s.
-        """
+        """Update from the scene at the clock's time, s."""
         self.now = tuple(_fill_of(vessel, state) for vessel in self._vessels)
         left = sum(one.share for one in self.now if one.enough is None)
         wanted = sum(max(one.enough - one.share, 0.0) for one in self.now if one.enough is not None)

@@ -1,4 +1,4 @@
-"""What each direction of the stick would do now: the tool's path over the next second."""
+"""Predicts the tool's path over the next second for each direction of the stick."""
 
 from dataclasses import dataclass, replace
 from typing import Final, final
@@ -27,12 +27,7 @@ _STRETCH_S: Final = AHEAD_S / STRETCHES
 @final
 @dataclass(frozen=True)
 class Meaning:
-    """What a push of the stick means.
-
-    Attributes:
-        mode: index of the controller's mode.
-        help: how much the robot helps.
-    """
+    """Decides what a push does: the index of the controller's mode, and the level of help."""
 
     mode: int
     help: HelpLevel
@@ -41,13 +36,12 @@ class Meaning:
 @final
 @dataclass(eq=False)
 class _Way:
-    """How far the arm has come, in imagination, along every direction.
+    """The prediction so far, along every direction.
 
     Attributes:
-        meaning: of a push.
         context: of the moment at which it began.
-        q: (K, n), joint positions now, rad.
-        transforms: (K, n, 4, 4), of the links now.
+        q: (K, n), joint positions, rad.
+        transforms: (K, n, 4, 4), of the links.
         heights: (K, capsules, planes), see `GhostPaths._heights`, m.
         points: where the tool was after each stretch so far, (K, 3), m.
     """
@@ -62,18 +56,12 @@ class _Way:
 
 @final
 class GhostPaths:
-    """Looks ahead along full deflections in every direction at once, one stretch of the way at a time.
+    """Predicts full deflections in every direction at once, one stretch of the way at a time.
 
-    The look ahead holds the deflection and the belief, integrates what the controller and the robot's help
-    want in as many steps as there are stretches, and keeps the limits of joints, speed and of the planes
-    (table, walls) that the arm must not pass. It leaves out ramps, zones, and obstacles that are not planes.
-    It is for display only; the safety filters decide.
-
-    Args:
-        task: the robot and its goals.
-        controller: what a deflection asks for.
-        help_: how much the robot helps.
-        limits: of the drive, and what it must keep clear of.
+    The prediction holds the deflection and the belief, integrates the velocities of the controller and of the
+    robot's help in as many steps as there are stretches, and keeps the limits of joints, speed and planes
+    (table, walls). It leaves out ramps, zones, and obstacles that are not planes. It is for display only; the
+    safety filters decide.
     """
 
     def __init__(self, task: Place, controller: Controller, help_: Help, limits: SafetyConfig) -> None:
@@ -96,20 +84,16 @@ class GhostPaths:
         self._whole: tuple[Meaning, Ghosts] | None = None
 
     def newest(self, mode: int) -> Ghosts:
-        """Every direction, or none until all have been computed for what a push means now.
-
-        Args:
-            mode: index of the controller's mode.
-        """
+        """Every direction in this mode, or `NO_GHOSTS` until all have been computed."""
         if self._whole is None or self._whole[0] != Meaning(mode, self._help.level):
             return NO_GHOSTS
         return self._whole[1]
 
     def look(self, context: Context, mode: int) -> None:
-        """Look along the next stretch; after the last one, `newest` is renewed.
+        """Predict the next stretch; after the last one, `newest` is renewed.
 
         Args:
-            context: of this moment; with the first stretch it is kept for the others.
+            context: of this moment; the first stretch's is kept for the others.
             mode: index of the controller's mode.
         """
         meaning = Meaning(mode, self._help.level)
@@ -140,7 +124,7 @@ class GhostPaths:
         return _Way(meaning, context, q, transforms, self._heights(transforms), [])
 
     def _wanted(self, context: Context, mode: int) -> FloatArray:
-        """Joint velocities (K, n), rad/s."""
+        """Joint velocities, (K, n), rad/s."""
         controller, help_ = self._controller, self._help
         action = controller.action(controller.latent(self._pushes, context, mode), context, mode)
         if not help_.on:

@@ -1,4 +1,4 @@
-"""Where a person brings the tool next: the waypoints of a task's steps, at the pace of the person."""
+"""Where a person brings the tool next: the waypoints of a task's steps, at the person's pace."""
 
 from typing import Final, Literal, final
 
@@ -12,15 +12,15 @@ from latentarm.web.protocol.report import Point, ToGo
 
 _METRES: Final = 4
 _RADIANS: Final = 3
-"""Digits that are told."""
+"""Digits that pages receive."""
 
 
 @final
 class Guide:
     """Leads from one waypoint of a step to the next.
 
-    The clock leads simulated drives on from a waypoint at which the gripper closes. Here the person does, who
-    may take their time.
+    For simulated drives the clock leads on from a waypoint at which the gripper closes. Here the person does,
+    and may take their time.
     """
 
     def __init__(self) -> None:
@@ -29,12 +29,7 @@ class Guide:
         self._arrived_s: float | None = None
 
     def look(self, step: TaskStep | None, state: SceneState) -> ToGo | None:
-        """What is left of the way, as things stand now.
-
-        Args:
-            step: that is to be done now; None where nothing is left to do.
-            state: with a clock that goes on.
-        """
+        """The remaining way in the step; None where nothing is left to do. ``state`` has a running clock."""
         if step is not self._step:
             self._step = step
             self._index, self._arrived_s = 0, None
@@ -63,7 +58,7 @@ class Guide:
 
 
 def _still_asked(waypoint: Waypoint, state: SceneState) -> Literal["open", "close"] | None:
-    """What is asked of the gripper there and has not been done."""
+    """The gripper's action at this waypoint, if it has not been done."""
     match waypoint.gripper:
         case "close" if not state.gripped:
             return "close"

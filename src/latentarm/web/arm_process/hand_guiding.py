@@ -1,4 +1,4 @@
-"""Guiding an arm by hand, as long as the page of the person who asked for it is there."""
+"""Guiding an arm by hand, while the page of the person who asked for it is connected."""
 
 import math
 from typing import Final, Literal, final
@@ -14,16 +14,14 @@ from latentarm.web.protocol.notice import Notice, notice_of
 from latentarm.web.protocol.report import Guiding
 
 PAGE_S: Final = 1.0
-"""A page that has said nothing for so long is gone, and guiding ends: it speaks five times as often, s."""
+"""Guiding ends when the page has been silent for so long, s; it speaks five times as often."""
 
 
 @final
 class HandGuiding:
-    """Begins and ends guiding. The arm's loop goes on, disengaged, and moves the gripper as is asked here.
+    """Begins and ends guiding. The arm's loop goes on, disengaged, and moves the gripper on request.
 
-    Args:
-        arm: what is driven; guiding is offered where it is a `GuidableArm`.
-        step: gets what is asked of the gripper.
+    ``arm`` can be guided if it is a `GuidableArm`.
     """
 
     def __init__(self, arm: Arm, step: Step) -> None:
@@ -37,7 +35,7 @@ class HandGuiding:
 
     @property
     def state(self) -> Guiding | None:
-        """What a page is told; None where the arm cannot be guided."""
+        """The state for pages; None if the arm cannot be guided."""
         if self._arm is None:
             return None
         if self._doing == "guiding":
@@ -55,32 +53,19 @@ class HandGuiding:
         return self.state in ("on", "own")
 
     def begin(self, time_s: float) -> None:
-        """Ask for it; nothing where the arm cannot be guided, or it is under way.
-
-        Args:
-            time_s: the loop's clock, s.
-        """
+        """Ask the arm for it at the loop's time, s; ignored if it cannot be guided, or is already."""
         if self._arm is not None and self._doing == "nothing":
             self._doing, self._told = "asking", False
             self._since_s = self._heard_s = time_s
 
     def keep(self, time_s: float, ask: GripperAsk | None) -> None:
-        """The page is still there.
-
-        Args:
-            time_s: the loop's clock, s.
-            ask: what is asked of the gripper, or None.
-        """
+        """Note that the page is still there, at the loop's time, s, and what it asks of the gripper."""
         self._heard_s = time_s
         if ask is not None and self._doing == "guiding":
             self._ask = ask
 
     def end(self) -> bool:
-        """Let the arm hold its position.
-
-        Returns:
-            Whether it was under way.
-        """
+        """Let the arm hold its position; returns whether guiding was under way."""
         if self._arm is None or self._doing == "nothing":
             return False
         self._doing, self._ask = "nothing", None
@@ -88,14 +73,7 @@ class HandGuiding:
         return True
 
     def follow(self, time_s: float) -> Notice | None:
-        """Go on, or end it where the arm or the page does.
-
-        Args:
-            time_s: the loop's clock, s.
-
-        Returns:
-            What people are told of it, or None.
-        """
+        """Advance to the loop's time, s, or end it with the arm or the page; returns a notice for people."""
         if self._arm is None or self._doing == "nothing":
             return None
         if time_s - self._heard_s > PAGE_S:
@@ -113,7 +91,7 @@ class HandGuiding:
         return Notice(code="guiding_ended") if status.phase == "disabled" else why_not(status)
 
     def _ask_for_it(self, arm: GuidableArm) -> Notice | None:
-        """Take the arm where it can be asked, and ask."""
+        """Disable the arm if it takes commands; ask it once it is disabled."""
         status = arm.status()
         if status.takes_commands:
             arm.disable()

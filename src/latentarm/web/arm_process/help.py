@@ -8,7 +8,6 @@ from latentarm.core.types import FloatArray
 from latentarm.web.protocol.orders import HelpLevel
 
 USUAL_HELP: Final[HelpLevel] = "medium"
-"""The level at the start."""
 
 LEVELS: Final[dict[HelpLevel, Arbitration]] = {
     "off": FixedAlpha(0.0),
@@ -17,10 +16,9 @@ LEVELS: Final[dict[HelpLevel, Arbitration]] = {
     "high": ConfidenceAlpha(0.3),
 }
 """Help grows with the robot's confidence, and stays at zero until the robot can tell what the person wants.
-
-Measured by ``scripts/help_levels.py``: ``medium`` halves the mean time to what the robot knows of, and lets
-as many reach something else as without help (14 of 15 simulated drives); ``high`` takes a little less time,
-and keeps most people from anything else."""
+Measured in simulation: ``medium`` halves the mean time to goals that the robot knows, and lets as many reach
+something else as without help (14 of 15 simulated drives); ``high`` takes a little less time, and keeps most
+people from anything else."""
 
 
 @final
@@ -28,8 +26,7 @@ class Help(Arbitration):
     """Help whose level can be changed while the arm is driven.
 
     Attributes:
-        level: how much.
-        calls: where changes are recorded; None for nowhere.
+        calls: records changes; None for nowhere.
     """
 
     def __init__(self) -> None:
@@ -38,12 +35,12 @@ class Help(Arbitration):
 
     @logged
     def choose(self, level: HelpLevel) -> None:
-        """Help as much as this from now on."""
+        """Set the level."""
         self.level = level
 
     @property
     def on(self) -> bool:
-        """Whether there is any."""
+        """Whether there is any help."""
         return self.level != "off"
 
     @property
@@ -52,5 +49,5 @@ class Help(Arbitration):
         return False
 
     def alpha(self, u: FloatArray, belief: FloatArray) -> FloatArray:
-        """What the level says, or zero; see `Arbitration.alpha`."""
+        """The level's, or zero; see `Arbitration.alpha`."""
         return LEVELS[self.level].alpha(u, belief)

@@ -1,4 +1,4 @@
-"""Incident files: what an arm was told, with all that is needed to decide it again."""
+"""Incident files: every call of an arm's `Step`, with all that is needed to repeat it."""
 
 import base64
 import hashlib
@@ -32,7 +32,7 @@ from latentarm.web.arm_process.drive_setup import DriveSetup, Spec, load_setup
 from latentarm.web.arm_process.speeds import Speeds
 
 KEPT_BYTES: Final = 512 << 20
-"""Of all incident files in a folder; the oldest go first."""
+"""Size of all incident files in a folder; the oldest are deleted first."""
 
 _SUFFIX: Final = ".incident.gz"
 _RUN: Final = "run"
@@ -42,7 +42,7 @@ _KINDS: Final = (Spec, JournalLimits, RobotOptions, Speeds, Zone, HalfSpace, Sph
 
 
 def begin_incident(setup: DriveSetup) -> CallLog | None:
-    """A new incident file for a drive that begins; None where none is wanted, or it cannot be written."""
+    """A new incident file for a drive; None if none is wanted, or it cannot be written."""
     if not setup.spec.incidents:
         return None
     folder = setup.spec.out / "incidents"
@@ -75,19 +75,19 @@ def newest(path: Path) -> Path:
 
 
 def computer() -> str:
-    """What the last bits of a result depend on."""
+    """Versions and hardware that the last bits of a result depend on."""
     kernels = {str(one.get("architecture")) for one in threadpool_info() if one["user_api"] == "blas"}
     programs = f"latentarm {__version__}, Python {platform.python_version()}, NumPy {np.__version__}"
     return f"{programs}, {platform.system()} {platform.machine()}, BLAS for {'/'.join(sorted(kernels))}"
 
 
 def rebuild(head: Mapping[str, Any], folder: Path, where: str) -> DriveSetup:
-    """What was driven, loaded again.
+    """Load again what was driven.
 
     Args:
         head: the first line of a file.
         folder: where its copies are.
-        where: what errors call it.
+        where: its name in errors.
 
     Raises:
         UserError: something that it names is missing here, or differs.
@@ -111,15 +111,10 @@ def rebuild(head: Mapping[str, Any], folder: Path, where: str) -> DriveSetup:
 
 
 def unpack(line: Mapping[str, Any], folder: Path, where: str) -> None:
-    """Add a part to one of the copies.
-
-    Args:
-        line: of the file.
-        folder: where its copies go.
-        where: what errors call it.
+    """Append a line's part to its copy in ``folder``.
 
     Raises:
-        UserError: it does not belong there.
+        UserError: it does not belong there; ``where`` is the file's name.
     """
     path = (folder / str(line["file"])).resolve()
     if not path.is_relative_to(folder.resolve()):
@@ -130,7 +125,7 @@ def unpack(line: Mapping[str, Any], folder: Path, where: str) -> None:
 
 
 def _head(setup: DriveSetup) -> list[dict[str, Any]]:
-    """What is driven, then copies of the files that say so."""
+    """The setup, then copies of the files that it names."""
     spec = setup.spec
     limits = spec.robot.limits
     copied: dict[str, Path] = {} if limits is None else {f"{_LIMITS}{limits.suffix}": limits}
@@ -157,7 +152,7 @@ def _head(setup: DriveSetup) -> list[dict[str, Any]]:
 
 
 def _parts(setup: DriveSetup) -> dict[str, str]:
-    """Digests of what commands follow from, by what a person would call it."""
+    """Digests of what commands depend on, by the names that people use."""
     robot, controller = setup.task.robot, setup.controller
     parts: dict[str, object] = {
         "robot": (robot.chain, robot.limits, robot.capsules, robot.self_pairs, robot.gripper),

@@ -7,11 +7,7 @@ from latentarm.core.types import Stop
 
 @final
 class LateStops:
-    """Counts them for one driver.
-
-    Attributes:
-        count: so many since this driver began.
-    """
+    """Counts, for one driver, the stops because a page's input was late."""
 
     def __init__(self) -> None:
         self.count = 0
@@ -19,12 +15,7 @@ class LateStops:
         self._driver = -1
 
     def look(self, stopped: Stop | None, driver: int) -> None:
-        """Look once in every tick.
-
-        Args:
-            stopped: why the arm may not move, or None where it may.
-            driver: whose inputs are taken; another one is counted anew.
-        """
+        """Call once a tick; ``stopped`` is None while the arm is enabled. A new driver restarts the count."""
         if driver != self._driver:
             self.count, self._driver = 0, driver
         if self._enabled and stopped is not None and stopped.code == "input_late":

@@ -1,4 +1,4 @@
-"""A connection to the arm that is lost, and made again when a person asks for it. Nothing moves for it."""
+"""A lost connection to the arm, and its renewal on request. Nothing moves for it."""
 
 from typing import Literal, final
 
@@ -10,21 +10,14 @@ from latentarm.web.protocol.notice import Notice, notice_of_stop
 
 @final
 class LostArm:
-    """Watches the connection.
-
-    Args:
-        arm: what is driven.
-
-    Attributes:
-        lost: whether the connection is lost.
-    """
+    """Watches the connection."""
 
     def __init__(self, arm: Arm) -> None:
         self._arm = arm
         self.lost = _lost(arm.status())
 
     def look(self) -> Literal["lost", "found"] | None:
-        """What has become of it since it was looked at last; None where that is the same as before."""
+        """The change since the last call; None for none."""
         before, self.lost = self.lost, _lost(self._arm.status())
         if before == self.lost:
             return None
@@ -32,14 +25,14 @@ class LostArm:
 
     @property
     def reason(self) -> Notice:
-        """Why it is lost, or why the last try failed."""
+        """Why it is lost, or why the last attempt failed."""
         return why_not(self._arm.status())
 
     def connect_again(self) -> Literal["under way", "anew"]:
         """Ask the driver for a new connection; the arm is disabled afterwards.
 
         Returns:
-            *anew* where its driver cannot do so without waiting: `reconnect` does.
+            *anew* if its driver would have to wait: `reconnect` does.
         """
         if not self._arm.status().recoverable:
             return "anew"
@@ -48,7 +41,7 @@ class LostArm:
 
 
 def reconnect(arm: Arm) -> None:
-    """Close the connection and open it again, which waits for the arm.
+    """Close the connection and open it again, waiting for the arm.
 
     Raises:
         UserError: the arm does not answer, or is refused.
@@ -58,7 +51,7 @@ def reconnect(arm: Arm) -> None:
 
 
 def why_not(status: ArmStatus) -> Notice:
-    """Why an arm takes no commands: its connection is lost, or what its driver says."""
+    """Why an arm takes no commands: its connection is lost, or its driver's reason."""
     if status.lost:
         return Notice(code="arm_lost", parameters={"text": one_line(status.reason)})
     return notice_of_stop(stop_of(status))

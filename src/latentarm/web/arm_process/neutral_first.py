@@ -1,4 +1,4 @@
-"""Inputs whose meaning or device has changed: they count as zero until the person has let go once."""
+"""Inputs whose meaning or device has changed count as zero until the person has let go once."""
 
 from dataclasses import replace
 from typing import final
@@ -12,10 +12,7 @@ from latentarm.web.arm_process.page_inputs import PageInputs
 
 @final
 class NeutralFirst(InputSource):
-    """The page's inputs, held at zero after a change of what they mean, or of the device that is deflected.
-
-    Args:
-        inputs: of the page.
+    """The page's inputs, zero after a change of their meaning or of the deflected device.
 
     Attributes:
         waiting: whether the stick has yet to be let go.
@@ -27,11 +24,11 @@ class NeutralFirst(InputSource):
         self.waiting = False
 
     def demand(self) -> None:
-        """A push means something else from now on: what is held counts for nothing until it is let go."""
+        """Ignore deflections until the stick is let go: a push means something else from now on."""
         self.waiting = True
 
     def latest(self, now_s: float) -> tuple[Input, float]:
-        """See the base class. What is asked of the gripper passes: it means the same as before."""
+        """The newest input and its age. Requests to the gripper pass: they mean the same as before."""
         given, age_s = self._inputs.latest(now_s)
         before, self._held_by = self._held_by, self._inputs.held_by
         if before is not None and self._held_by not in (None, before):

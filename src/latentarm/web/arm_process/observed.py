@@ -1,4 +1,4 @@
-"""What was last read of the arm: its joints and its gripper."""
+"""The newest readings of the arm: its joints and its gripper."""
 
 import math
 from typing import final
@@ -10,15 +10,11 @@ from latentarm.web.protocol.report import GripperState
 
 @final
 class Observed:
-    """Keeps the newest readings that could be used.
-
-    Args:
-        start: (n,), where the joints are at first, rad.
-        gripper: of the robot, or None where it has none.
+    """Keeps the newest valid readings.
 
     Attributes:
         q: (n,), joint positions, rad.
-        gripper: what the gripper measured, and whether it was last told to close; None before it was read.
+        gripper: measurement, and whether the last command was to close; None before the first.
     """
 
     def __init__(self, start: FloatArray, gripper: Gripper | None) -> None:

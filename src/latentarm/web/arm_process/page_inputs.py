@@ -1,4 +1,4 @@
-"""Inputs of the driver, as their page sends them."""
+"""The driver's inputs, from their page."""
 
 import math
 from collections.abc import Callable
@@ -15,14 +15,14 @@ from latentarm.web.protocol.orders import Given, Paced, parse_given
 from latentarm.web.protocol.shared_memory import LatestSlot
 
 INPUT_TIMEOUT_S: Final = 0.05
-"""How long a fresh input counts: 2.5 inputs of a page that sends 50 a second. What is left of 0.15 s is the
-stop's."""
+"""How long a fresh input counts: 2.5 inputs of a page that sends 50 per second. The rest of 0.15 s is for the
+stop."""
 
 LATCH_MAX_S: Final = 10.0
-"""How long a deflection counts that is latched, or that does not change at all as a dead stick's, s."""
+"""How long a deflection counts that is latched, or constant like a dead stick's, s."""
 
 COPILOT_TIMEOUT_S: Final = 0.5
-"""How long what a co-pilot says counts, s: five times as long as their page takes to say it again."""
+"""How long a co-pilot's pace counts, s: five times the period of their page."""
 
 
 @final
@@ -30,18 +30,18 @@ class PageInputs(InputSource):
     """The newest input in a slot, if it is the driver's and fresh.
 
     Args:
-        slot: where the server puts inputs.
+        slot: the server writes inputs to it.
         clock: the loop's.
         input_dim: axes of the controller.
         dead_zone: a smaller deflection is neutral.
         stop: stops the arm: when a deflection has lasted too long without a change, another person starts to
-            drive, or the driver's co-pilot comes, goes, or is not heard of.
+            drive, or the driver's co-pilot comes, goes, or is silent.
 
     Attributes:
-        driver: whose inputs are taken; -1 before the first.
+        driver: number of the driver; -1 before the first.
         fresh: whether the newest input still counts.
         deflected: whether it is outside the dead zone.
-        held_by: kind and number of the device that is deflected; None for none.
+        held_by: kind and number of the deflected device; None for none.
         devices: kinds of device that have moved the arm or its gripper since this was last emptied.
     """
 
@@ -64,7 +64,7 @@ class PageInputs(InputSource):
         self.devices: set[str] = set()
 
     def latest(self, now_s: float) -> tuple[Input, float]:
-        """See the base class."""
+        """The newest input and its age, s."""
         if self._slot.version != self._version:
             self._take()
         given, age_s = self._port.latest(now_s)
@@ -79,7 +79,7 @@ class PageInputs(InputSource):
         return self._port.issue_nonce()
 
     def _pace(self) -> float:
-        """What the co-pilot leaves of the driver's speed; nothing where they are not heard of."""
+        """The share of the driver's speed that the co-pilot allows; zero if they are silent."""
         if self._paced is None:
             return 1.0
         if self._port.nonce_age_s(self._paced.nonce) <= COPILOT_TIMEOUT_S:

@@ -1,7 +1,6 @@
 """The process that owns the arm: it drives at its own rate on its own clock, whatever the web server does.
 
-`run_control` is what runs in it. `ControlProcess` is the web server's side: it starts it, talks to it, and
-sees whether it lives.
+`run_control` runs in it. `ControlProcess` is the web server's side.
 """
 
 import multiprocessing
@@ -48,12 +47,7 @@ T = TypeVar("T")
 
 
 def run_control(spec: Spec, channel: Channel, server: int) -> None:
-    """Drive until the server says so or is gone; then bring the arm to rest and return.
-
-    Args:
-        spec: what to drive.
-        channel: to the server.
-        server: its process id.
+    """Drive until the server, a process id, says so or is gone; then bring the arm to rest and return.
 
     Raises:
         UserError: something that the spec names cannot be loaded.
@@ -134,7 +128,7 @@ def _other_profile(setup: DriveSetup, order: ChooseProfile) -> DriveSetup:
 def _begun_again(
     setup: DriveSetup, arm: Arm, order: BeginTask, clock: Clock
 ) -> tuple[DriveSetup, Arm, Notice | None]:
-    """The task from its start; or as before, and why not."""
+    """The task from its start; or the old setup, and why it cannot begin."""
     spec = setup.spec
     begun = replace(
         spec,
@@ -167,13 +161,7 @@ def _loaded(load: Callable[[], T], before: T) -> tuple[T, Notice | None]:
 
 @final
 class ControlProcess:
-    """A running control process.
-
-    Everything here returns at once, save `end`.
-
-    Args:
-        spec: what it drives.
-    """
+    """A running control process. Every method but `end` returns at once."""
 
     def __init__(self, spec: Spec) -> None:
         context = multiprocessing.get_context("spawn")
@@ -203,23 +191,15 @@ class ControlProcess:
         return self._channel.stop.version
 
     def give(self, given: Given) -> None:
-        """Hand over the newest input."""
+        """Write the newest input."""
         self._channel.given.write(given.model_dump_json().encode())
 
     def stop(self, reason: Notice) -> None:
-        """Stop the arm.
-
-        Args:
-            reason: why; names in it have 40 characters at most.
-        """
+        """Stop the arm; names in the reason have 40 characters at most."""
         self._channel.stop.write(reason.model_dump_json().encode())
 
     def order(self, order: Order) -> bool:
-        """Send an order.
-
-        Returns:
-            Whether it was taken: not where too many are waiting, or the control process has ended.
-        """
+        """Send an order; returns False if too many are waiting, or the control process has ended."""
         message = order.model_dump_json().encode()
         if len(message) > ORDER_LIMIT:
             return False
@@ -230,7 +210,7 @@ class ControlProcess:
         return True
 
     def newest(self) -> Report | None:
-        """The newest report, if it was not seen yet."""
+        """The newest report, if it was not read yet."""
         if self._channel.report.version == self._seen:
             return None
         found = self._channel.report.read()
@@ -240,7 +220,7 @@ class ControlProcess:
         return parse_report(message)
 
     def end(self, within_s: float = 2.0) -> None:
-        """Let it bring the arm to rest and end; after ``within_s`` it is ended by force."""
+        """Let it bring the arm to rest and end; kill it after ``within_s``."""
         self._channel.ending.raise_()
         self._process.join(within_s)
         if self._process.is_alive():
@@ -253,7 +233,7 @@ class ControlProcess:
 
 
 def _order_pipe() -> tuple[Connection, Connection]:
-    """Both ends of a pipe; writing never waits, and an order is short enough to go in whole or not at all."""
+    """Both ends of a pipe; writing never waits, and an order is short enough to fit whole or not at all."""
     reading, writing = multiprocessing.Pipe(duplex=False)
     os.set_blocking(writing.fileno(), False)
     return reading, writing

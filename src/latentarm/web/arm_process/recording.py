@@ -1,4 +1,4 @@
-"""Recording a drive without keeping the control loop waiting for the disk."""
+"""Recording a drive without making the control loop wait for the disk."""
 
 import math
 import threading
@@ -19,10 +19,10 @@ from latentarm.web.protocol.notice import Notice, notice_of_stop
 from latentarm.web.protocol.report import Recording
 
 STILL_RAD: Final = 0.01
-"""The arm has not moved where no joint was ever farther from its first position, rad (m for a slide)."""
+"""An arm that stays this close to its first position has not moved, rad (m for a slide)."""
 
 _MOST_WAITING: Final = 6000
-"""Samples that may wait for the disk: a minute of them."""
+"""Samples that may wait for the disk: a minute."""
 
 _CHECK_S: Final = 1.0
 """How often the journal is checked while nothing is recorded, s."""
@@ -34,7 +34,7 @@ _DROP: Final = "drop"
 @final
 @dataclass(frozen=True)
 class _End:
-    """The episode ends; with which kinds of input device it was driven."""
+    """The episode ends; ``device``: kinds of input device that it was driven with."""
 
     device: str
 
@@ -43,14 +43,10 @@ class _End:
 class EpisodeWriter:
     """Writes episodes to a journal in a separate thread, so that callers never wait.
 
-    The journal is created when the first episode begins, and again if it was lost. An episode that the
-    disk cannot keep up with is left incomplete and so never becomes part of a dataset. An episode ends before
-    the arm's readings become untrustworthy, and when the journal is full; both are complete. One in which
-    nothing moved teaches nothing, and is not kept.
-
-    Args:
-        folder: where journals go.
-        limits: how much room a journal may take.
+    The journal is created when the first episode begins, and again if it was lost. If the disk cannot keep
+    up, the episode stays incomplete and never becomes part of a dataset. An episode ends before the arm's
+    readings become untrustworthy, and when the journal is full; both are complete. An episode without motion
+    is not kept.
     """
 
     def __init__(self, folder: Path, limits: JournalLimits | None = None) -> None:
@@ -125,11 +121,7 @@ class EpisodeWriter:
             self._put(record)
 
     def end(self, device: str = "") -> None:
-        """End the episode, where one is under way.
-
-        Args:
-            device: kind of input device that it was driven with.
-        """
+        """End the episode, if one is under way; ``device``: kind of input device that it was driven with."""
         if not self._on:
             return
         if self._moved:
@@ -176,7 +168,7 @@ class EpisodeWriter:
                     return
 
     def _next(self) -> StepRecord | EpisodeHeader | _End | str | None:
-        """The next item; None if nothing comes for a while, so that the journal can be checked."""
+        """The next item; None if there is none for a while, so that the journal can be checked."""
         try:
             return self._waiting.get(timeout=_CHECK_S)
         except Empty:
@@ -196,14 +188,13 @@ class EpisodeWriter:
             recorder.drop_episode()
 
     def _full(self, recorder: Recorder, error: JournalFullError) -> None:
-        """The journal has no room for more: what was recorded of the episode is kept."""
+        """The journal has no room: what was recorded of the episode is kept."""
         if error.ended_episode:
             self._episodes += 1
         if self._on:
             self._break_off(_notice_of(error))
 
     def _new_path(self) -> Path:
-        """A path for a new journal, named after the time."""
         named = f"journal-{datetime.now():%Y%m%d-%H%M%S}"
         path = self._folder / f"{named}.sqlite"
         number = 1
@@ -214,7 +205,6 @@ class EpisodeWriter:
 
 
 def _notice_of(error: UserError) -> Notice:
-    """Why a journal takes no more."""
     if isinstance(error, JournalLostError):
         return Notice(code="journal_lost")
     if isinstance(error, JournalFullError):

@@ -1,4 +1,4 @@
-"""Deciding again what an incident file says that an arm was told, and comparing every command."""
+"""Repeat the calls of an incident file, and compare every command."""
 
 import json
 from collections import deque
@@ -18,23 +18,19 @@ from latentarm.web.arm_process.drive_setup import DriveSetup
 from latentarm.web.arm_process.incident import computer, newest, rebuild, unpack
 
 ELSEWHERE_RAD_S: Final = 1e-9
-"""On another computer velocities may differ by so much, rad/s."""
+"""Velocities may differ by this much on another computer, rad/s."""
 
 
 @final
 class Replay:
-    """What a drive's `Step` was told, told to another one.
-
-    Args:
-        setup: what was driven.
+    """Repeats the calls of a drive's `Step` on another one.
 
     Attributes:
-        ticks: how many there were.
-        agreed: how many had the same command, to the bit.
-        first: the first call that was answered otherwise: its tick, when, s from the first one, both answers.
+        agreed: ticks with the same command, to the bit.
+        first: the first call with another answer: its tick, when, s from the first one, both answers.
         largest_rad_s: the largest difference of a velocity.
         otherwise: whether anything else differs.
-        happened: what happened: when, s from the first tick, and in words.
+        happened: events: when, s from the first tick, and in words.
     """
 
     def __init__(self, setup: DriveSetup) -> None:
@@ -51,13 +47,13 @@ class Replay:
         self._was: tuple[str, ...] = ()
 
     def make(self, name: str, given: tuple[Any, ...], poses: tuple[FloatArray, ...], then: Any) -> None:
-        """Make a call and compare what is decided.
+        """Make a call and compare its answer.
 
         Args:
             name: of the method.
             given: its arguments.
-            poses: what it saw of its surroundings.
-            then: what was decided then, see `answer_of`.
+            poses: its surroundings then.
+            then: its answer then, see `answer_of`.
         """
         self._poses.clear()
         self._poses.extend(poses)
@@ -82,7 +78,7 @@ class Replay:
         self._look()
 
     def _look(self) -> None:
-        """Note what a person would want to know of the last call."""
+        """Note events of the last call for people."""
         stopped, help_ = self._step.stopped, self._help.level
         is_ = (
             "enabled" if stopped is None else f"stopped: {stopped.reason}",
@@ -93,7 +89,7 @@ class Replay:
 
 
 def _differences(then: Any, now: Any) -> tuple[float, bool]:
-    """How far apart the velocities of two answers are, rad/s, and whether anything else differs."""
+    """The difference of the velocities of two answers, rad/s, and whether anything else differs."""
     if json.dumps(then) == json.dumps(now):
         return 0.0, False
     if not (isinstance(then, dict) and isinstance(now, dict)):
@@ -106,8 +102,9 @@ def replay(path: Path) -> dict[str, Any]:
     """Replay an incident file, or the newest of a folder.
 
     Returns:
-        What `Replay` found, with ``same``: whether the commands are the same as nearly as this computer can
-        tell; ``then`` and ``here``: the computers; ``began_utc``; ``complete``: whether the file was closed.
+        The public attributes of `Replay`, with ``same``: whether the commands are the same as nearly as this
+        computer can tell; ``then`` and ``here``: the computers; ``began_utc``; ``complete``: whether the file
+        was closed.
 
     Raises:
         UserError: it is none, is damaged, or names what is missing here or differs.

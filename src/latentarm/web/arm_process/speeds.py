@@ -1,4 +1,4 @@
-"""How fast the arm may move on the page: as fast as the safety limits have it, or slower."""
+"""Limits of speed on the page: the safety limits, or lower ones."""
 
 import math
 from dataclasses import dataclass
@@ -8,7 +8,7 @@ from latentarm.core.errors import UserError
 from latentarm.safety.config import SafetyConfig
 
 SLOWEST: Final = 0.01
-"""An arm that is slower hardly moves at all, rad/s or m/s."""
+"""A slower arm hardly moves, rad/s or m/s."""
 
 
 @final
@@ -33,7 +33,7 @@ class Speeds:
 
     @classmethod
     def asked(cls, joint: float | None, link: float | None) -> Self:
-        """As somebody asked for them; None for the usual one."""
+        """Limits with the usual ones for None."""
         usual = cls()
         return cls(usual.joint if joint is None else joint, usual.link if link is None else link)
 

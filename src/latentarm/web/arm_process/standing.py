@@ -1,4 +1,4 @@
-"""What is done with an arm that stands disengaged, besides enabling it."""
+"""Work with a disengaged arm: guiding it by hand, connecting it again."""
 
 from collections.abc import Callable
 from typing import Literal, final
@@ -17,13 +17,9 @@ from latentarm.web.protocol.report import Guiding
 
 @final
 class Standing:
-    """It is guided by hand, or connected again. Neither moves it, nor lets it move.
+    """Guides the arm by hand, or connects it again. Neither moves it or enables it.
 
-    Args:
-        step: says whether the arm is disengaged.
-        arm: what is driven.
-        episodes: an episode by hand ends with guiding.
-        say: shows people a notice for a while.
+    ``say`` shows people a notice for a while.
     """
 
     def __init__(self, step: Step, arm: Arm, episodes: Episodes, say: Callable[[Notice], None]) -> None:
@@ -37,7 +33,7 @@ class Standing:
 
     @property
     def guiding(self) -> Guiding | None:
-        """What a page is told of guiding."""
+        """The state of guiding for pages."""
         return self._guiding.state
 
     @property
@@ -47,15 +43,11 @@ class Standing:
 
     @property
     def lost(self) -> Notice | None:
-        """Why the arm is not connected, or None where it is."""
+        """Why the arm is not connected; None if it is."""
         return self._connection.reason if self._connection.lost else None
 
     def begin_guiding(self, time_s: float) -> None:
-        """Let the arm be guided, if it is disengaged; an episode under way ends.
-
-        Args:
-            time_s: the loop's clock, s.
-        """
+        """Begin guiding, at the loop's time, s, if the arm is disengaged; an episode under way ends."""
         if self._step.stopped is None or not self._step.at_rest:
             self._say(Notice(code="stop_first"))
         elif not self._guiding.under_way:
@@ -63,32 +55,28 @@ class Standing:
             self._guiding.begin(time_s)
 
     def keep_guiding(self, time_s: float, ask: GripperAsk | None) -> None:
-        """The page is still there; see `HandGuiding.keep`."""
+        """Note that the page is still there; see `HandGuiding.keep`."""
         self._guiding.keep(time_s, ask)
 
     def end_guiding(self) -> bool:
-        """Let the arm hold still; whether it was guided. An episode by hand ends."""
+        """Let the arm hold still; an episode by hand ends. Returns whether it was guided."""
         if self._episodes.by_hand:
             self._episodes.end()
         return self._guiding.end()
 
     def records(self, order: Record) -> bool:
-        """Whether an episode may begin: one by hand only where the arm is guided."""
+        """Whether an episode may begin: one by hand only while the arm is guided."""
         return not order.by_hand or (self._guiding.recordable and self._step.stopped is not None)
 
     def connect_again(self) -> Literal["under way", "anew"] | None:
-        """See `LostArm.connect_again`; None where nothing is lost."""
+        """See `LostArm.connect_again`; None if nothing is lost."""
         if not self._connection.lost:
             return None
         self._say(Notice(code="reconnecting"))
         return self._connection.connect_again()
 
     def follow(self, time_s: float) -> None:
-        """See how guiding goes on, and whether the arm is there.
-
-        Args:
-            time_s: the loop's clock, s.
-        """
+        """Follow guiding and the connection at the loop's time, s."""
         told = self._guiding.follow(time_s)
         if told is not None:
             self._say(told)
@@ -103,7 +91,7 @@ class Standing:
             self._say(Notice(code="reconnected"))
 
     def _follow_faults(self) -> None:
-        """Tell what stops the arm itself, whatever it was stopped for before, and that it may be enabled."""
+        """Report faults of a stopped arm, whatever stopped it, and when the emergency stop is released."""
         if self._step.stopped is None:
             self._phase = "ready"
             return

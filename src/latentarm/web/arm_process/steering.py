@@ -1,4 +1,4 @@
-"""How the arm is steered, and what else goes on from one drive to the next."""
+"""How the arm is steered, and other state that outlasts a drive."""
 
 from dataclasses import dataclass
 from typing import final
@@ -14,12 +14,11 @@ class Steering:
     """State that is kept from one drive to the next.
 
     Attributes:
-        mode: how the arm is steered.
         axes: which pair of the end-effector's axes.
-        help: how much the robot helps with latent actions.
+        help: level of help with latent actions.
         tick: counts the ticks of all drives.
         ending_episode: whether the episode ends as soon as the arm is at rest.
-        run: of the task, as far as it has come; None where it is to begin.
+        run: of the task; None before it begins.
     """
 
     mode: ModeName
@@ -31,23 +30,16 @@ class Steering:
 
     @property
     def help_now(self) -> HelpLevel:
-        """How much the robot helps in this mode."""
+        """The level of help in this mode."""
         return self.help if self.mode == "assisted" else "off"
 
     def choose(
         self, mode: ModeName, axes: int, level: HelpLevel, modes: tuple[ModeName, ...], pairs: int
     ) -> bool:
-        """Steer in another way.
-
-        Args:
-            mode: one of the modes.
-            axes: which pair of the end-effector's axes; the nearest that there is counts.
-            level: how much the robot helps.
-            modes: to choose from.
-            pairs: how many pairs of axes there are.
+        """Steer in another way; the nearest of the ``pairs`` of axes counts.
 
         Returns:
-            Whether a stick that is held means something else by now.
+            Whether a push of the stick means something else now.
         """
         before = self.mode, self.axes, self.help_now
         self.mode = mode

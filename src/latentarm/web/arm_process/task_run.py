@@ -1,4 +1,4 @@
-"""One run of a task, as pages follow it: its steps tick off until it has succeeded or failed."""
+"""One run of a task for pages: its steps are ticked off until it has succeeded or failed."""
 
 import math
 from dataclasses import dataclass, replace
@@ -17,24 +17,23 @@ from latentarm.web.arm_process.guide import Guide
 from latentarm.web.protocol.report import Lost, TaskState, ToGo, Why
 
 _FEW: Final = 2
-"""Waypoints that a person can be told one by one; of a longer way only the end counts."""
+"""Waypoints that a person is shown one by one; of a longer way only the end is shown."""
 
 _LOOK_EVERY_S: Final = 0.1
-"""How often is looked what is left of the way, and how full things are: it is told in words."""
+"""How often the remaining way and the fill levels are updated, s: people read them as words."""
 
 
 @final
 @dataclass(frozen=True, eq=False)
 class Todo:
-    """What is to be done in a run.
+    """The work in a run.
 
     Attributes:
         task: its name.
-        choices: what a person may choose to do, names of things or goals.
-        choice: index of what is done in this run.
+        choices: names of things or goals to choose from.
+        choice: index of the one of this run.
         steps: in order; empty where nothing counts as done.
         failures: what ends the run.
-        vessels: what is poured from and into.
     """
 
     task: str
@@ -46,23 +45,12 @@ class Todo:
 
 
 def things_to_do(task: SceneTask, choice: int, begun: Beginning) -> Todo:
-    """What is to be done at a task with things.
-
-    Args:
-        task: the task.
-        choice: index into its choices.
-        begun: how the run begins.
-    """
+    """The work at a task with things; ``choice`` is an index into its choices."""
     return Todo(task.name, task.choices, choice, begun.steps, begun.failures, vessels(begun))
 
 
 def goal_to_reach(task: Task, choice: int) -> Todo:
-    """What is to be done at a task without things: to bring the tool to a goal, as simulated drives do.
-
-    Args:
-        task: the task; its first manner counts.
-        choice: index of the goal.
-    """
+    """The work at a task without things: bring the tool to a goal, in the task's first manner."""
     names = tuple(goal.name for goal in task.goals)
     if not names:
         return Todo(task.name, (), choice, ())
@@ -80,13 +68,8 @@ def goal_to_reach(task: Task, choice: int) -> Todo:
 class TaskRun:
     """Follows one run: from when the arm is enabled first until its outcome is known.
 
-    It sees how everything stands in every tick, as simulated drives do: what has been stirred adds up, and a
-    force is seen only once. That takes some 0.2 ms.
-
-    Args:
-        todo: what is to be done.
-        arm: tells where things are, where it knows of any.
-        chain: tells where the tool is.
+    It sees every tick, as simulated drives do: stirring adds up, and a force is seen only once. That takes
+    some 0.2 ms.
     """
 
     def __init__(self, todo: Todo, arm: Arm, chain: Chain) -> None:
@@ -103,7 +86,7 @@ class TaskRun:
 
     @property
     def state(self) -> TaskState:
-        """How far it has come."""
+        """The progress."""
         failure = self._progress.failure
         return TaskState(
             choice=self._todo.choice,
@@ -118,14 +101,14 @@ class TaskRun:
         )
 
     def see(self, time_s: float, q: FloatArray, *, enabled: bool, steered: bool) -> None:
-        """Take how things stand, in every tick.
+        """Update, in every tick.
 
         Args:
             time_s: the clock, s.
-            q: (n,), where the joints are, rad.
+            q: (n,), joint positions, rad.
             enabled: whether the arm may move.
             steered: whether a person steers it. A goal that it passes on its way to a saved pose is not
-                reached; what becomes of things counts always.
+                reached; the state of things counts always.
         """
         if not self._todo.steps or self._over:
             return
@@ -146,12 +129,11 @@ class TaskRun:
 
     @property
     def _step(self) -> TaskStep | None:
-        """What is to be done now."""
         return None if self._progress.failure is not None else self._progress.step
 
     @property
     def _lost(self) -> Lost | None:
-        """What is no longer held, and is to be taken again."""
+        """The thing that is no longer held, and is to be taken again."""
         index = self._progress.lost
         return None if index is None or self._over else Lost(thing=self._todo.steps[index].thing, step=index)
 
@@ -177,7 +159,6 @@ def _reached(state: SceneState, task: Task, waypoint: Pose) -> bool:
 
 
 def _alone(tool: Pose, time_s: float) -> SceneState:
-    """The state of a scene without things."""
     return SceneState(
         time_s=time_s,
         tool=tool,

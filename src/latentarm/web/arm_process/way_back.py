@@ -1,4 +1,4 @@
-"""The arm on its way to its start or a saved pose, while the driver's page lives and nobody pushes."""
+"""Slow motions to the start or a saved pose, while the driver's page is connected and nobody pushes."""
 
 import math
 from dataclasses import replace
@@ -14,21 +14,21 @@ from latentarm.web.arm_process.page_inputs import PageInputs
 from latentarm.web.protocol.notice import Notice, NoticeCode
 
 ARRIVED_RAD: Final = 0.01
-"""Every joint is at the start within this."""
+"""Every joint is at the goal within this."""
 
 AT_START_RAD: Final = 0.02
-"""Nothing is gained by a way back from nearer than this."""
+"""From nearer than this a way back is pointless."""
 
 STUCK_S: Final = 3.0
-"""The way back ends where nothing has come closer for so long, s."""
+"""The way ends after so long without progress, s."""
 
 LONGEST_S: Final = 60.0
-"""No way back takes longer, s."""
+"""The longest way, s."""
 
 _CLOSER_RAD: Final = 0.005
 
 _LOOKS: Final = 2
-"""At so many places in each tick the way is looked at before the arm sets out."""
+"""Places on the way that are checked in each tick before the arm sets out."""
 
 Outcome = Literal["arrived", "stuck", "pushed", "blocked"]
 
@@ -50,19 +50,13 @@ _TO_POSE: Final[dict[Outcome, NoticeCode]] = {
 class WayBack(InputSource):
     """The person's inputs; on the way to a pose, the input that drives it, with the age of theirs.
 
-    So the arm stops as for any motion where the page's inputs cease. Theirs must be neutral: any push, and
-    anything asked of the gripper, ends the way. The arm sets out once the straight way was found clear, which
-    takes a fraction of a second.
-
-    Args:
-        gate: where the inputs pass.
-        inputs: of the page.
-        start: (n,), where the way back leads, rad.
-        straight: looks at the way before the arm sets out.
+    So the arm stops as in any motion when the page's inputs cease. Theirs must be neutral: any push, and any
+    request to the gripper, ends the way. The arm sets out once the straight way was found clear, which takes
+    a fraction of a second.
 
     Attributes:
         on: whether the arm is on its way.
-        pose: what the pose is called that it leads to; None for the start.
+        pose: the name of the pose that it leads to; None for the start.
     """
 
     def __init__(
@@ -80,13 +74,13 @@ class WayBack(InputSource):
         self.on = False
 
     def begin(self, time_s: float, q: FloatArray, goal: FloatArray, pose: str | None = None) -> None:
-        """Look at the way, and set out if it is clear.
+        """Check the way, and set out if it is clear.
 
         Args:
             time_s: the loop's clock, s.
-            q: (n,), where the arm stands, rad.
+            q: (n,), joint positions, rad.
             goal: (n,), where the way leads, rad.
-            pose: what that is called; None for the start.
+            pose: its name; None for the start.
         """
         self._straight.begin(q, goal)
         self._goal, self.pose = goal, pose
@@ -95,13 +89,13 @@ class WayBack(InputSource):
         self._closest = math.inf
 
     def end(self) -> None:
-        """The person's inputs count again, once they have let go."""
+        """Let the person's inputs count again, once they have let go."""
         if self.on:
             self.on = False
             self._gate.demand()
 
     def latest(self, now_s: float) -> tuple[Input, float]:
-        """See the base class."""
+        """The input and its age, s."""
         given, age_s = self._gate.latest(now_s)
         if not self.on:
             return given, age_s
@@ -113,20 +107,11 @@ class WayBack(InputSource):
         return replace(given, u=u, gripper=None), age_s
 
     def away(self, q: FloatArray) -> float:
-        """How far the farthest joint is from the start, rad.
-
-        Args:
-            q: (n,), joint positions, rad.
-        """
+        """How far the farthest joint of ``q``, (n,), is from the start, rad."""
         return float(np.abs(self._start - q).max())
 
     def outcome(self, q: FloatArray, time_s: float) -> Outcome | None:
-        """How the way has ended, or None where it goes on.
-
-        Args:
-            q: (n,), joint positions, rad.
-            time_s: the loop's clock, s.
-        """
+        """How the way has ended at ``q``, (n,), rad, and ``time_s``; None while it goes on."""
         if self._pushed:
             return "pushed"
         if not self._straight.clear:
@@ -141,11 +126,7 @@ class WayBack(InputSource):
         return "stuck" if slow else None
 
     def ending(self, outcome: Outcome) -> Notice:
-        """What people are told at the end of the way.
-
-        Args:
-            outcome: how it ended.
-        """
+        """The notice at the end of the way."""
         parameters: dict[str, str | int] = {}
         if outcome == "stuck":
             parameters["seconds"] = round(STUCK_S)

@@ -1,4 +1,4 @@
-"""Where the things about a simulated arm are, for pages."""
+"""Poses of the things about a simulated arm, for pages."""
 
 from typing import Final, final
 
@@ -10,17 +10,12 @@ from latentarm.web.protocol.report import Things
 from latentarm.web.protocol.things import whereabouts
 
 _EVERY: Final = 4
-"""Ticks from one look to the next: 25 looks a second, and what moves is drawn gliding in between."""
+"""Ticks between two looks: 25 looks per second; pages interpolate."""
 
 
 @final
 class Whereabouts:
-    """Looks at the things about an arm every few ticks.
-
-    Args:
-        scene: what stands about it; None where nothing does.
-        arm: nothing is seen where it does not know of things.
-    """
+    """Reads the poses of the things about an arm every few ticks; none without a scene."""
 
     def __init__(self, scene: Scene | None, arm: Arm) -> None:
         self._scene = scene
@@ -28,21 +23,17 @@ class Whereabouts:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The things that are seen, in the order of the scene."""
+        """The things, in the order of the scene."""
         if self._scene is None or self._arm is None:
             return ()
         return self._scene.names
 
     def rows(self) -> FloatArray:
-        """Where they are now, (K, 7), see `StepRecord.things`."""
+        """Their poses, (K, 7), see `StepRecord.things`."""
         return NO_THINGS if self._arm is None else thing_rows(self._arm.scene_state().poses, self.names)
 
     def look(self, tick: int) -> Things | None:
-        """Where everything is, or None where this is not a tick to look in.
-
-        Args:
-            tick: counts the ticks.
-        """
+        """Where everything is; None in ticks without a look."""
         if self._scene is None or self._arm is None or tick % _EVERY:
             return None
         return whereabouts(self._scene, self._arm.scene_state())
