@@ -108,13 +108,19 @@ def test_a_lost_connection_to_the_arm_is_said_in_a_sentence(desk):
     assert np.isfinite(report.tool).all()
 
 
+def joint_speed(desk, at_s):
+    """The fastest joint's over the 20 ms before, rad/s."""
+    before, after = (np.array(reported(desk, one_s).q) for one_s in (at_s - 0.02, at_s))
+    return np.abs(after - before).max() / 0.02
+
+
 def test_the_arm_in_physics_is_driven_and_at_rest_soon_after_letting_go(desk_in_physics):
     desk = desk_in_physics
     drive(desk, {}, enabled_at_s=(0.1, 1.65))  # lets go from 1.5 to 1.8 s
     desk.run(1.75)
     assert reported(desk, 1.0).phase == "moving"
-    assert reported(desk, 1.0).speed > 0.05
-    assert reported(desk, 1.74).speed < 0.01
+    assert joint_speed(desk, 1.0) > 0.05
+    assert joint_speed(desk, 1.74) < 0.01
     start, end = (
         desk.setup.task.robot.chain.forward(np.array(reported(desk, at_s).q)) for at_s in (0.4, 1.4)
     )

@@ -11,7 +11,7 @@ from latentarm.tasks.catalogue import SCENE_TASKS, make_scene_task
 from latentarm.tasks.mishap import Mishap
 from latentarm.tasks.steps import LOST_M, LOST_S, Progress, TaskStep, Waypoint
 from latentarm.tasks.table_top import TableTop
-from latentarm.web.arm_process.fills import Fills, vessels
+from latentarm.web.arm_process.fill_level import FillLevels, vessels
 from latentarm.web.arm_process.task_run import TaskRun, Todo
 from latentarm_research.drives.demonstrate import demonstrate_once
 
@@ -118,7 +118,7 @@ def test_nothing_is_called_lost_or_short_in_a_run_that_succeeds(name):
     for choice in range(len(task.choices)):
         shown = demonstrate_once(task, choice, np.random.default_rng(0))
         begun = task.begin(choice, np.random.default_rng(0))
-        progress, fills = Progress(begun.steps, begun.failures), Fills(vessels(begun))
+        progress, fills = Progress(begun.steps, begun.failures), FillLevels(vessels(begun))
         for state in shown.states:
             progress.update(state)
             assert progress.lost is None

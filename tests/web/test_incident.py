@@ -34,10 +34,10 @@ from latentarm.safety.zones import Zone
 from latentarm.tasks.table_top import TableTop
 from latentarm.web.arm_process import incident
 from latentarm.web.arm_process import replay as replaying
-from latentarm.web.arm_process.beginning import RobotOptions
 from latentarm.web.arm_process.drive import Drive
 from latentarm.web.arm_process.drive_setup import Spec, load_setup
 from latentarm.web.arm_process.incident import begin_incident
+from latentarm.web.arm_process.initial_state import RobotOptions
 from latentarm.web.arm_process.process import ControlProcess
 from latentarm.web.arm_process.replay import Replay, replay
 from latentarm.web.arm_process.steering import Steering

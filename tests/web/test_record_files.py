@@ -79,9 +79,9 @@ def report(tick, phase, tool, code=None, **changes):
         seed=0,
         task=BEGUN,
         profile=None, loading=False,
-        q=(0.0, *[0.1 * tool] * 6), speed=0.0, tool=(tool, 0.0, 0.0), gripper=None,
+        q=(0.0, *[0.1 * tool] * 6), tool=(tool, 0.0, 0.0), gripper=None,
         things=None, ghosts=None, belief=(), alpha=0.5, bound_rad=None, recording=None, late_share=0.0,
-        late_p99_ms=0.0, **changes,
+        **changes,
     )  # fmt: skip
 
 

@@ -8,9 +8,9 @@ import pytest
 from latentarm.control.stick_ring import STRETCHES
 from latentarm.core.errors import UserError
 from latentarm.core.types import Context
-from latentarm.web.arm_process.beginning import RobotOptions
 from latentarm.web.arm_process.drive_setup import Spec, load_setup
 from latentarm.web.arm_process.ghosts import GhostPaths
+from latentarm.web.arm_process.initial_state import RobotOptions
 from latentarm.web.arm_process.speeds import Speeds
 from latentarm.web.protocol.orders import Enable
 

@@ -20,7 +20,7 @@ from latentarm.core.errors import UserError
 from latentarm.web.arm_process.speeds import Speeds
 
 if TYPE_CHECKING:
-    from latentarm.web.arm_process.beginning import RobotOptions
+    from latentarm.web.arm_process.initial_state import RobotOptions
 
 FIRST_RAD_S: Final = 0.2
 FIRST_M_PER_S: Final = 0.05
@@ -76,7 +76,7 @@ def check(
     Exits with 2 where it is refused. For example:
     latentarm arms check franka://172.16.0.2 --robot fr3
     """
-    from latentarm.web.arm_process.beginning import RobotOptions
+    from latentarm.web.arm_process.initial_state import RobotOptions
 
     speeds = Speeds.asked(joint_speed, link_speed)
     found = check_arm_at(address, run, RobotOptions(robot, end_effector, limits), speeds)

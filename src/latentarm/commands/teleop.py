@@ -86,8 +86,8 @@ def teleop(
     """
     from latentarm.core.journal_limits import JournalLimits
     from latentarm.safety.zones_file import StatedZones, read_zones
-    from latentarm.web.arm_process.beginning import RobotOptions
     from latentarm.web.arm_process.drive_setup import Spec
+    from latentarm.web.arm_process.initial_state import RobotOptions
     from latentarm.web.arm_process.speeds import Speeds
     from latentarm.web.cameras.sources import kept, parse_cameras
     from latentarm.web.server.addresses import TeleopConfig

@@ -15,19 +15,18 @@ from latentarm.core.call_log import CallLog
 from latentarm.core.types import StepRecord, Stop
 from latentarm.safety.straight_way import StraightWay
 from latentarm.safety.zones import zone_of_filter
+from latentarm.web.arm_process.disengaged import Disengaged
 from latentarm.web.arm_process.drive_setup import PERIOD_S, DriveSetup
 from latentarm.web.arm_process.episodes import Episodes
 from latentarm.web.arm_process.ghosts import GhostPaths
-from latentarm.web.arm_process.late_stops import LateStops
+from latentarm.web.arm_process.latest_readings import LatestReadings
 from latentarm.web.arm_process.neutral_first import NeutralFirst
-from latentarm.web.arm_process.observed import Observed
-from latentarm.web.arm_process.page_inputs import PageInputs
+from latentarm.web.arm_process.page_inputs import LateStops, PageInputs
 from latentarm.web.arm_process.recording import EpisodeWriter
-from latentarm.web.arm_process.standing import Standing
 from latentarm.web.arm_process.steering import Steering
 from latentarm.web.arm_process.task_run import TaskRun
+from latentarm.web.arm_process.thing_poses import ThingPoses
 from latentarm.web.arm_process.way_back import AT_START_RAD, WayBack
-from latentarm.web.arm_process.whereabouts import Whereabouts
 from latentarm.web.protocol.channel import Channel, parse_stop
 from latentarm.web.protocol.notice import Notice, notice_of_stop
 from latentarm.web.protocol.orders import (
@@ -134,12 +133,12 @@ class Drive:
         self._reasons: dict[str, Notice] = {}
         self._enable_until_s = -math.inf
         self._enable_driver = -1
-        self._observed = Observed(setup.start, setup.task.robot.gripper)
+        self._readings = LatestReadings(setup.start, setup.task.robot.gripper)
         self._ghosts = GhostPaths(setup.task, setup.controller, setup.help, self._step.safety)
-        self._late_share = self._late_p99_ms = 0.0
-        self._whereabouts = Whereabouts(setup.scene, arm)
-        self._episodes = Episodes(setup, writer, steering, self._inputs, self._whereabouts)
-        self._standing = Standing(self._step, arm, self._episodes, self._say)
+        self._late_share = 0.0
+        self._thing_poses = ThingPoses(setup.scene, arm)
+        self._episodes = Episodes(setup, writer, steering, self._inputs, self._thing_poses)
+        self._disengaged = Disengaged(self._step, arm, self._episodes, self._say)
         self._run = steering.run or TaskRun(setup.todo, arm, setup.task.robot.chain)
         steering.run = self._run
         self._note = note
@@ -156,15 +155,15 @@ class Drive:
     def _observe(self, record: StepRecord) -> None:
         """Called by the loop after every command."""
         self._steering.tick += 1
-        self._observed.see(record)
+        self._readings.see(record)
         enabled, steered = self._step.stopped is None, not self._way_back.on
-        self._run.see(record.time_s, self._observed.q, enabled=enabled, steered=steered)
+        self._run.see(record.time_s, self._readings.q, enabled=enabled, steered=steered)
         # Only a recording is worth the look: some 0.1 ms.
-        kept = replace(record, things=self._whereabouts.rows()) if self._writer.on else record
+        kept = replace(record, things=self._thing_poses.rows()) if self._writer.on else record
         self._episodes.follow(kept, at_rest=self._step.at_rest)
         self._obey(record)
         self._late.look(self._step.stopped, self._inputs.driver)
-        self._standing.follow(record.time_s)
+        self._disengaged.follow(record.time_s)
         self._follow_way_back(record)
         self._enable_if_asked(record.time_s)
         self._channel.report.write(self._report(record).model_dump_json().encode())
@@ -175,7 +174,7 @@ class Drive:
 
     def _record_calls(self, calls: CallLog) -> None:
         calls.flush()
-        idle = self._step.stopped is not None and self._step.at_rest and not self._standing.guided
+        idle = self._step.stopped is not None and self._step.at_rest and not self._disengaged.guided
         if calls.large and idle and not self._writer.on and self.change is None:
             # A file has everything from the start of its loop: the same is driven on, in another file.
             self._change_to(ChooseProfile(name=self._setup.spec.profile))
@@ -203,7 +202,7 @@ class Drive:
 
     def _end_guiding(self, reason: Notice) -> None:
         """End guiding by hand, if it is under way, and keep the arm stopped for this reason."""
-        if self._standing.end_guiding():
+        if self._disengaged.end_guiding():
             self._step.refuse(Stop(reason.text))
             self._reasons[reason.text] = reason
 
@@ -233,20 +232,20 @@ class Drive:
             case ChooseHelp(level=level):
                 self._choose_help(level)
             case Record(on=True):
-                if self._standing.records(order):
+                if self._disengaged.records(order):
                     self._episodes.begin(order)
             case Record():
                 self._episodes.end_at_rest()
             case Guide(on=True, stops=stops):
                 if stops == self._stop_version:
                     self._note_until_s = -math.inf
-                    self._standing.begin_guiding(record.time_s)
+                    self._disengaged.begin_guiding(record.time_s)
             case Guide():
                 self._end_guiding(Notice(code="guiding_ended"))
             case KeepGuiding(gripper=ask):
-                self._standing.keep_guiding(record.time_s, ask)
+                self._disengaged.keep_guiding(record.time_s, ask)
             case Reconnect():
-                if self._standing.connect_again() == "anew":
+                if self._disengaged.connect_again() == "anew":
                     self._change_to(order)
             case ChooseProfile() if (order.name, spec.seated(order.seat)) == (spec.profile, spec.seat):
                 pass
@@ -257,7 +256,7 @@ class Drive:
 
     def _change_to(self, change: Change) -> None:
         """End the loop for this order, if the arm is disengaged."""
-        if self._step.stopped is None or not self._step.at_rest or self._standing.guided:
+        if self._step.stopped is None or not self._step.at_rest or self._disengaged.guided:
             self._say(Notice(code="stop_first"))
             return
         if not isinstance(change, ChooseProfile):
@@ -300,7 +299,7 @@ class Drive:
         self._setup.help.choose("off")
         self._to_pose.lead_to(goal)
         self._step.choose_mode(self._setup.way_back)
-        self._way_back.begin(record.time_s, self._observed.q, goal, None if pose is None else pose.name)
+        self._way_back.begin(record.time_s, self._readings.q, goal, None if pose is None else pose.name)
 
     def _end_way_back(self) -> None:
         self._choose(self._steering.mode, self._steering.axes, self._steering.help)
@@ -314,7 +313,7 @@ class Drive:
         self._step.forget()
         if self._step.stopped is not None:
             self._end_way_back()
-        elif (outcome := self._way_back.outcome(self._observed.q, record.time_s)) is not None:
+        elif (outcome := self._way_back.outcome(self._readings.q, record.time_s)) is not None:
             self._end_way_back()
             self._ended = self._way_back.ending(outcome)
             self._say(self._ended)
@@ -330,7 +329,7 @@ class Drive:
                 self._enable_until_s = -math.inf
                 self._say(Notice(code="let_go_first"))
             else:
-                self._standing.end_guiding()
+                self._disengaged.end_guiding()
                 self._note_until_s = -math.inf
                 self._reasons.clear()
                 self._loop.enable()
@@ -342,11 +341,9 @@ class Drive:
         if phase < STRETCHES:
             # Without a reading nobody knows the gripper, which the decoder may look at.
             if not math.isnan(record.state[0]):
-                self._ghosts.look(self._step.context(self._observed.q), self._mode_index)
+                self._ghosts.look(self._step.context(self._readings.q), self._mode_index)
         elif steering.tick % _STATISTICS_EVERY == _LOOK_EVERY - 1:
-            statistics = self._loop.statistics()
-            self._late_share = 1.0 - statistics.met_share
-            self._late_p99_ms = 1000.0 * statistics.p99_s
+            self._late_share = 1.0 - self._loop.statistics().met_share
 
     @property
     def _mode_index(self) -> int:
@@ -367,7 +364,7 @@ class Drive:
 
     def _report(self, record: StepRecord) -> Report:
         phase, spec = self._phase(), self._setup.spec
-        q = self._observed.q
+        q = self._readings.q
         tool = self._setup.task.robot.chain.forward(q).position.tolist()
         held_back: list[HeldBack] = []
         zone = None
@@ -384,14 +381,14 @@ class Drive:
             driver=self._inputs.driver,
             phase=phase,
             note=self._note if record.time_s < self._note_until_s else None,
-            reason=self._standing.lost or self._reason(self._step.stopped),
+            reason=self._disengaged.lost or self._reason(self._step.stopped),
             held_back=held_back[0] if held_back else None,
             zone=zone,
             returning=self._way_back.on,
             bound_for=self._way_back.pose if self._way_back.on else None,
             at_start=self._way_back.away(q) <= AT_START_RAD,
-            guiding=self._standing.guiding,
-            lost=self._standing.lost is not None,
+            guiding=self._disengaged.guiding,
+            lost=self._disengaged.lost is not None,
             let_go_first=self._neutral.waiting,
             late_stops=self._late.count,
             mode=self._steering.mode,
@@ -402,16 +399,14 @@ class Drive:
             profile=spec.profile,
             loading=self.change is not None,
             q=tuple(q.tolist()),
-            speed=float(np.abs(self._arm.read().dq).max()),
             tool=(tool[0], tool[1], tool[2]),
-            gripper=self._observed.gripper,
+            gripper=self._readings.gripper,
             task=self._run.state,
-            things=self._whereabouts.look(self._steering.tick),
+            things=self._thing_poses.look(self._steering.tick),
             ghosts=self._ghosts.newest(self._mode_index),
             belief=tuple(record.belief.tolist()),
             alpha=record.alpha,
             bound_rad=None if math.isnan(record.bound_rad) else record.bound_rad,
             recording=self._writer.status,
             late_share=self._late_share,
-            late_p99_ms=self._late_p99_ms,
         )

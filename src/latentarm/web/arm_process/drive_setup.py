@@ -34,8 +34,8 @@ from latentarm.safety.zones import Zone
 from latentarm.tasks.place import Place, ScenePlace
 from latentarm.tasks.surroundings import surroundings_of, watched
 from latentarm.tasks.task import Task
-from latentarm.web.arm_process.beginning import RobotOptions, begin, begin_real
 from latentarm.web.arm_process.help import Help
+from latentarm.web.arm_process.initial_state import RobotOptions, begin, begin_real
 from latentarm.web.arm_process.page_inputs import INPUT_TIMEOUT_S
 from latentarm.web.arm_process.speeds import Speeds
 from latentarm.web.arm_process.task_run import Todo

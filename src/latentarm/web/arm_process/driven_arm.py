@@ -56,14 +56,10 @@ def _alike(one: Robot, other: Robot) -> bool:
     return (
         one.joint_names == other.joint_names
         and one.gripper == other.gripper
-        and _carried(one) == _carried(other)
+        and (one.attachment and one.attachment.name) == (other.attachment and other.attachment.name)
         and all(
             np.array_equal(getattr(here, figure), getattr(there, figure))
             for figure in ("lower", "upper", "velocity", "acceleration", "jerk")
         )
         and np.allclose(one.chain.forward(one.home).position, other.chain.forward(one.home).position)
     )
-
-
-def _carried(robot: Robot) -> str | None:
-    return None if robot.attachment is None else robot.attachment.name

@@ -8,7 +8,7 @@ from latentarm.web.arm_process.drive_setup import DriveSetup
 from latentarm.web.arm_process.page_inputs import PageInputs
 from latentarm.web.arm_process.recording import EpisodeWriter
 from latentarm.web.arm_process.steering import Steering
-from latentarm.web.arm_process.whereabouts import Whereabouts
+from latentarm.web.arm_process.thing_poses import ThingPoses
 from latentarm.web.protocol.orders import Record
 
 
@@ -22,13 +22,13 @@ class Episodes:
         writer: EpisodeWriter,
         steering: Steering,
         inputs: PageInputs,
-        whereabouts: Whereabouts,
+        thing_poses: ThingPoses,
     ) -> None:
         self._setup = setup
         self._writer = writer
         self._steering = steering
         self._inputs = inputs
-        self._whereabouts = whereabouts
+        self._thing_poses = thing_poses
         self._by_hand = False
 
     @property
@@ -43,7 +43,7 @@ class Episodes:
             self._inputs.devices.clear()
             self._by_hand = order.by_hand
         how = BY_HAND if order.by_hand else self._steering.mode
-        self._writer.begin(self._setup.episode(self._whereabouts.names, how, order.task, order.person))
+        self._writer.begin(self._setup.episode(self._thing_poses.names, how, order.task, order.person))
 
     def end_at_rest(self) -> None:
         """End it once the arm is at rest: its last motion belongs to it."""

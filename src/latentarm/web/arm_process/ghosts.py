@@ -22,15 +22,8 @@ _MAIN: Final = {name: DIRECTIONS * turn // 4 for turn, name in enumerate(("right
 
 _SAME_M: Final = 1e-9
 _STRETCH_S: Final = AHEAD_S / STRETCHES
-
-
-@final
-@dataclass(frozen=True)
-class Meaning:
-    """Decides what a push does: the index of the controller's mode, and the level of help."""
-
-    mode: int
-    help: HelpLevel
+_Meaning = tuple[int, HelpLevel]
+"""Decides what a push does: the index of the controller's mode, and the level of help."""
 
 
 @final
@@ -46,7 +39,7 @@ class _Way:
         points: where the tool was after each stretch so far, (K, 3), m.
     """
 
-    meaning: Meaning
+    meaning: _Meaning
     context: Context
     q: FloatArray
     transforms: FloatArray
@@ -81,11 +74,11 @@ class GhostPaths:
         self._goals = np.array([goal.configuration for goal in task.goals])
         self._pushes = full_pushes(controller.input_dim)[:DIRECTIONS]
         self._way: _Way | None = None
-        self._whole: tuple[Meaning, Ghosts] | None = None
+        self._whole: tuple[_Meaning, Ghosts] | None = None
 
     def newest(self, mode: int) -> Ghosts:
         """Every direction in this mode, or `NO_GHOSTS` until all have been computed."""
-        if self._whole is None or self._whole[0] != Meaning(mode, self._help.level):
+        if self._whole is None or self._whole[0] != (mode, self._help.level):
             return NO_GHOSTS
         return self._whole[1]
 
@@ -96,7 +89,7 @@ class GhostPaths:
             context: of this moment; the first stretch's is kept for the others.
             mode: index of the controller's mode.
         """
-        meaning = Meaning(mode, self._help.level)
+        meaning = (mode, self._help.level)
         way = self._way
         if way is None or way.meaning != meaning:
             way = self._way = self._begun(meaning, context)
@@ -118,7 +111,7 @@ class GhostPaths:
             self._whole = meaning, Ghosts.model_validate(found, strict=False)
             self._way = None
 
-    def _begun(self, meaning: Meaning, context: Context) -> _Way:
+    def _begun(self, meaning: _Meaning, context: Context) -> _Way:
         q = np.tile(context.state, (len(self._pushes), 1))
         transforms = self._chain.link_transforms(q)
         return _Way(meaning, context, q, transforms, self._heights(transforms), [])

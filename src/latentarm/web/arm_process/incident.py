@@ -27,8 +27,8 @@ from latentarm.robots.kinematics.obstacles import Box, Capsule, HalfSpace, Spher
 from latentarm.robots.model_copy import MOST_COPIED
 from latentarm.runs.folder import ROBOT
 from latentarm.safety.zones import Zone
-from latentarm.web.arm_process.beginning import RobotOptions
 from latentarm.web.arm_process.drive_setup import DriveSetup, Spec, load_setup
+from latentarm.web.arm_process.initial_state import RobotOptions
 from latentarm.web.arm_process.speeds import Speeds
 
 KEPT_BYTES: Final = 512 << 20

@@ -9,7 +9,7 @@ import numpy as np
 
 from latentarm.control.clock import Clock
 from latentarm.control.input_port import InputPort, InputSource
-from latentarm.core.types import Input
+from latentarm.core.types import Input, Stop
 from latentarm.web.protocol.notice import Notice
 from latentarm.web.protocol.orders import Given, Paced, parse_given
 from latentarm.web.protocol.shared_memory import LatestSlot
@@ -126,6 +126,24 @@ class PageInputs(InputSource):
     def _used(self, device: str) -> None:
         if device:
             self.devices.add(device)
+
+
+@final
+class LateStops:
+    """Counts, for one driver, the stops because a page's input was late."""
+
+    def __init__(self) -> None:
+        self.count = 0
+        self._enabled = False
+        self._driver = -1
+
+    def look(self, stopped: Stop | None, driver: int) -> None:
+        """Call once a tick; ``stopped`` is None while the arm is enabled. A new driver restarts the count."""
+        if driver != self._driver:
+            self.count, self._driver = 0, driver
+        if self._enabled and stopped is not None and stopped.code == "input_late":
+            self.count += 1
+        self._enabled = stopped is None
 
 
 def _copilot(paced: Paced | None) -> int | None:

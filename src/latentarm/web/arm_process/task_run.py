@@ -12,8 +12,8 @@ from latentarm.robots.scene.scene import SceneState
 from latentarm.tasks.scene_task import Beginning, SceneTask
 from latentarm.tasks.steps import Failure, Progress, StepKind, TaskStep, Waypoint
 from latentarm.tasks.task import Task
-from latentarm.web.arm_process.fills import Fills, Vessel, vessels
-from latentarm.web.arm_process.guide import Guide
+from latentarm.web.arm_process.fill_level import FillLevels, Vessel, vessels
+from latentarm.web.arm_process.waypoint_guide import WaypointGuide
 from latentarm.web.protocol.report import Lost, TaskState, ToGo, Why
 
 _FEW: Final = 2
@@ -77,9 +77,9 @@ class TaskRun:
         self._arm = arm if isinstance(arm, SceneArm) else None
         self._chain = chain
         self._progress = Progress(todo.steps, todo.failures)
-        self._guide = Guide()
+        self._guide = WaypointGuide()
         self._to_go: ToGo | None = None
-        self._fills = Fills(todo.vessels)
+        self._fills = FillLevels(todo.vessels)
         self._looked_s = -math.inf
         self._began_s: float | None = None
         self._time_s = 0.0

@@ -241,11 +241,9 @@ class Report(ArmState):
         seed: says where things were placed and where the arm started.
         loading: whether something else is being loaded; there are no further reports until it is.
         q: (n,), joint positions as they were last read, rad.
-        speed: the fastest joint's, rad/s.
         belief: over the goals; empty for a task without goals.
         bound_rad: the radius of equation 14, where there is help.
         recording: where something is recorded.
-        late_p99_ms: 99th percentile of the time from a tick's due time until its command was sent.
     """
 
     time_s: float
@@ -254,11 +252,9 @@ class Report(ArmState):
     seed: int
     loading: bool
     q: tuple[float, ...]
-    speed: float
     belief: tuple[float, ...]
     bound_rad: float | None
     recording: Recording | None
-    late_p99_ms: float
 
 
 def parse_report(message: bytes) -> Report | None:

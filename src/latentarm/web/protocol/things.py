@@ -45,7 +45,7 @@ def described(scene: Scene) -> dict[str, object]:
     }
 
 
-def whereabouts(scene: Scene, state: SceneState) -> Things:
+def things_at(scene: Scene, state: SceneState) -> Things:
     """Where everything is, in the order of the scene.
 
     Args:

@@ -7,7 +7,7 @@ from latentarm.core.types import Pose
 from latentarm.robots.scene.scene import SceneState
 from latentarm.tasks.catalogue import SCENE_TASKS, make_scene_task
 from latentarm.tasks.predicates import Poured
-from latentarm.web.arm_process.fills import SETTLES_S, Fills, vessels
+from latentarm.web.arm_process.fill_level import SETTLES_S, FillLevels, vessels
 
 NONE = frozenset()
 HERE = Pose(np.zeros(3), np.eye(3))
@@ -26,7 +26,7 @@ def state_of(scene, grains):
 def test_a_cup_that_is_shared_is_full_at_first_and_each_bowl_says_how_much_is_enough(begun):
     found = vessels(begun)
     grains = begun.scene.grains[0].positions
-    fills = Fills(found)
+    fills = FillLevels(found)
     fills.see(state_of(begun.scene, grains), 0.0)
     assert [(one.thing, one.share, one.enough) for one in fills.now] == [
         ("cup", 1.0, None),
@@ -38,7 +38,7 @@ def test_a_cup_that_is_shared_is_full_at_first_and_each_bowl_says_how_much_is_en
 def test_what_is_told_to_be_enough_is_what_the_step_asks_for(begun):
     grains = begun.scene.grains[0].positions.copy()
     bowl = begun.scene.thing("left bowl")
-    fills = Fills(vessels(begun))
+    fills = FillLevels(vessels(begun))
     (poured,) = (step.done for step in begun.steps if step.kind == "poured" and step.thing == "left bowl")
     for count in range(len(grains) + 1):
         grains[:count] = bowl.pose.position + np.array([0.0, 0.0, bowl.room.bottom_m + 0.005])
@@ -55,7 +55,7 @@ def test_a_cup_that_is_emptied_into_one_of_two_bowls_is_told_once_nothing_falls_
     full = state_of(begun.scene, grains.copy())
     grains[:] = begun.scene.thing("left bowl").pose.position + np.array([0.0, 0.0, 0.3])
     falling = state_of(begun.scene, grains)
-    fills = Fills(vessels(begun))
+    fills = FillLevels(vessels(begun))
     told = []
     for time_s, state in (
         (0.0, full),

@@ -16,7 +16,7 @@ _RADIANS: Final = 3
 
 
 @final
-class Guide:
+class WaypointGuide:
     """Leads from one waypoint of a step to the next.
 
     For simulated drives the clock leads on from a waypoint at which the gripper closes. Here the person does,

@@ -7,14 +7,14 @@ from latentarm.core.types import NO_THINGS, FloatArray
 from latentarm.robots.kinematics.pose_rows import thing_rows
 from latentarm.robots.scene.scene import Scene
 from latentarm.web.protocol.report import Things
-from latentarm.web.protocol.things import whereabouts
+from latentarm.web.protocol.things import things_at
 
 _EVERY: Final = 4
 """Ticks between two looks: 25 looks per second; pages interpolate."""
 
 
 @final
-class Whereabouts:
+class ThingPoses:
     """Reads the poses of the things about an arm every few ticks; none without a scene."""
 
     def __init__(self, scene: Scene | None, arm: Arm) -> None:
@@ -36,4 +36,4 @@ class Whereabouts:
         """Where everything is; None in ticks without a look."""
         if self._scene is None or self._arm is None or tick % _EVERY:
             return None
-        return whereabouts(self._scene, self._arm.scene_state())
+        return things_at(self._scene, self._arm.scene_state())

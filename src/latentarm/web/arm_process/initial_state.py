@@ -56,7 +56,7 @@ class RobotOptions:
 
 @final
 @dataclass(frozen=True, eq=False)
-class Begun:
+class InitialState:
     """The initial state of a task run.
 
     Attributes:
@@ -72,7 +72,7 @@ class Begun:
 
 def begin(
     run: Run | None, task: str | None, arm: str, choice: int, robot: RobotOptions, rng: np.random.Generator
-) -> Begun:
+) -> InitialState:
     """Begin with a simulated arm; the same for equal arguments.
 
     Args:
@@ -95,14 +95,14 @@ def begin(
         # Made here too, so that an arm that can touch nothing is refused where the command was typed.
         make_scene_arm(arm, with_things.robot, begun.state, lambda: 0.0, begun.scene)
         place = ScenePlace(with_things.robot, begun.goals, with_things.obstacles, begun.objects)
-        return Begun(place, begun.state, things_to_do(with_things, choice, begun), begun.scene)
+        return InitialState(place, begun.state, things_to_do(with_things, choice, begun), begun.scene)
     named = (robot.robot, robot.end_effector, robot.stated)
     made = task_without_run(task, *named) if run is None else task_of_run(run, task, *named, option=False)
     _check_choice(choice, made.goals)
-    return Begun(made, made.sample_start(choice, rng), goal_to_reach(made, choice))
+    return InitialState(made, made.sample_start(choice, rng), goal_to_reach(made, choice))
 
 
-def begin_real(run: Run | None, task: str | None, choice: int, robot: RobotOptions) -> Begun:
+def begin_real(run: Run | None, task: str | None, choice: int, robot: RobotOptions) -> InitialState:
     """Begin with a real arm, wherever it is.
 
     Nothing detects the things about a real arm. Of a task with things only the robot and its obstacles count;
@@ -129,11 +129,11 @@ def begin_real(run: Run | None, task: str | None, choice: int, robot: RobotOptio
     made = task_without_run(task, *named) if run is None else task_of_run(run, task, *named, option=False)
     _check_choice(choice, made.goals)
     place = ScenePlace(made.robot, made.goals, tuple(made.obstacles))
-    return Begun(place, made.robot.home, goal_to_reach(made, choice))
+    return InitialState(place, made.robot.home, goal_to_reach(made, choice))
 
 
-def _free(robot: Robot, place: Place) -> Begun:
-    return Begun(place, robot.home, Todo(FREE, (), 0, ()))
+def _free(robot: Robot, place: Place) -> InitialState:
+    return InitialState(place, robot.home, Todo(FREE, (), 0, ()))
 
 
 def _check_own_robot(task: str, own: Robot, options: RobotOptions) -> None:

@@ -9,7 +9,7 @@ from latentarm.web.protocol.report import GripperState
 
 
 @final
-class Observed:
+class LatestReadings:
     """Keeps the newest valid readings.
 
     Attributes:

@@ -8,7 +8,7 @@ from scipy.spatial.transform import Rotation
 from latentarm.core.types import Pose
 from latentarm.robots.scene.scene import SceneState
 from latentarm.tasks.steps import TaskStep, Waypoint
-from latentarm.web.arm_process.guide import Guide
+from latentarm.web.arm_process.waypoint_guide import WaypointGuide
 
 NONE = frozenset()
 THERE = np.array([0.3, 0.1, 0.2])
@@ -27,7 +27,7 @@ def test_what_is_left_would_bring_the_tool_there():
     rng = np.random.default_rng(3)
     aim = Pose(THERE, Rotation.random(random_state=1).as_matrix())
     tool = Pose(rng.uniform(-0.5, 0.5, 3), Rotation.random(random_state=2).as_matrix())
-    left = Guide().look(step_of(Waypoint(lambda state: aim)), state_at(tool.position, tool.rotation))
+    left = WaypointGuide().look(step_of(Waypoint(lambda state: aim)), state_at(tool.position, tool.rotation))
     assert np.allclose(tool.position + left.shift_m, aim.position, atol=1e-4)
     # Turns are about the tool's own axes, as straight lines have them.
     turned = tool.rotation @ Rotation.from_rotvec(left.turn_rad).as_matrix()
@@ -37,7 +37,7 @@ def test_what_is_left_would_bring_the_tool_there():
 def test_the_gripper_is_asked_for_until_it_has_closed_however_long_that_takes():
     about = Waypoint(lambda state: Pose(THERE, np.eye(3)), gripper="close", wait_s=1.0)
     up = Waypoint(lambda state: Pose(THERE + np.array([0.0, 0.0, 0.1]), np.eye(3)))
-    guide, step = Guide(), step_of(about, up)
+    guide, step = WaypointGuide(), step_of(about, up)
     assert guide.look(step, state_at([0.0, 0.0, 0.0])).gripper is None
     for time_s in (1.0, 5.0, 60.0):
         assert guide.look(step, state_at(THERE, time_s=time_s)).gripper == "close"
@@ -48,7 +48,7 @@ def test_the_gripper_is_asked_for_until_it_has_closed_however_long_that_takes():
 
 def test_a_step_that_is_not_done_after_its_last_waypoint_begins_again():
     low, high = (Waypoint(lambda state, z=z: Pose(np.array([0.0, 0.0, z]), np.eye(3))) for z in (0.0, 0.1))
-    guide, step = Guide(), step_of(low, high)
+    guide, step = WaypointGuide(), step_of(low, high)
     guide.look(step, state_at([0.0, 0.0, 0.0]))
     at_last = state_at([0.0, 0.0, 0.1], time_s=1.0)
     assert guide.look(step, at_last).shift_m == (0.0, 0.0, 0.0)

@@ -16,7 +16,7 @@ from latentarm.web.protocol.report import Guiding
 
 
 @final
-class Standing:
+class Disengaged:
     """Guides the arm by hand, or connects it again. Neither moves it or enables it.
 
     ``say`` shows people a notice for a while.

@@ -45,7 +45,7 @@ def vessels(begun: Beginning) -> tuple[Vessel, ...]:
 
 
 @final
-class Fills:
+class FillLevels:
     """How full the vessels of a run are, and whether too little is left to pour.
 
     Attributes:
