@@ -1,4 +1,4 @@
-"""One camera at work: a thread that keeps its newest picture, and opens it again when it is lost."""
+"""One camera at work: a thread keeps its newest picture, and reopens it when it is lost."""
 
 import asyncio
 import threading
@@ -12,7 +12,7 @@ from latentarm.web.cameras.picture import Picture
 from latentarm.web.cameras.sources import CameraSource
 
 CameraState = Literal["opening", "live", "dark", "lost"]
-"""Being opened; seen; seen, but too dark; without a picture for `LOST_AFTER_S`."""
+"""Being opened; visible; visible, but too dark; without a picture for `LOST_AFTER_S`."""
 
 LOST_AFTER_S: Final = 1.0
 
@@ -25,13 +25,7 @@ OpenPictures = Callable[[CameraSource, threading.Event], Iterator[Picture]]
 
 @final
 class Camera:
-    """A camera that is open while somebody looks at it.
-
-    Args:
-        source: which one.
-        open_pictures: opens it.
-        loop: where its pictures are waited for.
-    """
+    """A camera that is open while somebody looks at it; ``loop`` waits for its pictures."""
 
     def __init__(
         self, source: CameraSource, open_pictures: OpenPictures, loop: asyncio.AbstractEventLoop
@@ -50,14 +44,14 @@ class Camera:
 
     @property
     def state(self) -> CameraState:
-        """How it is now."""
+        """The current state."""
         now_s = time.monotonic()
         if now_s - self._shown_s <= LOST_AFTER_S:
             return "dark" if self._light.dark else "live"
         return "opening" if not self._seen and now_s - self._opened_s < _OPENING_S else "lost"
 
     def look(self) -> None:
-        """Somebody begins to look: the first one opens it."""
+        """Add a viewer: the first one opens the camera."""
         self._lookers += 1
         if self._lookers > 1:
             return
@@ -69,23 +63,19 @@ class Camera:
         self._thread.start()
 
     def look_away(self) -> None:
-        """Somebody looks no longer: the last one closes it, soon."""
+        """Remove a viewer: the last one closes the camera, soon."""
         self._lookers -= 1
         if self._lookers == 0:
             self._closing.set()
 
     def end(self) -> None:
-        """Close it and wait for that, shortly."""
+        """Close it and wait shortly for that."""
         self._closing.set()
         if self._thread is not None:
             self._thread.join(_END_WITHIN_S)
 
     async def after(self, number: int) -> tuple[int, Picture]:
-        """The newest picture with its number, as soon as there is one with a higher number.
-
-        Args:
-            number: of the picture that was had before; -1 for none.
-        """
+        """Wait for a picture with a higher number; returns the newest with its number, from 0 on."""
         while self._newest is None or self._newest[0] <= number:
             self._come.clear()
             await self._come.wait()
@@ -114,15 +104,7 @@ class Camera:
 
 
 def check_camera(source: CameraSource, open_pictures: OpenPictures) -> str | None:
-    """Open a camera for one picture.
-
-    Args:
-        source: which one.
-        open_pictures: opens it.
-
-    Returns:
-        Why no picture came, in a sentence; None if one did.
-    """
+    """Open a camera for one picture; returns why none came, or None if one did."""
     closing = threading.Event()
     pictures = open_pictures(source, closing)
     try:

@@ -1,4 +1,4 @@
-"""The test pattern `testsrc`: a clock that programs can read, so that a picture shows its delay."""
+"""The test pattern `testsrc`: a machine-readable clock, so that a picture shows its delay."""
 
 import threading
 import time
@@ -32,11 +32,7 @@ def clock_pictures(closing: threading.Event) -> Iterator[Picture]:
 
 
 def clock_picture(unix_s: float) -> NDArray[np.uint8]:
-    """The pattern at a moment, see `Picture.planes`: the code above, and a square that goes around below.
-
-    Args:
-        unix_s: the moment, s since 1970.
-    """
+    """The pattern at Unix time, s, see `Picture.planes`: the code above, a square that goes around below."""
     planes = np.full((3 * MOST_HIGH // 2, MOST_WIDE), _NEUTRAL, np.uint8)
     planes[:MOST_HIGH] = _GREY
     code = int(unix_s * 1000.0) % (1 << BITS)

@@ -54,11 +54,7 @@ class CameraError(UserError):
 
 
 def open_pictures(source: CameraSource, closing: threading.Event) -> Iterator[Picture]:
-    """The pictures of a camera as they come, until it is closed; a file begins again at its end.
-
-    Args:
-        source: which camera.
-        closing: ends the pictures.
+    """The pictures of a camera until ``closing`` is set; a file begins again at its end.
 
     Raises:
         CameraError: the camera cannot be opened, or has ended.
@@ -119,14 +115,10 @@ def _video_of(container: InputContainer, source: CameraSource) -> VideoStream:
 
 @final
 class _Pace:
-    """Makes pictures of frames: no more than are sent, each with the moment when it was taken.
+    """Turns frames into dated pictures, no more than are sent.
 
-    A device says when. What comes over the network is dated by its stamp and by when it came. A file is
-    played at its own pace; a picture of it is taken when it is due.
-
-    Args:
-        source: of the frames.
-        closing: ends waiting.
+    A device dates them. A picture from the network is dated by its stamp and its arrival. A file is played at
+    its own pace; a picture of it is taken when it is due.
     """
 
     def __init__(self, source: CameraSource, closing: threading.Event) -> None:
@@ -140,26 +132,16 @@ class _Pace:
         self.any = False
 
     def begin_again(self) -> None:
-        """The file is at its start again."""
         self._began_s = None
 
     def arrived(self, stamp_s: float) -> None:
-        """Note when a packet came.
-
-        Args:
-            stamp_s: of the packet, which is not yet decoded, s.
-        """
         self._arrivals.arrived(stamp_s, time.monotonic())
 
     def of(self, frame: VideoFrame) -> Picture | None:
-        """The picture of a frame; None if it is one too many, or another comes right after it.
-
-        Args:
-            frame: as decoded.
+        """The picture of a frame; None if it follows the last one too closely.
 
         Raises:
-            CameraError: it is too large, or has waited in the network for so long that a new connection is
-                quicker.
+            CameraError: it is too large, or so late that a new connection is quicker.
         """
         if frame.width * frame.height > _MOST_PIXELS:
             raise CameraError(f"The pictures of camera {self._name} have become too large.")
@@ -184,7 +166,7 @@ class _Pace:
         return stamp_s if now_s - _LATEST_STAMP_S < stamp_s <= now_s else now_s
 
     def _due_s(self, frame: VideoFrame, now_s: float) -> float:
-        """When a frame of a file is due; waits for that, and plays on from there where it is late."""
+        """Wait until a frame of a file is due, s; a late file plays on from there."""
         at_s = 0.0 if frame.pts is None else frame.time
         if self._began_s is None:
             self._began_s = max(now_s, self._next_s) - at_s

@@ -1,4 +1,4 @@
-"""Whether there is enough light to see by."""
+"""Whether a picture is too dark to see."""
 
 from typing import Final, final
 
@@ -15,30 +15,18 @@ _EVERY: Final = 8
 
 @final
 class Light:
-    """Says whether it is too dark, picture by picture; near the limit it does not change its mind.
-
-    Attributes:
-        dark: whether it is.
-    """
+    """Judges the light picture by picture, with hysteresis."""
 
     def __init__(self) -> None:
         self.dark = False
 
     def see(self, planes: NDArray[np.uint8]) -> None:
-        """Look at a picture.
-
-        Args:
-            planes: see `latentarm.web.cameras.picture.Picture`.
-        """
+        """Judge a picture, see `Picture.planes`."""
         self.dark = brightness(planes) < (LIGHT if self.dark else DARK)
 
 
 def brightness(planes: NDArray[np.uint8]) -> float:
-    """Mean brightness of a picture, 0 for black and 1 for white, from one pixel in 64.
-
-    Args:
-        planes: see `latentarm.web.cameras.picture.Picture`.
-    """
+    """Mean brightness of a picture, from 0 for black to 1 for white, by one pixel in 64."""
     rows = 2 * planes.shape[0] // 3
     mean = float(planes[:rows:_EVERY, ::_EVERY].mean(dtype=np.float64))
     return min(max((mean - _BLACK) / (_WHITE - _BLACK), 0.0), 1.0)

@@ -4,12 +4,9 @@ import aioice.ice
 
 
 def listen_only_on(host: str) -> None:
-    """From now on in this process.
+    """Make aioice listen on this numeric address alone, in this process.
 
-    Otherwise aioice listens on every address but the loopback, which is where most pages are served.
-
-    Args:
-        host: an address of this computer, as a number.
+    Otherwise it listens on every address but the loopback, where most pages are served.
     """
 
     def own_address(use_ipv4: bool, use_ipv6: bool) -> list[str]:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 MOST_WIDE: Final = 640
 MOST_HIGH: Final = 480
-"""Larger pictures are made smaller, so that two cameras leave a small computer time for the arm."""
+"""Larger pictures are scaled down, so that two cameras leave a small computer time for the arm."""
 
 MOST_PER_S: Final = 30
 """Pictures per second that are sent at most."""
@@ -29,14 +29,6 @@ class Picture:
 
 
 def fitted(width: int, height: int) -> tuple[int, int]:
-    """The size of a picture that is sent: within the limits, of the same shape, with even sides.
-
-    Args:
-        width: as the camera has it, px.
-        height: px.
-
-    Returns:
-        Width and height, px; at least 2 each.
-    """
+    """Width and height to send, px: within the limits, of the same shape, even, at least 2 each."""
     share = min(1.0, MOST_WIDE / width, MOST_HIGH / height)
     return tuple(max(2, 2 * round(share * side / 2)) for side in (width, height))  # pyright: ignore[reportReturnType]

@@ -1,7 +1,7 @@
-"""The process of the cameras: it decodes and encodes on its own, whatever the arm and the web server do.
+"""The process of the cameras: it decodes and encodes apart from the arm and the web server.
 
-`run_cameras` is what runs in it. `CameraProcess` is the web server's side. They exchange short JSON texts:
-what is decoded there was written by others, so nothing from there is unpickled.
+`run_cameras` runs in it. `CameraProcess` is the web server's side. They exchange short JSON texts: strangers
+wrote what is decoded there, so nothing from there is unpickled.
 """
 
 import asyncio
@@ -25,7 +25,7 @@ from latentarm.web.cameras.sources import CameraSource
 from latentarm.web.protocol.notice import NoticeError
 
 MOST_VIEWERS: Final = 4
-"""Pages that may look at the cameras at once: each is sent pictures that are encoded for it."""
+"""Pages that may watch the cameras at once: pictures are encoded for each."""
 
 CHECKED_WITHIN_S: Final = 20.0
 ANSWER_WITHIN_S: Final = 5.0
@@ -36,13 +36,7 @@ _LONGEST: Final = 1 << 17
 
 
 def run_cameras(sources: Sequence[CameraSource], pipe: Connection, host: str) -> None:
-    """Serve the cameras until the web server is gone.
-
-    Args:
-        sources: the cameras.
-        pipe: to the web server.
-        host: the address on which pages reach this computer; no other one is listened on.
-    """
+    """Serve the cameras until the web server is gone, listening on the address ``host`` alone."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     with suppress(OSError, AttributeError):
         os.nice(_LOWER_PRIORITY)
@@ -53,7 +47,7 @@ def run_cameras(sources: Sequence[CameraSource], pipe: Connection, host: str) ->
 
 @final
 class _Desk:
-    """Carries out what the web server asks for."""
+    """Carries out the web server's requests."""
 
     def __init__(self, sources: Sequence[CameraSource], pipe: Connection, host: str) -> None:
         from latentarm.web.cameras.camera import Camera
@@ -72,7 +66,6 @@ class _Desk:
         self._closing: set[asyncio.Task[None]] = set()
 
     async def serve(self) -> None:
-        """Until the pipe ends."""
         loop = asyncio.get_running_loop()
         self._cameras = [self._make_camera(source, self._open, loop) for source in self._sources]
         asked: asyncio.Queue[dict[str, Any] | None] = asyncio.Queue()
@@ -119,7 +112,6 @@ class _Desk:
             return {"failed": "request_invalid"}
 
     def _leave(self, page: str, viewer: Any = None) -> None:
-        """A page no longer looks, or this connection of it has ended."""
         found = self._viewers.get(page)
         if found is None or (viewer is not None and found is not viewer):
             return
@@ -135,11 +127,7 @@ class _Desk:
 
 @final
 class CameraProcess:
-    """The cameras, as the web server sees them.
-
-    Args:
-        sources: the cameras.
-        host: the address on which the page is served, as a number.
+    """The cameras for the web server; ``host`` is the page's numeric address.
 
     Raises:
         UserError: a camera cannot be opened, or gives no picture.
@@ -161,27 +149,16 @@ class CameraProcess:
             )
 
     async def answer(self, page: str, offer: str) -> str:
-        """Let a page see the cameras.
-
-        Args:
-            page: its id.
-            offer: its session description.
-
-        Returns:
-            The session description that answers it.
+        """Answer a page's WebRTC session description with ours.
 
         Raises:
-            NoticeError: too many pages are watching already, the offer is not valid, or the process of the
-                cameras has just ended.
+            NoticeError: too many pages are watching, the offer is invalid, or the process of the cameras has
+                just ended.
         """
         return await asyncio.get_running_loop().run_in_executor(self._thread, self._answer, page, offer)
 
     def leave(self, page: str) -> None:
-        """A page no longer looks; returns at once.
-
-        Args:
-            page: its id.
-        """
+        """End a page's view; returns at once."""
         self._thread.submit(self._send, {"order": "leave", "page": page})
 
     def end(self) -> None:
@@ -227,7 +204,7 @@ class CameraProcess:
         return True
 
     def _heard(self, key: str, within_s: float) -> dict[str, Any] | None:
-        """The answer to the newest question; older ones came too late."""
+        """The answer to the newest question; older ones were late."""
         end_s = time.monotonic() + within_s
         try:
             while self._pipe.poll(max(0.0, end_s - time.monotonic())):

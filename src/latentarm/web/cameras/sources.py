@@ -1,4 +1,4 @@
-"""Which cameras were asked for: a name and an address each, of which only the name is ever shown."""
+"""The cameras of the command line: a name and an address each; only the name is ever shown."""
 
 import ipaddress
 import re
@@ -33,9 +33,7 @@ class CameraSource:
     """One camera.
 
     Attributes:
-        name: what people call it.
-        address: where its pictures come from. It may hold a password: it is never shown, logged or sent, and
-            not part of the `repr`.
+        address: may hold a password: it is never shown, logged or sent, and not part of the `repr`.
     """
 
     name: str
@@ -43,7 +41,7 @@ class CameraSource:
 
     @property
     def kind(self) -> Kind:
-        """What the address is."""
+        """The kind of address."""
         if self.address == TEST_PATTERN:
             return "pattern"
         if _SCHEME.match(self.address):
@@ -52,14 +50,11 @@ class CameraSource:
 
 
 def parse_cameras(asked: Sequence[str]) -> tuple[CameraSource, ...]:
-    """The cameras that a command line names.
-
-    Args:
-        asked: ``NAME=ADDRESS`` of each.
+    """The cameras of a command line, each ``NAME=ADDRESS``.
 
     Raises:
-        UserError: one is not of that form, two have one name, there are more than `MOST`, or the extra that
-            shows them is not installed. The sentence quotes no address.
+        UserError: one is not of that form, two have one name, there are more than `MOST`, or the extra
+            `camera` is not installed. The sentence quotes no address.
     """
     if len(asked) > MOST:
         raise UserError(f"{len(asked)} cameras are named: the page shows {MOST} at most.")
@@ -75,11 +70,7 @@ def parse_cameras(asked: Sequence[str]) -> tuple[CameraSource, ...]:
 
 
 def kept(asked: Sequence[str]) -> tuple[str, ...]:
-    """What may be written to a file of what was asked for: no addresses in the network, which hold passwords.
-
-    Args:
-        asked: as for `parse_cameras`.
-    """
+    """The options that may be written to a file: no network addresses, which hold passwords."""
     return tuple(
         text for text, camera in zip(asked, parse_cameras(asked), strict=True) if camera.kind != "network"
     )
@@ -101,11 +92,7 @@ def _parsed(text: str, number: int) -> CameraSource:
 
 
 def _check_address(name: str, address: str) -> None:
-    """Check what can be known without opening it.
-
-    Raises:
-        UserError: nothing can be there.
-    """
+    """Check an address without opening it."""
     if address == TEST_PATTERN:
         return
     scheme = _SCHEME.match(address)

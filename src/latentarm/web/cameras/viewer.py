@@ -1,4 +1,4 @@
-"""One page that looks at the cameras: a connection of its own, by WebRTC."""
+"""One page that watches the cameras, over a WebRTC connection."""
 
 import asyncio
 import json
@@ -26,10 +26,10 @@ from latentarm.web.cameras.camera import Camera
 from latentarm.web.cameras.rtp_clock import TIME_BASE, RtpClock
 
 CONNECTED_WITHIN_S: Final = 10.0
-"""A page that has not connected by then is forgotten."""
+"""A page that has not connected by then is dropped, s."""
 
 TELL_EVERY_S: Final = 0.2
-"""How often a page is told how the cameras are."""
+"""How often a page receives the cameras' states, s."""
 
 _LONGEST_MESSAGE: Final = 200
 
@@ -37,16 +37,12 @@ _ADDRESSES: Final = ("a=candidate:", "a=end-of-candidates", "a=remote-candidates
 
 
 class OfferError(UserError):
-    """A page has offered something else than to see these cameras."""
+    """A page's offer is not for these cameras."""
 
 
 @final
 class CameraTrack(MediaStreamTrack):
-    """The pictures of a camera for one page, always the newest.
-
-    Args:
-        camera: whose pictures.
-    """
+    """The newest pictures of a camera for one page."""
 
     kind = "video"
 
@@ -58,13 +54,13 @@ class CameraTrack(MediaStreamTrack):
 
     @property
     def said(self) -> dict[str, Any]:
-        """How the camera is, and a timestamp of the stream with the moment that it means, ms."""
+        """The camera's state, and a timestamp of the stream with its moment, ms."""
         pair = None if self.clock is None else self.clock.pair
         rtp, at_ms = (None, None) if pair is None else (pair[0], 1000.0 * pair[1])
         return {"state": self._camera.state, "rtp": rtp, "at": at_ms}
 
     async def recv(self) -> VideoFrame:
-        """See the base class."""
+        """The next picture as a frame."""
         self._number, picture = await self._camera.after(self._number)
         # A frame of its own: the encoder writes into it.
         frame = VideoFrame.from_ndarray(picture.planes, format="yuv420p")
@@ -76,12 +72,7 @@ class CameraTrack(MediaStreamTrack):
 
 @final
 class Viewer:
-    """A page's view of all cameras.
-
-    Args:
-        cameras: what it sees, in this order.
-        gone: called once when the page is no longer there.
-    """
+    """A page's view of all cameras; ``gone`` is called once when the page has gone."""
 
     def __init__(self, cameras: Sequence[Camera], gone: Callable[[], None]) -> None:
         self._cameras = cameras
@@ -96,14 +87,7 @@ class Viewer:
         self._closed = False
 
     async def answer(self, offer: str) -> str:
-        """Connect to a page.
-
-        Args:
-            offer: session description of the page: to receive as many videos as there are cameras, and a
-                data channel.
-
-        Returns:
-            The answer.
+        """Answer a page's offer to receive one video per camera, and a data channel.
 
         Raises:
             OfferError: it offers something else.
@@ -157,14 +141,14 @@ class Viewer:
         channel.on("message", self._heard)
 
     def _heard(self, message: object) -> None:
-        """A page asks what time it is here, with the time there."""
+        """Answer a page's question for our time; it contains the page's own."""
         channel = self._channel
         sent_ms = asked_ms(message)
         if channel is not None and sent_ms is not None and channel.readyState == "open":
             channel.send(json.dumps({"type": "time", "sent": sent_ms, "now": _now_ms()}))
 
     async def _tell(self) -> None:
-        """Say again and again how the cameras are, and date their pictures."""
+        """Send the cameras' states, and date their pictures, repeatedly."""
         began_s = time.monotonic()
         while True:
             await asyncio.sleep(TELL_EVERY_S)
@@ -181,11 +165,7 @@ class Viewer:
 
 
 def asked_ms(message: object) -> float | None:
-    """The page's own time in a question for ours, ms; None if the message is no such question.
-
-    Args:
-        message: as it came.
-    """
+    """The page's own time in a question for ours, ms; None for another message."""
     if not isinstance(message, str) or len(message) > _LONGEST_MESSAGE:
         return None
     try:
@@ -199,11 +179,7 @@ def asked_ms(message: object) -> float | None:
 
 
 def without_candidates(offer: str) -> str:
-    """An offer without the page's addresses: it comes to us, and we send nothing to where a stranger says.
-
-    Args:
-        offer: session description.
-    """
+    """An offer without the page's addresses: we send nothing to where a stranger says."""
     return "".join(f"{line}\r\n" for line in offer.splitlines() if not line.startswith(_ADDRESSES))
 
 

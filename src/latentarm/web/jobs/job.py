@@ -27,7 +27,7 @@ MESSAGE_LIMIT: Final = 1 << 20
 
 _NICENESS: Final = 10
 _GRACE_S: Final = 2.0
-"""How long a child may take to tidy up once it is told to end."""
+"""How long a child may take to tidy up, s."""
 
 Said = TypeVar("Said", bound=BaseModel)
 Told = TypeVar("Told", bound=BaseModel)
@@ -40,12 +40,7 @@ class _Failed(Message):
 
 @final
 class Wire:
-    """The child's end of the pipes.
-
-    Args:
-        hearing: messages from the parent.
-        saying: messages to the parent.
-    """
+    """The child's end of the pipes: from and to the parent."""
 
     def __init__(self, hearing: Connection, saying: Connection) -> None:
         self._hearing = hearing
@@ -63,7 +58,7 @@ class Wire:
             sys.exit(1)
 
     def hear(self, kind: TypeAdapter[Told]) -> Told:
-        """Wait for the parent's next message; anything else is skipped.
+        """Wait for the parent's next message; invalid ones are skipped.
 
         Raises:
             SystemExit: the parent is gone.
@@ -85,11 +80,11 @@ class Job(Generic[Said]):
     and `failure` says that the work broke off.
 
     Args:
-        work: a module's function, called in the child with its `Wire` and then ``arguments``. It must not
-            be of a module that loads torch when it is imported: the number of threads is set before.
-        arguments: for ``work``; they are pickled by multiprocessing.
+        work: a module's function, called in the child with its `Wire` and then ``arguments``. Its module must
+            not import torch: the number of threads is set before.
+        arguments: for ``work``; multiprocessing pickles them.
         kind: of the child's messages.
-        name: what the work is called in the list of processes.
+        name: of the process.
     """
 
     def __init__(
@@ -115,7 +110,7 @@ class Job(Generic[Said]):
 
     @property
     def alive(self) -> bool:
-        """Whether it is at work, or has sent something that has not arrived yet."""
+        """Whether it is at work, or a message is still on its way."""
         return self._listener.is_alive()
 
     @property
@@ -128,11 +123,7 @@ class Job(Generic[Said]):
         return [self._heard.popleft() for _ in range(len(self._heard))]
 
     def say(self, message: Message) -> bool:
-        """Send the child a short message.
-
-        Returns:
-            Whether it was accepted: not if the child has ended or has stopped reading.
-        """
+        """Send the child a short message; returns False if it has ended or has stopped reading."""
         try:
             self._saying.send_bytes(message.model_dump_json().encode())
         except OSError:
@@ -140,7 +131,7 @@ class Job(Generic[Said]):
         return True
 
     def end(self) -> None:
-        """End it, by force if it takes longer than two seconds. Ending it is not a failure."""
+        """End it, by force after two seconds. That is not a failure."""
         self._ended = True
         if self._listener.is_alive():
             self._process.terminate()
@@ -169,7 +160,6 @@ class Job(Generic[Said]):
 def _run(
     work: Callable[..., None], arguments: tuple[object, ...], hearing: Connection, saying: Connection
 ) -> None:
-    """Run the work in the child."""
     # Ctrl-C in a terminal reaches every process: the server then ends this one in good order.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, _tidy_up)

@@ -1,4 +1,4 @@
-"""What the arm learned, as a person notices it: which recordings were short, what each direction does."""
+"""What a training taught the arm, as a person notices it: short recordings, and each direction's effect."""
 
 import warnings
 from collections.abc import Mapping, Sequence
@@ -30,12 +30,7 @@ _MOST_SAMPLES: Final = 200
 
 
 def moving_seconds(episode: JournalEpisode, rate_hz: float) -> float:
-    """How long the arm moves in a recording, s; 0 where nothing of it can be learned from.
-
-    Args:
-        episode: as it is in the journal.
-        rate_hz: samples a second of motion.
-    """
+    """How long the arm moves in a recording with ``rate_hz`` samples per second, s; 0 if it is unusable."""
     from latentarm.demonstrations.pauses import without_pauses
 
     try:
@@ -48,12 +43,7 @@ def moving_seconds(episode: JournalEpisode, rate_hz: float) -> float:
 
 
 def lesson_of(run: Path, demonstrations: Demonstrations, moved_s: Mapping[int, float]) -> Lesson:
-    """What a new run has learned.
-
-    Args:
-        run: its folder.
-        demonstrations: what it was trained on.
-        moved_s: by the number of each recording, how long the arm moves in it, s.
+    """The lesson of a new run; ``moved_s``: how long the arm moves in each recording, by number, s.
 
     Raises:
         UserError: the run cannot be read.
@@ -71,7 +61,7 @@ def lesson_of(run: Path, demonstrations: Demonstrations, moved_s: Mapping[int, f
 
 
 def _checking(run: Path) -> int:
-    """How many episodes a run was not fitted to: those that stopped its training, and those held out."""
+    """Episodes that the run was not fitted to: those that stopped its training, and those held out."""
     from latentarm.models.saving import read_model
     from latentarm.runs.folder import read_run
 

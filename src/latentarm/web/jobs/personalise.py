@@ -14,7 +14,7 @@ from latentarm.web.protocol.personalise_messages import Personalise, ShownMotion
 from latentarm.web.protocol.scene import pose_of
 
 _FRAMES: Final = 16
-"""Poses along a motion; pages glide from one to the next."""
+"""Poses along a motion; pages interpolate."""
 
 _STILL_M: Final = 5e-4
 """A tool that moves less is not shown."""
@@ -26,10 +26,10 @@ class PersonalisePlan:
     """The person to ask, and the run to ask about.
 
     Attributes:
-        run: the run's folder.
+        run: its folder.
         name: the person's.
-        questions: to be answered, at most.
-        out: where the profile is written; nothing is there yet.
+        questions: maximum number of answers.
+        out: the profile's folder, which does not exist yet.
     """
 
     run: Path
@@ -81,11 +81,7 @@ _TOLD: Final[TypeAdapter[_Told]] = TypeAdapter(Annotated[_Told, Field(discrimina
 
 @final
 class PersonaliseJob:
-    """A person being asked, as the page's server sees it.
-
-    Args:
-        plan: what is to be done.
-    """
+    """A person being asked, for the page's server."""
 
     def __init__(self, plan: PersonalisePlan) -> None:
         self._job = Job(ask_and_learn, (plan,), _SAID, "asking")
@@ -128,11 +124,11 @@ class PersonaliseJob:
         self._reply(question, _Answer(u=u))
 
     def skip(self, question: int) -> None:
-        """Pass on that the person skips the question."""
+        """Skip the question."""
         self._reply(question, _Instead(type="skip"))
 
     def back(self, question: int) -> None:
-        """Pass on that the person wants to go back to the previous question."""
+        """Go back to the previous question."""
         self._reply(question, _Instead(type="back"))
 
     def end(self) -> None:
@@ -151,11 +147,7 @@ class PersonaliseJob:
 
 @final
 class PersonOnPage(Person):
-    """A person who sees motions on a page and answers there, through the parent process.
-
-    Args:
-        wire: to the parent.
-    """
+    """A person who sees motions on a page and answers there, through the parent process."""
 
     def __init__(self, wire: Wire) -> None:
         self._wire = wire
@@ -186,7 +178,7 @@ class PersonOnPage(Person):
 
 
 def ask_and_learn(wire: Wire, plan: PersonalisePlan) -> None:
-    """The work itself, in the child.
+    """The child's work.
 
     Raises:
         UserError: the run cannot be aligned, nothing was answered, or the profile cannot be written.

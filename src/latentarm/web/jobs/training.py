@@ -1,4 +1,4 @@
-"""Training on what was recorded, in a child process: a journal in, a dataset and a run out."""
+"""Training on recordings, in a child process: a journal in, a dataset and a run out."""
 
 import math
 import re
@@ -22,10 +22,10 @@ from latentarm.web.protocol.learning_messages import Lesson, Training, TrainingP
 from latentarm.web.protocol.notice import Message, Notice, NoticeError, sentence
 
 RATE_HZ: Final = 10.0
-"""Samples a second of motion that a model is trained on: an action then looks half a second ahead."""
+"""Samples per second of motion for training: an action then looks half a second ahead."""
 
 FEWEST: Final = 3
-"""Episodes: one trains, one says when to stop, and one is kept for `latentarm evaluate`."""
+"""Episodes: one trains, one stops the training, and one is kept for `latentarm evaluate`."""
 
 SHORTEST_S: Final = 1.0
 """An episode that moves for less than this shows nothing."""
@@ -48,10 +48,10 @@ def model_names() -> tuple[str, ...]:
 @final
 @dataclass(frozen=True)
 class TrainingPlan:
-    """What is to be trained on what.
+    """What to train on which episodes.
 
     Attributes:
-        journal: where the episodes are.
+        journal: holds the episodes.
         episodes: their numbers.
         name: of the new dataset and the new run.
         model: a name in the catalogue of models.
@@ -60,7 +60,7 @@ class TrainingPlan:
         end_effector: site, body or link, where the robot is a model file.
 
     Raises:
-        NoticeError: the name cannot be that of a folder or is taken, or there are too few episodes.
+        NoticeError: the name cannot be a folder's or is taken, or there are too few episodes.
     """
 
     journal: Path
@@ -115,11 +115,7 @@ _SAID: Final[TypeAdapter[_Said]] = TypeAdapter(Annotated[_Said, Field(discrimina
 
 @final
 class TrainingJob:
-    """A training under way, as the page's server sees it.
-
-    Args:
-        plan: what is to be done.
-    """
+    """A training under way, for the page's server."""
 
     def __init__(self, plan: TrainingPlan) -> None:
         self._job = Job(train_as_planned, (plan,), _SAID, "training")
@@ -152,7 +148,7 @@ class TrainingJob:
         return self._state
 
     def cancel(self) -> None:
-        """End it; waits until it has tidied up, two seconds at most."""
+        """End it, and wait until it has tidied up, two seconds at most."""
         self._cancelled = True
         self._job.end()
 
@@ -166,12 +162,12 @@ class TrainingJob:
 
 
 def train_as_planned(wire: Wire, plan: TrainingPlan) -> None:
-    """The work itself, in the child. If it fails or is ended, it leaves nothing behind.
+    """The child's work. If it fails or is ended, it leaves nothing behind.
 
-    Episodes are written as `demonstrations.pauses` makes them: motion alone, at `RATE_HZ`.
+    `demonstrations.pauses` prepares the episodes: motion alone, at `RATE_HZ`.
 
     Raises:
-        UserError: the episodes cannot be learned from, or the disk has no room.
+        UserError: the episodes are unusable, or the disk has no room.
     """
     from latentarm.demonstrations.pauses import without_pauses
 
@@ -204,7 +200,6 @@ def train_as_planned(wire: Wire, plan: TrainingPlan) -> None:
 
 
 def _cut(warning: ImplausibleWarning) -> Notice:
-    """What of a recording is not learned from."""
     if warning.kept_s == 0.0:
         return Notice(code="recording_left_out", parameters={"task": warning.task})
     return Notice(code="recording_cut", parameters={"task": warning.task, "kept_s": f"{warning.kept_s:.1f}"})
@@ -241,7 +236,7 @@ def _train(wire: Wire, plan: TrainingPlan, demonstrations: Demonstrations) -> li
 
 
 def _report_to(wire: Wire) -> Callable[[int, int, float], None]:
-    """A report that sends epochs to the parent, at most ten times a second."""
+    """Send epochs to the parent, at most ten times a second."""
     begun_s = time.monotonic()
     told_s = -math.inf
 

@@ -1,4 +1,4 @@
-"""Messages between the page's server and the control process, and how they travel.
+"""The messages between the page's server and the control process, in shared memory and a pipe.
 
 Neither ever waits for the other. Inputs and reports are latest-wins; a stop has a separate slot, so that it
 arrives however full the pipe of orders is. Nothing is unpickled: everything is JSON of a strict schema.
@@ -28,11 +28,9 @@ class Channel:
     """The control process's side.
 
     Attributes:
-        given: the newest input.
-        report: the newest report.
         stop: the newest reason to stop, a `Notice`; every new one stops the arm.
         ending: raised to make the control process bring the arm to rest and end.
-        orders: everything else; bounded, so that a slow reader loses orders and never blocks the writer.
+        orders: bounded, so that a slow reader loses orders and never blocks the writer.
     """
 
     given: LatestSlot
@@ -42,7 +40,7 @@ class Channel:
     orders: Connection
 
     def read_orders(self, most: int) -> list[Order]:
-        """Orders that have arrived, oldest first; invalid ones are skipped.
+        """New orders, oldest first; invalid ones are skipped.
 
         Raises:
             EOFError: the other side is gone.
@@ -70,7 +68,7 @@ def new_channel(orders: Connection) -> Channel:
 
 
 def parse_stop(message: bytes) -> Notice:
-    """Parse a reason to stop from its slot; anything there is a reason to stop."""
+    """Parse a reason to stop from its slot; invalid content stops the arm too."""
     try:
         return Notice.model_validate_json(message)
     except ValidationError:

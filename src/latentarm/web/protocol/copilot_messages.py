@@ -24,17 +24,17 @@ class AcceptCopilot(Message):
 
 @final
 class EndCopilot(Message):
-    """The driver or the co-pilot ends it, or what was asked; the arm stops where there was one."""
+    """The driver or the co-pilot ends the role or the request; the arm stops if there was a co-pilot."""
 
     type: Literal["end_copilot"]
 
 
 @final
 class CopilotPace(Message):
-    """What the co-pilot leaves of the driver's speed, 10 times a second: without it the arm stops.
+    """The share of the driver's speed that the co-pilot allows, 10 times a second: without it the arm stops.
 
     Attributes:
-        pace: share of the driver's speed, in [0, 1].
+        pace: in [0, 1].
         nonce: of the newest `State` that the page has seen.
     """
 
@@ -48,12 +48,7 @@ CopilotMessage = AskToCopilot | AcceptCopilot | EndCopilot | CopilotPace
 
 @final
 class Person(Message):
-    """The person at a page.
-
-    Attributes:
-        id: of the page.
-        name: what they are called.
-    """
+    """The person at a page; ``id`` is the page's."""
 
     id: str
     name: PersonName
@@ -61,12 +56,10 @@ class Person(Message):
 
 @final
 class CopilotState(Message):
-    """The co-pilot.
+    """The co-pilot; ``id`` is the page's.
 
     Attributes:
-        id: of the page.
-        name: what they are called.
-        pace: share of the driver's speed that they leave, in [0, 1].
+        pace: share of the driver's speed that they allow, in [0, 1].
     """
 
     id: str

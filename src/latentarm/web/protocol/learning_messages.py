@@ -18,7 +18,7 @@ class Train(Message):
 
     Attributes:
         name: of the new run, and of its dataset.
-        model: which latent action model.
+        model: a kind of latent action model.
         latent_dim: d, axes of the latent actions.
         episodes: their numbers, see `Recorded`.
     """
@@ -47,13 +47,7 @@ class PickRun(Message):
 
 @final
 class Recorded(Message):
-    """A whole episode in the journal.
-
-    Attributes:
-        number: its own.
-        task: what was done, in words.
-        seconds: how long it is.
-    """
+    """A complete episode in the journal: its number, the task in words, and its length."""
 
     number: int
     task: str
@@ -62,7 +56,7 @@ class Recorded(Message):
 
 @final
 class Lesson(Message):
-    """What the arm learned in a training, as a person would notice it.
+    """The result of a training in terms that a person notices.
 
     Attributes:
         recordings: how many were chosen.
@@ -84,14 +78,13 @@ class Training(Message):
     """A training under way, or the last one.
 
     Attributes:
-        phase: where it is.
-        run: the run's name.
+        run: its name.
         epoch: passes over the episodes so far.
         epochs: maximum number of passes.
         loss: validation loss so far, or null.
-        seconds_left: estimated remaining time, or null.
-        why: why it failed, or what was warned of.
-        lesson: what was learned; null before it is done.
+        seconds_left: estimate, or null.
+        why: reasons of a failure, or warnings.
+        lesson: null before it is done.
     """
 
     phase: TrainingPhase
@@ -106,14 +99,14 @@ class Training(Message):
 
 @final
 class LearningState(Message):
-    """What there is to learn from and to drive; sent after `Welcome` and whenever it changes.
+    """Recordings, training and runs; sent after `Welcome` and whenever it changes.
 
     Attributes:
-        training: null where none was begun.
+        training: null before the first.
         personalise: null where nobody was asked.
-        recordings: whole episodes of this journal.
+        recordings: complete episodes of this journal.
         runs: names of the runs that can be driven.
-        run: the one that is loaded, or null.
+        run: the loaded one, or null.
         profiles: people whose alignment with it can be chosen.
     """
 

@@ -1,4 +1,4 @@
-"""Notices to people, as sent: a code and its parameters, which each language puts into words."""
+"""Notices to people: a code and parameters, which each language puts into words."""
 
 from typing import Literal, final
 
@@ -10,7 +10,7 @@ from latentarm.core.untrusted.terminal import one_line
 from latentarm.web.words.catalogue import DEFAULT, languages
 
 PersonName = str | int
-"""What a person is called; a guest without a name is their number."""
+"""A guest without a name is called by a number."""
 
 NoticeCode = Literal[
     StopCode,
@@ -113,10 +113,10 @@ class Notice(Message):
     """A notice to a person.
 
     Attributes:
-        code: which text it is.
-        parameters: what the text names. ``name`` is a `PersonName` where it is a person's. ``because`` is the
-            code of another notice, whose parameters are here too. ``text`` is what only an English sentence
-            says, such as the message of an error; pages show it and never look into it.
+        code: of its text.
+        parameters: of the text. ``name`` is a `PersonName` where it is a person's. ``because`` is the code of
+            another notice, whose parameters are here too. ``text`` exists only in English, such as the
+            message of an error; pages show it and never parse it.
     """
 
     code: NoticeCode
@@ -135,12 +135,7 @@ class Notice(Message):
 
 @final
 class NoticeError(UserError):
-    """A problem that the user can fix, which every language has words for.
-
-    Args:
-        code: of the notice.
-        parameters: of the notice.
-    """
+    """A problem that the user can fix, with a text in every language."""
 
     def __init__(self, code: NoticeCode, **parameters: str | int) -> None:
         self.notice = Notice(code=code, parameters=parameters)

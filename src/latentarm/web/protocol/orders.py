@@ -1,4 +1,4 @@
-"""What the page's server tells the control process: the driver's inputs, and orders."""
+"""Messages from the page's server to the control process: the driver's inputs, and orders."""
 
 from typing import Annotated, Final, Literal, final
 
@@ -19,15 +19,10 @@ BuiltInPose = Literal["home", "tuck"]
 
 @final
 class AskedGripper(Message):
-    """What the driver last asked of the gripper, with the stamps of the input that it came with.
+    """The driver's last request to the gripper, with the stamps of its input.
 
     It goes with every later input too, because only the newest input is kept. The stamps make it count once,
-    and not at all where its own input came too late.
-
-    Attributes:
-        ask: what is asked.
-        seq: of that input.
-        nonce: that it echoed.
+    and not at all if its own input was late.
     """
 
     ask: GripperAsk
@@ -37,12 +32,12 @@ class AskedGripper(Message):
 
 @final
 class Paced(Message):
-    """What a driver's co-pilot leaves of the driver's speed.
+    """The share of the driver's speed that a co-pilot allows.
 
     Attributes:
         copilot: counts the co-pilots.
-        pace: share of the driver's speed, in [0, 1].
-        nonce: the newest that the co-pilot's page had seen: it says how old this is.
+        pace: in [0, 1].
+        nonce: the newest that the co-pilot's page had seen: it dates this message.
     """
 
     copilot: int
@@ -60,12 +55,12 @@ class Given(Message):
         nonce: the newest that their page has seen.
         u: entries in [-1, 1].
         latched: continues without being held, for a limited time.
-        source: with what kind of device.
-        device: which one of that kind.
-        raw: what the device itself says; None where that is ``u``.
-        gripper: the newest thing that this driver has asked of the gripper; None before the first.
-        paced: the newest that the driver's co-pilot has said; None without a co-pilot.
-        opens: what opens the gripper of an arm that is not enabled is held down.
+        source: kind of device.
+        device: number among devices of that kind.
+        raw: the device's own values; None where they are ``u``.
+        gripper: this driver's newest request; None before the first.
+        paced: the co-pilot's newest pace; None without a co-pilot.
+        opens: whether the control is held down that opens the gripper of an arm that is not enabled.
     """
 
     driver: int
@@ -86,7 +81,7 @@ class Enable(Message):
     """Let the arm move, if the driver's input is neutral.
 
     Attributes:
-        driver: who asked.
+        driver: the driver who asked.
         stops: version of the stop slot as the driver knew it: a later Stop wins.
     """
 
@@ -97,7 +92,7 @@ class Enable(Message):
 
 @final
 class ChooseMode(Message):
-    """Steer in another way; ``axes`` is which pair of the end-effector's, None for the one before."""
+    """Steer in another way; ``axes`` is a pair of the end-effector's, None for the one before."""
 
     order: Literal["mode"] = "mode"
     mode: ModeName
@@ -106,7 +101,7 @@ class ChooseMode(Message):
 
 @final
 class ChooseHelp(Message):
-    """How much the robot helps with learned motions; ``off`` is the mode ``latent``."""
+    """Set the level of help with learned motions; ``off`` is the mode ``latent``."""
 
     order: Literal["help"] = "help"
     level: HelpLevel
@@ -114,11 +109,11 @@ class ChooseHelp(Message):
 
 @final
 class ChooseProfile(Message):
-    """Take another person's alignment, or None for none; only while the arm stands disengaged.
+    """Use a person's alignment, or None for none; only while the arm is disengaged.
 
     Attributes:
         name: of their profile.
-        seat: where they sit; None for where the person before sat.
+        seat: None for where the person before sat.
     """
 
     order: Literal["profile"] = "profile"
@@ -128,7 +123,7 @@ class ChooseProfile(Message):
 
 @final
 class ChooseRun(Message):
-    """Drive another run from its start, without anybody's alignment; only while the arm stands disengaged."""
+    """Drive another run from its start, without an alignment; only while the arm is disengaged."""
 
     order: Literal["run"] = "run"
     run: str
@@ -136,12 +131,7 @@ class ChooseRun(Message):
 
 @final
 class PoseToGoTo(Message):
-    """A saved or built-in pose.
-
-    Attributes:
-        name: what it is called.
-        q: (n,), joint positions, rad.
-    """
+    """A saved or built-in pose; ``q``: (n,), joint positions, rad."""
 
     name: str
     q: tuple[float, ...]
@@ -152,7 +142,6 @@ class Return(Message):
     """Move the arm slowly, while it is enabled and the stick is let go; or end that.
 
     Attributes:
-        on: whether to begin.
         pose: where to; None for its start.
     """
 
@@ -163,13 +152,12 @@ class Return(Message):
 
 @final
 class Record(Message):
-    """Begin an episode of what is driven, or end it once the arm is at rest.
+    """Begin an episode, or end it once the arm is at rest.
 
     Attributes:
-        on: whether to begin.
-        task: what is done, in words.
-        person: who does it; "" where that is unknown.
-        by_hand: whether the arm is guided by hand, rather than driven; ignored where it cannot be.
+        task: in words.
+        person: who does it; "" if unknown.
+        by_hand: whether the arm is guided by hand, rather than driven; ignored if it cannot be.
     """
 
     order: Literal["record"] = "record"
@@ -181,10 +169,9 @@ class Record(Message):
 
 @final
 class Guide(Message):
-    """Let the arm be guided by hand, or end that; only while it stands disengaged.
+    """Let the arm be guided by hand, or end that; only while it is disengaged.
 
     Attributes:
-        on: whether to begin.
         stops: version of the stop slot as the driver knew it: a later Stop wins.
     """
 
@@ -195,11 +182,7 @@ class Guide(Message):
 
 @final
 class KeepGuiding(Message):
-    """The page from which the arm is guided is still there.
-
-    Attributes:
-        gripper: what is asked of the gripper; None for nothing.
-    """
+    """The page from which the arm is guided is still there; ``gripper`` is a request, or None."""
 
     order: Literal["keep_guiding"] = "keep_guiding"
     gripper: GripperAsk | None = None
@@ -214,14 +197,14 @@ class Reconnect(Message):
 
 @final
 class Reset(Message):
-    """Put the simulated arm back to its start; only while it stands disengaged."""
+    """Put the simulated arm back to its start; only while it is disengaged."""
 
     order: Literal["reset"] = "reset"
 
 
 @final
 class BeginTask(Message):
-    """Begin a run of the task from its start; only while the arm stands disengaged.
+    """Begin a run of the task from its start; only while the arm is disengaged.
 
     Attributes:
         choice: index of what is to be done; None for the same again.

@@ -1,4 +1,4 @@
-"""What pages say to the server on the socket ``/drive``: JSON in text frames.
+"""Messages from pages to the server on the socket ``/drive``: JSON in text frames.
 
 The first message is `Hello`. Anything outside this schema ends the connection and stops the arm. The answers
 are in `latentarm.web.protocol.server_messages`.
@@ -31,7 +31,7 @@ class Hello(Message):
 
     Attributes:
         version: of these messages.
-        name: what its person wants to be called; counts only where they have no record.
+        name: counts only for a person without a record.
         person: id of their record.
     """
 
@@ -45,19 +45,18 @@ class Hello(Message):
 class DriverInput(Message):
     """The person's input, 50 times a second while the arm is enabled, including neutral.
 
-    Also while they hold down what opens the gripper of an arm that is not enabled. How long that has to be
-    held is judged next to the arm, by its own clock.
+    Also while they hold down the control that opens the gripper of an arm that is not enabled. The process
+    that owns the arm judges, by its own clock, how long it was held.
 
     Attributes:
         seq: grows.
         nonce: of the newest `State` that the page has seen.
         u: entries in [-1, 1], right and up positive; axes that are not named are zero.
-        source: with what.
-        device: which one of several of that kind.
-        raw: right and up as the device says it, before it is shaped or smoothed; null where it is ``u``.
+        device: number among devices of that kind.
+        raw: right and up from the device, before shaping and smoothing; null where they are ``u``.
         latched: continues without being held, for at most `Limits.latch_max_s`.
-        gripper: what is asked of the gripper with this input; only in the one input that asks.
-        opens: what opens the gripper of an arm that is not enabled is held down.
+        gripper: a request; only in the one input that makes it.
+        opens: whether the control is held down that opens the gripper of an arm that is not enabled.
     """
 
     type: Literal["input"]
@@ -84,8 +83,8 @@ class PressStop(Message):
     """Stop the arm, from any page.
 
     Attributes:
-        why: a person pressed Stop, or the page could not be sure of its person any more (left, hidden, a
-            control lost, a dialog opened).
+        why: a person pressed Stop, or the page can no longer be sure of its person (left, hidden, a control
+            lost, a dialog opened).
     """
 
     type: Literal["stop"]
@@ -103,7 +102,7 @@ class Mode(Message):
 
 @final
 class HelpFromRobot(Message):
-    """How much the robot helps with learned motions; at any time."""
+    """Set the level of help with learned motions; at any time."""
 
     type: Literal["help"]
     level: HelpLevel
@@ -157,8 +156,7 @@ class RecordEpisode(Message):
     """Begin an episode, or end it once the arm is at rest; a change of the driver ends it too.
 
     Attributes:
-        on: whether to begin.
-        task: what is done, in words.
+        task: in words.
         by_hand: whether the arm is guided by hand, rather than driven.
     """
 
@@ -178,10 +176,10 @@ class GuideArm(Message):
 
 @final
 class GuidedArm(Message):
-    """Said five times a second by the page from which the arm is guided; without it guiding ends.
+    """Sent five times a second by the page from which the arm is guided; without it guiding ends.
 
     Attributes:
-        gripper: what is asked of the gripper; only in the one message that asks.
+        gripper: a request; only in the one message that makes it.
     """
 
     type: Literal["guided"]
@@ -190,7 +188,7 @@ class GuidedArm(Message):
 
 @final
 class ReconnectArm(Message):
-    """Make a lost connection to the arm again; the arm does not move, and is not enabled."""
+    """Renew a lost connection to the arm; the arm does not move, and is not enabled."""
 
     type: Literal["reconnect"]
 
@@ -199,7 +197,7 @@ class ReconnectArm(Message):
 class ReturnArm(Message):
     """Move the arm back to its start, while it is enabled and the stick is let go; or end that.
 
-    It goes on as long as neutral inputs come; any push ends it, and Stop, as always.
+    It continues as long as neutral inputs come; any push and any Stop end it.
     """
 
     type: Literal["return"]
@@ -211,8 +209,8 @@ class GoToPose(Message):
     """Move the arm slowly to a pose, as `ReturnArm` does to its start.
 
     Attributes:
-        name: of a saved pose; of a built-in one, what the page calls it.
-        built_in: which one of the robot's own; null for a saved one.
+        name: of a saved pose; for a built-in one, the page's name of it.
+        built_in: one of the robot's own; null for a saved one.
     """
 
     type: Literal["to_pose"]
@@ -222,7 +220,7 @@ class GoToPose(Message):
 
 @final
 class SavePose(Message):
-    """Save where the arm is, while it stands still; in place of a pose of the same name."""
+    """Save where the arm is, while it stands still; replaces a pose of the same name."""
 
     type: Literal["save_pose"]
     name: PoseName
@@ -230,7 +228,7 @@ class SavePose(Message):
 
 @final
 class DeletePose(Message):
-    """Forget a saved pose."""
+    """Delete a saved pose."""
 
     type: Literal["delete_pose"]
     name: PoseName

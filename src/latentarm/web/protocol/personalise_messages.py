@@ -20,7 +20,7 @@ class BeginPersonalise(Message):
 
     Attributes:
         name: theirs, and of their profile.
-        questions: to be answered, at most.
+        questions: maximum number of answers.
     """
 
     type: Literal["personalise"]
@@ -67,21 +67,21 @@ class CancelPersonalise(Message):
 
 @final
 class TryAlignment(Message):
-    """Try what was learned; from the page that drives, while the arm is not enabled."""
+    """Try the new alignment; from the page that drives, while the arm is not enabled."""
 
     type: Literal["try_alignment"]
 
 
 @final
 class KeepAlignment(Message):
-    """Keep what was learned under the person's name; from the page that drives."""
+    """Keep the new alignment under the person's name; from the page that drives."""
 
     type: Literal["keep_alignment"]
 
 
 @final
 class DiscardAlignment(Message):
-    """Discard what was learned, and drive as before; from the page that drives."""
+    """Discard the new alignment, and drive as before; from the page that drives."""
 
     type: Literal["discard_alignment"]
 
@@ -103,9 +103,8 @@ class ShownMotion(Message):
     """A motion that a person is asked about.
 
     Attributes:
-        duration_s: how long the arm takes for it.
         frames: the poses of all bodies along it, each as in `State`, evenly in time.
-        tools: the ways of the tools that move, m.
+        tools: the paths of the tools that move, m.
     """
 
     duration_s: float
@@ -120,16 +119,16 @@ class Personalise(Message):
     Attributes:
         phase: ``thinking`` is between two questions.
         name: the person's.
-        question: which one is asked, for answers to name.
+        question: number for answers to name.
         number: answers so far, including this one.
         of: maximum number of answers.
         back: whether there is a previous question.
         motion: the motion asked about, or null.
-        share: how much of the thinking or learning is done, from 0 to 1.
+        share: progress of the thinking or learning, from 0 to 1.
         answers: how many it was learned from.
         error: relative alignment error about the answers themselves, as learned.
         error_without: the same with z = u.
-        why: why something could not be done, or null.
+        why: why an order failed, or null.
     """
 
     phase: PersonalisePhase

@@ -1,4 +1,4 @@
-"""What the control process tells the page's server: a report in every tick."""
+"""The control process's report to the page's server, in every tick."""
 
 from typing import Final, Literal, final
 
@@ -23,7 +23,7 @@ class Ghosts(Message):
     """Where each full deflection would take the tool over the next second: all of it, or nothing at all.
 
     Attributes:
-        up: points of the path, m; empty where nothing is known yet, as are all the others then.
+        up: points of the path, m; empty, like all the others, before they are known.
         ring: the tool at the end of that second, for directions all round the stick, counter-clockwise from
             the right.
     """
@@ -36,7 +36,6 @@ class Ghosts(Message):
 
 
 NO_GHOSTS: Final = Ghosts(up=(), down=(), left=(), right=(), ring=())
-"""Nothing is known yet of what the stick does now."""
 
 
 @final
@@ -46,7 +45,7 @@ class Recording(Message):
     Attributes:
         on: whether an episode is under way.
         samples: of this episode so far.
-        episodes: whole ones in the journal.
+        episodes: complete ones in the journal.
         problem: why the last episode was broken off, or None.
         journal: its path.
     """
@@ -65,7 +64,7 @@ class GripperState(Message):
     Attributes:
         width_m: opening between the fingers, m.
         holding: whether something is held between them.
-        closing: whether it was last told to close; None if it was told nothing yet.
+        closing: whether the last command was to close; None before the first.
     """
 
     width_m: float
@@ -78,7 +77,6 @@ class Things(Message):
     """Where things and grains are, in the order of ``/scene.json``.
 
     Attributes:
-        poses: of the things.
         grains: for each kind, x, y, z of one grain after the other, m.
     """
 
@@ -88,12 +86,7 @@ class Things(Message):
 
 @final
 class Why(Message):
-    """Why a run of a task has failed.
-
-    Attributes:
-        code: what went wrong.
-        thing: name of the thing, or of the grains, that it happened to.
-    """
+    """Why a run of a task has failed; ``thing`` names the thing or the grains concerned."""
 
     code: MishapKind
     thing: str
@@ -101,12 +94,12 @@ class Why(Message):
 
 @final
 class ToGo(Message):
-    """What is left of the way to where the tool is to be next.
+    """The remaining way to where the tool is to be next.
 
     Attributes:
         shift_m: along the axes of the base frame, m.
         turn_rad: about the tool's own axes, a rotation vector, rad.
-        gripper: what is to be asked of the gripper now; null for nothing.
+        gripper: the action to request now; null for none.
     """
 
     shift_m: Point
@@ -116,7 +109,7 @@ class ToGo(Message):
 
 @final
 class Lost(Message):
-    """Something that a step needs to be held, and that is not held any more.
+    """A thing that a step needs to be held, and that is no longer held.
 
     Attributes:
         thing: its name.
@@ -129,12 +122,12 @@ class Lost(Message):
 
 @final
 class Fill(Message):
-    """How much is in a cup or a bowl.
+    """How full a cup or a bowl is.
 
     Attributes:
         thing: its name.
         share: of what is poured, in [0, 1].
-        enough: share that must be in it; null for what is poured from.
+        enough: share that must be in it; null for the vessel poured from.
     """
 
     thing: str
@@ -144,16 +137,16 @@ class Fill(Message):
 
 @final
 class TaskState(Message):
-    """How far a run of the task has come.
+    """Progress of a run of the task.
 
     Attributes:
         choice: index of what is to be done.
-        done: how many of its steps have been done.
+        done: number of completed steps.
         outcome: null while it goes on.
         why: why it has failed.
         time_s: since the arm was first enabled in this run, until its outcome, s.
-        to_go: to where the step that is to be done now takes the tool; null where nothing is left to do.
-        lost: what slipped or was let go too early: before the steps go on, it is to be taken again.
+        to_go: for the current step; null where nothing is left to do.
+        lost: a thing that slipped or was let go too early: it is to be taken again before the steps go on.
         fills: of the cups and bowls, where something is poured.
         short: whether too little is left to pour.
     """
@@ -170,36 +163,31 @@ class TaskState(Message):
 
 
 class ArmState(Message):
-    """What the arm does: what a `Report` and a `State` have in common.
+    """The part of the arm's state that a `Report` and a `State` have in common.
 
     Attributes:
         nonce: for the driver to echo in the next input.
-        tick: grows.
         phase: ``disengaged``, ``neutral_needed`` (the stick must be let go), ``ready`` (enabled and standing
             still), ``moving``, ``stopping``.
-        note: shown for a while instead of what the arm does; None for nothing.
+        note: shown for a while instead of the state; None for nothing.
         reason: why the arm may not move; None if it may.
         held_back: why it moves slower than asked; None if it does not.
-        zone: name of the zone that it is slowed down for now; None if it is not.
+        zone: name of the zone that slows it down now; None if none does.
         returning: whether it is on its way back to its start, or to a saved pose.
-        bound_for: what that pose is called; None on the way to the start, and on no way.
+        bound_for: name of that pose; None on the way to the start, and on no way.
         at_start: whether it is there.
-        guiding: how the arm is guided by hand; None where it cannot be.
-        lost: whether the connection to the arm is lost, and must be made again.
-        let_go_first: whether the stick does something else by now: it must be let go before it moves the arm.
-        late_stops: how often the arm has stopped because no input came in time, since this driver began to
-            drive this.
-        mode: how the arm is steered.
+        guiding: None if the arm cannot be guided by hand.
+        lost: whether the connection to the arm is lost.
+        let_go_first: whether the stick does something else now: it must be let go before it moves the arm.
+        late_stops: stops because no input came in time, since this driver began to drive this.
         axes: which pair of the end-effector's axes.
-        help: how much the robot helps with learned motions; None where it cannot.
+        help: level of help with learned motions; None without help.
         profile: whose alignment.
-        tool: the tool's position, m.
-        gripper: as it was last read; None if the arm has no gripper, or before the first reading.
-        task: how far it has come.
-        things: where they are; None in an empty scene, and where they are not told again.
-        ghosts: where each direction would take the tool now; None, only in a `State`, while the last
-            ones hold.
-        alpha: how much the robot helps, in [0, 1].
+        tool: its position, m.
+        gripper: as last read; None if the arm has no gripper, or before the first reading.
+        things: where they are; None in an empty scene, and if they have not changed.
+        ghosts: None, only in a `State`, while the last ones hold.
+        alpha: the robot's share, in [0, 1].
         late_share: share of the control loop's deadlines that were missed.
     """
 
@@ -236,14 +224,14 @@ class Report(ArmState):
 
     Attributes:
         time_s: the control process's clock.
-        driver: whose inputs it takes.
-        run: path of the run that is driven, as it was named; None without one.
-        seed: says where things were placed and where the arm started.
-        loading: whether something else is being loaded; there are no further reports until it is.
-        q: (n,), joint positions as they were last read, rad.
+        driver: number of the driver whose inputs count.
+        run: path of the run that is driven; None without one.
+        seed: decides where things were placed and where the arm started.
+        loading: whether another setup is being loaded; there are no further reports until it is.
+        q: (n,), joint positions as last read, rad.
         belief: over the goals; empty for a task without goals.
-        bound_rad: the radius of equation 14, where there is help.
-        recording: where something is recorded.
+        bound_rad: the radius of equation 14, if there is help.
+        recording: None before the first.
     """
 
     time_s: float

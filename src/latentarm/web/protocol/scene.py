@@ -1,4 +1,4 @@
-"""What a page draws: the shapes of the robot's MuJoCo model, and of its surroundings."""
+"""The scene for pages: the shapes of the robot's MuJoCo model, and of its surroundings."""
 
 import struct
 from collections.abc import Sequence
@@ -38,7 +38,7 @@ _UNMOVED: Final = np.zeros(3)
 @final
 @dataclass(frozen=True)
 class Drawable:
-    """What a page draws.
+    """A scene as pages get it.
 
     Attributes:
         description: ``/scene.json``. ``bodies`` are the base frame and the links, in the order of a state's
@@ -46,8 +46,8 @@ class Drawable:
             frame, its ``size`` is MuJoCo's. ``fingers`` are those of a gripper, closed, each with its
             ``geoms``, the index of the ``body`` that it slides on, the direction in which it ``opens`` there,
             and how far it is open ``at`` first, m. ``zones`` are obstacles that the arm may go into, at a
-            ``speed``, m/s, and no faster.
-            For ``things`` and ``grains`` see `latentarm.web.protocol.things.described`.
+            ``speed``, m/s, and no faster. For ``things`` and ``grains`` see
+            `latentarm.web.protocol.things.described`.
         meshes: ``/mesh/ID``: uint32 vertices, uint32 faces, float32 vertices, uint32 faces, little-endian.
     """
 
@@ -58,14 +58,7 @@ class Drawable:
 def drawable(
     place: Place, obstacles: Sequence[Obstacle], scene: Scene | None, zones: Sequence[Zone] = ()
 ) -> Drawable:
-    """What a page draws: the robot, its goals, its obstacles, what stands about it, and from where to look.
-
-    Args:
-        place: where the robot is driven.
-        obstacles: what it must keep clear of.
-        scene: what stands about it; None where nothing does.
-        zones: where the arm is slow.
-    """
+    """The scene: robot, goals, obstacles, slow ``zones``, the things about the arm, and camera views."""
     robot = place.robot
     model = robot.model()
     reading = read(model, [tool.name for tool in robot.chain.tools])
@@ -131,7 +124,7 @@ def _finger_of(model: mujoco.MjModel, joints: Sequence[str]) -> dict[int, int]:
 def _finger(
     model: mujoco.MjModel, reading: ModelChain, joint: int, geoms: list[int], fingers: dict[int, int]
 ) -> dict[str, object]:
-    """A finger as it is where its joint is at zero."""
+    """A finger where its joint is at zero."""
     body = int(model.jnt_bodyid[joint])
     opens = reading.body_transform[body][:3, :3] @ model.jnt_axis[joint]
     here = float(reference_positions(model)[model.jnt_qposadr[joint]])
@@ -150,7 +143,7 @@ def _finger(
 def _geom(
     model: mujoco.MjModel, reading: ModelChain, geom: int, shift: FloatArray = _UNMOVED
 ) -> dict[str, object]:
-    """A geom in the frame of its link, ``shift`` (3,) from where the model has it, m."""
+    """A geom in the frame of its link, shifted by ``shift`` (3,), m."""
     body = int(model.geom_bodyid[geom])
     rotation = np.empty(9)
     mujoco.mju_quat2Mat(rotation, model.geom_quat[geom])
@@ -201,7 +194,7 @@ def _obstacle(obstacle: Obstacle) -> dict[str, object]:
 
 
 def _cameras(joints: FloatArray, goals: list[FloatArray]) -> dict[str, object]:
-    """From where the arm and its goals are in view: from the front, and from its right side."""
+    """Views of the arm and its goals: from the front, and from its right side."""
     seen = np.concatenate([joints, np.zeros((1, 3)), np.array(goals).reshape(-1, 3)])
     lower, upper = seen.min(axis=0), seen.max(axis=0)
     return {

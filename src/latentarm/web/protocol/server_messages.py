@@ -1,7 +1,7 @@
-"""What the server says to pages on the socket ``/drive``: JSON in text frames.
+"""Messages from the server to pages on the socket ``/drive``: JSON in text frames.
 
-It answers `Hello` with `Welcome`, again whenever what is driven has changed, then `State` up to 50 times a
-second to the driver and 30 to watchers, and `Refused` before it closes the connection.
+It answers `Hello` with `Welcome`, again whenever the setup has changed, then `State` up to 50 times a second
+to the driver and 30 to watchers, and `Refused` before it closes the connection.
 """
 
 from typing import Literal, final
@@ -15,7 +15,7 @@ from latentarm.web.protocol.report import ArmState, Point
 
 @final
 class NamedGoal(Message):
-    """A goal: its name and where the tool is at it, m."""
+    """A goal: its name and the tool's position at it, m."""
 
     name: str
     position: Point
@@ -23,7 +23,7 @@ class NamedGoal(Message):
 
 @final
 class NamedThing(Message):
-    """A thing about the arm: its name and where it is in the beginning, m."""
+    """A thing about the arm: its name and its position at the start, m."""
 
     name: str
     position: Point
@@ -46,7 +46,7 @@ class Limits(Message):
 
 @final
 class FoundFact(Message):
-    """Something that was found out about a real arm before it was driven, in English."""
+    """A fact found out about a real arm before it was driven, in English."""
 
     name: str
     value: str
@@ -54,11 +54,7 @@ class FoundFact(Message):
 
 @final
 class RealArm(Message):
-    """A real arm.
-
-    Attributes:
-        facts: what was found out about it.
-    """
+    """A real arm."""
 
     facts: tuple[FoundFact, ...]
 
@@ -68,8 +64,8 @@ class StepToDo(Message):
     """A step of the task.
 
     Attributes:
-        kind: what is done; texts have the key ``task.step.<kind>``.
-        thing: name of the thing that it is done to, or where it is done.
+        kind: texts have the key ``task.step.<kind>``.
+        thing: name of the thing to work on, or of the place.
     """
 
     kind: StepKind
@@ -78,13 +74,12 @@ class StepToDo(Message):
 
 @final
 class TaskToDo(Message):
-    """What is to be done.
+    """The task.
 
     Attributes:
-        name: of the task.
-        seed: says where things were placed: with another one they are placed otherwise.
-        choices: what a person may choose to do: names of things or goals.
-        choice: index of what is done in this run.
+        seed: decides where things are placed.
+        choices: names of things or goals to choose from.
+        choice: index of the one of this run.
         steps: in order; empty where nothing counts as done.
     """
 
@@ -97,27 +92,23 @@ class TaskToDo(Message):
 
 @final
 class Welcome(Message):
-    """What is driven.
+    """The setup that is driven.
 
     Attributes:
         id: of this page.
         server: of the running `latentarm teleop`: each start has another one.
-        dof: joints of the arm.
         latent_dim: axes of the latent actions; 0 without a run.
         robot: its name.
         run: the run's name, or null.
         profiles: people whose alignment can be chosen.
-        modes: how the arm can be steered.
         goals: in the order of the belief.
-        things: what stands about the arm, in the order of `State.things`.
+        things: in the order of `State.things`.
         zones: where the arm is slow.
-        keep_out: names of what it keeps clear of because a person said so.
+        keep_out: names of obstacles that a person has added.
         end_effector_modes: names of the pairs of axes.
-        limits: see `Limits`.
-        gripper_width_m: how wide its gripper opens, m, or null where it has none that can be driven.
-        task: see `TaskToDo`.
-        real: what is known of the arm where it is a real one; null where it is simulated.
-        poses: that the robot has without anybody's saving them.
+        gripper_width_m: its widest opening, m, or null where no gripper can be driven.
+        real: null if the arm is simulated.
+        poses: of the robot's model.
     """
 
     type: Literal["welcome"] = "welcome"
@@ -154,20 +145,17 @@ class RecordingState(Message):
 
 @final
 class State(ArmState):
-    """What the arm does now, and who drives it.
+    """The arm's state, and who drives it.
 
     Attributes:
         bodies: x, y, z, qw, qx, qy, qz in the order of ``/scene.json``, m.
         belief: over the goals; null for a task without goals.
         bound_m: how far from the likeliest goal help lets the tool be, m, to first order; or null.
         driver: id of the page that drives, or null.
-        driver_name: what its person is called.
-        watchers: how many other pages.
+        watchers: number of other pages.
         asking: id of the page that asks to drive, or null.
-        asking_name: what its person is called.
-        copilot: who may slow the driver down, or null.
-        copilot_asking: who asks to be that, or null.
-        recording: null where nothing was ever recorded.
+        copilot_asking: the person who asks to be the co-pilot, or null.
+        recording: null before the first.
         trail: counts how often the trail was emptied.
         you: whether this page drives.
     """

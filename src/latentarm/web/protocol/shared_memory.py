@@ -18,14 +18,11 @@ _TRIES: Final = 4
 class LatestSlot:
     """A lock-free slot for the newest message of one writer; older messages are lost, and nobody waits.
 
-    The version is odd while the writer is at it. A reader takes a message only if the version was the
-    same before and after, and the checksum over both is right: so one that was changed while it was read,
-    or whose writer was killed half-way, is never taken for a message. The version is written in one piece;
-    the rest need not be, nor in any order. A slot is handed to a new process as an argument, and goes when
-    the last process that holds it ends.
-
-    Args:
-        size: the longest message, bytes.
+    The version is odd while the writer is at work. A reader takes a message only if the version was the same
+    before and after, and the checksum over both is right: so a message that changed while it was read, or
+    whose writer was killed half-way, is never used. The version is written in one piece; the rest need not
+    be, nor in any order. A slot is passed to a new process as an argument, and is freed when the last process
+    that holds it ends. ``size`` is the longest message, bytes.
     """
 
     def __init__(self, size: int) -> None:

@@ -1,4 +1,4 @@
-"""What stands about the arm, as pages draw it: the shapes once, and where they are again and again."""
+"""The things about the arm for pages: their shapes once, and their poses repeatedly."""
 
 from collections.abc import Sequence
 from typing import Final
@@ -12,17 +12,14 @@ from latentarm.robots.scene.thing import Grains, Part
 from latentarm.web.protocol.report import PoseRow, Things
 
 _DIGITS: Final = 4
-"""Places are sent to a tenth of a millimetre, so that what rests need not be sent again."""
+"""Positions are sent to a tenth of a millimetre, so that things at rest need not be sent again."""
 
 _SIZES: Final = 3
-"""Numbers in the size of a geom, as MuJoCo has them."""
+"""Numbers in the size of a geom, as in MuJoCo."""
 
 
 def described(scene: Scene) -> dict[str, object]:
-    """The part of ``/scene.json`` that is about things.
-
-    Args:
-        scene: what stands about the arm when it begins.
+    """The part of ``/scene.json`` about things.
 
     Returns:
         ``things``, each with its name, its ``pose`` at first, whether it is ``fixed`` there, ``geoms`` like
@@ -46,12 +43,7 @@ def described(scene: Scene) -> dict[str, object]:
 
 
 def things_at(scene: Scene, state: SceneState) -> Things:
-    """Where everything is, in the order of the scene.
-
-    Args:
-        scene: says the order.
-        state: of this moment.
-    """
+    """Where everything is, in the order of the scene."""
     return Things(
         poses=tuple(_rows([state.poses[thing.name] for thing in scene.things])),
         grains=tuple(tuple(_rounded(state.grains[one.name].ravel())) for one in scene.grains),

@@ -1,4 +1,4 @@
-"""The calendar by which records are dated."""
+"""The calendar that dates records."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -10,11 +10,7 @@ from typing import Final, final
 @final
 @dataclass(frozen=True)
 class Calendar:
-    """Says what time it is for records. Durations are measured by other clocks, which are monotonic.
-
-    Attributes:
-        now: the time, with its zone.
-    """
+    """Dates records; ``now`` is the time with its zone. Durations are measured by monotonic clocks."""
 
     now: Callable[[], datetime]
 

@@ -38,12 +38,7 @@ def read_record(kind: type[Record], path: Path) -> Record:
 
 
 def parse_record(kind: type[Record], content: bytes, where: str) -> Record:
-    """A record from its JSON.
-
-    Args:
-        kind: what it must be.
-        content: UTF-8.
-        where: what errors call it.
+    """A record from UTF-8 JSON; errors call it ``where``.
 
     Raises:
         UserError: it is damaged or not such a record.

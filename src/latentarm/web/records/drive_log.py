@@ -1,6 +1,6 @@
-"""The log of the drive under way: what reports and inputs say, until the drive ends.
+"""The log of the drive under way, from reports and inputs.
 
-It does nothing slow: it is called for every report. What takes longer is done by `Logged.trace`.
+It does nothing slow, as every report goes through it. `Logged.trace` does the slow part.
 """
 
 from collections import Counter
@@ -22,13 +22,13 @@ PERIOD_S: Final = 0.1
 """Moments of a trace are at least this far apart, s."""
 
 MOST_VALUES: Final = 200_000
-"""Values in a trace; a longer drive keeps every second moment, and again if that is too many."""
+"""Values in a trace; a longer drive keeps every second moment, repeatedly if need be."""
 
 GRAINS_S: Final = 1.0
 """Grains are traced this often, s: there may be thousands."""
 
 LATE: Final = "input_late"
-"""Code of a stop for an input that came too late."""
+"""Code of a stop for a late input."""
 
 _ENABLED: Final = ("ready", "moving")
 _LONGEST_TICK_S: Final = 0.5
@@ -38,17 +38,7 @@ _DIGITS: Final = 4
 @final
 @dataclass(frozen=True)
 class About:
-    """What is driven, and by whom.
-
-    Attributes:
-        person: id; None for a guest.
-        robot: its name.
-        todo: what is to be done.
-        run: the run's name, or None.
-        scene: what stands about the arm.
-        chain: the arm.
-        real: whether the arm exists.
-    """
+    """The setup of a drive, and the driver's id (None for a guest)."""
 
     person: str | None
     robot: str
@@ -76,7 +66,7 @@ class Logged:
 
     Attributes:
         record: its figures; without the scene, which has not been kept yet.
-        scene: what stood about the arm.
+        scene: the things about the arm.
     """
 
     record: DriveRecord
@@ -88,7 +78,7 @@ class Logged:
     _marks: list[Mark]
 
     def trace(self) -> Trace:
-        """What is shown again; takes some milliseconds for each minute."""
+        """The trace to replay; takes some milliseconds for each minute."""
         q = np.array([moment.q for moment in self._moments])
         links = self._chain.link_transforms(q)
         bodies = [pose_of(np.concatenate([np.eye(4)[None], row])) for row in links]
@@ -110,8 +100,6 @@ class Logged:
 
 @dataclass
 class _Open:
-    """The drive under way."""
-
     about: About
     first: Report
     started: str
@@ -134,17 +122,13 @@ class _Open:
 
     @property
     def over(self) -> bool:
-        """Whether the task has ended: what is driven after that is shown again, but not counted."""
+        """Whether the task has ended: the rest of the drive is replayed, but not counted."""
         return self.last is not None and self.last.task.outcome is not None
 
 
 @final
 class DriveLog:
-    """Logs one drive after the other.
-
-    Args:
-        calendar: dates them.
-    """
+    """Logs one drive after the other."""
 
     def __init__(self, calendar: Calendar) -> None:
         self._calendar = calendar
@@ -154,11 +138,11 @@ class DriveLog:
 
     @property
     def under_way(self) -> About | None:
-        """What is driven; None where no drive is under way."""
+        """The drive under way, or None."""
         return None if self._open is None else self._open.about
 
     def begins(self, report: Report) -> bool:
-        """Whether a drive begins with a report: `begin` is due then."""
+        """Whether a drive begins with this report: `begin` is due then."""
         self._standing = report.things or self._standing
         return self._open is None and report.phase in _ENABLED
 
@@ -169,7 +153,7 @@ class DriveLog:
         self.take(report)
 
     def take(self, report: Report) -> None:
-        """Go on with a report; nothing where no drive is under way."""
+        """Take a report; ignored while no drive is under way."""
         drive = self._open
         if drive is None:
             return
@@ -198,13 +182,7 @@ class DriveLog:
         self._trace(drive, report, t)
 
     def given(self, u: tuple[float, ...], source: str, *, gripper: bool) -> None:
-        """Note an input.
-
-        Args:
-            u: entries in [-1, 1].
-            source: with what kind of device.
-            gripper: whether it asks something of the gripper.
-        """
+        """Note an input with a kind of device; ``gripper``: whether it is a request to the gripper."""
         pressed = (any(u) and not any(self._u)) + gripper
         self._u = tuple(round(value, 2) for value in u)
         if self._open is not None and pressed and not self._open.over:
@@ -212,7 +190,7 @@ class DriveLog:
             self._open.inputs[source] += pressed
 
     def so_far(self) -> DriveRecord | None:
-        """The drive under way as it would be known if everything stopped now; None where there is none."""
+        """The record of the drive under way if everything stopped now; None without one."""
         drive = self._open
         return None if drive is None or drive.last is None else _record(drive, drive.last, "broken_off")
 
@@ -269,7 +247,6 @@ class DriveLog:
 
 
 def _record(drive: _Open, last: Report, why: Ending) -> DriveRecord:
-    """The figures of a drive until its last report, without the scene."""
     first, about = drive.first, drive.about
     return DriveRecord.model_validate(
         {

@@ -1,4 +1,4 @@
-"""What is kept of a drive: the figures, and a thin trace to show it again."""
+"""The record of a drive: its figures, and a thin trace to replay it."""
 
 import zlib
 from typing import Annotated, Final, Literal, final
@@ -16,7 +16,7 @@ TRACE_LIMIT: Final = 1 << 26
 """The largest trace, unpacked, bytes."""
 
 PACKED_LIMIT: Final = 1 << 24
-"""The largest trace as it is kept, bytes."""
+"""The largest compressed trace, bytes."""
 
 DriveId = Annotated[str, Field(pattern=rf"^{ID.pattern}$")]
 SceneId = Annotated[str, Field(pattern=r"^[0-9a-f]{32}$")]
@@ -33,35 +33,33 @@ class DriveRecord(Message):
     Nothing is counted after the task has succeeded or failed.
 
     Attributes:
-        version: of this record.
-        id: random.
         person: who drove; None for a guest.
         title: given by people; "" for none.
         started: when the arm was first enabled, ISO 8601 in UTC.
         time_s: from then until the task ended, or else until the arm was last enabled.
         moving_s: for how long of that the arm moved.
         robot: its name.
-        real: whether a real arm was driven, rather than a simulated one.
+        real: whether the arm was real.
         task: its name.
-        choice: which of the task's foods or cups was asked for; None where nobody chose.
-        run: name of the run; None without one.
+        choice: the chosen food or cup; None where there was no choice.
+        run: its name; None without one.
         profile: whose alignment was used; None for none.
-        modes: how the arm was steered, the most used first.
-        inputs: with what kinds of device, the most used first.
-        presses: how often the input left neutral, or the gripper was asked for something.
+        modes: the most used first.
+        inputs: kinds of device, the most used first.
+        presses: how often the input left neutral, or the gripper got a request.
         stops: how often the arm was disengaged while it was enabled.
-        late_stops: those for an input that came too late.
-        reasons: code of each kind of stop, with how often.
-        way_m: length of the tool's way, m.
-        help: share of the motion that was the robot's, averaged while the arm moved; None if it never moved.
-        help_level: which the person had chosen; None where there is no choice.
+        late_stops: those for a late input.
+        reasons: number of stops by code.
+        way_m: length of the tool's path, m.
+        help: the robot's share of the motion, averaged while the arm moved; None if it never moved.
+        help_level: None where there is no choice.
         steps_done: steps of the task that were done; None where the task is not watched.
         steps: of the task; None as above.
-        outcome: ``success`` or ``failure``; None where it was given up or the task is not watched.
+        outcome: None where it was given up or the task is not watched.
         why: code of why it failed; None if it did not.
-        ended: what ended it; ``broken_off`` where the server or the arm's process was killed meanwhile, and
-            what came after the last moment that was written is not known.
-        scene: what is shown with the trace; None where no trace is kept.
+        ended: what ended it; ``broken_off`` if the server or the arm's process was killed, and the end of the
+            drive is unknown.
+        scene: its id; None where no trace is kept.
     """
 
     version: Literal[1] = 1
@@ -96,11 +94,9 @@ class DriveRecord(Message):
 
 @final
 class TracedThings(Message):
-    """Where things are from a time on.
+    """Where things are from time ``t`` on, s since the drive began.
 
     Attributes:
-        t: s since the drive began.
-        poses: of the things.
         grains: as in `latentarm.web.protocol.report.Things`; None where they are as before.
     """
 
@@ -111,7 +107,7 @@ class TracedThings(Message):
 
 @final
 class Mark(Message):
-    """Something that happened at a time, s since the drive began: a code."""
+    """An event at a time, s since the drive began: a code."""
 
     t: float
     code: Annotated[str, Field(max_length=60)]
@@ -119,10 +115,9 @@ class Mark(Message):
 
 @final
 class Trace(Message):
-    """A drive to be shown again: N moments, ten a second or fewer, none where nothing changed.
+    """A drive to be replayed: N moments, ten a second or fewer, none where nothing changed.
 
     Attributes:
-        version: of this document.
         period_s: moments are at least this far apart, but for the last; where they are further, nothing
             changed until then.
         t: N times, s since the drive began.
@@ -131,8 +126,7 @@ class Trace(Message):
         bodies: N rows of poses in the order of the scene's description.
         u: N inputs.
         width_m: N openings of the gripper, m; None without one.
-        things: when things had moved.
-        marks: what happened.
+        things: when they had moved.
     """
 
     version: Literal[1] = 1
@@ -157,17 +151,13 @@ class Trace(Message):
 
 
 def packed(trace: Trace) -> bytes:
-    """The trace as it is kept: JSON, compressed with gzip."""
+    """The trace as JSON, compressed with gzip."""
     packer = zlib.compressobj(6, wbits=31)
     return packer.compress(trace.model_dump_json().encode()) + packer.flush()
 
 
 def checked_trace(content: bytes, where: str) -> Trace:
-    """A trace as it was kept.
-
-    Args:
-        content: from `packed`.
-        where: what errors call it.
+    """Unpack and check a trace from `packed`; errors call it ``where``.
 
     Raises:
         UserError: it is damaged, too large, or no trace.

@@ -1,4 +1,4 @@
-"""Every drive on disk: a record and a trace each, in the folder of the person who drove."""
+"""All drives on disk: a record and a trace each, in the driver's folder."""
 
 import threading
 import time
@@ -19,10 +19,10 @@ UNDO_S: Final = 600.0
 """How long a deletion can be undone, s."""
 
 DRIVES: Final = "drives"
-"""Folder of a person's drives in theirs."""
+"""Name of a person's folder of drives."""
 
 TRACE: Final = ".trace.gz"
-"""Ending of a trace, in the place of ``.json``."""
+"""Suffix of a trace, in place of ``.json``."""
 
 _TRASH: Final = "deleted"
 
@@ -30,7 +30,7 @@ _TRASH: Final = "deleted"
 @final
 @dataclass(frozen=True)
 class Wanted:
-    """Which drives are asked for; None for any.
+    """A query for drives; None for any.
 
     Attributes:
         person: id; "" for guests.
@@ -47,7 +47,7 @@ class Wanted:
     until: str | None = None
 
     def takes(self, drive: DriveRecord) -> bool:
-        """Whether a drive is asked for."""
+        """Whether a drive matches."""
         return (
             self.person in (None, drive.person or "")
             and self.task in (None, drive.task)
@@ -59,14 +59,9 @@ class Wanted:
 
 @final
 class Drives:
-    """All drives. What is deleted can be restored for `UNDO_S`, until the server is started again.
+    """All drives. Deleted ones can be restored for `UNDO_S`, until the server is started again.
 
-    Methods other than `wanted` and `find` wait for the disk.
-
-    Args:
-        folder: of all records; need not be there yet.
-        people: has a folder for each person, in which their drives are.
-        now_s: the time, s; monotonic.
+    Methods other than `wanted` and `find` wait for the disk. The folders need not exist yet.
 
     Attributes:
         problems: of records that cannot be read, one each.
@@ -113,7 +108,7 @@ class Drives:
             self._drives[drive.id] = drive
 
     def keep_so_far(self, drive: DriveRecord) -> None:
-        """Write what is known of a drive under way, for the next start if nothing more is written.
+        """Write the drive under way, in case nothing more is written.
 
         Raises:
             UserError: it cannot be written.
@@ -124,13 +119,13 @@ class Drives:
 
     @property
     def scenes(self) -> set[str]:
-        """Ids of all that is shown with a drive, also with those that can be restored."""
+        """Ids of the scenes of all drives, deleted ones included."""
         with self._lock:
             known = [*self._drives.values(), *(record for _, record in self._deleted.values())]
         return {drive.scene for drive in known if drive.scene is not None}
 
     def trace(self, drive: str) -> bytes:
-        """A drive's trace, compressed with gzip, after it was checked.
+        """A drive's trace, compressed with gzip, after a check.
 
         Raises:
             UserError: there is no such drive, or its trace is missing or damaged.
@@ -180,7 +175,7 @@ class Drives:
             return record
 
     def purge(self) -> None:
-        """Remove for good what can no longer be restored.
+        """Remove drives that can no longer be restored.
 
         Raises:
             UserError: files cannot be deleted.
@@ -190,18 +185,18 @@ class Drives:
             self._purge([drive for drive, (until_s, _) in self._deleted.items() if until_s <= now_s])
 
     def adopt(self, person: str) -> None:
-        """Read the drives of a person whose folder has just come from elsewhere."""
+        """Read the drives of a person whose folder was imported."""
         with self._lock:
             for path in sorted((self._people / person / DRIVES).glob("*.json")):
                 self._take(path)
 
     def packed(self, drive: str) -> bytes | None:
-        """A drive's trace as it is kept, unchecked; None if it has no trace."""
+        """A drive's compressed trace, unchecked; None if it has no trace."""
         path = self._path(self._known(drive)).with_suffix(TRACE)
         return None if is_missing(path) else read_bytes(path, PACKED_LIMIT)
 
     def forget(self, person: str) -> None:
-        """Nothing of a person is known any more: their folder goes elsewhere, their deleted drives here.
+        """Drop a person's drives; their folder is deleted elsewhere, their deleted drives here.
 
         Raises:
             UserError: files cannot be deleted.
@@ -227,7 +222,7 @@ class Drives:
         return found
 
     def _move(self, start: Path, end: Path) -> None:
-        """A record with its trace, the record last, so that there is never a record alone."""
+        """Move a record with its trace, the record last, so that there is never a record alone."""
         try:
             end.parent.mkdir(parents=True, exist_ok=True)
             with suppress(FileNotFoundError):

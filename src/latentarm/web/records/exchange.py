@@ -1,4 +1,4 @@
-"""Everything that is kept of a person as one zip file, and back. A file that comes in is a stranger's."""
+"""All of a person's records as one zip file, and back. An imported file is a stranger's."""
 
 import io
 import re
@@ -18,7 +18,7 @@ from latentarm.web.records.people import PERSON_NAME, PersonRecord
 from latentarm.web.records.poses import POSES_NAME, PosesRecord, SavedPose
 
 IMPORT_LIMIT: Final = 1 << 26
-"""The largest file that is taken, bytes."""
+"""The largest file that is imported, bytes."""
 
 SCENES: Final = "scenes/"
 PROFILES: Final = "profiles/"
@@ -32,11 +32,7 @@ _FIRST_DATE: Final = (1980, 1, 1, 0, 0, 0)
 
 
 def write_zip(path: Path, contents: Iterator[tuple[str, bytes]]) -> None:
-    """Write files into a zip.
-
-    Args:
-        path: of the zip.
-        contents: names in it, and what they hold.
+    """Write a zip from names and contents.
 
     Raises:
         UserError: it cannot be written.
@@ -50,7 +46,7 @@ def write_zip(path: Path, contents: Iterator[tuple[str, bytes]]) -> None:
 
 
 def read_zip(content: bytes) -> dict[str, bytes]:
-    """The files of such a zip that this version knows, by their names in it.
+    """The files of such a zip that this version knows, by name.
 
     Raises:
         NoticeError: it is no zip, damaged, encrypted, or unpacks to too much.
@@ -69,7 +65,7 @@ def read_zip(content: bytes) -> dict[str, bytes]:
 
 
 def person_of(files: Mapping[str, bytes]) -> PersonRecord:
-    """The person that a zip is about.
+    """The person of a zip.
 
     Raises:
         NoticeError: it names none.
@@ -81,7 +77,7 @@ def person_of(files: Mapping[str, bytes]) -> PersonRecord:
 
 
 def poses_of(files: Mapping[str, bytes]) -> tuple[SavedPose, ...]:
-    """The saved poses of a zip; none where it has none, as older ones.
+    """The saved poses of a zip; older ones have none.
 
     Raises:
         NoticeError: they are damaged.
@@ -96,7 +92,7 @@ def poses_of(files: Mapping[str, bytes]) -> tuple[SavedPose, ...]:
 
 
 def drives_of(files: Mapping[str, bytes]) -> list[tuple[DriveRecord, bytes | None]]:
-    """The drives of a zip, checked, each with its trace as it is kept.
+    """The drives of a zip, checked, each with its compressed trace.
 
     Raises:
         NoticeError: one is damaged.
@@ -134,7 +130,7 @@ def scenes_of(files: Mapping[str, bytes]) -> dict[str, bytes]:
 
 
 def profile_of(files: Mapping[str, bytes], index: int) -> dict[str, bytes]:
-    """Files of a person's profile by their names, in the order of `PersonRecord.profiles`."""
+    """Files of a person's profile by name; ``index`` is into `PersonRecord.profiles`."""
     start = f"{PROFILES}{index}/"
     return {
         name.removeprefix(start): content
@@ -144,7 +140,7 @@ def profile_of(files: Mapping[str, bytes], index: int) -> dict[str, bytes]:
 
 
 def _limit(name: str) -> int:
-    """How many bytes a file may have; 0 for one that we do not know, which is left out."""
+    """The largest size of a file, bytes; 0 for an unknown file, which is skipped."""
     if name in (PERSON_NAME, POSES_NAME) or _DRIVE.fullmatch(name):
         return DOCUMENT_LIMIT
     trace = name.endswith(TRACE) and _DRIVE.fullmatch(name.removesuffix(TRACE) + ".json")
@@ -152,7 +148,7 @@ def _limit(name: str) -> int:
 
 
 def _read(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> bytes:
-    """What an entry holds; what it declares of its size may be a lie."""
+    """The content of an entry, whose declared size may be a lie."""
     limit = _limit(entry.filename)
     with archive.open(entry) as stream:
         content = stream.read(limit + 1)

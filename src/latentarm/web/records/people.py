@@ -1,4 +1,4 @@
-"""The people who drive: one folder each, named by a random id and never by the name."""
+"""The people who drive: a folder each, named by a random id and never by the name."""
 
 import shutil
 import threading
@@ -25,17 +25,12 @@ PersonId = Annotated[str, Field(pattern=rf"^{ID.pattern}$")]
 SettingName = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9]{0,39}$")]
 SettingText = Annotated[str, Field(max_length=80)]
 Settings = Annotated[dict[SettingName, bool | float | SettingText], Field(max_length=MOST_SETTINGS)]
-"""The page knows what they mean, and checks each; the server only bounds them."""
+"""The page defines and checks them; the server only bounds them."""
 
 
 @final
 class KeptProfile(Message):
-    """A profile of a person.
-
-    Attributes:
-        run: name of the run that it belongs to.
-        name: of the profile.
-    """
+    """A profile of a person, and the name of its run."""
 
     run: Annotated[str, Field(min_length=1, max_length=200)]
     name: Annotated[str, Field(min_length=1, max_length=64)]
@@ -46,13 +41,9 @@ class PersonRecord(Message):
     """A person.
 
     Attributes:
-        version: of this record.
-        id: random.
         name: in any script.
-        added: when, ISO 8601 in UTC.
-        settings: as the page keeps them.
-        profiles: what was learned of them.
-        pin: opens the record; None for none.
+        added: ISO 8601 in UTC.
+        pin: None for none.
     """
 
     version: Literal[1] = VERSION
@@ -67,10 +58,6 @@ class PersonRecord(Message):
 @final
 class People:
     """Everybody's records. Methods that write wait for the disk; `find` and `all` do not.
-
-    Args:
-        folder: has a folder for each person; need not be there yet.
-        calendar: dates their records.
 
     Attributes:
         problems: of records that cannot be read, one each.
@@ -102,15 +89,15 @@ class People:
         return None if person is None else self._people.get(person)
 
     def folder_of(self, person: str) -> Path:
-        """Where everything of a person is kept."""
+        """The folder of all that is kept of a person."""
         return self._folder / person
 
     def add(self, name: str, settings: dict[str, bool | float | str] | None = None) -> PersonRecord:
         """Add a person.
 
         Raises:
-            UserError: it is no name, somebody has it already, there are too many people, or the record cannot
-                be written.
+            UserError: the name is invalid or taken, there are too many people, or the record cannot be
+                written.
         """
         with self._lock:
             if len(self._people) >= MOST_PEOPLE:
@@ -124,10 +111,10 @@ class People:
             return self._keep(person)
 
     def adopt(self, brought: PersonRecord, fill: Callable[[Path, str], None]) -> PersonRecord:
-        """Add a person from elsewhere under a new id, whole or not at all.
+        """Add an imported person under a new id, whole or not at all.
 
         Args:
-            brought: what was known of them; a number is added to a name that somebody has already.
+            brought: their record; a name that is taken gets a number.
             fill: writes the rest into a folder, for the new id.
 
         Raises:
@@ -154,7 +141,7 @@ class People:
             return person
 
     def rename(self, person: str, name: str) -> PersonRecord:
-        """Give a person another name.
+        """Rename a person.
 
         Raises:
             UserError: see `add`; also if there is no such person.
@@ -173,7 +160,7 @@ class People:
             return self._keep(self._known(person).model_copy(update={"settings": settings}))
 
     def keep_pin(self, person: str, pin: str | None) -> PersonRecord:
-        """Give a person's record a PIN, or none.
+        """Set or remove a person's PIN.
 
         Raises:
             UserError: there is no such person, or the record cannot be written.
@@ -183,7 +170,7 @@ class People:
             return self._keep(self._known(person).model_copy(update={"pin": kept}))
 
     def add_profile(self, person: str, run: str, name: str) -> PersonRecord:
-        """Note that a profile is theirs.
+        """Note that a profile is a person's.
 
         Raises:
             UserError: there is no such person, or the record cannot be written.

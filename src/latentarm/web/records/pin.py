@@ -1,4 +1,4 @@
-"""The PIN of a person's record: kept as a salted hash, never as it is."""
+"""The PIN of a person's record: only a salted hash is kept."""
 
 import hashlib
 import hmac
@@ -10,7 +10,6 @@ from pydantic import Field
 from latentarm.web.protocol.notice import Message
 
 PIN: Final = r"^[0-9]{4,8}$"
-"""What a PIN is."""
 
 _N, _R, _P = 2**14, 8, 1
 """Cost of a guess: 16 MiB and some 50 ms."""
@@ -18,20 +17,20 @@ _N, _R, _P = 2**14, 8, 1
 
 @final
 class PinHash(Message):
-    """A PIN as it is kept: the salt and scrypt's hash, in hexadecimal digits."""
+    """The salt and scrypt's hash, in hexadecimal digits."""
 
     salt: Annotated[str, Field(pattern=r"^[0-9a-f]{32}$")]
     hash: Annotated[str, Field(pattern=r"^[0-9a-f]{64}$")]
 
 
 def hash_of(pin: str) -> PinHash:
-    """A PIN as it is kept, with a new salt."""
+    """The hash of a PIN with a new salt."""
     salt = secrets.token_bytes(16)
     return PinHash(salt=salt.hex(), hash=_scrypt(pin, salt).hex())
 
 
 def fits(pin: str, kept: PinHash) -> bool:
-    """Whether this is the PIN; takes as long either way."""
+    """Whether this is the PIN, in constant time."""
     return hmac.compare_digest(_scrypt(pin, bytes.fromhex(kept.salt)), bytes.fromhex(kept.hash))
 
 

@@ -1,4 +1,4 @@
-"""Saved poses: where a person wants an arm to go, such as "Drink"; per robot and person, a file each."""
+"""Saved poses, such as "Drink"; per robot and person, a file each."""
 
 from pathlib import Path
 from typing import Annotated, Final, Literal, final
@@ -18,13 +18,7 @@ POSES_NAME: Final = "poses.json"
 
 @final
 class SavedPose(Message):
-    """A pose.
-
-    Attributes:
-        robot: name of the robot that it is for.
-        name: what the person calls it.
-        q: (n,), joint positions, rad.
-    """
+    """A pose; ``q``: (n,), joint positions, rad."""
 
     robot: Annotated[str, Field(max_length=200)]
     name: Annotated[str, Field(min_length=1, max_length=MOST_CHARACTERS)]
@@ -33,19 +27,14 @@ class SavedPose(Message):
 
 @final
 class PosesRecord(Message):
-    """All poses of a person.
-
-    Attributes:
-        version: of this record.
-        poses: in the order in which they were saved.
-    """
+    """All poses of a person, in the order in which they were saved."""
 
     version: Literal[1] = 1
     poses: Annotated[tuple[SavedPose, ...], Field(max_length=MOST_POSES)] = ()
 
 
 def read_poses(folder: Path) -> tuple[SavedPose, ...]:
-    """The poses that are kept in a folder; none where there is no file.
+    """The poses in a folder; none where there is no file.
 
     Raises:
         UserError: the file is damaged.
@@ -55,7 +44,7 @@ def read_poses(folder: Path) -> tuple[SavedPose, ...]:
 
 
 def write_poses(folder: Path, poses: tuple[SavedPose, ...]) -> None:
-    """Keep poses in a folder, whole or not at all.
+    """Write poses to a folder, whole or not at all.
 
     Raises:
         UserError: they cannot be written.
@@ -66,10 +55,10 @@ def write_poses(folder: Path, poses: tuple[SavedPose, ...]) -> None:
 def with_pose(
     poses: tuple[SavedPose, ...], robot: str, name: str, q: tuple[float, ...]
 ) -> tuple[SavedPose, ...]:
-    """The poses with one more, in place of one of that name for that robot.
+    """The poses with one more; replaces one of that name for that robot.
 
     Raises:
-        UserError: it is no name, or there are too many.
+        UserError: the name is invalid, or there are too many.
     """
     try:
         clean = clean_name(name)

@@ -1,4 +1,4 @@
-"""Recordings of this and of earlier server starts: journals in the folder that the server records to."""
+"""Recordings of this and of earlier server starts: journals in the output folder."""
 
 import re
 import sqlite3
@@ -31,7 +31,7 @@ Title = Annotated[str, Field(max_length=80)]
 
 @final
 class RecordedEpisode(Message):
-    """An episode of a recording: what was done, how long it took, s, by whom, and whether it is whole."""
+    """An episode of a recording: task, length in s, driver, and whether it is complete."""
 
     number: int
     task: str
@@ -48,8 +48,7 @@ class RecordingFile(Message):
         name: of its file.
         title: given by people; "" for none.
         bytes: its size.
-        episodes: what is in it.
-        in_use: whether it can still be written to, and so not be deleted.
+        in_use: whether it may still be written to, and so not be deleted.
         problem: why it cannot be read; None if it can.
     """
 
@@ -69,13 +68,10 @@ class _Titles(Message):
 
 @final
 class Recordings:
-    """Journals by the names of their files. All methods wait for the disk.
+    """Journals by file name. All methods wait for the disk.
 
-    Args:
-        out: folder of the journals.
-        folder: of all records, for the titles.
-        in_use: path of the journal that is written now, or None.
-        now_s: the time, s; monotonic.
+    ``out`` is the folder of the journals, ``folder`` that of the titles; ``in_use`` returns the path of the
+    journal that is being written.
     """
 
     def __init__(
@@ -144,7 +140,7 @@ class Recordings:
             del self._deleted[name]
 
     def purge(self) -> None:
-        """Remove for good what can no longer be restored.
+        """Remove recordings that can no longer be restored.
 
         Raises:
             UserError: files cannot be deleted.
@@ -161,11 +157,7 @@ class Recordings:
         return [(file.name, one) for file in looked for one in file.episodes if one.person == person]
 
     def forget(self, person: str, name: str) -> None:
-        """Delete every episode of a person, in recordings that could still be restored as well.
-
-        Args:
-            person: id, as the episodes have it.
-            name: theirs; titles that hold it go too.
+        """Delete every episode of a person, also in deleted recordings, and titles that contain their name.
 
         Raises:
             UserError: a journal cannot be changed.
@@ -194,7 +186,7 @@ class Recordings:
         return sorted(found)[-_MOST:]
 
     def _path(self, name: str) -> Path:
-        """A path for a name that a page has sent: only of a journal that is there."""
+        """The path of an existing journal, by a name from a page."""
         for path in self._journals():
             if path.name == name:
                 return path
@@ -241,7 +233,7 @@ class Recordings:
 
 
 def _names(text: str, name: str) -> bool:
-    """Whether a text holds a person's name: as a word of its own in scripts that divide words."""
+    """Whether a text contains a person's name: as a whole word in scripts that divide words."""
     text, name = text.casefold(), name.casefold()
     if not name.isascii():
         return name in text
@@ -249,7 +241,7 @@ def _names(text: str, name: str) -> bool:
 
 
 def _state(path: Path) -> tuple[int, tuple[int, int]]:
-    """Bytes of a journal with its log, and what changes whenever it is written to."""
+    """Size of a journal with its log, bytes, and a value that changes with every write."""
     files = [path.with_name(path.name + end) for end in _BESIDE[:2]]
     found = [file.stat() for file in files if not is_missing(file)]
     size = sum(one.st_size for one in found)
@@ -257,7 +249,7 @@ def _state(path: Path) -> tuple[int, tuple[int, int]]:
 
 
 def _move(start: Path, end: Path) -> None:
-    """A journal with its log, which comes first: a journal without its log would be taken for whole."""
+    """Move a journal after its log: a journal without its log would seem complete."""
     try:
         for beside in reversed(_BESIDE):
             with suppress(FileNotFoundError):
@@ -275,7 +267,7 @@ def _unlink(path: Path) -> None:
 
 
 def _erase(path: Path, person: str) -> None:
-    """Take a person's episodes out of a journal, so that none of their bytes stays in the file."""
+    """Remove a person's episodes from a journal, so that none of their bytes stays in the file."""
     mine = "SELECT id FROM episodes WHERE json_extract(about, '$.provenance.person') = ?"
     try:
         with closing(sqlite3.connect(path, isolation_level=None, timeout=5.0)) as database:

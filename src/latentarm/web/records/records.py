@@ -1,4 +1,4 @@
-"""All that is kept of a person, in one place: what there is, taking it along, bringing it, deleting it."""
+"""All that is kept of a person: counting, exporting, importing and deleting it."""
 
 import json
 import shutil
@@ -35,12 +35,12 @@ from latentarm.web.records.recordings import Recordings
 from latentarm.web.records.scenes import Scenes
 
 FOLDER: Final = "records"
-"""Folder of all records, where the server records to."""
+"""Name of the records' folder in the output folder."""
 
 
 @final
 class Contents(Message):
-    """How much is kept of a person."""
+    """Numbers of a person's records."""
 
     drives: int
     profiles: int
@@ -49,7 +49,7 @@ class Contents(Message):
 
 @final
 class Imported(Message):
-    """What was brought: the person, their drives, their profiles, and how many profiles fit no run here."""
+    """The imported person, numbers of their records, and of profiles that fit no run here."""
 
     person: str
     name: str
@@ -62,11 +62,7 @@ class Imported(Message):
 class Records:
     """Everything that the server keeps of people. Methods wait for the disk.
 
-    Args:
-        out: where the server records to.
-        runs: folders of runs by name.
-        in_use: path of the journal that is written now, or None.
-        calendar: dates them.
+    ``runs`` returns folders of runs by name, ``in_use`` the path of the journal that is being written.
     """
 
     def __init__(
@@ -86,7 +82,7 @@ class Records:
         self._runs = runs
 
     def keep(self, logged: Logged) -> None:
-        """Keep a drive that has ended, with what stood about the arm.
+        """Keep a drive that has ended, with its scene.
 
         Raises:
             UserError: it cannot be written.
@@ -96,7 +92,7 @@ class Records:
             self.drives.keep(logged.record.model_copy(update={"scene": scene}), logged.trace())
 
     def contents(self, person: str) -> Contents:
-        """How much is kept of a person.
+        """Count a person's records.
 
         Raises:
             UserError: there is no such person.
@@ -109,7 +105,7 @@ class Records:
         )
 
     def export(self, person: str) -> Path:
-        """Everything of a person as a zip: settings, poses, drives with traces, profiles, list of recordings.
+        """A person's settings, poses, drives with traces, profiles and list of recordings as a zip.
 
         Returns:
             A temporary file, for the caller to delete.
@@ -127,7 +123,7 @@ class Records:
         return path
 
     def bring(self, content: bytes) -> Imported:
-        """Add a person from what `export` gave, under a new id.
+        """Import a person from an `export`, under a new id.
 
         Raises:
             UserError: it is damaged, or cannot be written.
@@ -162,7 +158,7 @@ class Records:
         )
 
     def erase(self, person: str) -> None:
-        """Delete everything of a person for good, the person last, so that it can be tried again if it fails.
+        """Delete everything of a person, the person last, so that a failure can be repeated.
 
         Raises:
             UserError: there is no such person, or something cannot be deleted.
@@ -179,7 +175,7 @@ class Records:
         self._tidy_scenes()
 
     def purge(self) -> None:
-        """Remove for good what can no longer be restored.
+        """Remove what can no longer be restored.
 
         Raises:
             UserError: files cannot be deleted.
@@ -189,7 +185,7 @@ class Records:
         self._tidy_scenes()
 
     def _tidy_scenes(self) -> None:
-        """Delete scenes of which no drive is left; none while there are drives that cannot be read."""
+        """Delete scenes without drives; none while there are drives that cannot be read."""
         with self._scenes_lock:
             if not self.drives.problems:
                 self.scenes.keep_only(self.drives.scenes)
@@ -201,7 +197,7 @@ class Records:
         return found
 
     def _profiles(self, person: PersonRecord) -> dict[KeptProfile, Path]:
-        """Folders of those profiles of a person that are still there."""
+        """Folders of a person's profiles that still exist."""
         runs = self._runs()
         found = {one: profile_folder(runs[one.run], one.name) for one in person.profiles if one.run in runs}
         return {one: folder for one, folder in found.items() if folder.is_dir()}
@@ -233,7 +229,7 @@ class Records:
         yield "recordings.json", json.dumps(episodes, indent=1).encode()
 
     def _take_profile(self, person: str, profile: KeptProfile, files: Mapping[str, bytes]) -> bool:
-        """Whether a profile that was brought fits a run that is here."""
+        """Keep an imported profile; returns whether it fits a run that is here."""
         run = self._runs().get(profile.run)
         if run is None or not files:
             return False

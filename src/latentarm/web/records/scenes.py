@@ -1,4 +1,4 @@
-"""What stood about the arm in earlier drives, so that they can be shown again whatever is driven now."""
+"""The scenes of earlier drives, so that they can be replayed whatever is driven now."""
 
 import hashlib
 import json
@@ -22,21 +22,14 @@ _DIGEST: Final = re.compile(r"[0-9a-f]{64}")
 
 @final
 class Scenes:
-    """Scenes by a digest of what they show; each mesh is kept once. Methods wait for the disk.
-
-    Args:
-        folder: need not be there yet.
-    """
+    """Scenes by a digest of their content; each mesh is kept once. Methods wait for the disk."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
         self._lock = threading.Lock()
 
     def keep(self, scene: Drawable) -> str:
-        """Keep a scene, unless it is kept already.
-
-        Returns:
-            Its id.
+        """Keep a scene and return its id.
 
         Raises:
             UserError: it cannot be written.
@@ -63,7 +56,7 @@ class Scenes:
         return {place: read_bytes(self._folder / place, _MESH_LIMIT) for place in dict.fromkeys(places)}
 
     def take(self, place: str, content: bytes) -> None:
-        """Keep a file that `files` gave, if it is what its place says; otherwise it is left out.
+        """Keep an imported file if its content has the digest of its place.
 
         Raises:
             UserError: it cannot be written.
@@ -74,10 +67,7 @@ class Scenes:
                 self._write(self._folder / place, content)
 
     def keep_only(self, keys: Container[str]) -> None:
-        """Delete every other scene, and meshes of which no scene is left that can be read.
-
-        Args:
-            keys: ids of scenes.
+        """Delete every scene with another id, and meshes without a readable scene.
 
         Raises:
             UserError: files cannot be deleted.
@@ -94,7 +84,7 @@ class Scenes:
                     raise UserError(f"{path} cannot be deleted: {error.strerror or error}.") from error
 
     def description(self, key: str) -> bytes:
-        """A scene as ``/scene.json`` has it.
+        """A scene in the form of ``/scene.json``.
 
         Raises:
             UserError: there is no such scene, or it is damaged.
@@ -102,7 +92,7 @@ class Scenes:
         return json.dumps(self._read(key).values["scene"]).encode()
 
     def mesh(self, key: str, number: str) -> bytes | None:
-        """A mesh of a scene as ``/mesh/ID`` has it; None if it has no such mesh.
+        """A mesh in the form of ``/mesh/ID``; None if the scene has no such mesh.
 
         Raises:
             UserError: there is no such scene, or it is damaged.
@@ -113,7 +103,7 @@ class Scenes:
         return read_bytes(self._folder / _MESHES / digest, _MESH_LIMIT)
 
     def _digests(self, key: str) -> list[str]:
-        """Digests of a scene's meshes; none where it cannot be read, and so cannot be shown."""
+        """Digests of a scene's meshes; none if it cannot be read."""
         try:
             return [str(digest) for digest in self._read(key).section("meshes").values.values()]
         except UserError:
