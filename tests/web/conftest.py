@@ -30,7 +30,7 @@ from latentarm.web.protocol.channel import new_channel
 from latentarm.web.protocol.notice import Notice
 from latentarm.web.protocol.orders import AskedGripper, Given, Order, Paced
 from latentarm.web.protocol.report import Report, parse_report
-from latentarm.web.records.calendar import SYSTEM_CALENDAR
+from latentarm.web.records.documents import SYSTEM_CALENDAR
 from latentarm.web.server.addresses import TeleopConfig, listen
 from latentarm.web.server.app import build_app, gated, serve_on, server_config
 from latentarm.web.server.connections import ConnectionLimits

@@ -12,10 +12,9 @@ from latentarm.core.errors import UserError
 from latentarm.web.cameras.camera import Camera
 from latentarm.web.cameras.clock_pattern import BITS, ROWS
 from latentarm.web.cameras.decoding import open_pictures
-from latentarm.web.cameras.own_address import listen_only_on
 from latentarm.web.cameras.process import CameraProcess
 from latentarm.web.cameras.sources import CameraSource
-from latentarm.web.cameras.viewer import OfferError, Viewer
+from latentarm.web.cameras.viewer import OfferError, Viewer, listen_only_on
 from latentarm.web.protocol.notice import NoticeError
 
 

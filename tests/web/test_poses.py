@@ -7,7 +7,7 @@ import pytest
 
 from latentarm.web.arm_process.way_back import ARRIVED_RAD, STUCK_S
 from latentarm.web.protocol.orders import Enable, PoseToGoTo, Return
-from latentarm.web.records.calendar import SYSTEM_CALENDAR
+from latentarm.web.records.documents import SYSTEM_CALENDAR
 from latentarm.web.records.people import People
 from latentarm.web.records.poses import MOST_POSES, POSES_NAME
 from latentarm.web.server.pose_book import PoseBook

@@ -14,10 +14,12 @@ from av.video.frame import VideoFrame
 from av.video.stream import VideoStream
 
 from latentarm.core.errors import UserError
-from latentarm.web.cameras.arrival import ArrivalClock
 from latentarm.web.cameras.clock_pattern import clock_pictures
 from latentarm.web.cameras.picture import MOST_HIGH, MOST_PER_S, MOST_WIDE, Picture, fitted
 from latentarm.web.cameras.sources import CameraSource, Kind
+
+DRIFT: Final = 2e-4
+"""The camera's clock may run faster or slower than ours by this share."""
 
 _OPEN_WITHIN_S: Final = 5.0
 _READ_WITHIN_S: Final = 3.0
@@ -111,6 +113,28 @@ def _video_of(container: InputContainer, source: CameraSource) -> VideoStream:
         )
     stream.thread_count = 1  # several would each keep a picture back
     return stream
+
+
+@final
+class ArrivalClock:
+    """The offset of a camera's clock from the local monotonic one.
+
+    A camera stamps its pictures with its own clock, whose start is unknown. The quickest picture shows the
+    offset. A picture with a larger delay, because of the network or this computer, is older by the
+    difference.
+    """
+
+    def __init__(self) -> None:
+        self._behind_s = self._looked_s = np.inf
+
+    def arrived(self, stamp_s: float, now_s: float) -> None:
+        """Note a packet: its stamp on the camera's clock, s, and the local time, s."""
+        drifted_s = DRIFT * (now_s - self._looked_s) if np.isfinite(self._looked_s) else 0.0
+        self._behind_s, self._looked_s = min(self._behind_s + drifted_s, now_s - stamp_s), now_s
+
+    def taken_s(self, stamp_s: float, now_s: float) -> float:
+        """When the picture with this stamp was taken, s on the local clock; at the latest now."""
+        return min(stamp_s + self._behind_s, now_s)
 
 
 @final

@@ -52,8 +52,7 @@ class _Desk:
     def __init__(self, sources: Sequence[CameraSource], pipe: Connection, host: str) -> None:
         from latentarm.web.cameras.camera import Camera
         from latentarm.web.cameras.decoding import open_pictures
-        from latentarm.web.cameras.own_address import listen_only_on
-        from latentarm.web.cameras.viewer import OfferError, Viewer
+        from latentarm.web.cameras.viewer import OfferError, Viewer, listen_only_on
 
         listen_only_on(host)
         self._sources = sources

@@ -8,13 +8,13 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from typing import Any, Final, final
 
+import aioice.ice
 from aiortc import (
     MediaStreamTrack,
     RTCBundlePolicy,
     RTCConfiguration,
     RTCDataChannel,
     RTCPeerConnection,
-    RTCRtpSender,
     RTCSessionDescription,
 )
 from aiortc.exceptions import InvalidAccessError, InvalidStateError
@@ -34,6 +34,18 @@ TELL_EVERY_S: Final = 0.2
 _LONGEST_MESSAGE: Final = 200
 
 _ADDRESSES: Final = ("a=candidate:", "a=end-of-candidates", "a=remote-candidates")
+
+
+def listen_only_on(host: str) -> None:
+    """Make aioice listen on this numeric address alone, in this process.
+
+    Otherwise it listens on every address but the loopback, where most pages are served.
+    """
+
+    def own_address(use_ipv4: bool, use_ipv6: bool) -> list[str]:
+        return [host]
+
+    aioice.ice.get_host_addresses = own_address
 
 
 class OfferError(UserError):
@@ -126,11 +138,6 @@ class Viewer:
             for camera in self._cameras:
                 camera.look_away()
         await self._peer.close()
-
-    @property
-    def senders(self) -> list[RTCRtpSender]:
-        """What sends the pictures of each camera."""
-        return self._peer.getSenders()
 
     def _changed(self) -> None:
         if self._peer.connectionState in ("failed", "closed", "disconnected"):

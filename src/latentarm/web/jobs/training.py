@@ -18,7 +18,7 @@ from latentarm.core.types import Demonstrations
 from latentarm.models.catalogue import DEFAULT_MODEL, KINDS
 from latentarm.web.jobs.job import Job, Wire
 from latentarm.web.jobs.lesson import lesson_of, moving_seconds
-from latentarm.web.protocol.learning_messages import Lesson, Training, TrainingPhase
+from latentarm.web.protocol.learning_messages import Lesson, Training
 from latentarm.web.protocol.notice import Message, Notice, NoticeError, sentence
 
 RATE_HZ: Final = 10.0
@@ -142,7 +142,8 @@ class TrainingJob:
                     self._finished = True
                     self._change(why=warned, lesson=lesson)
         if self._finished or not alive:
-            self._change(phase=self._outcome(), seconds_left=None)
+            phase = "done" if self._finished else "cancelled" if self._cancelled else "failed"
+            self._change(phase=phase, seconds_left=None)
             failure = self._job.failure
             self._change(why=self._state.why if failure is None else (failure,))
         return self._state
@@ -151,11 +152,6 @@ class TrainingJob:
         """End it, and wait until it has tidied up, two seconds at most."""
         self._cancelled = True
         self._job.end()
-
-    def _outcome(self) -> TrainingPhase:
-        if self._finished:
-            return "done"
-        return "cancelled" if self._cancelled else "failed"
 
     def _change(self, **fields: object) -> None:
         self._state = self._state.model_copy(update=fields)

@@ -2,8 +2,13 @@
 
 import re
 import secrets
+from collections.abc import Callable, Generator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from functools import partial
 from pathlib import Path
-from typing import Final, TypeVar
+from typing import Final, TypeVar, final
 
 from pydantic import BaseModel, ValidationError
 
@@ -50,6 +55,15 @@ def parse_record(kind: type[Record], content: bytes, where: str) -> Record:
         raise UserError(f"{where} is not a record of this version, or was changed by hand.") from error
 
 
+@contextmanager
+def disk_errors(path: Path, undone: str) -> Generator[None]:
+    """Report an `OSError` as "``path`` cannot be ``undone``"."""
+    try:
+        yield
+    except OSError as error:
+        raise UserError(f"{path} cannot be {undone}: {error.strerror or error}.") from error
+
+
 def unreadable(error: UserError) -> Notice:
     """The notice for a record that cannot be read."""
     return Notice(code="record_unreadable", parameters={"text": one_line(str(error))})
@@ -62,3 +76,19 @@ def write_record(record: BaseModel, path: Path) -> None:
         UserError: see `write_text`.
     """
     write_text(path, record.model_dump_json(indent=1) + "\n")
+
+
+@final
+@dataclass(frozen=True)
+class Calendar:
+    """Dates records; ``now`` is the time with its zone. Durations are measured by monotonic clocks."""
+
+    now: Callable[[], datetime]
+
+    def stamp(self) -> str:
+        """The time as records keep it: ISO 8601 in UTC, to the second."""
+        return self.now().astimezone(UTC).isoformat(timespec="seconds")
+
+
+SYSTEM_CALENDAR: Final = Calendar(partial(datetime.now, UTC))
+"""The computer's own."""

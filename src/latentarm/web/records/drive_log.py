@@ -14,8 +14,7 @@ from latentarm.robots.kinematics.chain import Chain
 from latentarm.web.arm_process.task_run import Todo
 from latentarm.web.protocol.report import Report, Things
 from latentarm.web.protocol.scene import Drawable, pose_of
-from latentarm.web.records.calendar import Calendar
-from latentarm.web.records.documents import new_id
+from latentarm.web.records.documents import Calendar, new_id
 from latentarm.web.records.drive_record import DriveRecord, Ending, Mark, Trace, TracedThings
 
 PERIOD_S: Final = 0.1

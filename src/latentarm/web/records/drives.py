@@ -12,7 +12,7 @@ from latentarm.core.errors import UserError
 from latentarm.core.files import written_whole
 from latentarm.core.untrusted.opening import is_missing, read_bytes
 from latentarm.web.protocol.notice import Notice, NoticeError
-from latentarm.web.records.documents import read_record, unreadable, write_record
+from latentarm.web.records.documents import disk_errors, read_record, unreadable, write_record
 from latentarm.web.records.drive_record import PACKED_LIMIT, DriveRecord, Trace, checked_trace, packed
 
 UNDO_S: Final = 600.0
@@ -223,20 +223,16 @@ class Drives:
 
     def _move(self, start: Path, end: Path) -> None:
         """Move a record with its trace, the record last, so that there is never a record alone."""
-        try:
+        with disk_errors(start, "moved"):
             end.parent.mkdir(parents=True, exist_ok=True)
             with suppress(FileNotFoundError):
                 start.with_suffix(TRACE).replace(end.with_suffix(TRACE))
             start.replace(end)
-        except OSError as error:
-            raise UserError(f"{start} cannot be moved: {error.strerror or error}.") from error
 
     def _purge(self, drives: list[str]) -> None:
         for drive in drives:
             path = self._trash / f"{drive}.json"
-            try:
+            with disk_errors(path, "deleted"):
                 for one in (path, path.with_suffix(TRACE)):
                     one.unlink(missing_ok=True)
-            except OSError as error:
-                raise UserError(f"{path} cannot be deleted: {error.strerror or error}.") from error
             del self._deleted[drive]

@@ -11,7 +11,14 @@ from typing import Final
 from latentarm.core.errors import UserError
 from latentarm.core.files import written_whole
 from latentarm.web.protocol.notice import NoticeError
-from latentarm.web.records.documents import DOCUMENT_LIMIT, ID, new_id, parse_record, write_record
+from latentarm.web.records.documents import (
+    DOCUMENT_LIMIT,
+    ID,
+    disk_errors,
+    new_id,
+    parse_record,
+    write_record,
+)
 from latentarm.web.records.drive_record import PACKED_LIMIT, DriveRecord, checked_trace
 from latentarm.web.records.drives import DRIVES, TRACE
 from latentarm.web.records.people import PERSON_NAME, PersonRecord
@@ -37,12 +44,9 @@ def write_zip(path: Path, contents: Iterator[tuple[str, bytes]]) -> None:
     Raises:
         UserError: it cannot be written.
     """
-    try:
-        with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
-            for name, content in contents:
-                archive.writestr(zipfile.ZipInfo(name, _FIRST_DATE), content, zipfile.ZIP_DEFLATED)
-    except OSError as error:
-        raise UserError(f"{path} cannot be written: {error.strerror or error}.") from error
+    with disk_errors(path, "written"), zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, content in contents:
+            archive.writestr(zipfile.ZipInfo(name, _FIRST_DATE), content, zipfile.ZIP_DEFLATED)
 
 
 def read_zip(content: bytes) -> dict[str, bytes]:

@@ -11,8 +11,15 @@ from pydantic import Field
 from latentarm.core.errors import UserError
 from latentarm.core.untrusted.names import MOST_CHARACTERS, clean_name, same_name
 from latentarm.web.protocol.notice import Message, Notice, NoticeError
-from latentarm.web.records.calendar import Calendar
-from latentarm.web.records.documents import ID, new_id, read_record, unreadable, write_record
+from latentarm.web.records.documents import (
+    ID,
+    Calendar,
+    disk_errors,
+    new_id,
+    read_record,
+    unreadable,
+    write_record,
+)
 from latentarm.web.records.pin import PinHash, hash_of
 
 VERSION: Final = 1
@@ -88,6 +95,17 @@ class People:
         """The person with an id; None for nobody."""
         return None if person is None else self._people.get(person)
 
+    def known(self, person: str) -> PersonRecord:
+        """The person with an id.
+
+        Raises:
+            NoticeError: there is none.
+        """
+        found = self._people.get(person)
+        if found is None:
+            raise NoticeError("person_unknown")
+        return found
+
     def folder_of(self, person: str) -> Path:
         """The folder of all that is kept of a person."""
         return self._folder / person
@@ -130,11 +148,10 @@ class People:
             person = brought.model_copy(update={"id": new_id(), "name": self._first_free(names), "pin": None})
             staging = self._folder / f"{_STAGING}{person.id}"
             try:
-                write_record(person, staging / PERSON_NAME)
-                fill(staging, person.id)
-                staging.replace(self.folder_of(person.id))
-            except OSError as error:
-                raise UserError(f"{staging} cannot be written: {error.strerror or error}.") from error
+                with disk_errors(staging, "written"):
+                    write_record(person, staging / PERSON_NAME)
+                    fill(staging, person.id)
+                    staging.replace(self.folder_of(person.id))
             finally:
                 shutil.rmtree(staging, ignore_errors=True)
             self._people[person.id] = person
@@ -147,7 +164,7 @@ class People:
             UserError: see `add`; also if there is no such person.
         """
         with self._lock:
-            known = self._known(person)
+            known = self.known(person)
             return self._keep(known.model_copy(update={"name": self._free_name(name, person)}))
 
     def keep_settings(self, person: str, settings: dict[str, bool | float | str]) -> PersonRecord:
@@ -157,7 +174,7 @@ class People:
             UserError: there is no such person, or the record cannot be written.
         """
         with self._lock:
-            return self._keep(self._known(person).model_copy(update={"settings": settings}))
+            return self._keep(self.known(person).model_copy(update={"settings": settings}))
 
     def keep_pin(self, person: str, pin: str | None) -> PersonRecord:
         """Set or remove a person's PIN.
@@ -167,7 +184,7 @@ class People:
         """
         kept = None if pin is None else hash_of(pin)
         with self._lock:
-            return self._keep(self._known(person).model_copy(update={"pin": kept}))
+            return self._keep(self.known(person).model_copy(update={"pin": kept}))
 
     def add_profile(self, person: str, run: str, name: str) -> PersonRecord:
         """Note that a profile is a person's.
@@ -176,7 +193,7 @@ class People:
             UserError: there is no such person, or the record cannot be written.
         """
         with self._lock:
-            known = self._known(person)
+            known = self.known(person)
             profiles = dict.fromkeys([*known.profiles, KeptProfile(run=run, name=name)])
             return self._keep(known.model_copy(update={"profiles": tuple(profiles)}))
 
@@ -187,19 +204,11 @@ class People:
             UserError: there is no such person, or files cannot be deleted.
         """
         with self._lock:
-            self._known(person)
+            self.known(person)
             folder = self.folder_of(person)
-            try:
+            with disk_errors(folder, "deleted"):
                 shutil.rmtree(folder)
-            except OSError as error:
-                raise UserError(f"{folder} cannot be deleted: {error.strerror or error}.") from error
             del self._people[person]
-
-    def _known(self, person: str) -> PersonRecord:
-        found = self._people.get(person)
-        if found is None:
-            raise NoticeError("person_unknown")
-        return found
 
     def _keep(self, person: PersonRecord) -> PersonRecord:
         write_record(person, self.folder_of(person.id) / PERSON_NAME)

@@ -17,7 +17,7 @@ from latentarm.core.errors import UserError
 from latentarm.core.untrusted.opening import is_missing
 from latentarm.core.untrusted.terminal import one_line
 from latentarm.web.protocol.notice import Message, Notice, NoticeError
-from latentarm.web.records.documents import read_record, write_record
+from latentarm.web.records.documents import disk_errors, read_record, write_record
 from latentarm.web.records.drives import UNDO_S
 
 _TITLES: Final = "recordings.json"
@@ -250,20 +250,16 @@ def _state(path: Path) -> tuple[int, tuple[int, int]]:
 
 def _move(start: Path, end: Path) -> None:
     """Move a journal after its log: a journal without its log would seem complete."""
-    try:
+    with disk_errors(start, "moved"):
         for beside in reversed(_BESIDE):
             with suppress(FileNotFoundError):
                 start.with_name(start.name + beside).replace(end.with_name(end.name + beside))
-    except OSError as error:
-        raise UserError(f"{start} cannot be moved: {error.strerror or error}.") from error
 
 
 def _unlink(path: Path) -> None:
-    try:
+    with disk_errors(path, "deleted"):
         for beside in _BESIDE:
             path.with_name(path.name + beside).unlink(missing_ok=True)
-    except OSError as error:
-        raise UserError(f"{path} cannot be deleted: {error.strerror or error}.") from error
 
 
 def _erase(path: Path, person: str) -> None:

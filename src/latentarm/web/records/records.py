@@ -12,9 +12,8 @@ from latentarm.core.errors import UserError
 from latentarm.core.untrusted.opening import read_bytes
 from latentarm.demonstrations.folders import staged_folder
 from latentarm.models.saving import WEIGHTS_LIMIT
-from latentarm.web.protocol.notice import Message, NoticeError
-from latentarm.web.records.calendar import Calendar
-from latentarm.web.records.documents import new_id
+from latentarm.web.protocol.notice import Message
+from latentarm.web.records.documents import Calendar, disk_errors, new_id
 from latentarm.web.records.drive_log import Logged
 from latentarm.web.records.drives import TRACE, Drives, Wanted
 from latentarm.web.records.exchange import (
@@ -97,7 +96,7 @@ class Records:
         Raises:
             UserError: there is no such person.
         """
-        known = self._known(person)
+        known = self.people.known(person)
         return Contents(
             drives=len(self.drives.wanted(Wanted(person=person))),
             profiles=len(self._profiles(known)),
@@ -113,7 +112,7 @@ class Records:
         Raises:
             UserError: there is no such person, or something cannot be read or written.
         """
-        known = self._known(person)
+        known = self.people.known(person)
         path = self._folder / f".export-{new_id()}.zip"
         try:
             write_zip(path, self._everything(known))
@@ -163,12 +162,10 @@ class Records:
         Raises:
             UserError: there is no such person, or something cannot be deleted.
         """
-        known = self._known(person)
+        known = self.people.known(person)
         for folder in self._profiles(known).values():
-            try:
+            with disk_errors(folder, "deleted"):
                 shutil.rmtree(folder)
-            except OSError as error:
-                raise UserError(f"{folder} cannot be deleted: {error.strerror or error}.") from error
         self.recordings.forget(person, known.name)
         self.people.remove(person)
         self.drives.forget(person)
@@ -189,12 +186,6 @@ class Records:
         with self._scenes_lock:
             if not self.drives.problems:
                 self.scenes.keep_only(self.drives.scenes)
-
-    def _known(self, person: str) -> PersonRecord:
-        found = self.people.find(person)
-        if found is None:
-            raise NoticeError("person_unknown")
-        return found
 
     def _profiles(self, person: PersonRecord) -> dict[KeptProfile, Path]:
         """Folders of a person's profiles that still exist."""

@@ -13,6 +13,7 @@ from latentarm.core.files import written_whole
 from latentarm.core.untrusted.opening import is_missing, read_bytes
 from latentarm.models.reading import Section
 from latentarm.web.protocol.scene import Drawable
+from latentarm.web.records.documents import disk_errors
 
 _SCENE_LIMIT: Final = 1 << 22
 _MESH_LIMIT: Final = 1 << 26
@@ -78,10 +79,8 @@ class Scenes:
             meshes = {digest for path in found if path.stem in keys for digest in self._digests(path.stem)}
             gone += [path for path in self._folder.glob(f"{_MESHES}/*") if path.name not in meshes]
             for path in gone:
-                try:
+                with disk_errors(path, "deleted"):
                     path.unlink(missing_ok=True)
-                except OSError as error:
-                    raise UserError(f"{path} cannot be deleted: {error.strerror or error}.") from error
 
     def description(self, key: str) -> bytes:
         """A scene in the form of ``/scene.json``.

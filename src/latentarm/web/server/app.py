@@ -36,7 +36,7 @@ from latentarm.web.jobs.training import model_names
 from latentarm.web.protocol.notice import Notice
 from latentarm.web.protocol.orders import ChooseProfile
 from latentarm.web.protocol.page_messages import FRAME_LIMIT
-from latentarm.web.records.calendar import SYSTEM_CALENDAR, Calendar
+from latentarm.web.records.documents import SYSTEM_CALENDAR, Calendar
 from latentarm.web.records.exchange import IMPORT_LIMIT
 from latentarm.web.records.people import PersonRecord
 from latentarm.web.records.records import FOLDER, Records

@@ -8,7 +8,7 @@ from typing import Final, final
 from latentarm.core.errors import UserError
 from latentarm.web.protocol.notice import Notice, notice_of
 from latentarm.web.protocol.report import Report
-from latentarm.web.records.calendar import Calendar
+from latentarm.web.records.documents import Calendar
 from latentarm.web.records.drive_log import About, DriveLog, Logged
 from latentarm.web.records.drive_record import Ending
 from latentarm.web.records.records import Records

@@ -125,10 +125,7 @@ class PeopleRoutes:
         return person
 
     def _named(self, request: Request) -> PersonRecord:
-        person = self._records.people.find(request.path_params["person"])
-        if person is None:
-            raise NoticeError("person_unknown")
-        return person
+        return self._records.people.known(request.path_params["person"])
 
     async def _unlock(self, request: Request) -> Response:
         given, person = await body_of(request, _Pinned), self._named(request)
