@@ -1,15 +1,14 @@
 """Work with a disengaged arm: guiding it by hand, connecting it again."""
 
 from collections.abc import Callable
-from typing import Literal, final
+from typing import final
 
-from latentarm.arms.contract import Arm
+from latentarm.arms.contract import Arm, ArmStatus
 from latentarm.control.arm_stops import stop_of
 from latentarm.control.step import Step
 from latentarm.core.types import GripperAsk, Stop
 from latentarm.web.arm_process.episodes import Episodes
-from latentarm.web.arm_process.hand_guiding import HandGuiding
-from latentarm.web.arm_process.lost_arm import LostArm
+from latentarm.web.arm_process.hand_guiding import HandGuiding, why_not
 from latentarm.web.protocol.notice import Notice
 from latentarm.web.protocol.orders import Record
 from latentarm.web.protocol.report import Guiding
@@ -28,7 +27,7 @@ class Disengaged:
         self._episodes = episodes
         self._say = say
         self._guiding = HandGuiding(arm, step)
-        self._connection = LostArm(arm)
+        self._lost = _is_lost(arm.status())
         self._phase = arm.status().phase
 
     @property
@@ -43,8 +42,8 @@ class Disengaged:
 
     @property
     def lost(self) -> Notice | None:
-        """Why the arm is not connected; None if it is."""
-        return self._connection.reason if self._connection.lost else None
+        """Why the arm is not connected, or why the last attempt failed; None if it is connected."""
+        return why_not(self._arm.status()) if self._lost else None
 
     def begin_guiding(self, time_s: float) -> None:
         """Begin guiding, at the loop's time, s, if the arm is disengaged; an episode under way ends."""
@@ -68,12 +67,19 @@ class Disengaged:
         """Whether an episode may begin: one by hand only while the arm is guided."""
         return not order.by_hand or (self._guiding.recordable and self._step.stopped is not None)
 
-    def connect_again(self) -> Literal["under way", "anew"] | None:
-        """See `LostArm.connect_again`; None if nothing is lost."""
-        if not self._connection.lost:
-            return None
+    def connect_again(self) -> bool:
+        """Renew a lost connection; the arm is disabled afterwards.
+
+        Returns:
+            Whether the arm's driver cannot do so without waiting: `reconnect` does.
+        """
+        if not self._lost:
+            return False
         self._say(Notice(code="reconnecting"))
-        return self._connection.connect_again()
+        recoverable = self._arm.status().recoverable
+        if recoverable:
+            self._arm.recover()
+        return not recoverable
 
     def follow(self, time_s: float) -> None:
         """Follow guiding and the connection at the loop's time, s."""
@@ -86,8 +92,10 @@ class Disengaged:
         if self._episodes.by_hand and not self._guiding.recordable:
             self._episodes.end()
         self._follow_faults()
-        if self._connection.look() == "found" and self._step.stopped is not None:
-            self._step.refuse(stop_of(self._arm.status()))
+        status = self._arm.status()
+        was_lost, self._lost = self._lost, _is_lost(status)
+        if was_lost and not self._lost and self._step.stopped is not None:
+            self._step.refuse(stop_of(status))
             self._say(Notice(code="reconnected"))
 
     def _follow_faults(self) -> None:
@@ -105,3 +113,7 @@ class Disengaged:
             self._step.refuse(
                 Stop("The emergency stop on the arm is released.", code="emergency_stop_released")
             )
+
+
+def _is_lost(status: ArmStatus) -> bool:
+    return status.lost or status.phase == "off"

@@ -69,8 +69,7 @@ _HELD_BACK: Final[dict[str, HeldBack]] = {
 _ORDERS_PER_TICK: Final = 4
 _LOOK_EVERY: Final = 10
 _STATISTICS_EVERY: Final = 100
-_SPARE_S: Final = 0.004
-"""Deferrable work needs this much time before the next tick, s."""
+_SPARE_S: Final = 0.004  # deferrable work needs this much time before the next tick, s
 
 
 @final
@@ -81,11 +80,6 @@ class Drive:
     orders is.
 
     Args:
-        setup: what is driven.
-        arm: what moves.
-        channel: to the page's server.
-        clock: the loop's.
-        writer: records.
         orphaned: whether the page's server is gone.
         steering: state from the drive before.
         note: shown to the person first; None for nothing.
@@ -153,7 +147,6 @@ class Drive:
         return self.change
 
     def _observe(self, record: StepRecord) -> None:
-        """Called by the loop after every command."""
         self._steering.tick += 1
         self._readings.see(record)
         enabled, steered = self._step.stopped is None, not self._way_back.on
@@ -245,7 +238,7 @@ class Drive:
             case KeepGuiding(gripper=ask):
                 self._disengaged.keep_guiding(record.time_s, ask)
             case Reconnect():
-                if self._disengaged.connect_again() == "anew":
+                if self._disengaged.connect_again():
                     self._change_to(order)
             case ChooseProfile() if (order.name, spec.seated(order.seat)) == (spec.profile, spec.seat):
                 pass
@@ -284,7 +277,6 @@ class Drive:
             self._choose("latent" if level == "off" else "assisted", self._steering.axes, level)
 
     def _set_out(self, record: StepRecord, pose: PoseToGoTo | None) -> None:
-        """Begin the way back to the start, or the way to a saved pose."""
         goal = self._setup.start if pose is None else np.array(pose.q)
         limits = self._setup.task.robot.limits
         if goal.shape != limits.lower.shape or limits.violation(goal).any():
@@ -305,7 +297,6 @@ class Drive:
         self._choose(self._steering.mode, self._steering.axes, self._steering.help)
 
     def _follow_way_back(self, record: StepRecord) -> None:
-        """End the way back when it is over or the arm was stopped."""
         if not self._way_back.on:
             if record.input.any() and self._note is not None and self._note == self._ended:
                 self._note_until_s = -math.inf

@@ -183,14 +183,7 @@ class DriveSetup:
         return (1 if self.latent_dim else 0) + axes if mode == "end_effector" else 0
 
     def episode(self, things: tuple[str, ...], controller: str, task: str, person: str) -> EpisodeHeader:
-        """The header of an episode that begins now.
-
-        Args:
-            things: names of those whose poses are recorded.
-            controller: how the arm is steered, or `BY_HAND`.
-            task: in words.
-            person: who drives; "" if unknown.
-        """
+        """The header of an episode that begins now; ``controller``: how the arm is steered, or `BY_HAND`."""
         robot, spec = self.task.robot, self.spec
         return EpisodeHeader(
             robot=robot.name,
@@ -238,13 +231,7 @@ class DriveSetup:
         to_pose: ToPose | None = None,
         calls: CallLog | None = None,
     ) -> Step:
-        """Algorithm 1 with its safety filters, disengaged.
-
-        Args:
-            surroundings: see `Step`; None for things that stand where they begin.
-            to_pose: the controller of the slow motions; None for one that leads to the start.
-            calls: see `Step`.
-        """
+        """Algorithm 1 with its safety filters, disengaged; things stand where they begin by default."""
         goals = np.array([goal.configuration for goal in self.task.goals])
         return Step(
             self.task.robot,

@@ -50,8 +50,17 @@ def next_arm(setup: DriveSetup, before: DriveSetup, arm: Arm, clock: Clock) -> A
     return arm
 
 
+def reconnect(arm: Arm) -> None:
+    """Close the connection and open it again, waiting for the arm.
+
+    Raises:
+        UserError: the arm does not answer, or is refused.
+    """
+    arm.close()
+    arm.connect()
+
+
 def _alike(one: Robot, other: Robot) -> bool:
-    """Whether a driver that was made for one robot suits the other, whatever they are called."""
     here, there = one.limits, other.limits
     return (
         one.joint_names == other.joint_names

@@ -19,9 +19,6 @@ class Vessel:
     """A vessel to pour from or into.
 
     Attributes:
-        name: of the container.
-        room: its interior.
-        grains: name of what is poured.
         enough: share of the grains that must be in it, in (0, 1]; None for the vessel poured from.
     """
 

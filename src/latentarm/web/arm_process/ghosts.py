@@ -83,12 +83,7 @@ class GhostPaths:
         return self._whole[1]
 
     def look(self, context: Context, mode: int) -> None:
-        """Predict the next stretch; after the last one, `newest` is renewed.
-
-        Args:
-            context: of this moment; the first stretch's is kept for the others.
-            mode: index of the controller's mode.
-        """
+        """Predict the next stretch; the last one renews `newest`. The first stretch's ``context`` is kept."""
         meaning = (mode, self._help.level)
         way = self._way
         if way is None or way.meaning != meaning:

@@ -3,14 +3,15 @@
 import math
 from typing import Final, Literal, final
 
-from latentarm.arms.contract import Arm
+from latentarm.arms.contract import Arm, ArmStatus
 from latentarm.arms.guiding import GuidableArm
+from latentarm.control.arm_stops import stop_of
 from latentarm.control.loop import ENABLING_S
 from latentarm.control.step import Step
 from latentarm.core.errors import UserError
 from latentarm.core.types import GripperAsk
-from latentarm.web.arm_process.lost_arm import why_not
-from latentarm.web.protocol.notice import Notice, notice_of
+from latentarm.core.untrusted.terminal import one_line
+from latentarm.web.protocol.notice import Notice, notice_of, notice_of_stop
 from latentarm.web.protocol.report import Guiding
 
 PAGE_S: Final = 1.0
@@ -108,3 +109,10 @@ class HandGuiding:
             self._doing = "nothing"
             return why_not(status)
         return None
+
+
+def why_not(status: ArmStatus) -> Notice:
+    """Why an arm takes no commands: its connection is lost, or its driver's reason."""
+    if status.lost:
+        return Notice(code="arm_lost", parameters={"text": one_line(status.reason)})
+    return notice_of_stop(stop_of(status))

@@ -82,12 +82,7 @@ def computer() -> str:
 
 
 def rebuild(head: Mapping[str, Any], folder: Path, where: str) -> DriveSetup:
-    """Load again what was driven.
-
-    Args:
-        head: the first line of a file.
-        folder: where its copies are.
-        where: its name in errors.
+    """Load again what the first line of a file, ``head``, and its copies in ``folder`` name.
 
     Raises:
         UserError: something that it names is missing here, or differs.
@@ -125,7 +120,6 @@ def unpack(line: Mapping[str, Any], folder: Path, where: str) -> None:
 
 
 def _head(setup: DriveSetup) -> list[dict[str, Any]]:
-    """The setup, then copies of the files that it names."""
     spec = setup.spec
     limits = spec.robot.limits
     copied: dict[str, Path] = {} if limits is None else {f"{_LIMITS}{limits.suffix}": limits}

@@ -32,13 +32,7 @@ MOST_GRAINS: Final = 2000
 @final
 @dataclass(frozen=True)
 class RobotOptions:
-    """Which robot is driven, where neither run nor task says so.
-
-    Attributes:
-        robot: a name or a model file.
-        end_effector: site, body or link of a model file.
-        limits: a limits file.
-    """
+    """Which robot is driven, where neither run nor task says so; ``end_effector`` is of a model file."""
 
     robot: str | None = None
     end_effector: str | None = None
@@ -75,13 +69,7 @@ def begin(
 ) -> InitialState:
     """Begin with a simulated arm; the same for equal arguments.
 
-    Args:
-        run: what is driven, or None.
-        task: a name of the catalogue; None for the run's own, or a table.
-        arm: a name of `latentarm.arms.catalogue`.
-        choice: index of what is to be done.
-        robot: used where neither run nor task names one.
-        rng: for where the arm starts and where things stand.
+    ``task`` is None for the run's own, or a table; ``choice`` is an index of what is to be done.
 
     Raises:
         UserError: any of these does not exist, or they do not fit each other.
@@ -106,13 +94,8 @@ def begin_real(run: Run | None, task: str | None, choice: int, robot: RobotOptio
     """Begin with a real arm, wherever it is.
 
     Nothing detects the things about a real arm. Of a task with things only the robot and its obstacles count;
-    goals are those of a run's demonstrations, or of a task that was named.
-
-    Args:
-        run: what is driven, or None.
-        task: a name of the catalogue; None for the run's own, or for nothing in particular.
-        choice: index of what is to be done.
-        robot: used where neither run nor task names one.
+    goals are those of a run's demonstrations, or of a task that was named. ``task`` is None for the run's
+    own, or for nothing in particular.
 
     Raises:
         UserError: any of these does not exist, or they do not fit each other.

@@ -30,9 +30,6 @@ class PageInputs(InputSource):
     """The newest input in a slot, if it is the driver's and fresh.
 
     Args:
-        slot: the server writes inputs to it.
-        clock: the loop's.
-        input_dim: axes of the controller.
         dead_zone: a smaller deflection is neutral.
         stop: stops the arm: when a deflection has lasted too long without a change, another person starts to
             drive, or the driver's co-pilot comes, goes, or is silent.

@@ -24,10 +24,9 @@ from latentarm.core.punctuality import ask_for_priority, short_collections
 from latentarm.core.untrusted.terminal import one_line
 from latentarm.web.arm_process.drive import Drive
 from latentarm.web.arm_process.drive_setup import SEEDS, DriveSetup, Spec, load_setup, with_profile
-from latentarm.web.arm_process.driven_arm import first_arm, from_where_it_stands, next_arm
+from latentarm.web.arm_process.driven_arm import first_arm, from_where_it_stands, next_arm, reconnect
 from latentarm.web.arm_process.help import USUAL_HELP
 from latentarm.web.arm_process.incident import begin_incident
-from latentarm.web.arm_process.lost_arm import reconnect
 from latentarm.web.arm_process.recording import EpisodeWriter
 from latentarm.web.arm_process.steering import Steering
 from latentarm.web.protocol.channel import ORDER_LIMIT, Channel, new_channel
@@ -93,12 +92,9 @@ def run_control(spec: Spec, channel: Channel, server: int) -> None:
                         case Reconnect():
                             _, failed = _loaded(partial(reconnect, arm), None)
                             note = failed or Notice(code="reconnected")
-                        case Reset():
-                            setup, arm, note = _begun_again(
-                                setup, arm, BeginTask(choice=None, anew=False), clock
-                            )
-                            steering.run = None
-                        case BeginTask() as order:
+                        case Reset() | BeginTask():
+                            again = BeginTask(choice=None, anew=False)
+                            order = again if isinstance(change, Reset) else change
                             setup, arm, note = _begun_again(setup, arm, order, clock)
                             steering.run = None
                         case ChooseProfile() as order:
@@ -128,7 +124,6 @@ def _other_profile(setup: DriveSetup, order: ChooseProfile) -> DriveSetup:
 def _begun_again(
     setup: DriveSetup, arm: Arm, order: BeginTask, clock: Clock
 ) -> tuple[DriveSetup, Arm, Notice | None]:
-    """The task from its start; or the old setup, and why it cannot begin."""
     spec = setup.spec
     begun = replace(
         spec,

@@ -21,11 +21,8 @@ from latentarm.web.protocol.report import Recording
 STILL_RAD: Final = 0.01
 """An arm that stays this close to its first position has not moved, rad (m for a slide)."""
 
-_MOST_WAITING: Final = 6000
-"""Samples that may wait for the disk: a minute."""
-
+_MOST_WAITING: Final = 6000  # samples that may wait for the disk: a minute
 _CHECK_S: Final = 1.0
-"""How often the journal is checked while nothing is recorded, s."""
 
 _CLOSE: Final = "close"
 _DROP: Final = "drop"
@@ -188,7 +185,6 @@ class EpisodeWriter:
             recorder.drop_episode()
 
     def _full(self, recorder: Recorder, error: JournalFullError) -> None:
-        """The journal has no room: what was recorded of the episode is kept."""
         if error.ended_episode:
             self._episodes += 1
         if self._on:

@@ -47,14 +47,7 @@ class Replay:
         self._was: tuple[str, ...] = ()
 
     def make(self, name: str, given: tuple[Any, ...], poses: tuple[FloatArray, ...], then: Any) -> None:
-        """Make a call and compare its answer.
-
-        Args:
-            name: of the method.
-            given: its arguments.
-            poses: its surroundings then.
-            then: its answer then, see `answer_of`.
-        """
+        """Make a call, as it was then, and compare the two answers, see `answer_of`."""
         self._poses.clear()
         self._poses.extend(poses)
         if ticks := name == "__call__":
@@ -78,7 +71,6 @@ class Replay:
         self._look()
 
     def _look(self) -> None:
-        """Note events of the last call for people."""
         stopped, help_ = self._step.stopped, self._help.level
         is_ = (
             "enabled" if stopped is None else f"stopped: {stopped.reason}",
@@ -89,7 +81,6 @@ class Replay:
 
 
 def _differences(then: Any, now: Any) -> tuple[float, bool]:
-    """The difference of the velocities of two answers, rad/s, and whether anything else differs."""
     if json.dumps(then) == json.dumps(now):
         return 0.0, False
     if not (isinstance(then, dict) and isinstance(now, dict)):

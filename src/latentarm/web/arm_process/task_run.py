@@ -16,9 +16,7 @@ from latentarm.web.arm_process.fill_level import FillLevels, Vessel, vessels
 from latentarm.web.arm_process.waypoint_guide import WaypointGuide
 from latentarm.web.protocol.report import Lost, TaskState, ToGo, Why
 
-_FEW: Final = 2
-"""Waypoints that a person is shown one by one; of a longer way only the end is shown."""
-
+_FEW: Final = 2  # waypoints that a person is shown one by one; of a longer way only the end is shown
 _LOOK_EVERY_S: Final = 0.1
 """How often the remaining way and the fill levels are updated, s: people read them as words."""
 
@@ -101,14 +99,10 @@ class TaskRun:
         )
 
     def see(self, time_s: float, q: FloatArray, *, enabled: bool, steered: bool) -> None:
-        """Update, in every tick.
+        """Update, in every tick; ``q``: (n,), joint positions, rad.
 
-        Args:
-            time_s: the clock, s.
-            q: (n,), joint positions, rad.
-            enabled: whether the arm may move.
-            steered: whether a person steers it. A goal that it passes on its way to a saved pose is not
-                reached; the state of things counts always.
+        A goal that the arm passes while no person steers, on its way to a saved pose, is not reached; the
+        state of things counts always.
         """
         if not self._todo.steps or self._over:
             return
@@ -133,7 +127,6 @@ class TaskRun:
 
     @property
     def _lost(self) -> Lost | None:
-        """The thing that is no longer held, and is to be taken again."""
         index = self._progress.lost
         return None if index is None or self._over else Lost(thing=self._todo.steps[index].thing, step=index)
 

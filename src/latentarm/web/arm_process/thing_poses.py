@@ -9,8 +9,7 @@ from latentarm.robots.scene.scene import Scene
 from latentarm.web.protocol.report import Things
 from latentarm.web.protocol.things import things_at
 
-_EVERY: Final = 4
-"""Ticks between two looks: 25 looks per second; pages interpolate."""
+_EVERY: Final = 4  # ticks between two looks: 25 looks per second; pages interpolate
 
 
 @final

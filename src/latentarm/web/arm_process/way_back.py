@@ -23,12 +23,9 @@ STUCK_S: Final = 3.0
 """The way ends after so long without progress, s."""
 
 LONGEST_S: Final = 60.0
-"""The longest way, s."""
 
 _CLOSER_RAD: Final = 0.005
-
-_LOOKS: Final = 2
-"""Places on the way that are checked in each tick before the arm sets out."""
+_LOOKS: Final = 2  # places on the way that are checked in each tick before the arm sets out
 
 Outcome = Literal["arrived", "stuck", "pushed", "blocked"]
 
@@ -74,14 +71,7 @@ class WayBack(InputSource):
         self.on = False
 
     def begin(self, time_s: float, q: FloatArray, goal: FloatArray, pose: str | None = None) -> None:
-        """Check the way, and set out if it is clear.
-
-        Args:
-            time_s: the loop's clock, s.
-            q: (n,), joint positions, rad.
-            goal: (n,), where the way leads, rad.
-            pose: its name; None for the start.
-        """
+        """Check the way from ``q`` to ``goal``, (n,), rad, and set out if it is clear; ``pose`` names it."""
         self._straight.begin(q, goal)
         self._goal, self.pose = goal, pose
         self.on, self._pushed = True, False

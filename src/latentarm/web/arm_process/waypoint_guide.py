@@ -11,8 +11,7 @@ from latentarm.tasks.steps import RETRY_S, TaskStep, Waypoint
 from latentarm.web.protocol.report import Point, ToGo
 
 _METRES: Final = 4
-_RADIANS: Final = 3
-"""Digits that pages receive."""
+_RADIANS: Final = 3  # digits that pages receive
 
 
 @final
@@ -58,7 +57,6 @@ class WaypointGuide:
 
 
 def _still_asked(waypoint: Waypoint, state: SceneState) -> Literal["open", "close"] | None:
-    """The gripper's action at this waypoint, if it has not been done."""
     match waypoint.gripper:
         case "close" if not state.gripped:
             return "close"

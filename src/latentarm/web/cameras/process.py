@@ -47,8 +47,6 @@ def run_cameras(sources: Sequence[CameraSource], pipe: Connection, host: str) ->
 
 @final
 class _Desk:
-    """Carries out the web server's requests."""
-
     def __init__(self, sources: Sequence[CameraSource], pipe: Connection, host: str) -> None:
         from latentarm.web.cameras.camera import Camera
         from latentarm.web.cameras.decoding import open_pictures

@@ -92,7 +92,6 @@ def _parsed(text: str, number: int) -> CameraSource:
 
 
 def _check_address(name: str, address: str) -> None:
-    """Check an address without opening it."""
     if address == TEST_PATTERN:
         return
     scheme = _SCHEME.match(address)

@@ -155,7 +155,6 @@ class Viewer:
             channel.send(json.dumps({"type": "time", "sent": sent_ms, "now": _now_ms()}))
 
     async def _tell(self) -> None:
-        """Send the cameras' states, and date their pictures, repeatedly."""
         began_s = time.monotonic()
         while True:
             await asyncio.sleep(TELL_EVERY_S)

@@ -23,11 +23,9 @@ from latentarm.core.errors import UserError
 from latentarm.web.protocol.notice import Message, Notice, notice_of
 
 MESSAGE_LIMIT: Final = 1 << 20
-"""The longest message, bytes."""
 
 _NICENESS: Final = 10
-_GRACE_S: Final = 2.0
-"""How long a child may take to tidy up, s."""
+_GRACE_S: Final = 2.0  # how long a child may take to tidy up, s
 
 Said = TypeVar("Said", bound=BaseModel)
 Told = TypeVar("Told", bound=BaseModel)

@@ -13,11 +13,8 @@ from latentarm.web.protocol.notice import Message, Notice
 from latentarm.web.protocol.personalise_messages import Personalise, ShownMotion
 from latentarm.web.protocol.scene import pose_of
 
-_FRAMES: Final = 16
-"""Poses along a motion; pages interpolate."""
-
-_STILL_M: Final = 5e-4
-"""A tool that moves less is not shown."""
+_FRAMES: Final = 16  # poses along a motion; pages interpolate
+_STILL_M: Final = 5e-4  # A tool that moves less is not shown
 
 
 @final

@@ -31,10 +31,8 @@ SHORTEST_S: Final = 1.0
 """An episode that moves for less than this shows nothing."""
 
 STATE_NOISE_RAD: Final = 0.01
-"""As in `latentarm train`."""
 
 _FIRST_MODELS: Final = (DEFAULT_MODEL, "cvae", "cae", "homogeneous", "pca")
-"""The models that people most likely want."""
 
 _NAME: Final = re.compile(r"\w[\w .-]{0,58}\w|\w")
 _TELL_EVERY_S: Final = 0.1
@@ -51,11 +49,7 @@ class TrainingPlan:
     """What to train on which episodes.
 
     Attributes:
-        journal: holds the episodes.
-        episodes: their numbers.
-        name: of the new dataset and the new run.
         model: a name in the catalogue of models.
-        latent_dim: d.
         out: folder that holds ``datasets`` and ``runs``.
         end_effector: site, body or link, where the robot is a model file.
 
@@ -202,7 +196,6 @@ def _cut(warning: ImplausibleWarning) -> Notice:
 
 
 def _train(wire: Wire, plan: TrainingPlan, demonstrations: Demonstrations) -> list[Notice]:
-    """Write the dataset and the run; return the warnings."""
     # pyarrow, and then torch, which take seconds to load: in this process alone.
     from latentarm.demonstrations.dataset import write_dataset
 

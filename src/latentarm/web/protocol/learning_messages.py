@@ -78,9 +78,7 @@ class Training(Message):
     """A training under way, or the last one.
 
     Attributes:
-        run: its name.
         epoch: passes over the episodes so far.
-        epochs: maximum number of passes.
         loss: validation loss so far, or null.
         seconds_left: estimate, or null.
         why: reasons of a failure, or warnings.
@@ -105,8 +103,7 @@ class LearningState(Message):
         training: null before the first.
         personalise: null where nobody was asked.
         recordings: complete episodes of this journal.
-        runs: names of the runs that can be driven.
-        run: the loaded one, or null.
+        run: the loaded one of ``runs``, or null.
         profiles: people whose alignment with it can be chosen.
     """
 

@@ -111,9 +111,7 @@ class ChooseHelp(Message):
 class ChooseProfile(Message):
     """Use a person's alignment, or None for none; only while the arm is disengaged.
 
-    Attributes:
-        name: of their profile.
-        seat: None for where the person before sat.
+    ``seat`` is None for where the person before sat.
     """
 
     order: Literal["profile"] = "profile"
@@ -139,11 +137,7 @@ class PoseToGoTo(Message):
 
 @final
 class Return(Message):
-    """Move the arm slowly, while it is enabled and the stick is let go; or end that.
-
-    Attributes:
-        pose: where to; None for its start.
-    """
+    """Move the arm slowly to a pose (None for its start), while the stick is let go; or end that."""
 
     order: Literal["return"] = "return"
     on: bool
@@ -208,7 +202,7 @@ class BeginTask(Message):
 
     Attributes:
         choice: index of what is to be done; None for the same again.
-        anew: whether things are placed anew; else they stand where they stood in the beginning.
+        anew: whether things are placed anew.
     """
 
     order: Literal["begin"] = "begin"

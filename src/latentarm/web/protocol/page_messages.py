@@ -112,9 +112,7 @@ class HelpFromRobot(Message):
 class Profile(Message):
     """Use a person's alignment, or null for none; while the arm is not enabled.
 
-    Attributes:
-        name: of their profile.
-        seat: where they sit, which turns the stick of those without a profile.
+    ``seat``: where they sit, which turns the stick of those without a profile.
     """
 
     type: Literal["profile"]
@@ -155,9 +153,7 @@ class TrailClear(Message):
 class RecordEpisode(Message):
     """Begin an episode, or end it once the arm is at rest; a change of the driver ends it too.
 
-    Attributes:
-        task: in words.
-        by_hand: whether the arm is guided by hand, rather than driven.
+    ``by_hand``: whether the arm is guided by hand, rather than driven.
     """
 
     type: Literal["record"]
@@ -178,8 +174,7 @@ class GuideArm(Message):
 class GuidedArm(Message):
     """Sent five times a second by the page from which the arm is guided; without it guiding ends.
 
-    Attributes:
-        gripper: a request; only in the one message that makes it.
+    ``gripper`` is a request; only in the one message that makes it.
     """
 
     type: Literal["guided"]

@@ -19,7 +19,6 @@ class BeginPersonalise(Message):
     """Ask a person what they mean by their stick; from the page that drives, while the arm is not enabled.
 
     Attributes:
-        name: theirs, and of their profile.
         questions: maximum number of answers.
     """
 
@@ -118,17 +117,14 @@ class Personalise(Message):
 
     Attributes:
         phase: ``thinking`` is between two questions.
-        name: the person's.
         question: number for answers to name.
         number: answers so far, including this one.
         of: maximum number of answers.
-        back: whether there is a previous question.
         motion: the motion asked about, or null.
         share: progress of the thinking or learning, from 0 to 1.
         answers: how many it was learned from.
         error: relative alignment error about the answers themselves, as learned.
         error_without: the same with z = u.
-        why: why an order failed, or null.
     """
 
     phase: PersonalisePhase

@@ -47,7 +47,6 @@ class Recording(Message):
         samples: of this episode so far.
         episodes: complete ones in the journal.
         problem: why the last episode was broken off, or None.
-        journal: its path.
     """
 
     on: bool
@@ -59,13 +58,7 @@ class Recording(Message):
 
 @final
 class GripperState(Message):
-    """The gripper.
-
-    Attributes:
-        width_m: opening between the fingers, m.
-        holding: whether something is held between them.
-        closing: whether the last command was to close; None before the first.
-    """
+    """The gripper; ``closing``: whether the last command was to close, None before the first."""
 
     width_m: float
     holding: bool
@@ -109,12 +102,7 @@ class ToGo(Message):
 
 @final
 class Lost(Message):
-    """A thing that a step needs to be held, and that is no longer held.
-
-    Attributes:
-        thing: its name.
-        step: index of the step in which it is to be taken again.
-    """
+    """A thing that a step needs, no longer held; ``step`` is the index of the step that takes it again."""
 
     thing: str
     step: int
@@ -125,7 +113,6 @@ class Fill(Message):
     """How full a cup or a bowl is.
 
     Attributes:
-        thing: its name.
         share: of what is poured, in [0, 1].
         enough: share that must be in it; null for the vessel poured from.
     """
@@ -183,7 +170,6 @@ class ArmState(Message):
         axes: which pair of the end-effector's axes.
         help: level of help with learned motions; None without help.
         profile: whose alignment.
-        tool: its position, m.
         gripper: as last read; None if the arm has no gripper, or before the first reading.
         things: where they are; None in an empty scene, and if they have not changed.
         ghosts: None, only in a `State`, while the last ones hold.

@@ -27,8 +27,7 @@ _TYPES: Final = {
 }
 """Shapes that are drawn; planes and height fields belong to the scene, which comes from the task."""
 
-_VISIBLE_GROUPS: Final = 3
-"""MuJoCo's own viewer shows the groups below this one."""
+_VISIBLE_GROUPS: Final = 3  # MuJoCo's own viewer shows the groups below this one
 
 _MESH_HEADER: Final = struct.Struct("<II")
 
@@ -194,7 +193,6 @@ def _obstacle(obstacle: Obstacle) -> dict[str, object]:
 
 
 def _cameras(joints: FloatArray, goals: list[FloatArray]) -> dict[str, object]:
-    """Views of the arm and its goals: from the front, and from its right side."""
     seen = np.concatenate([joints, np.zeros((1, 3)), np.array(goals).reshape(-1, 3)])
     lower, upper = seen.min(axis=0), seen.max(axis=0)
     return {

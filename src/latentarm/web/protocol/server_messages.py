@@ -61,12 +61,7 @@ class RealArm(Message):
 
 @final
 class StepToDo(Message):
-    """A step of the task.
-
-    Attributes:
-        kind: texts have the key ``task.step.<kind>``.
-        thing: name of the thing to work on, or of the place.
-    """
+    """A step of the task; texts have the key ``task.step.<kind>``."""
 
     kind: StepKind
     thing: str
@@ -95,12 +90,8 @@ class Welcome(Message):
     """The setup that is driven.
 
     Attributes:
-        id: of this page.
         server: of the running `latentarm teleop`: each start has another one.
         latent_dim: axes of the latent actions; 0 without a run.
-        robot: its name.
-        run: the run's name, or null.
-        profiles: people whose alignment can be chosen.
         goals: in the order of the belief.
         things: in the order of `State.things`.
         zones: where the arm is slow.
@@ -151,9 +142,7 @@ class State(ArmState):
         bodies: x, y, z, qw, qx, qy, qz in the order of ``/scene.json``, m.
         belief: over the goals; null for a task without goals.
         bound_m: how far from the likeliest goal help lets the tool be, m, to first order; or null.
-        driver: id of the page that drives, or null.
         watchers: number of other pages.
-        asking: id of the page that asks to drive, or null.
         copilot_asking: the person who asks to be the co-pilot, or null.
         recording: null before the first.
         trail: counts how often the trail was emptied.

@@ -7,9 +7,7 @@ from multiprocessing.sharedctypes import RawArray
 from typing import Final, final
 
 _VERSION_BYTES: Final = 8
-_HEADER: Final = struct.Struct("<II")
-"""After the version: the message's length in bytes, and its checksum."""
-
+_HEADER: Final = struct.Struct("<II")  # after the version: the message's length in bytes, and its checksum
 _START: Final = _VERSION_BYTES + _HEADER.size
 _TRIES: Final = 4
 

@@ -14,8 +14,7 @@ from latentarm.web.protocol.report import PoseRow, Things
 _DIGITS: Final = 4
 """Positions are sent to a tenth of a millimetre, so that things at rest need not be sent again."""
 
-_SIZES: Final = 3
-"""Numbers in the size of a geom, as in MuJoCo."""
+_SIZES: Final = 3  # numbers in the size of a geom, as in MuJoCo
 
 
 def described(scene: Scene) -> dict[str, object]:

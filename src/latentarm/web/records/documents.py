@@ -20,7 +20,6 @@ from latentarm.core.untrusted.terminal import one_line
 from latentarm.web.protocol.notice import Notice
 
 DOCUMENT_LIMIT: Final = 1 << 17
-"""The longest record, bytes."""
 
 ID: Final = re.compile(r"[0-9a-f]{16}")
 """Ids of people and drives: random, and so never a path or a name."""
@@ -91,4 +90,3 @@ class Calendar:
 
 
 SYSTEM_CALENDAR: Final = Calendar(partial(datetime.now, UTC))
-"""The computer's own."""

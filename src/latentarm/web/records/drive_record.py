@@ -38,13 +38,10 @@ class DriveRecord(Message):
         started: when the arm was first enabled, ISO 8601 in UTC.
         time_s: from then until the task ended, or else until the arm was last enabled.
         moving_s: for how long of that the arm moved.
-        robot: its name.
         real: whether the arm was real.
-        task: its name.
         choice: the chosen food or cup; None where there was no choice.
         run: its name; None without one.
         profile: whose alignment was used; None for none.
-        modes: the most used first.
         inputs: kinds of device, the most used first.
         presses: how often the input left neutral, or the gripper got a request.
         stops: how often the arm was disengaged while it was enabled.
@@ -94,11 +91,7 @@ class DriveRecord(Message):
 
 @final
 class TracedThings(Message):
-    """Where things are from time ``t`` on, s since the drive began.
-
-    Attributes:
-        grains: as in `latentarm.web.protocol.report.Things`; None where they are as before.
-    """
+    """Where things are from time ``t`` on, s since the drive began; ``grains`` is None if unchanged."""
 
     t: float
     poses: tuple[PoseRow, ...]

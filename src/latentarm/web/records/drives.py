@@ -19,7 +19,6 @@ UNDO_S: Final = 600.0
 """How long a deletion can be undone, s."""
 
 DRIVES: Final = "drives"
-"""Name of a person's folder of drives."""
 
 TRACE: Final = ".trace.gz"
 """Suffix of a trace, in place of ``.json``."""
@@ -61,7 +60,8 @@ class Wanted:
 class Drives:
     """All drives. Deleted ones can be restored for `UNDO_S`, until the server is started again.
 
-    Methods other than `wanted` and `find` wait for the disk. The folders need not exist yet.
+    Methods other than `wanted` and `find` wait for the disk, and raise `UserError` if there is no such drive,
+    or files cannot be read, written, moved or deleted. The folders need not exist yet.
 
     Attributes:
         problems: of records that cannot be read, one each.
@@ -95,11 +95,7 @@ class Drives:
         return self._drives.get(drive)
 
     def keep(self, drive: DriveRecord, trace: Trace) -> None:
-        """Keep a new drive, the trace first.
-
-        Raises:
-            UserError: it cannot be written.
-        """
+        """Keep a new drive, the trace first."""
         with self._lock:
             path = self._path(drive)
             with written_whole(path.with_suffix(TRACE)) as part:
@@ -108,11 +104,7 @@ class Drives:
             self._drives[drive.id] = drive
 
     def keep_so_far(self, drive: DriveRecord) -> None:
-        """Write the drive under way, in case nothing more is written.
-
-        Raises:
-            UserError: it cannot be written.
-        """
+        """Write the drive under way, in case nothing more is written."""
         with self._lock:
             if drive.id not in self._drives.keys() | self._deleted.keys():
                 write_record(drive, self._path(drive))
@@ -125,22 +117,14 @@ class Drives:
         return {drive.scene for drive in known if drive.scene is not None}
 
     def trace(self, drive: str) -> bytes:
-        """A drive's trace, compressed with gzip, after a check.
-
-        Raises:
-            UserError: there is no such drive, or its trace is missing or damaged.
-        """
+        """A drive's trace, compressed with gzip, after a check."""
         path = self._path(self._known(drive)).with_suffix(TRACE)
         content = read_bytes(path, PACKED_LIMIT)
         checked_trace(content, str(path))
         return content
 
     def entitle(self, drive: str, title: str) -> DriveRecord:
-        """Give a drive a title.
-
-        Raises:
-            UserError: there is no such drive, or it cannot be written.
-        """
+        """Give a drive a title."""
         with self._lock:
             changed = self._known(drive).model_copy(update={"title": title})
             write_record(changed, self._path(changed))
@@ -148,11 +132,7 @@ class Drives:
             return changed
 
     def delete(self, drive: str) -> None:
-        """Delete a drive; `restore` brings it back for a while.
-
-        Raises:
-            UserError: there is no such drive, or files cannot be moved.
-        """
+        """Delete a drive; `restore` brings it back for a while."""
         with self._lock:
             record = self._known(drive)
             self._move(self._path(record), self._trash / f"{drive}.json")
@@ -160,11 +140,7 @@ class Drives:
             self._deleted[drive] = (self._now_s() + UNDO_S, record)
 
     def restore(self, drive: str) -> DriveRecord:
-        """Bring back a deleted drive.
-
-        Raises:
-            UserError: it is gone, or files cannot be moved.
-        """
+        """Bring back a deleted drive."""
         with self._lock:
             if drive not in self._deleted:
                 raise NoticeError("record_unknown")
@@ -175,11 +151,7 @@ class Drives:
             return record
 
     def purge(self) -> None:
-        """Remove drives that can no longer be restored.
-
-        Raises:
-            UserError: files cannot be deleted.
-        """
+        """Remove drives that can no longer be restored."""
         with self._lock:
             now_s = self._now_s()
             self._purge([drive for drive, (until_s, _) in self._deleted.items() if until_s <= now_s])
@@ -196,11 +168,7 @@ class Drives:
         return None if is_missing(path) else read_bytes(path, PACKED_LIMIT)
 
     def forget(self, person: str) -> None:
-        """Drop a person's drives; their folder is deleted elsewhere, their deleted drives here.
-
-        Raises:
-            UserError: files cannot be deleted.
-        """
+        """Drop a person's drives; their folder is deleted elsewhere, their deleted drives here."""
         with self._lock:
             self._purge([drive for drive, (_, record) in self._deleted.items() if record.person == person])
             self._drives = {key: drive for key, drive in self._drives.items() if drive.person != person}

@@ -1,4 +1,7 @@
-"""All of a person's records as one zip file, and back. An imported file is a stranger's."""
+"""All of a person's records as one zip file, and back.
+
+An imported file is a stranger's: what is damaged, encrypted or too large raises `NoticeError`.
+"""
 
 import io
 import re
@@ -50,11 +53,7 @@ def write_zip(path: Path, contents: Iterator[tuple[str, bytes]]) -> None:
 
 
 def read_zip(content: bytes) -> dict[str, bytes]:
-    """The files of such a zip that this version knows, by name.
-
-    Raises:
-        NoticeError: it is no zip, damaged, encrypted, or unpacks to too much.
-    """
+    """The files of such a zip that this version knows, by name."""
     try:
         with zipfile.ZipFile(io.BytesIO(content)) as archive:
             entries = archive.infolist()
@@ -69,11 +68,7 @@ def read_zip(content: bytes) -> dict[str, bytes]:
 
 
 def person_of(files: Mapping[str, bytes]) -> PersonRecord:
-    """The person of a zip.
-
-    Raises:
-        NoticeError: it names none.
-    """
+    """The person of a zip."""
     try:
         return parse_record(PersonRecord, files[PERSON_NAME], PERSON_NAME)
     except (KeyError, UserError) as error:
@@ -81,11 +76,7 @@ def person_of(files: Mapping[str, bytes]) -> PersonRecord:
 
 
 def poses_of(files: Mapping[str, bytes]) -> tuple[SavedPose, ...]:
-    """The saved poses of a zip; older ones have none.
-
-    Raises:
-        NoticeError: they are damaged.
-    """
+    """The saved poses of a zip; older ones have none."""
     content = files.get(POSES_NAME)
     if content is None:
         return ()
@@ -96,11 +87,7 @@ def poses_of(files: Mapping[str, bytes]) -> tuple[SavedPose, ...]:
 
 
 def drives_of(files: Mapping[str, bytes]) -> list[tuple[DriveRecord, bytes | None]]:
-    """The drives of a zip, checked, each with its compressed trace.
-
-    Raises:
-        NoticeError: one is damaged.
-    """
+    """The drives of a zip, checked, each with its compressed trace."""
     found: list[tuple[DriveRecord, bytes | None]] = []
     try:
         for name, content in files.items():

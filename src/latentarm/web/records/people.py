@@ -64,7 +64,9 @@ class PersonRecord(Message):
 
 @final
 class People:
-    """Everybody's records. Methods that write wait for the disk; `find` and `all` do not.
+    """Everybody's records; `find` and `all` do not wait for the disk.
+
+    Other methods raise `UserError` if there is no such person, or files cannot be written or deleted.
 
     Attributes:
         problems: of records that cannot be read, one each.
@@ -96,11 +98,7 @@ class People:
         return None if person is None else self._people.get(person)
 
     def known(self, person: str) -> PersonRecord:
-        """The person with an id.
-
-        Raises:
-            NoticeError: there is none.
-        """
+        """The person with an id."""
         found = self._people.get(person)
         if found is None:
             raise NoticeError("person_unknown")
@@ -114,8 +112,7 @@ class People:
         """Add a person.
 
         Raises:
-            UserError: the name is invalid or taken, there are too many people, or the record cannot be
-                written.
+            UserError: the name is invalid or taken, or there are too many people.
         """
         with self._lock:
             if len(self._people) >= MOST_PEOPLE:
@@ -129,14 +126,9 @@ class People:
             return self._keep(person)
 
     def adopt(self, brought: PersonRecord, fill: Callable[[Path, str], None]) -> PersonRecord:
-        """Add an imported person under a new id, whole or not at all.
+        """Add an imported person under a new id, whole or not at all; a name that is taken gets a number.
 
-        Args:
-            brought: their record; a name that is taken gets a number.
-            fill: writes the rest into a folder, for the new id.
-
-        Raises:
-            UserError: see `add`; also what ``fill`` raises.
+        ``fill`` writes the rest into a folder, for the new id.
         """
         with self._lock:
             if len(self._people) >= MOST_PEOPLE:
@@ -158,51 +150,31 @@ class People:
             return person
 
     def rename(self, person: str, name: str) -> PersonRecord:
-        """Rename a person.
-
-        Raises:
-            UserError: see `add`; also if there is no such person.
-        """
+        """Rename a person."""
         with self._lock:
             known = self.known(person)
             return self._keep(known.model_copy(update={"name": self._free_name(name, person)}))
 
     def keep_settings(self, person: str, settings: dict[str, bool | float | str]) -> PersonRecord:
-        """Replace a person's settings.
-
-        Raises:
-            UserError: there is no such person, or the record cannot be written.
-        """
+        """Replace a person's settings."""
         with self._lock:
             return self._keep(self.known(person).model_copy(update={"settings": settings}))
 
     def keep_pin(self, person: str, pin: str | None) -> PersonRecord:
-        """Set or remove a person's PIN.
-
-        Raises:
-            UserError: there is no such person, or the record cannot be written.
-        """
+        """Set or remove a person's PIN."""
         kept = None if pin is None else hash_of(pin)
         with self._lock:
             return self._keep(self.known(person).model_copy(update={"pin": kept}))
 
     def add_profile(self, person: str, run: str, name: str) -> PersonRecord:
-        """Note that a profile is a person's.
-
-        Raises:
-            UserError: there is no such person, or the record cannot be written.
-        """
+        """Note that a profile is a person's."""
         with self._lock:
             known = self.known(person)
             profiles = dict.fromkeys([*known.profiles, KeptProfile(run=run, name=name)])
             return self._keep(known.model_copy(update={"profiles": tuple(profiles)}))
 
     def remove(self, person: str) -> None:
-        """Delete a person's folder, with everything in it.
-
-        Raises:
-            UserError: there is no such person, or files cannot be deleted.
-        """
+        """Delete a person's folder, with everything in it."""
         with self._lock:
             self.known(person)
             folder = self.folder_of(person)

@@ -34,21 +34,13 @@ class PosesRecord(Message):
 
 
 def read_poses(folder: Path) -> tuple[SavedPose, ...]:
-    """The poses in a folder; none where there is no file.
-
-    Raises:
-        UserError: the file is damaged.
-    """
+    """The poses in a folder; none where there is no file."""
     path = folder / POSES_NAME
     return read_record(PosesRecord, path).poses if path.exists() else ()
 
 
 def write_poses(folder: Path, poses: tuple[SavedPose, ...]) -> None:
-    """Write poses to a folder, whole or not at all.
-
-    Raises:
-        UserError: they cannot be written.
-    """
+    """Write poses to a folder, whole or not at all."""
     write_record(PosesRecord(poses=poses), folder / POSES_NAME)
 
 

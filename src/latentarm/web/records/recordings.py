@@ -68,10 +68,11 @@ class _Titles(Message):
 
 @final
 class Recordings:
-    """Journals by file name. All methods wait for the disk.
+    """Journals by file name.
 
-    ``out`` is the folder of the journals, ``folder`` that of the titles; ``in_use`` returns the path of the
-    journal that is being written.
+    All methods wait for the disk, and raise `UserError` if there is no such recording, or files cannot be
+    read, written, moved or deleted. ``out`` is the folder of the journals, ``folder`` that of the titles;
+    ``in_use`` returns the path of the journal that is being written.
     """
 
     def __init__(
@@ -93,21 +94,13 @@ class Recordings:
                 path.unlink()
 
     def all(self) -> list[RecordingFile]:
-        """Every recording, the newest first.
-
-        Raises:
-            UserError: the titles cannot be read.
-        """
+        """Every recording, the newest first."""
         with self._lock:
             titles = self._titles()
             return [self._look(path, titles.get(path.name, "")) for path in reversed(self._journals())]
 
     def entitle(self, name: str, title: str) -> None:
-        """Give a recording a title.
-
-        Raises:
-            UserError: there is no such recording, or titles cannot be written.
-        """
+        """Give a recording a title."""
         with self._lock:
             self._path(name)
             known = {path.name for path in self._journals()}
@@ -115,11 +108,7 @@ class Recordings:
             write_record(_Titles(titles={**titles, name: title}), self._titles_path)
 
     def delete(self, name: str) -> None:
-        """Delete a recording; `restore` brings it back for a while.
-
-        Raises:
-            UserError: there is no such recording, it is in use, or files cannot be moved.
-        """
+        """Delete a recording that is not in use; `restore` brings it back for a while."""
         with self._lock:
             path = self._path(name)
             if self._used(path):
@@ -128,11 +117,7 @@ class Recordings:
             self._deleted[name] = self._now_s() + UNDO_S
 
     def restore(self, name: str) -> None:
-        """Bring back a deleted recording.
-
-        Raises:
-            UserError: it is gone, or files cannot be moved.
-        """
+        """Bring back a deleted recording."""
         with self._lock:
             if name not in self._deleted:
                 raise NoticeError("record_unknown")
@@ -140,11 +125,7 @@ class Recordings:
             del self._deleted[name]
 
     def purge(self) -> None:
-        """Remove recordings that can no longer be restored.
-
-        Raises:
-            UserError: files cannot be deleted.
-        """
+        """Remove recordings that can no longer be restored."""
         with self._lock:
             for name in [name for name, until_s in self._deleted.items() if until_s <= self._now_s()]:
                 _unlink(self._out / (_HIDDEN + name))
@@ -157,11 +138,7 @@ class Recordings:
         return [(file.name, one) for file in looked for one in file.episodes if one.person == person]
 
     def forget(self, person: str, name: str) -> None:
-        """Delete every episode of a person, also in deleted recordings, and titles that contain their name.
-
-        Raises:
-            UserError: a journal cannot be changed.
-        """
+        """Delete every episode of a person, also in deleted recordings, and titles that contain the name."""
         with self._lock:
             for hidden in list(self._deleted):
                 looked = self._look(self._out / (_HIDDEN + hidden), "")

@@ -59,9 +59,11 @@ class Imported(Message):
 
 @final
 class Records:
-    """Everything that the server keeps of people. Methods wait for the disk.
+    """Everything that the server keeps of people.
 
-    ``runs`` returns folders of runs by name, ``in_use`` the path of the journal that is being written.
+    Methods wait for the disk, and raise `UserError` if there is no such person, or files cannot be read,
+    written or deleted. ``runs`` returns folders of runs by name, ``in_use`` the path of the journal that is
+    being written.
     """
 
     def __init__(
@@ -81,21 +83,13 @@ class Records:
         self._runs = runs
 
     def keep(self, logged: Logged) -> None:
-        """Keep a drive that has ended, with its scene.
-
-        Raises:
-            UserError: it cannot be written.
-        """
+        """Keep a drive that has ended, with its scene."""
         with self._scenes_lock:
             scene = self.scenes.keep(logged.scene)
             self.drives.keep(logged.record.model_copy(update={"scene": scene}), logged.trace())
 
     def contents(self, person: str) -> Contents:
-        """Count a person's records.
-
-        Raises:
-            UserError: there is no such person.
-        """
+        """Count a person's records."""
         known = self.people.known(person)
         return Contents(
             drives=len(self.drives.wanted(Wanted(person=person))),
@@ -104,14 +98,7 @@ class Records:
         )
 
     def export(self, person: str) -> Path:
-        """A person's settings, poses, drives with traces, profiles and list of recordings as a zip.
-
-        Returns:
-            A temporary file, for the caller to delete.
-
-        Raises:
-            UserError: there is no such person, or something cannot be read or written.
-        """
+        """Write all of a person's records to a temporary zip file, for the caller to delete."""
         known = self.people.known(person)
         path = self._folder / f".export-{new_id()}.zip"
         try:
@@ -122,11 +109,7 @@ class Records:
         return path
 
     def bring(self, content: bytes) -> Imported:
-        """Import a person from an `export`, under a new id.
-
-        Raises:
-            UserError: it is damaged, or cannot be written.
-        """
+        """Import a person from an `export`, under a new id."""
         files = read_zip(content)
         brought, drives, poses = person_of(files), drives_of(files), poses_of(files)
 
@@ -157,11 +140,7 @@ class Records:
         )
 
     def erase(self, person: str) -> None:
-        """Delete everything of a person, the person last, so that a failure can be repeated.
-
-        Raises:
-            UserError: there is no such person, or something cannot be deleted.
-        """
+        """Delete everything of a person, the person last, so that a failure can be repeated."""
         known = self.people.known(person)
         for folder in self._profiles(known).values():
             with disk_errors(folder, "deleted"):
@@ -172,11 +151,7 @@ class Records:
         self._tidy_scenes()
 
     def purge(self) -> None:
-        """Remove what can no longer be restored.
-
-        Raises:
-            UserError: files cannot be deleted.
-        """
+        """Remove what can no longer be restored."""
         self.drives.purge()
         self.recordings.purge()
         self._tidy_scenes()
@@ -188,7 +163,6 @@ class Records:
                 self.scenes.keep_only(self.drives.scenes)
 
     def _profiles(self, person: PersonRecord) -> dict[KeptProfile, Path]:
-        """Folders of a person's profiles that still exist."""
         runs = self._runs()
         found = {one: profile_folder(runs[one.run], one.name) for one in person.profiles if one.run in runs}
         return {one: folder for one, folder in found.items() if folder.is_dir()}

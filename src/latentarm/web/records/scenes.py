@@ -23,18 +23,18 @@ _DIGEST: Final = re.compile(r"[0-9a-f]{64}")
 
 @final
 class Scenes:
-    """Scenes by a digest of their content; each mesh is kept once. Methods wait for the disk."""
+    """Scenes by a digest of their content; each mesh is kept once.
+
+    Methods wait for the disk, and raise `UserError` if there is no such scene, or files are damaged or cannot
+    be written or deleted.
+    """
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
         self._lock = threading.Lock()
 
     def keep(self, scene: Drawable) -> str:
-        """Keep a scene and return its id.
-
-        Raises:
-            UserError: it cannot be written.
-        """
+        """Keep a scene and return its id."""
         meshes = {
             str(number): hashlib.sha256(content).hexdigest() for number, content in scene.meshes.items()
         }
@@ -47,32 +47,20 @@ class Scenes:
         return key
 
     def files(self, key: str) -> dict[str, bytes]:
-        """A scene's files by their places in the folder: the scene, then its meshes.
-
-        Raises:
-            UserError: it is not there, or damaged.
-        """
+        """A scene's files by their places in the folder: the scene, then its meshes."""
         digests = map(str, self._read(key).section("meshes").values.values())
         places = [f"{key}.json", *(f"{_MESHES}/{one}" for one in digests if _DIGEST.fullmatch(one))]
         return {place: read_bytes(self._folder / place, _MESH_LIMIT) for place in dict.fromkeys(places)}
 
     def take(self, place: str, content: bytes) -> None:
-        """Keep an imported file if its content has the digest of its place.
-
-        Raises:
-            UserError: it cannot be written.
-        """
+        """Keep an imported file if its content has the digest of its place."""
         digest = hashlib.sha256(content).hexdigest()
         if place in (f"{digest[:32]}.json", f"{_MESHES}/{digest}"):
             with self._lock:
                 self._write(self._folder / place, content)
 
     def keep_only(self, keys: Container[str]) -> None:
-        """Delete every scene with another id, and meshes without a readable scene.
-
-        Raises:
-            UserError: files cannot be deleted.
-        """
+        """Delete every scene with another id, and meshes without a readable scene."""
         with self._lock:
             found = sorted(self._folder.glob("*.json"))
             gone = [path for path in found if path.stem not in keys]
@@ -83,19 +71,11 @@ class Scenes:
                     path.unlink(missing_ok=True)
 
     def description(self, key: str) -> bytes:
-        """A scene in the form of ``/scene.json``.
-
-        Raises:
-            UserError: there is no such scene, or it is damaged.
-        """
+        """A scene in the form of ``/scene.json``."""
         return json.dumps(self._read(key).values["scene"]).encode()
 
     def mesh(self, key: str, number: str) -> bytes | None:
-        """A mesh in the form of ``/mesh/ID``; None if the scene has no such mesh.
-
-        Raises:
-            UserError: there is no such scene, or it is damaged.
-        """
+        """A mesh in the form of ``/mesh/ID``; None if the scene has no such mesh."""
         digest = self._read(key).section("meshes").values.get(number)
         if not isinstance(digest, str) or not _DIGEST.fullmatch(digest):
             return None

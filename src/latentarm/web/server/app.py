@@ -63,10 +63,7 @@ from latentarm.web.server.states import States
 _LOG: Final = logging.getLogger(__name__)
 
 _LOOK_S: Final = 1.0
-
-_LOCK: Final = ".teleop.lock"
-"""Locked in the output folder while a server runs."""
-
+_LOCK: Final = ".teleop.lock"  # locked in the output folder while a server runs
 _STARTED_S: Final = 0.01
 
 
@@ -184,11 +181,7 @@ def _ended_by_signals(server: _Server) -> Generator[None]:
 def _looked_at(
     config: TeleopConfig, setup: DriveSetup, say: Callable[[str], None]
 ) -> tuple[TeleopConfig, DriveSetup]:
-    """Query a real arm once; the control process connects to it later.
-
-    Raises:
-        UserError: the arm cannot be driven.
-    """
+    """Query a real arm once; the control process connects to it later."""
     robot = setup.task.robot
     found = look_at(make_real_arm(setup.arm, robot, MonotonicClock().now_s), robot, PERIOD_S)
     for refusal in found.refusals:
@@ -205,7 +198,6 @@ def _looked_at(
 
 
 def _cameras(config: TeleopConfig, listening: socket.socket) -> CameraProcess | None:
-    """Start the cameras; closes ``listening`` if one gives no picture."""
     if not config.cameras:
         return None
     try:

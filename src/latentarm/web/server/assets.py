@@ -16,8 +16,7 @@ from latentarm.core.errors import UserError
 FOLDER: Final = Path(__file__).parent.parent / "pages"
 THREE: Final = "three/three.module.min.js"
 """Path of three.js among the assets."""
-_THREE: Final = FOLDER.parent / "three"
-"""Filled when the package is built, see hatch_build.py."""
+_THREE: Final = FOLDER.parent / "three"  # filled when the package is built, see hatch_build.py
 
 _TYPES: Final = {
     ".js": "text/javascript",

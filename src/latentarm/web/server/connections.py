@@ -158,8 +158,6 @@ class Connections:
 
 @final
 class _Connection:
-    """One accepted connection."""
-
     def __init__(
         self,
         accepted: socket.socket,

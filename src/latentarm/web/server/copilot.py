@@ -5,7 +5,6 @@ from typing import Final, final
 from latentarm.web.protocol.orders import Paced
 
 FULL_PACE: Final = 1.0
-"""A new co-pilot slows nobody down."""
 
 
 @final

@@ -73,9 +73,7 @@ WATCHER_PERIOD_S: Final = 0.033
 """How often a page is sent a state, s; the start of a motion is sent at once. The driver's next input is
 fresh through these states."""
 
-_FULL: Final = 1013
-"""WebSocket close code: try again later."""
-
+_FULL: Final = 1013  # WebSocket close code: try again later
 _BEING_REFUSED: Final = 8
 """So many further pages are accepted to be refused with a reason; more are not accepted."""
 
@@ -208,7 +206,6 @@ class DriveSocket:
                 await self._states.pause(DRIVER_PERIOD_S if drives else WATCHER_PERIOD_S)
 
     def _take(self, page: Page, message: ClientMessage) -> None:
-        """Carry out a page's message; only the driver's orders count."""
         if isinstance(message, Hello) or not self._suits(message):
             raise ViolationError
         if isinstance(message, PressStop):

@@ -92,7 +92,6 @@ class FrameMeter:
 
 
 def _frame_length(head: bytearray) -> int | None:
-    """Bytes of a frame after its head; None while the head is incomplete."""
     if len(head) < 2:
         return None
     short = head[1] & 0x7F

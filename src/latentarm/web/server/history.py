@@ -111,7 +111,6 @@ class History:
             self._do(partial(self._records.drives.keep_so_far, drive))
 
     def _gone(self, person: str | None) -> bool:
-        """Whether a person was deleted while their page was open."""
         return self._records.people.find(person) is None
 
     def _do(self, work: Callable[[], object]) -> None:

@@ -115,7 +115,6 @@ class Learning:
             await asyncio.to_thread(self._job.cancel)
 
     async def _try_run(self, name: str, run: Path) -> None:
-        """Drive a run once a child process has loaded it."""
         trial = Trial(self._states.loaded.spec, run, name)
         try:
             self._states.say(Notice(code="checking_run", parameters={"name": name}), WITHIN_S)

@@ -8,7 +8,6 @@ from latentarm.core.untrusted.terminal import one_line, visible
 _TRACEBACKS: Final = logging.Formatter()
 
 _OTHERS: Final = ("uvicorn", "uvicorn.error")
-"""Loggers of libraries."""
 
 LOGGING: Final[dict[str, Any]] = {
     "version": 1,

@@ -114,11 +114,7 @@ class PeopleRoutes:
         return json_answer({**_shown(person), "settings": person.settings, **contents.model_dump()})
 
     def _found(self, request: Request) -> PersonRecord:
-        """The person whom a request names, if the visitor may open their record.
-
-        Raises:
-            NoticeError: nobody has this id, or their PIN must be given first.
-        """
+        """The person whom a request names, if the visitor may open their record."""
         person = self._named(request)
         if not self._pins.opened(person, request.cookies):
             raise NoticeError("pin_needed", name=person.name)
@@ -195,7 +191,6 @@ class PeopleRoutes:
 
 
 def _with_key(request: Request, person: str, key: str) -> Response:
-    """An answer whose cookie opens a person's record."""
     answer = Response(status_code=204, headers=NO_STORE)
     secure = request.url.scheme == "https"
     answer.set_cookie(

@@ -39,7 +39,6 @@ if TYPE_CHECKING:
     from latentarm.web.arm_process.process import ControlProcess
 
 STICK_AXES: Final = 2
-"""Axes of a page's stick."""
 
 
 @final
@@ -187,11 +186,7 @@ class Personalising:
         self._job = self._run = self._state = None
 
     def _give_back(self, driven: Driven) -> None:
-        """Restore the alignment from before the trial, and discard the trial.
-
-        Raises:
-            UserError: the arm must be stopped first, or files cannot be deleted.
-        """
+        """Restore the alignment from before the trial, and discard the trial."""
         if self._tried:
             _check_at_rest(driven)
             self._control.order(ChooseProfile(name=self._before))

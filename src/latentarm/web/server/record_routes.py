@@ -3,6 +3,7 @@
 import asyncio
 import csv
 import io
+from dataclasses import fields
 from typing import Annotated, Final, final
 
 from pydantic import Field
@@ -19,32 +20,10 @@ from latentarm.web.server.history import History
 from latentarm.web.server.pins import Pins
 
 _COLUMNS: Final = (
-    "started",
-    "person",
-    "title",
-    "task",
-    "choice",
-    "run",
-    "robot",
-    "profile",
-    "modes",
-    "inputs",
-    "outcome",
-    "why",
-    "steps_done",
-    "steps",
-    "time_s",
-    "moving_s",
-    "idle_s",
-    "presses",
-    "stops",
-    "late_stops",
-    "way_m",
-    "help",
-    "help_level",
-    "ended",
-    "id",
-)
+    "started", "person", "title", "task", "choice", "run", "robot", "profile", "modes", "inputs", "outcome",
+    "why", "steps_done", "steps", "time_s", "moving_s", "idle_s", "presses", "stops", "late_stops", "way_m",
+    "help", "help_level", "ended", "id",
+)  # fmt: skip
 
 
 @final
@@ -102,7 +81,6 @@ class RecordRoutes:
         return Response(table.getvalue().encode("utf-8-sig"), media_type="text/csv", headers=headers)
 
     def _drives_for(self, request: Request) -> list[DriveRecord]:
-        """The drives that a request asks for, without those of people whose PIN must be given first."""
         closed = {
             person.id
             for person in self._records.people.all()
@@ -113,11 +91,7 @@ class RecordRoutes:
         ]
 
     def _drive(self, request: Request) -> str:
-        """Id of the drive that a request names.
-
-        Raises:
-            NoticeError: its driver's PIN must be given first.
-        """
+        """Id of the drive that a request names."""
         name = str(request.path_params["drive"])
         drive = self._records.drives.find(name)
         person = self._records.people.find(drive.person if drive else None)
@@ -175,14 +149,7 @@ class RecordRoutes:
 
 
 def _wanted(request: Request) -> Wanted:
-    given = request.query_params
-    return Wanted(
-        person=given.get("person"),
-        task=given.get("task"),
-        input=given.get("input"),
-        since=given.get("since"),
-        until=given.get("until"),
-    )
+    return Wanted(**{field.name: request.query_params.get(field.name) for field in fields(Wanted)})
 
 
 def _scene_id(request: Request) -> str:

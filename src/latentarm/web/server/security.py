@@ -125,12 +125,10 @@ class Gate:
     complete requests.
 
     Args:
-        app: the application.
         hosts: exact ``Host`` headers, with the port where it is not the scheme's own.
         origins: exact ``Origin`` headers.
         keys: None admits everybody, for a server on the loopback.
         secure: whether the cookie is for TLS alone.
-        stop: stops the arm.
         long_bodies: paths that take bodies longer than `BODY_LIMIT`, with their limits, bytes.
         invite: makes a link for the next person; called when a link was used, and for the host's page.
     """
@@ -232,7 +230,6 @@ class Gate:
 
 
 async def _whole_body(receive: Receive) -> bytes | None:
-    """A request's body; None if the peer has gone before it was complete."""
     body = bytearray()
     while True:
         message = await receive()
@@ -244,7 +241,6 @@ async def _whole_body(receive: Receive) -> bytes | None:
 
 
 def _once(body: bytes, receive: Receive) -> Receive:
-    """A ``receive`` that gives a body that was read already."""
     given = False
 
     async def receive_body_first() -> Message:

@@ -273,7 +273,6 @@ class States:
         return self.standstill if disengaged and self.standstill is not None else report.note
 
     def _away(self, now_s: float) -> bool:
-        """Whether the newest report is out of date."""
         return self.loading or now_s - self._heard_s > SILENT_S
 
     def _why_away(self) -> Notice:

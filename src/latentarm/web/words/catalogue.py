@@ -18,8 +18,7 @@ DEFAULT: Final = "en"
 COOKIE: Final = "latentarm_language"
 """Holds the language chosen under Settings."""
 
-_MOST_CHARACTERS: Final = 200
-"""Characters of an ``Accept-Language`` header that are read."""
+_MOST_CHARACTERS: Final = 200  # characters of an ``Accept-Language`` header that are read
 
 _RANGE: Final = re.compile(
     r"\s*([a-z]{2,8})(?:-[a-z0-9-]*)?\s*(?:;\s*q=([01](?:\.\d{0,3})?)\s*)?", re.IGNORECASE
@@ -75,7 +74,6 @@ def chosen_language(cookie: str, accepted: str) -> Words:
 
 
 def _wanted(accepted: str) -> list[str]:
-    """Language codes (without regions), the most wanted first."""
     found = [match for part in accepted.split(",") if (match := _RANGE.fullmatch(part))]
     by_weight = sorted(found, key=lambda match: -float(match[2] or 1.0))
     return [match[1].lower() for match in by_weight if float(match[2] or 1.0) > 0.0]
