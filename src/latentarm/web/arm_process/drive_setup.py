@@ -67,7 +67,7 @@ COMMAND_PERIODS: Final = 5.0
 @final
 @dataclass(frozen=True)
 class Spec:
-    """What is to be driven, as plain values that can be sent to another process.
+    """The setup to drive, as plain values that can be sent to another process.
 
     Attributes:
         run: a trained run, or None for end-effector control alone at the table-top task.

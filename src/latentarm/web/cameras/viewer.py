@@ -163,7 +163,7 @@ class Viewer:
                     self._gone()
                     return
                 continue
-            # One that does not read is told less.
+            # A page that does not read gets fewer messages.
             if self._channel.bufferedAmount == 0:
                 said = [track.said for track in self._tracks]
                 with suppress(InvalidStateError):

@@ -1,4 +1,4 @@
-"""What a training taught the arm, as a person notices it: short recordings, and each direction's effect."""
+"""The lesson of a training for a person: short recordings, and the effect of each direction."""
 
 import warnings
 from collections.abc import Mapping, Sequence

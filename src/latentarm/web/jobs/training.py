@@ -46,7 +46,7 @@ def model_names() -> tuple[str, ...]:
 @final
 @dataclass(frozen=True)
 class TrainingPlan:
-    """What to train on which episodes.
+    """The model to train, and the episodes to train it on.
 
     Attributes:
         model: a name in the catalogue of models.

@@ -1,1 +1,1 @@
-"""What the page's server keeps: people, and every drive of theirs."""
+"""Records of the page's server: people, and all their drives."""

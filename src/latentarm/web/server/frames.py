@@ -116,11 +116,11 @@ class MeteredSocket(asyncio.Protocol):
         self._greeted = False
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
-        """See the base class."""
+        """Forward to uvicorn."""
         self._inner.connection_made(transport)
 
     def data_received(self, data: bytes) -> None:
-        """See the base class."""
+        """Forward the frames that the allowance admits."""
         if not self._greeted:
             # uvicorn hands over the request for the socket, whole, before any frame.
             self._greeted = True
@@ -137,17 +137,17 @@ class MeteredSocket(asyncio.Protocol):
             self._inner.data_received(_CLOSE_FOR_TOO_MANY)
 
     def eof_received(self) -> bool | None:
-        """See the base class."""
+        """Forward to uvicorn."""
         return self._inner.eof_received()
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """See the base class."""
+        """Forward to uvicorn."""
         self._inner.connection_lost(exc)
 
     def pause_writing(self) -> None:
-        """See the base class."""
+        """Forward to uvicorn."""
         self._inner.pause_writing()
 
     def resume_writing(self) -> None:
-        """See the base class."""
+        """Forward to uvicorn."""
         self._inner.resume_writing()

@@ -13,7 +13,7 @@ from latentarm.web.protocol.notice import Notice, NoticeError, notice_of
 from latentarm.web.protocol.orders import ChooseRun
 from latentarm.web.server.loaded_run import RunList
 from latentarm.web.server.personalising import Driven, Personalising
-from latentarm.web.server.run_check import WITHIN_S, Trial
+from latentarm.web.server.run_check import WITHIN_S, why_not_drivable
 from latentarm.web.server.states import States
 
 if TYPE_CHECKING:
@@ -115,12 +115,8 @@ class Learning:
             await asyncio.to_thread(self._job.cancel)
 
     async def _try_run(self, name: str, run: Path) -> None:
-        trial = Trial(self._states.loaded.spec, run, name)
-        try:
-            self._states.say(Notice(code="checking_run", parameters={"name": name}), WITHIN_S)
-            failure = await trial.failure()
-        finally:
-            asyncio.get_running_loop().run_in_executor(None, trial.end)
+        self._states.say(Notice(code="checking_run", parameters={"name": name}), WITHIN_S)
+        failure = await why_not_drivable(self._states.loaded.spec, run, name)
         if failure is None:
             self._states.say(None)
             self._control.order(ChooseRun(run=str(run)))

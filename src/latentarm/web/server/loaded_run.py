@@ -1,4 +1,4 @@
-"""What is driven, as the server shows it, built anew for every run; and the runs to choose from."""
+"""The setup that is driven, for pages, built anew for every run; and the runs to choose from."""
 
 from dataclasses import replace
 from pathlib import Path

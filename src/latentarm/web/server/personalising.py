@@ -44,7 +44,7 @@ STICK_AXES: Final = 2
 @final
 @dataclass(frozen=True)
 class Driven:
-    """What Personalise must know about what is driven.
+    """The setup that is driven, as far as Personalise needs it.
 
     Attributes:
         latent_dim: d; 0 without a run.

@@ -78,7 +78,7 @@ class Pins:
             NoticeError: the PIN is wrong, or there were too many wrong ones or clients that gave them.
         """
         with self._lock:
-            # Counted before it is looked at: tries at the same time count too.
+            # Counted before it is checked: simultaneous tries count too.
             self._count(person.id, client)
         if person.pin is None or not fits(pin, person.pin):
             raise NoticeError("pin_wrong")

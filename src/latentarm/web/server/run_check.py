@@ -9,7 +9,7 @@ import asyncio
 import time
 from dataclasses import replace
 from pathlib import Path
-from typing import Final, final
+from typing import Final
 
 from pydantic import TypeAdapter
 
@@ -32,29 +32,19 @@ Each file has its own bound too. The meshes of an SO-101, 16 MB, take 1.7 GB for
 reads them."""
 
 
-@final
-class Trial:
-    """A run being loaded in a child process; ``spec`` is driven now, ``name`` is the run's name on pages."""
-
-    def __init__(self, spec: Spec, run: Path, name: str) -> None:
-        self._name = name
-        arguments = (replace(spec, run=run, profile=None), name)
-        self._job = Job(try_to_load, arguments, TypeAdapter(Message), "loading a run")
-        self._until_s = time.monotonic() + WITHIN_S
-
-    async def failure(self) -> Notice | None:
-        """Why the run cannot be driven; None if it can."""
-        while self._job.alive:
-            if time.monotonic() > self._until_s:
-                await asyncio.to_thread(self._job.end)
-                parameters = {"name": self._name, "seconds": round(WITHIN_S)}
-                return Notice(code="run_too_slow", parameters=parameters)
+async def why_not_drivable(spec: Spec, run: Path, name: str) -> Notice | None:
+    """Load a run, called ``name`` on pages, in a child process; None if it can be driven."""
+    arguments = (replace(spec, run=run, profile=None), name)
+    job = Job(try_to_load, arguments, TypeAdapter(Message), "loading a run")
+    until_s = time.monotonic() + WITHIN_S
+    try:
+        while job.alive:
+            if time.monotonic() > until_s:
+                return Notice(code="run_too_slow", parameters={"name": name, "seconds": round(WITHIN_S)})
             await asyncio.sleep(_LOOK_S)
-        return self._job.failure
-
-    def end(self) -> None:
-        """End it; takes up to two seconds."""
-        self._job.end()
+        return job.failure
+    finally:
+        asyncio.get_running_loop().run_in_executor(None, job.end)
 
 
 def try_to_load(wire: Wire, spec: Spec, name: str) -> None:

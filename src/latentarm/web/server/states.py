@@ -115,7 +115,7 @@ class States:
             if report is not None:
                 self._heard_s = now_s
                 self._take(report)
-            # Pages that hear nothing would take the server for dead: the reason is told again and again.
+            # Pages without messages would assume that the server is dead, so the reason is repeated.
             if self._away(now_s):
                 if now_s - told_s > AWAY_PERIOD_S:
                     told_s = now_s
