@@ -9,7 +9,7 @@ import { ServerClock } from "./picture_age.js";
 /** @import {Connection} from "../connection/connection.js" */
 /** @import {Settings} from "../settings/settings.js" */
 
-/** How often is looked how old the pictures are, ms. */
+/** How often the age of the pictures is checked, ms. */
 const LOOK_MS = 50;
 
 /** @param {Settings} settings @param {Connection} connection @param {() => void} draw loads the drawn arm */
@@ -40,7 +40,7 @@ export function attachCameras(settings, connection, draw) {
       asked = true;
       draw();
     }
-    // What nobody sees is not sent.
+    // Hidden pictures are not sent.
     link.want(chosen() && !document.hidden && connection.open ? connection.welcome?.id ?? null : null);
   };
   choice.addEventListener("click", () => settings.change({ picture: chosen() ? "drawn" : "camera" }));

@@ -5,7 +5,7 @@ const KEPT = 12;
 /** Steps of the clock of a video stream in a millisecond. */
 const STEPS_PER_MS = 90;
 
-/** What a stream's timestamp means: `rtp` was taken at `at`, ms on the server's clock. @typedef {{rtp: number, at: number}} Dated */
+/** Dates a stream's timestamp: the picture `rtp` was taken at `at`, ms on the server's clock. @typedef {{rtp: number, at: number}} Dated */
 
 /** The server's clock, as far as this page can tell: within half the time that the quickest answer took. */
 export class ServerClock {

@@ -12,7 +12,7 @@ const PERIOD_MS = 100;
 /**
  * @param {Pick<State, "you" | "driver" | "copilot" | "copilot_asking">} state
  * @param {string} me id of this page
- * @returns {string} who is the co-pilot, as this page's person is told.
+ * @returns {string} a sentence about the co-pilot for this page's person.
  */
 export function copilotWords({ you, driver, copilot, copilot_asking }, me) {
   if (copilot !== null) {

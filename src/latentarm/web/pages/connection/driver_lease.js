@@ -37,7 +37,7 @@ export class DriverLease {
     this._connection.send({ type: "ask_to_drive" });
   }
 
-  /** What was asked for and waits is not done any more. */
+  /** Drop requests that wait. */
   forget() {
     this._until = -Infinity;
   }
@@ -55,7 +55,7 @@ export function whoAsks({ asking }, id) {
 }
 
 /**
- * Who drives, as this page's person is told.
+ * A sentence about the driver for this page's person.
  *
  * @param {State} state
  * @param {"you" | "another" | null} asks which page asks to drive

@@ -8,7 +8,7 @@ import { whoAsks } from "./driver_lease.js";
 /** @import {WordKey} from "../layout/words.js" */
 
 /**
- * What the button does now.
+ * The button's action now.
  *
  * @param {Pick<Connection, "open" | "engaged" | "state" | "welcome">} connection
  * @returns {{label: WordKey, does: "enable" | "ask" | null}} null where it does nothing, which the state says why

@@ -6,7 +6,7 @@ import { say, sayNotice } from "../layout/words.js";
 /** @import {OwnPages} from "./own_pages.js" */
 /** @import {WordKey} from "../layout/words.js" */
 
-/** What a page does, which names it by its id. */
+/** Notices about a page, which name it by its id. */
 const DONE_BY_A_PAGE = ["stop_pressed_by", "page_stopped", "driver_gone", "driver_released", "handed_over"];
 
 /** @typedef {{you: boolean, own: OwnPages, late: "page" | "connection" | null}} Reader
@@ -24,7 +24,7 @@ export function sayTo(notice, { you, own, late }) {
   return sayNotice(notice);
 }
 
-/** What is said to the person who drives, and means nothing to those who watch. */
+/** Notices for the person who drives, meaningless to those who watch. */
 const FOR_THE_DRIVER = ["let_go_first", "stop_first", "return_not_now", "return_pushed"];
 
 /** Whether a note concerns this page's person. @param {Notice | null} note @param {boolean} you @returns {note is Notice} */

@@ -42,7 +42,7 @@ export function isTrouble(state) {
 }
 
 /**
- * What to say, and the phase that gives it its colour.
+ * The sentence to show, and the phase that gives it its colour.
  *
  * @param {Heard} connection
  * @param {PageState} page
@@ -64,7 +64,7 @@ export function statusOf({ open, state, silenceMs, engaged, drove, own, welcome 
 }
 
 /**
- * What the arm does, and what its driver does next.
+ * The arm's state, and the driver's next action.
  *
  * @param {State} state
  * @param {PageState} page
@@ -93,7 +93,7 @@ function driverWords({ phase, note, reason, held_back, zone, returning, bound_fo
 }
 
 /**
- * What the arm does, for those who do not drive it.
+ * The arm's state, for those who do not drive it.
  *
  * @param {State} state
  * @param {PageState} page
@@ -152,11 +152,11 @@ export function attachStatus(parts, connection) {
   const show = () => {
     const { state } = connection;
     const isLate = state?.reason?.code === "input_late";
-    // What was too slow while this page did not drive was somebody else's.
+    // Late inputs while this page did not drive were somebody else's.
     if (isLate && !wasLate) late = !(heard && state?.you) ? null : slow() ? "page" : "connection";
     wasLate = isLate;
     heard = state !== null;
-    // What this page did counts for nothing once somebody else drives.
+    // This page's actions no longer count once somebody else drives.
     if (state !== null && !state.you) halted = null;
     const refused = performance.now() < refusedUntil ? why : null;
     const { phase, text } = statusOf(connection, { halted, turnedAway, canEnable, canConnect, unconfirmed: unconfirmed(), refused, pushAgain, late });
@@ -197,7 +197,7 @@ export function attachStatus(parts, connection) {
       pushAgain = is;
       show();
     },
-    /** What a press was refused for is so no longer. */
+    /** The reason why a press was refused no longer holds. */
     allowed() {
       refusedUntil = -Infinity;
       show();

@@ -1,4 +1,4 @@
-/** What a person confirms before a real arm is enabled for the first time, and after its connection was lost. */
+/** Points that a person confirms before a real arm is enabled for the first time, and after its connection was lost. */
 
 import { create } from "../layout/dom.js";
 import { say } from "../layout/words.js";
@@ -9,7 +9,7 @@ import { say } from "../layout/words.js";
 /**
  * @param {{panel: HTMLElement, facts: HTMLElement, boxes: HTMLInputElement[], why: HTMLElement}} parts
  * @param {Connection} connection
- * @param {() => void} confirmed is told when nothing is left to confirm
+ * @param {() => void} confirmed is called when nothing is left to confirm
  */
 export function attachChecklist(parts, connection, confirmed) {
   const done = () => !connection.welcome?.real || parts.boxes.every((box) => box.checked);
@@ -45,7 +45,7 @@ export function attachChecklist(parts, connection, confirmed) {
       parts.why.hidden = false;
       parts.boxes.find((box) => !box.checked)?.focus();
     },
-    /** What is still to be confirmed, for a switch. @returns {Choice[]} */
+    /** The points that are left to confirm, for a switch. @returns {Choice[]} */
     choices() {
       if (done()) return [];
       return parts.boxes.filter((box) => !box.checked).map((box) => ({ id: box.id, label: box.labels?.[0]?.textContent?.trim() ?? box.id, act: () => box.click() }));

@@ -208,7 +208,7 @@ connection.addEventListener("welcome", () => {
   const { goals, task: todo } = /** @type {Welcome} */ (connection.welcome);
   belief.name(goals);
   const now = JSON.stringify([todo.name, todo.seed, todo.choice]);
-  // What stands about the arm is drawn anew where it was placed anew.
+  // The things about the arm are redrawn when they were placed anew.
   if (placed && placed !== now) void drawing?.renew();
   placed = now;
 });

@@ -11,7 +11,7 @@ import { say } from "../layout/words.js";
 /** @type {Values["help"][]} */
 export const LEVELS = ["off", "low", "medium", "high"];
 
-/** What the robot does at the level that is on. @param {Pick<State, "mode" | "help">} state */
+/** The effect of the current level. @param {Pick<State, "mode" | "help">} state */
 export function helpWords({ mode, help }) {
   if (help === null) return "";
   return say(mode === "end_effector" ? "help.not_here" : `help.${help}_does`);

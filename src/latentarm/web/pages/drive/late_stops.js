@@ -1,4 +1,4 @@
-/** How often the arm stopped in this drive because inputs came too late, as the person who drives is told. */
+/** Tells the driver how often the arm stopped in this drive because inputs came too late. */
 
 import { setText } from "../layout/dom.js";
 import { say } from "../layout/words.js";

@@ -1,4 +1,4 @@
-/** What the stick moves: latent actions, with help or without, or the tool along two axes at a time. */
+/** The stick's modes: latent actions, with help or without, or the tool along two axes at a time. */
 
 import { create, setHidden } from "../layout/dom.js";
 import { say } from "../layout/words.js";
@@ -15,7 +15,7 @@ import { say } from "../layout/words.js";
 const ANSWER_MS = 300;
 
 /**
- * What follows, for people who reach everything by one button: the pairs of axes too, before the next mode.
+ * The next mode, for people who reach everything by one button: the pairs of axes too, before the next mode.
  *
  * @param {Pick<Welcome, "modes" | "end_effector_modes">} welcome
  * @param {Pick<State, "mode" | "axes">} state
@@ -61,7 +61,7 @@ export function attachModes(parts, connection, settings) {
   });
   connection.addEventListener("state", () => {
     const { state, welcome } = connection;
-    // What was just chosen stays chosen until the server has had time to say otherwise.
+    // A new choice stays until the server has had time to say otherwise.
     if (!state || performance.now() - askedAt < ANSWER_MS) return;
     check(parts.mode, welcome ? steeringModes(welcome).indexOf(withoutHelp(state.mode)) : -1, state.you);
     check(parts.axes, state.axes, state.you);

@@ -100,7 +100,7 @@ export function attachTask(parts, connection, ended) {
     const { state, welcome } = connection;
     if (!state || !welcome?.task.steps.length) return;
     const { task } = state;
-    // A new run is told of by a welcome first.
+    // A welcome announces a new run first.
     if (task.choice !== welcome.task.choice) return;
     showSteps(task);
     parts.panel.dataset.outcome = task.outcome ?? (stuck(task) ? "stuck" : "");
@@ -112,7 +112,7 @@ export function attachTask(parts, connection, ended) {
       setText(parts.said, say("task.step_done", { number, all: welcome.task.steps.length, step }));
     } else if (task.done === 0) setText(parts.said, "");
     if (before !== null && before.outcome === null && task.outcome !== null) ended(task.outcome);
-    // How far to go is told of the step that is done now, at once.
+    // The remaining way of the current step is announced at once.
     if (before === null || stepNow(task) !== stepNow(before)) wordsAt = -Infinity;
     before = task;
     const why = blocked();
@@ -128,7 +128,7 @@ export function attachTask(parts, connection, ended) {
   });
 
   return {
-    /** What people who press one switch may choose from here. @returns {Choice[]} */
+    /** Choices for people who press one switch. @returns {Choice[]} */
     choices() {
       const { state, welcome } = connection;
       if (!state || !welcome?.task.steps.length || blocked()) return [];

@@ -12,7 +12,7 @@ const FAR = new Set(["approached", "reached", "above", "holding", "stabbed"]);
 /** A turn that need not be told, degrees. */
 const SMALL_TURN = 10;
 
-/** What is to be done in a step. @param {StepToDo} step */
+/** A step's task in words. @param {StepToDo} step */
 export function stepWords({ kind, thing }) {
   return capital(say(`task.step.${kind}`, { thing: kind === "placed" ? intoThing(thing) : theThing(thing) }));
 }
@@ -77,7 +77,7 @@ export function placeOf(name, welcome, state) {
 }
 
 /**
- * What the step that is to be done now is about; null where nothing is left to do.
+ * The thing of the current step; null where nothing is left to do.
  *
  * @param {Welcome} welcome
  * @param {State} state

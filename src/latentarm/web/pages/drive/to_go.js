@@ -1,4 +1,4 @@
-/** What is left of the way to where the tool is to be next: for each pair of directions, which way to push and how far. */
+/** The remaining way to where the tool is to be next: for each pair of directions, which way to push and how far. */
 
 import { DIRECTIONS, DIRECTION_NAMES } from "../inputs/deflection.js";
 import { create, setText } from "../layout/dom.js";
@@ -11,7 +11,7 @@ import { say, sayNumber } from "../layout/words.js";
 
 /** @typedef {{of: "shift_m" | "turn_rad", axis: number}} Part one of the six ways in which the tool can move */
 
-/** What the two axes of each pair move. @type {Record<string, [Part, Part]>} */
+/** The parts that the two axes of each pair move. @type {Record<string, [Part, Part]>} */
 const PAIRS = {
   "x-y": [{ of: "shift_m", axis: 0 }, { of: "shift_m", axis: 1 }],
   "z-yaw": [{ of: "shift_m", axis: 2 }, { of: "turn_rad", axis: 2 }],
@@ -29,7 +29,7 @@ export function degreesToGo({ turn_rad }) {
 }
 
 /**
- * What a direction moves, and which way: 1 or -1.
+ * The part that a direction moves, and which way: 1 or -1.
  *
  * @param {string} pair
  * @param {number[]} sent what is sent for it
@@ -40,7 +40,7 @@ export function movedPart(pair, sent) {
 }
 
 /**
- * What is left in one pair of directions; nothing where it need not be driven.
+ * The remaining way in one pair of directions; nothing where it need not be driven.
  *
  * @param {ToGo} toGo
  * @param {string} pair its name
@@ -86,7 +86,7 @@ export function attachToGo(list, connection, shaped) {
     // Learned motions have no such directions.
     list.hidden = toGo === null || state?.mode !== "end_effector";
     if (!state || !welcome || toGo === null || list.hidden) return;
-    // Another pair, or another step, is told at once.
+    // Another pair or step is announced at once.
     const now = JSON.stringify([state.task.choice, state.task.done, state.task.lost, state.axes]);
     if (now === begun && performance.now() - wordsAt < WORDS_MS) return;
     begun = now;

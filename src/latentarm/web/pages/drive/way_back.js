@@ -8,7 +8,7 @@ import { say } from "../layout/words.js";
 /** @import {WordKey} from "../layout/words.js" */
 
 /**
- * What the button does now, and what is said next to it.
+ * The button's action now, and the text next to it.
  *
  * @param {Pick<Connection, "driving" | "engaged" | "state">} connection
  * @returns {{does: "begin" | "end" | null, why: WordKey}}

@@ -1,4 +1,4 @@
-/** What a person hears and feels when the arm is enabled or stops, or when a task ends, as far as they want it. */
+/** Sounds and vibrations when the arm is enabled or stops, or when a task ends, as far as the person wants them. */
 
 import { play } from "./sounds.js";
 

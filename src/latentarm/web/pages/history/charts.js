@@ -19,7 +19,7 @@ const CHARTS = [
   ["history.chart_stops", ({ stops }) => stops, (value) => sayNumber(value, 1)],
 ];
 
-/** What the charts compare. @param {Drive[]} drives */
+/** The title of the charts. @param {Drive[]} drives */
 export function chartsTitle(drives) {
   return say(inDays(drives) ? "history.days" : "history.weeks");
 }

@@ -1,4 +1,4 @@
-/** What is pressed, by one source at a time: every way of pressing meets here. */
+/** The deflection, by one source at a time: every way of pressing meets here. */
 
 /** @typedef {import("../connection/messages.js").DriverInput["source"]} Source */
 /** @typedef {"up" | "down" | "left" | "right"} Direction */

@@ -56,7 +56,7 @@ export function attachGripper(parts, connection, input, refused) {
   const ask = (/** @type {"open" | "close" | "toggle"} */ what, /** @type {Source} */ source) => {
     if (widest() !== null && !input.ask(what, source)) refused();
   };
-  /** What opens the gripper of an arm that is not enabled, until that is let go. @type {Source | null} */
+  /** The control that opens the gripper of an arm that is not enabled, while it is held. @type {Source | null} */
   let holding = null;
   let heldAt = NaN;
   const hold = (/** @type {Source} */ source) => {

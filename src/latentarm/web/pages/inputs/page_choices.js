@@ -1,4 +1,4 @@
-/** What a switch reaches behind "More": help, recording, the page's other buttons, settings and pages. */
+/** A switch's choices behind "More": help, recording, the page's other buttons, settings and pages. */
 
 import { byId } from "../layout/dom.js";
 import { say } from "../layout/words.js";

@@ -16,7 +16,7 @@ const NAME_LENGTH = 50;
 /** Which element a choice stands for. @type {WeakMap<Choice, HTMLElement>} */
 const elements = new WeakMap();
 
-/** What lights up on the page with a choice. @param {Choice | undefined} choice */
+/** The elements that light up with a choice. @param {Choice | undefined} choice */
 export function elementOf(choice) {
   return choice && elements.get(choice);
 }
@@ -61,7 +61,7 @@ function controlsIn(root) {
 function canPress(element) {
   if (!(element instanceof HTMLButtonElement)) return true;
   if (element.disabled || element.getAttribute("aria-disabled") === "true") return false;
-  // What still needs typing cannot be sent.
+  // A form that still needs typing cannot be sent.
   return element.type !== "submit" || (element.form?.checkValidity() ?? true);
 }
 

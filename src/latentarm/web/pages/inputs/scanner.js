@@ -140,7 +140,7 @@ export class Scanner extends EventTarget {
     return true;
   }
 
-  /** What cannot hold a switch presses it, as a screen reader does. @param {number} number */
+  /** Press a switch for a program that cannot hold it, such as a screen reader. @param {number} number */
   tap(number) {
     this._switches[number].tap(this._ends(number));
   }
@@ -230,7 +230,7 @@ export class Scanner extends EventTarget {
     this._show(this._opened());
   }
 
-  /** What there is to choose from along the path, as far as that is offered still. */
+  /** The choices along the path that are still offered. */
   _opened() {
     let choices = this._offered;
     for (const [depth, id] of this._path.entries()) {
@@ -276,7 +276,7 @@ export class Scanner extends EventTarget {
     this._restart();
   }
 
-  /** What happens if nothing is pressed or let go for a while. */
+  /** Act when nothing is pressed or let go for a while. */
   _restart() {
     clearTimeout(this._timer);
     const { dwellS, firstS } = this._settings.values;

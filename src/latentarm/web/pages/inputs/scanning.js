@@ -13,7 +13,7 @@ import { attachSpeech } from "./speech.js";
 /** @import {Choice} from "./scanner.js" */
 /** @import {Settings} from "../settings/settings.js" */
 
-/** How often is looked whether other choices are offered, ms. */
+/** How often the offered choices are checked, ms. */
 const LOOK_MS = 100;
 
 /** The four directions to choose from. @returns {Choice[]} */
@@ -64,7 +64,7 @@ export function attachScanning(
     const label = scanner.choices[scanner.lit]?.label ?? "";
     speak(!scanner.on ? "" : scanner.moving === null ? label : say("scanning.says_moving", { direction: label }));
   };
-  /** What a press would do, above the name of what is lit. */
+  /** The effect of a press, above the name of the lit choice. */
   const hint = () => {
     if (scanner.moving !== null) return say(settings.values.switchMotion === "hold" ? "scanning.let_go" : "scanning.press_to_stop");
     if (scanner.ready !== null) return say("scanning.hold_to_move");
@@ -89,7 +89,7 @@ export function attachScanning(
         return true;
       },
       ends: () => scanner.press(number, false),
-      // What it would have chosen was lit some time ago.
+      // Its choice was lit some time ago.
       missed: lost,
       lost,
     });

@@ -25,7 +25,7 @@ export function shape({ deadZone, sensitivity, swapAxes, invertX, invertY }, x, 
 }
 
 /**
- * What is sent while learned motions are driven: one axis or two.
+ * The input for learned motions: one axis or two.
  *
  * @param {Values} settings
  * @param {Pick<Welcome, "latent_dim"> | null} welcome
@@ -38,7 +38,7 @@ export function latentInput(settings, welcome, x, y) {
 }
 
 /**
- * What is sent in the mode that is on.
+ * The input for the current mode.
  *
  * @param {Values} settings
  * @param {Pick<State, "mode" | "axes"> | null} state

@@ -24,7 +24,7 @@ export class StillInput extends Deflection {
     this.flowing = false;
   }
 
-  /** What was pushed was taken away. */
+  /** The pushed element was removed. */
   halt() {
     this.neutral();
   }
@@ -43,7 +43,7 @@ export function attachWholePage(settings, stop) {
 
   const dialogNow = () => /** @type {HTMLDialogElement | null} */ (document.querySelector("dialog[open]"));
   const place = () => {
-    // What stands behind a dialog cannot be pressed, the bar of the switches neither.
+    // Nothing behind a dialog can be pressed, nor the bar of the switches.
     const within = dialogNow() ?? home;
     if (bar.parentElement !== within) within.append(bar);
     setHidden(bar, settings.values.panel !== "switch");
@@ -66,7 +66,7 @@ export function attachWholePage(settings, stop) {
     next: byId("switch-next", HTMLButtonElement),
     help: byId("scan-help"),
   }, input, settings, offered, isTyping);
-  /** The page may have drawn anew what is lit: it is looked up again and again. */
+  /** The page may have redrawn the lit element: look it up each time. */
   const light = () => {
     place();
     const lit = scanner.on ? elementOf(scanner.choices[scanner.lit]) : undefined;

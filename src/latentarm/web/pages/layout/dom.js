@@ -1,4 +1,4 @@
-/** What every module does with the page's elements. */
+/** Helpers for the page's elements. */
 
 /**
  * The element with this id.

@@ -1,4 +1,4 @@
-/** What every page has: the person's settings, the connection, the state in one sentence, Stop, and the theme. */
+/** The parts of every page: the person's settings, the connection, the state in one sentence, Stop, and the theme. */
 
 import { Connection } from "../connection/connection.js";
 import { attachDriverPanel, DriverLease } from "../connection/driver_lease.js";

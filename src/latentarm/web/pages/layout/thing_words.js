@@ -19,19 +19,19 @@ export function intoThing(name) {
   return inWords(name, ".into");
 }
 
-/** What a zone in which the arm is slow is called. @param {string} name as the person who set it up calls it */
+/** The name of a zone in which the arm is slow. @param {string} name from the zones file */
 export function zoneWords(name) {
   const key = `zone.name.${name.toLowerCase()}`;
   return knows(key) ? say(/** @type {WordKey} */ (key)) : name;
 }
 
-/** What a robot is called. @param {string} name as its model has it */
+/** The name of a robot. @param {string} name in its model */
 export function robotWords(name) {
   const key = `robot.${name}`;
   return knows(key) ? say(/** @type {WordKey} */ (key)) : name;
 }
 
-/** What a task is called. @param {string} name as the catalogue of tasks has it */
+/** The name of a task. @param {string} name in the catalogue of tasks */
 export function taskTitle(name) {
   const key = `task.name.${name}`;
   return knows(key) ? say(/** @type {WordKey} */ (key)) : name.replaceAll("_", " ");

@@ -48,13 +48,13 @@ export function knows(key) {
   return Object.hasOwn(catalogue, key);
 }
 
-/** What a person is called; a guest without a name is a number. @param {string | number} name */
+/** A person's name; a guest without a name is a number. @param {string | number} name */
 export function sayName(name) {
   return typeof name === "number" ? say("driver.guest", { number: name }) : name;
 }
 
 /**
- * What the server tells people: a code with its parameters, of which `because` is the code of another notice.
+ * A notice of the server: a code with its parameters, of which `because` is the code of another notice.
  *
  * @param {Notice} notice
  */

@@ -66,7 +66,7 @@ function rowOf(person) {
   const row = create("li");
   row.dataset.person = person?.id ?? "";
   row.dataset.here = String(here);
-  // What a switch calls the row.
+  // The row's name for a switch.
   row.ariaLabel = person?.name ?? say("settings.guest");
   const name = create("span", { className: "person-name" });
   name.append(create("bdi", { textContent: person?.name ?? say("settings.guest") }), create("small", { textContent: person ? driven(person) : say("people.guest_help") }));

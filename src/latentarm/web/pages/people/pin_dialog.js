@@ -12,7 +12,7 @@ import { ask } from "../records/ask.js";
 export function attachPinDialog(settings) {
   const dialog = byId("pin", HTMLDialogElement);
   const field = byId("pin-digits", HTMLInputElement);
-  /** What is done with the digits. @type {(pin: string) => Promise<void>} */
+  /** Takes the digits. @type {(pin: string) => Promise<void>} */
   let take = async () => {};
 
   /** @param {string} title @param {string} help @param {"text" | "password"} type @param {(pin: string) => Promise<void>} then */

@@ -25,7 +25,7 @@ import { attachTrial, TRIAL } from "./trial.js";
 
 /** @type {Drawing | null} */
 let drawing = null;
-/** What the server says of it. @type {Personalise | null} */
+/** The server's state of it. @type {Personalise | null} */
 let state = null;
 /** Whether a person who has been asked wants to be asked again. */
 let again = location.hash === "#again";
@@ -62,7 +62,7 @@ attachGamepad(input, settings, { enable: answer, stop, gripper: () => {}, nextMo
   (names) => sayUnrested(byId("unrested"), names));
 attachInputChoice(input, settings);
 
-/** What a switch reaches at each step: the step's own buttons, and then the pages and settings. @returns {Choice[]} */
+/** A switch's choices at each step: the step's own buttons, and then the pages and settings. @returns {Choice[]} */
 function offered() {
   const step = stepOf(state, again);
   const stops = { id: "stop", label: say("layout.stop"), act: stop };
@@ -77,7 +77,7 @@ function offered() {
   return [...choices, ...backs, ...buttonChoice("answer-cancel"), moreChoices([], [], stops)];
 }
 
-/** What the stick means now, as the person drives, or null where it is at rest for them. */
+/** The stick's meaning now, as the person drives; null where it is at rest for them. */
 function meant() {
   const u = input.answer && latentInput(settings.values, connection.welcome, ...input.answer);
   return u?.some((value) => value !== 0) ? u : null;

@@ -87,7 +87,7 @@ export function attachPractice(connection, input, settings) {
     stopped() {
       if (connection.driving && connection.engaged && practice?.stopped()) show();
     },
-    /** What a switch may choose of it. @returns {Choice[]} */
+    /** A switch's choices in it. @returns {Choice[]} */
     choices() {
       if (!open) return [];
       const first = practice === null ? { id: "practice-begin", label: say("practice.begin"), act: begin }

@@ -1,4 +1,4 @@
-/** What to do, in words for the input that the person has chosen. */
+/** Instructions in words for the input that the person has chosen. */
 
 import { say } from "../layout/words.js";
 

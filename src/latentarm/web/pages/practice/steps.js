@@ -4,7 +4,7 @@
 /** @typedef {[number, number, number]} Point */
 
 /**
- * What is seen of the person and the arm at one moment.
+ * The person's input and the arm at one moment.
  *
  * @typedef {object} Seen
  * @property {boolean} engaged whether this page drives an enabled arm

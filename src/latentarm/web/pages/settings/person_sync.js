@@ -17,7 +17,7 @@ export function attachPersonSync(settings) {
     if (!waiting) return;
     const { id, values } = waiting;
     waiting = null;
-    // What does not arrive goes with the next change; until then this browser has it.
+    // A lost change goes with the next one; until then this browser has it.
     fetch(`/records/people/${id}/settings`, { method: "PUT", body: values, keepalive: true }).catch(() => {});
   };
   const edited = () => {

@@ -83,7 +83,7 @@ function marked(name, on) {
   return say(on ? "scanning.now" : "scanning.plain", { name });
 }
 
-/** What is written there, without the values next to sliders. @param {Element | null} element @param {string} [without] what else is left out */
+/** An element's text, without the values next to sliders. @param {Element | null} element @param {string} [without] what else is left out */
 export function wordsOf(element, without = "template") {
   const copy = /** @type {Element | undefined} */ (element?.cloneNode(true));
   for (const part of copy?.querySelectorAll(`input, select, [data-shows], ${without}`) ?? []) part.remove();

@@ -1,4 +1,4 @@
-/** What each person likes, kept in this browser under their id; `person_sync.js` keeps it on the server as well. */
+/** Each person's settings, kept in this browser under their id; `person_sync.js` keeps it on the server as well. */
 
 import * as storage from "./storage.js";
 
@@ -143,7 +143,7 @@ export class Settings extends EventTarget {
     this.dispatchEvent(new Event("change"));
   }
 
-  /** What the server keeps of them. @param {unknown} values */
+  /** Take the server's settings. @param {unknown} values */
   take(values) {
     this.values = valid(JSON.stringify(values));
     storage.write(this._key, JSON.stringify(this.values));
@@ -183,7 +183,7 @@ function personIn(stored) {
   }
 }
 
-/** What was stored, as far as it makes sense: it may be from another version. @param {string | null} stored @returns {Values} */
+/** The stored values that make sense: they may be from another version. @param {string | null} stored @returns {Values} */
 function valid(stored) {
   /** @type {any} */
   const values = { ...DEFAULTS };

@@ -1,4 +1,4 @@
-/** What the browser keeps for this site. It may refuse to keep anything; settings then last as long as the page. */
+/** The browser's storage for this site. It may refuse to keep anything; settings then last as long as the page. */
 
 /** @param {string} key @returns {string | null} */
 export function read(key) {

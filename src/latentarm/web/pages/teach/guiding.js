@@ -15,7 +15,7 @@ const PERIOD_MS = 200;
 const BEGINS_MS = 6000;
 
 /**
- * What the button does now, what is said next to it, and whether a motion by hand can be recorded.
+ * The button's action now, the text next to it, and whether a motion by hand can be recorded.
  *
  * @param {State | null} state
  * @param {{waiting: boolean, confirmed: boolean}} page whether it waits for the arm, and whether its person has confirmed
@@ -110,7 +110,7 @@ export function attachGuiding(parts, connection, lease) {
   };
   const look = () => {
     const on = connection.state?.guiding === "on";
-    // What the arm, Stop or the server has ended is asked for again by a press alone.
+    // After the arm, Stop or the server has ended it, only a press asks for it again.
     if (asked && ((begun && !on) || (!begun && performance.now() - askedAt > BEGINS_MS) || connection.state?.guiding === "own")) over();
     else if (asked && on) begun = true;
     show();

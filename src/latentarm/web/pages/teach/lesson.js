@@ -1,4 +1,4 @@
-/** What the arm has learned, in words first: whether it is good enough to drive, and what to record again. */
+/** The arm's lesson, in words first: whether it is good enough to drive, and what to record again. */
 
 import { say, sayNumber } from "../layout/words.js";
 

@@ -142,7 +142,7 @@ function showTraining({ training }) {
   byId("training-cancel", HTMLButtonElement).disabled = watching;
   byId("training-drive").hidden = phase !== "done";
   byId("training-drive", HTMLButtonElement).disabled = watching;
-  // What the person waits for comes into sight, once.
+  // The result that the person waits for scrolls into view, once.
   if (phase !== shownPhase && connection.driving) byId("training").scrollIntoView({ block: "nearest" });
   shownPhase = phase;
 }

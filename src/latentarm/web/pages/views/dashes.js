@@ -20,7 +20,7 @@ export class Dashes {
     this._begins = [];
   }
 
-  /** What follows has a colour of its own. */
+  /** Begin a drawing with a colour of its own. */
   begin() {
     this._begins.push(this.object.count);
   }

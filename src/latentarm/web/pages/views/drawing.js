@@ -177,7 +177,7 @@ export class Drawing {
   /**
    * @param {number[] | null} belief
    * @param {THREE.Vector3 | null} tool null for no names
-   * @param {string | null} thing what the task is about: its distance is told, like that of the likeliest goal
+   * @param {string | null} thing of the task: its distance is shown, like that of the likeliest goal
    */
   _nameGoals(belief, tool, thing) {
     this._scene.goals.forEach(({ name }, index) => {
@@ -189,7 +189,7 @@ export class Drawing {
     });
   }
 
-  /** What the task is about now, where it is no goal, which has a name of its own. @param {string | null} name @param {THREE.Vector3 | null} tool */
+  /** The task's current thing, unless it is a goal, which has a name of its own. @param {string | null} name @param {THREE.Vector3 | null} tool */
   _nameThing(name, tool) {
     const known = name === null || this._scene.goals.some((goal) => goal.name === name);
     const place = known || name === null ? null : this._scene.things.placeOf(name);

@@ -1,4 +1,4 @@
-/** What each direction will do: paths of the tool over the next second, drawn in both views. */
+/** Predictions for each direction: paths of the tool over the next second, drawn in both views. */
 
 import * as THREE from "../three/three.module.min.js";
 import { colour } from "./colours.js";
@@ -85,7 +85,7 @@ export class Ghosts {
   }
 }
 
-/** What one path is drawn with. @param {Direction} direction */
+/** The objects that draw one path. @param {Direction} direction */
 function drawn(direction) {
   const material = new THREE.MeshBasicMaterial({ transparent: true, depthTest: false });
   /** @type {THREE.Mesh} */

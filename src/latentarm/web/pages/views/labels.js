@@ -90,7 +90,7 @@ export class Labels {
   _place(view, index) {
     /** @type {Box[]} */
     const placed = [];
-    // What is told comes first: it stays whole.
+    // Announced labels come first: they stay whole.
     const labels = [...this._all.values()].sort((a, b) => Number(b.told) - Number(a.told));
     for (const label of labels) {
       const { point, shown, elements } = label;

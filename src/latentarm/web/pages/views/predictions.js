@@ -1,4 +1,4 @@
-/** What each direction will do: the tool's paths over the next second, for this person, and in words. */
+/** Predictions for each direction: the tool's paths over the next second, for this person, and in words. */
 
 import { DIRECTIONS, DIRECTION_NAMES } from "../inputs/deflection.js";
 import { create, setText } from "../layout/dom.js";

@@ -183,7 +183,7 @@ export class ArmScene {
   }
 }
 
-/** What there is to draw, as the server has it now. @param {string} where its address @returns {Promise<SceneDescription>} */
+/** The server's current scene. @param {string} where its address @returns {Promise<SceneDescription>} */
 async function describe(where) {
   return (await fetch(`${where}/scene.json`, { cache: "no-store" })).json();
 }

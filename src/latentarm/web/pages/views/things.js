@@ -1,4 +1,4 @@
-/** What stands about the arm: things, which glide from one state to the next, and grains. */
+/** The things about the arm, which glide from one state to the next, and grains. */
 
 import * as THREE from "../three/three.module.min.js";
 import { ROUND } from "./fineness.js";
@@ -27,9 +27,9 @@ export class Things {
     const boxes = this._things.map((thing) => new THREE.Box3().setFromObject(thing));
     /** Corners of what there is at first: a thing that falls off the table does not take the view along. */
     this.extent = boxes.flatMap(({ min, max }) => [min, max]);
-    /** What stands where it is. */
+    /** Fixed things. */
     this._standing = boxes.filter((_, index) => things[index].fixed);
-    // What is soft is added only now: the tool goes into it, and nothing stands on it.
+    // Soft parts are added only now: the tool goes into it, and nothing stands on it.
     this._things.forEach((group, index) => {
       const { fixed, soft = [] } = things[index];
       if (fixed) group.clear();

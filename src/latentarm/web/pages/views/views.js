@@ -6,7 +6,7 @@ import { SOFTWARE } from "./fineness.js";
 const FOV_DEG = 32;
 /** Room around the outermost points: the arm is thick, and labels are next to goals. */
 const MARGIN_M = 0.13;
-/** How often is looked whether a frame is done, ms. */
+/** How often a frame's end is checked, ms. */
 const LOOK_MS = 8;
 /** Frames may hold others up for so long, ms, less what each frame in time takes back; then the drawing gets coarser. */
 const MOST_HELD_MS = 640;
@@ -18,7 +18,7 @@ const EDGE = 0.92;
 /** Without a graphics processor, pixels are dear from the start. */
 const SOFTWARE_SHARE = 0.7;
 
-/** What can wait for the next frame waits no longer than this, ms. */
+/** Work for the next frame waits no longer than this, ms. */
 const SOON_MS = 120;
 
 /** @import {ArmScene} from "./scene.js" */
