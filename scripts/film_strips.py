@@ -23,7 +23,7 @@ from latentarm_research.drives.film import Camera, Film, strip
 from latentarm_research.drives.task_drive import TaskSetup, drive_task
 from latentarm_research.people.catalogue import PEOPLE
 from latentarm_research.studies.streams import generator
-from latentarm_research.studies.tasks.cell import ShownCell, TrainingCell, show, train, training_set
+from latentarm_research.studies.tasks.cell import ModelCell, ShownCell, show, train, training_set
 from latentarm_research.studies.tasks.condition import Condition
 from latentarm_research.studies.tasks.kept import MODELS
 from latentarm_research.studies.tasks.preset import PRESETS, Preset, Stream
@@ -44,7 +44,7 @@ def learned(task: str, model: str, preset: Preset, seed: int, jobs: int) -> Driv
     cells = [ShownCell(task, Stream.DEMONSTRATIONS, number, seed) for number in range(preset.demonstrations)]
     shown = run_grid(show, cells, jobs=jobs, backend="joblib", label=lambda cell: task, bars=True)
     condition = Condition(preset.context, model, way_back=True)
-    return train(TrainingCell(task, condition, training_set(task, shown), preset, seed)).driver
+    return train(ModelCell(task, condition, training_set(task, shown), preset, seed)).driver
 
 
 def sizes_of(study: Path) -> tuple[Preset, int]:

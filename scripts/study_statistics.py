@@ -63,9 +63,9 @@ def departures() -> str:
 def about(definition: Definition, folder: Path) -> str:
     """Of how many people, and with which sizes and seed, in a line."""
     config = read_object(folder / CONFIG)
-    sizes: Any = config["sizes"]
+    sizes: Any = config["preset"]
     return (
-        f"- `{definition.name}`: {config['people']} simulated people, preset {sizes['name']}, seed"
+        f"- `{definition.name}`: {config['simulated']} simulated people, preset {sizes['name']}, seed"
         f" {config['seed']},"
         f" definition {str(config['definition'])[:12]}."
     )

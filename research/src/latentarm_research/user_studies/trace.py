@@ -1,13 +1,17 @@
 """What figures show of a trial: the tool's way, how far it was from the plates, and the stick."""
 
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING, Any, Final, final
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final, cast, final
 
 import numpy as np
 
+from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray
 from latentarm_research.metrics.task_drives import StepAlignment
 from latentarm_research.user_studies.definition import StudyTask
+from latentarm_research.user_studies.own.records import read_record
 
 if TYPE_CHECKING:
     from latentarm_research.drives.task_drive import TaskTrace
@@ -89,6 +93,23 @@ def trace_of(person: int, condition: str, task: StudyTask, trial: int, driven: "
             StepAlignment(one.step, round(one.alignment, DECIMALS), one.ticks) for one in driven.aligned
         ),
     )
+
+
+def read_traces(document: Mapping[str, object], path: Path) -> tuple[Trace, ...]:
+    """The traces of a document.
+
+    Args:
+        document: with a list ``traces``.
+        path: its file, for messages.
+
+    Raises:
+        UserError: there is no list, or a trace is not what it should be.
+    """
+    entries = document.get("traces")
+    if not isinstance(entries, list):
+        raise UserError(f"{path} must hold a list of traces.")
+    listed = enumerate(cast(list[object], entries))
+    return tuple(read_record(Trace, entry, f"{path}, trace {index}") for index, entry in listed)
 
 
 def _stick(driven: "TaskTrace") -> FloatArray:

@@ -26,7 +26,7 @@ from latentarm_research.studies.alignment.drives import (
     DRIVEN,
     HELPED,
     KNOWS,
-    Driven,
+    AlignedDrive,
     DrivesResult,
     drive,
     drive_all,
@@ -44,7 +44,7 @@ from latentarm_research.studies.alignment.preset import (
     WITHOUT_PRIORS,
     Drives,
 )
-from latentarm_research.studies.alignment.rows import Measured
+from latentarm_research.studies.alignment.rows import AlignmentResults
 from latentarm_research.studies.alignment.study import STUDY
 from latentarm_research.studies.study import Request
 
@@ -202,7 +202,7 @@ def result(reached):
     def made(number, there):
         off = 0.05 * TURNED.directions[0] + 0.02 * np.cross(*TURNED.directions)
         end = goals[number % 3].pose.position + (0.0 if there else off)
-        return Driven(number % 3, number % 2, 0.1 + 0.01 * number if there else None, there, end[None])
+        return AlignedDrive(number % 3, number % 2, 0.1 + 0.01 * number if there else None, there, end[None])
 
     return DrivesResult(
         cell=drive_cells(TINY, 0)[0],
@@ -254,7 +254,9 @@ def test_misses_are_parted_into_what_the_person_steers_and_what_nobody_does():
 
 def test_the_page_says_what_holds_and_what_does_not():
     found = [result({TOOL_SPACE: 6, WITHOUT_PRIORS: 6, KNOWS: 6})]
-    page = STUDY.report(Request(Path("out"), TINY, ("table_top",)), Measured([], [], [], [], found)).page
+    page = STUDY.report(
+        Request(Path("out"), TINY, ("table_top",)), AlignmentResults([], [], [], [], found)
+    ).page
     assert "**simulated**" in page
     assert "turned by 60 degrees and mirrored" in page
     assert f"| {TOOL_SPACE} | 0.60 ± 0.14 | 6 of 6 (100%) |" in page

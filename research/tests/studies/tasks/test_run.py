@@ -19,7 +19,7 @@ from latentarm.tasks.scene_task import SceneTask
 from latentarm_research.metrics.drives import Drive
 from latentarm_research.metrics.task_drives import TaskDrive
 from latentarm_research.studies.study import ALWAYS_MADE, Request, again, run_study
-from latentarm_research.studies.tasks.cell import Driven, show, training_set
+from latentarm_research.studies.tasks.cell import TaskRunResult, show, training_set
 from latentarm_research.studies.tasks.condition import DEMONSTRATOR, ORIENTED, SWITCHING, Condition
 from latentarm_research.studies.tasks.figures import success_figure
 from latentarm_research.studies.tasks.kept import MODELS
@@ -158,7 +158,7 @@ def test_more_people_and_runs_are_added(stopped, monkeypatch):
 
     def drive(cell):
         measured.append((cell.person, cell.number))
-        return Driven(cell.task, cell.condition, ran(cell.number, 1), 0.5)
+        return TaskRunResult(cell.task, cell.condition, ran(cell.number, 1), 0.5)
 
     monkeypatch.setattr("latentarm_research.studies.tasks.study.drive", drive)
     monkeypatch.setattr("latentarm_research.studies.tasks.study.show", show)

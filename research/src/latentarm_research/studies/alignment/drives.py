@@ -23,7 +23,7 @@ from latentarm.tasks.task import Task
 from latentarm_research.drives.drive import RATE_HZ, Setup, simulate
 from latentarm_research.drives.drives import drive_plan
 from latentarm_research.people.person import Person
-from latentarm_research.studies.alignment.drives_learning import DriveCell, Learned, learn
+from latentarm_research.studies.alignment.drives_learning import AlignedDriveCell, Learned, learn
 from latentarm_research.studies.alignment.preset import (
     ALL_PRIORS,
     IDEAL,
@@ -43,7 +43,7 @@ PATH_HZ: Final = 10.0
 
 
 @dataclass(frozen=True, eq=False)
-class Driven:
+class AlignedDrive:
     """One drive.
 
     Attributes:
@@ -76,8 +76,8 @@ class DrivesResult:
         drive_s: how long the drives took, s.
     """
 
-    cell: DriveCell
-    drives: Mapping[str, tuple[Driven, ...]]
+    cell: AlignedDriveCell
+    drives: Mapping[str, tuple[AlignedDrive, ...]]
     errors: Mapping[str, FloatArray]
     directions: FloatArray
     speed_m_s: float
@@ -86,12 +86,12 @@ class DrivesResult:
     drive_s: float
 
 
-def drive_cells(preset: Preset, seed: int) -> list[DriveCell]:
+def drive_cells(preset: Preset, seed: int) -> list[AlignedDriveCell]:
     """One cell per kind of model."""
-    return [DriveCell(model, preset, seed) for model in preset.drives.models]
+    return [AlignedDriveCell(model, preset, seed) for model in preset.drives.models]
 
 
-def measure_drives(cell: DriveCell) -> DrivesResult:
+def measure_drives(cell: AlignedDriveCell) -> DrivesResult:
     """Learn, and drive in every condition.
 
     The figures are the same to the last bit in whatever process this runs.
@@ -115,7 +115,7 @@ def measure_drives(cell: DriveCell) -> DrivesResult:
         )
 
 
-def drive_all(cell: DriveCell, learned: Learned, condition: str) -> tuple[Driven, ...]:
+def drive_all(cell: AlignedDriveCell, learned: Learned, condition: str) -> tuple[AlignedDrive, ...]:
     """All drives of one condition of `DRIVEN`; models take turns.
 
     Starts and the simulated person's random choices depend only on the study's seed, the goal and the drive's
@@ -129,7 +129,7 @@ def drive_all(cell: DriveCell, learned: Learned, condition: str) -> tuple[Driven
     )
 
 
-def drive(setup: Setup, model_seed: int, goal: int, manner: str, rng: np.random.Generator) -> Driven:
+def drive(setup: Setup, model_seed: int, goal: int, manner: str, rng: np.random.Generator) -> AlignedDrive:
     """One drive: to the goal, and on to stab or scoop there.
 
     Args:
@@ -145,7 +145,7 @@ def drive(setup: Setup, model_seed: int, goal: int, manner: str, rng: np.random.
     at_the_end = trace.figures.time_s if trace.figures.success else None
     reached_s = next((record.time_s for record in records if _there(task, goal, record)), at_the_end)
     until = trace.time_s <= (np.inf if reached_s is None else reached_s)
-    return Driven(
+    return AlignedDrive(
         goal=goal,
         model_seed=model_seed,
         reached_s=reached_s,

@@ -27,7 +27,7 @@ from latentarm_research.metrics.drives import GoalDrive, goal_drive_rows
 from latentarm_research.metrics.ending import Ending
 from latentarm_research.metrics.undone import undone_share
 from latentarm_research.people.catalogue import PEOPLE, usual_operator
-from latentarm_research.studies.compare.cell import CellResult
+from latentarm_research.studies.compare.cell import FoldResult
 from latentarm_research.studies.compare.datasets import Dataset
 from latentarm_research.studies.compare.preset import Stream
 from latentarm_research.studies.streams import sequence
@@ -40,7 +40,7 @@ MODES: Final = "end_effector"
 
 
 @dataclass(frozen=True, eq=False)
-class DriveCell:
+class ModelDriveCell:
     """One drive.
 
     Attributes:
@@ -89,13 +89,13 @@ class DriveResult:
 
 def drive_cells(
     datasets: Sequence[Dataset],
-    results: Sequence[CellResult],
+    results: Sequence[FoldResult],
     ours: str,
     noise_rad: float,
     drives: int | None,
     limit_s: float,
     seed: int,
-) -> list[DriveCell]:
+) -> list[ModelDriveCell]:
     """Every held-out episode once with each controller.
 
     Args:
@@ -114,7 +114,7 @@ def drive_cells(
     }
     models = [name for name in dict.fromkeys((ours, BESIDE)) if any(name == key[1] for key in decoders)]
     return [
-        DriveCell(
+        ModelDriveCell(
             dataset, episode, controller, decoders.get((dataset.name, controller, fold.index)), limit_s, seed
         )
         for dataset in datasets
@@ -124,7 +124,7 @@ def drive_cells(
     ]
 
 
-def measure_drive_cell(cell: DriveCell) -> DriveResult:
+def measure_drive_cell(cell: ModelDriveCell) -> DriveResult:
     """Drive once; the start and the operator's randomness depend on the episode, not on the controller."""
     with threadpool_limits(limits=1):
         began = perf_counter()
@@ -156,7 +156,7 @@ def measure_drive_cell(cell: DriveCell) -> DriveResult:
     )
 
 
-def drive_label(cell: DriveCell) -> str:
+def drive_label(cell: ModelDriveCell) -> str:
     """What a drive is called when it fails."""
     return f"{cell.dataset.name}, drive of episode {cell.episode} with {cell.controller}"
 

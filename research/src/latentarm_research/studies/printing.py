@@ -1,4 +1,4 @@
-"""The report's page as PDF, printed by a Chromium where this machine has one."""
+"""A report's page as PDF, printed by a Chromium where this machine has one."""
 
 import os
 import shutil
@@ -10,14 +10,16 @@ from typing import Final
 
 from latentarm.core.files import written_whole
 
+HTML: Final = "report.html"
+PDF: Final = "report.pdf"
+
 NAMES: Final = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 """Of the programs that print, in the order in which they are looked for."""
 
 LONGEST_S: Final = 120.0
 
-WITHOUT: Final = (
-    "No Chromium is installed, so there is no PDF: open report.html in a browser and print it to a file."
-)
+WITHOUT: Final = "There is no PDF, because no Chromium is installed: print the page from a browser."
+NOT_PRINTED: Final = "There is no PDF, because Chromium could not print the page: print it from a browser."
 
 
 def find_browser() -> str | None:
@@ -25,22 +27,24 @@ def find_browser() -> str | None:
     return next((path for name in NAMES if (path := shutil.which(name))), None)
 
 
-def print_page(browser: str, page: Path, pdf: Path) -> bool:
+def print_page(page: Path, pdf: Path) -> str:
     """Print a page to a PDF, whole or not at all.
 
     Args:
-        browser: a Chromium.
         page: the HTML file.
         pdf: the file to write.
 
     Returns:
-        Whether the browser printed it.
+        Why there is no PDF, in a sentence; empty where there is one.
 
     Raises:
         UserError: the file cannot be written.
     """
+    browser = find_browser()
+    if browser is None:
+        return WITHOUT
     with TemporaryDirectory(ignore_cleanup_errors=True) as folder:
-        printed = Path(folder) / "report.pdf"
+        printed = Path(folder) / PDF
         command = [
             browser,
             "--headless=new",
@@ -55,12 +59,12 @@ def print_page(browser: str, page: Path, pdf: Path) -> bool:
         try:
             done = subprocess.run(command, capture_output=True, timeout=LONGEST_S, check=False)
         except (OSError, subprocess.TimeoutExpired):
-            return False
+            return NOT_PRINTED
         if done.returncode != 0 or not printed.is_file():
-            return False
+            return NOT_PRINTED
         with written_whole(pdf) as part:
             shutil.copyfile(printed, part)
-    return True
+    return ""
 
 
 def _sandboxed() -> Sequence[str]:
