@@ -1,31 +1,28 @@
 """Fit the SIMULATED people to half of the persons of a public study, and predict the other half.
 
 The study is AutonomyFitts (Pan et al., HRI 2025): 24 people move a Franka's tool by a Falcon from target to
-target on rings, 0.118 or 0.236 m apart and 0.01 or 0.02 m wide. Only trials without autonomy count. Fetch
-https://github.com/mpan31415/AutonomyFitts yourself; nothing of it is shipped here. For example:
-
-    python scripts/people_from_logs.py AutonomyFitts --out people_from_logs.json
+target on rings, 0.118 or 0.236 m apart and 0.01 or 0.02 m wide. Only trials without autonomy count. Nothing
+of the study is shipped here.
 """
 
-import argparse
-import json
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, replace
 from functools import cache
-from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, final
 
 import numpy as np
 from scipy.stats import norm
 
 from latentarm.core.types import FloatArray
-from ring_movements import (
+from latentarm_research.measurements.measurement import Outcome, Work, line
+from latentarm_research.measurements.options import People
+from latentarm_research.measurements.ring_movements import (
     CORRECTIONS,
     ERROR,
     PERSON,
+    PERSONS,
     RING,
     RINGS,
-    SEED,
     TIME,
     TRIAL,
     Figures,
@@ -33,6 +30,7 @@ from ring_movements import (
     simulated,
 )
 
+MEASURES: Final = ("time", "error", "corrections")
 NAMES: Final = ("push_variation", "decision_s", "full_m_s", "learning", "own_speed_width")
 """What is fitted, in turn; then the first three once more."""
 
@@ -40,6 +38,42 @@ FACTORS: Final = (0.7, 1.4)
 """Steps of the fit."""
 
 
+def measure(options: People, work: Work) -> Outcome:
+    """How well the others, a line, and simulated people before and after the fit predict held-out persons."""
+    rows = logged(options.clone)
+    chosen = np.random.default_rng(work.seed).permutation(PERSONS)[: PERSONS // 2]
+    fitted, held_out = (rows[np.isin(rows[:, PERSON], chosen) == one] for one in (True, False))
+    trials = [
+        sorted({(int(one[TRIAL]), int(one[RING])) for one in rows[rows[:, PERSON] == person]})
+        for person in range(PERSONS)
+    ]
+
+    @cache
+    def score(figures: Figures) -> float:
+        by = Prediction(simulated(figures, options.people, trials, work.seed))
+        return float(by.scores(fitted).sum(axis=1).mean())
+
+    # How fast the device is at full deflection says nothing of people: it is fitted for those of before too.
+    before = climbed(Figures(0.35), ["full_m_s"], score)
+    after = climbed(before, (*NAMES, *NAMES[:3]), score)
+    by = {
+        "the other half of the persons": Prediction(fitted),
+        "the same, by a line over the index of difficulty": Prediction(fitted, lines=True),
+        **{
+            f"simulated people, {name}": Prediction(simulated(figures, 4 * options.people, trials, work.seed))
+            for name, figures in (("not fitted", before), ("fitted to the other half", after))
+        },
+    }
+    found = [line("people", name, len(held_out), one.figures(held_out)) for name, one in by.items()]
+    fits = {
+        "before": asdict(before),
+        "after": asdict(after),
+        "fitted_persons": (np.sort(chosen) + 1).tolist(),
+    }
+    return Outcome([row for rows in found for row in rows], documents={"fit.json": fits})
+
+
+@final
 class Prediction:
     """Of single movements, by others: log-normal times and errors, and corrections up to 6, in each cell.
 
@@ -66,24 +100,22 @@ class Prediction:
         normal = norm.logpdf(logs, self._middle[cells], self._width[cells])
         return np.column_stack([normal, np.log(self._shares[cells, counts])])
 
-    def figures(self, rows: FloatArray) -> dict[str, Any]:
-        """How well a movement is predicted, in time, error and corrections: nats, and intervals' coverage.
-
-        Of persons, how many mean logarithms of time the intervals over persons cover.
-        """
+    def figures(self, rows: FloatArray) -> dict[str, float]:
+        """Mean log densities of movements, nats; coverage of movements, %, and of persons' mean times."""
         logs, counts, cells, persons = _taken_apart(rows)
-        found: dict[str, Any] = {"nats": self.scores(rows).mean(axis=0).tolist()}
-        share, below = (
-            norm.cdf(logs, self._middle[cells], self._width[cells]),
-            np.cumsum(self._shares, axis=1),
-        )
+        nats = self.scores(rows).mean(axis=0)
+        found = {f"{name}_nats": one for name, one in zip(MEASURES, nats, strict=True)}
+        found["all_nats"] = nats.sum()
+        share = norm.cdf(logs, self._middle[cells], self._width[cells])
+        below = np.cumsum(self._shares, axis=1)
         for size in (0.5, 0.9):
             low, high = 0.5 - size / 2.0, 0.5 + size / 2.0
             least, most = (below < low).sum(axis=1)[cells], (below < high).sum(axis=1)[cells]
             inside = np.column_stack([(share >= low) & (share <= high), (counts >= least) & (counts <= most)])
-            found[f"covered_{size}"] = inside.mean(axis=0).tolist()
+            for name, one in zip(MEASURES, 100.0 * inside.mean(axis=0), strict=True):
+                found[f"{name}_in_{100 * size:g}_percent"] = one
             ends = norm.ppf([low, high], self._persons.mean(), self._persons.std(ddof=1))
-            found[f"persons_{size}"] = int(((persons >= ends[0]) & (persons <= ends[1])).sum())
+            found[f"persons_in_{100 * size:g}_%"] = ((persons >= ends[0]) & (persons <= ends[1])).sum()
         return found
 
 
@@ -108,53 +140,3 @@ def climbed(figures: Figures, names: Sequence[str], score: Callable[[Figures], f
                 if improves:
                     figures, best = tried, scored
     return figures
-
-
-def main() -> None:
-    """Fit, predict, print and write."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("clone", type=Path, help="of AutonomyFitts")
-    parser.add_argument(
-        "--people", type=int, default=4, help="simulated in each try; four times as many predict"
-    )
-    parser.add_argument("--out", type=Path, default=Path("people_from_logs.json"))
-    options = parser.parse_args()
-    rows = logged(options.clone)
-    chosen = np.random.default_rng(SEED).permutation(24)[:12]
-    fitted, held_out = (rows[np.isin(rows[:, PERSON], chosen) == one] for one in (True, False))
-    trials = [
-        sorted({(int(one[TRIAL]), int(one[RING])) for one in rows[rows[:, PERSON] == person]})
-        for person in range(24)
-    ]
-
-    @cache
-    def score(figures: Figures) -> float:
-        by = Prediction(simulated(figures, options.people, trials))
-        nats = float(by.scores(fitted).sum(axis=1).mean())
-        print(f"{figures}: {nats:.3f} nats a movement", flush=True)
-        return nats
-
-    # How fast the device is at full deflection says nothing of people: it is fitted for those of before too.
-    before = climbed(Figures(0.35), ["full_m_s"], score)
-    after = climbed(before, (*NAMES, *NAMES[:3]), score)
-    by = {
-        "line": Prediction(fitted, lines=True),
-        "fitted_persons": Prediction(fitted),
-        "simulated_before": Prediction(simulated(before, 4 * options.people, trials)),
-        "simulated_after": Prediction(simulated(after, 4 * options.people, trials)),
-    }
-    written = {
-        "fitted_persons": sorted(int(one) + 1 for one in chosen),
-        "movements": [len(fitted), len(held_out)],
-        "before": asdict(before),
-        "after": asdict(after),
-        "held_out": {name: one.figures(held_out) for name, one in by.items()},
-    }
-    options.out.write_text(json.dumps(written, indent=2) + "\n", encoding="utf-8")
-    print(json.dumps(written, indent=2))
-
-
-if __name__ == "__main__":
-    main()

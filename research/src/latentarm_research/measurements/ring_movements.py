@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from pathlib import Path
-from typing import Final
+from typing import Final, final
 
 import numpy as np
 from scipy.signal import find_peaks, savgol_filter
@@ -25,8 +25,7 @@ from latentarm_research.people.person import SimulatedPerson
 from latentarm_research.people.population import TRAITS, draw_people
 from latentarm_research.people.traits import Traits
 
-SEED: Final = 39
-"""Of the simulated people, and of the halves of the study's persons."""
+PERSONS: Final = 24
 
 RINGS: Final = np.array([(0.06, 0.02), (0.12, 0.02), (0.06, 0.01), (0.12, 0.01)])
 """Radius and width of targets, m. A cell is a ring, and 4 more in the second half of the trials."""
@@ -69,7 +68,7 @@ def logged(clone: Path) -> FloatArray:
     """The movements of the study's persons without autonomy."""
     rows = list[FloatArray]()
     csv.field_size_limit(2**24)
-    for person in range(24):
+    for person in range(PERSONS):
         folder = clone / f"ros2_ws/src/cpp_pubsub/data_logging/csv_logs/part{person + 1}"
         with (folder / f"part{person + 1}_header.csv").open(newline="") as header:
             trials = [one for one in csv.DictReader(header) if one["alpha_id"] == "5"]
@@ -84,9 +83,10 @@ def logged(clone: Path) -> FloatArray:
     return np.array(rows)
 
 
+@final
 @dataclass(frozen=True)
 class Figures:
-    """What is fitted: the study's device at full deflection, m/s; medians over people; a spread.
+    """The figures that are fitted: the study's device at full deflection, m/s; medians over people; a spread.
 
     Where nothing is given, the people are those of before.
     """
@@ -105,7 +105,9 @@ class Figures:
         return replace(drawn, **traits, own_speed=min(share, 1.0))
 
 
-def simulated(figures: Figures, number: int, trials: Sequence[Sequence[tuple[int, int]]]) -> FloatArray:
+def simulated(
+    figures: Figures, number: int, trials: Sequence[Sequence[tuple[int, int]]], seed: int
+) -> FloatArray:
     """The movements of so many people, who take turns with the study's persons' trials and rings."""
     with tempfile.TemporaryDirectory() as folder:
         (model := Path(folder) / "plane.xml").write_text(PLANE, encoding="utf-8")
@@ -113,14 +115,12 @@ def simulated(figures: Figures, number: int, trials: Sequence[Sequence[tuple[int
     home = robot.chain.forward(np.zeros(2))
     controller = EndEffectorController(robot, figures.full_m_s, modes=AxisModes(("x-y",), ((0, 1),)))
     angle, rows = 2.0 * np.pi * ORDER / len(ORDER), list[FloatArray]()
-    for drawn in draw_people(number, SEED):
+    for drawn in draw_people(number, seed):
         traits = figures.person(drawn)
         for trial, ring in trials[traits.number % len(trials)]:
-            targets, within_m = (
-                RINGS[ring, 0] * np.stack([np.cos(angle), np.sin(angle)], axis=1),
-                RINGS[ring, 1] / 2,
-            )
-            rng = np.random.default_rng([SEED, traits.number, trial])
+            targets = RINGS[ring, 0] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+            within_m = RINGS[ring, 1] / 2
+            rng = np.random.default_rng([seed, traits.number, trial])
             operator = SimulatedPerson(robot, traits.person(trial - 1), LOG_S, LoopLimits(dead_zone=0.02))
             samples, ends_s = [targets[0]], [0.0]
             while len(ends_s) < len(ORDER):
