@@ -1,7 +1,7 @@
 """`latentarm measure`: what is behind figures of the documentation, a command for each measurement."""
 
 import sys
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -9,7 +9,7 @@ from tyro.conf import arg
 
 from latentarm.commands.configuration import Command, write_options
 from latentarm.commands.options import Jobs, Json, Seed
-from latentarm.commands.output import refuse, say, show
+from latentarm.commands.output import note, say, show
 from latentarm_research.measurements.catalogue import MEASUREMENTS, load_measurement
 
 
@@ -65,11 +65,12 @@ def _measure(name: str, own: Any, common: Common, out: Path) -> int:
     check_seed(common.seed)
     check_processes(common.jobs, "joblib")
     words = f"measure {name}"
-    about = {"study": words, "seed": common.seed, "options": asdict(own)}
+    command = command_of(name, own, common.seed)
+    about = {"study": words, "command": command}
     ResultsFolder(words, ("results.json", "results.md")).claim(out, about)
     work = Work(common.seed, common.jobs, not common.json and sys.stderr.isatty())
     outcome = load_measurement(name)(own, work)
-    page = page_of(MEASUREMENTS[name].summary, outcome, command_of(name, own, common.seed))
+    page = page_of(MEASUREMENTS[name].summary, outcome, command)
     write_text(out / "results.md", page)
     for file, document in outcome.documents.items():
         write_json(out / file, document)
@@ -79,7 +80,7 @@ def _measure(name: str, own: Any, common: Common, out: Path) -> int:
         show(outcome.rows, json=True)
     else:
         print(page)
-    refuse([f"a limit is broken: {sentence}" for sentence in outcome.broken])
+    note([f"a limit is broken: {sentence}" for sentence in outcome.broken])
     say(f"Page and results.json are in {out}/ (begin with {out}/results.md).", common.json)
     return 1 if outcome.broken else 0
 

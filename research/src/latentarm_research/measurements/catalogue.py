@@ -53,11 +53,6 @@ MEASUREMENTS: Final[Mapping[str, Measurement]] = {
         options.WayBack,
         {"kinds": ("pca",), "starts": 2, "steps": 50},
     ),
-    "people": Measurement(
-        "Predict movements of the people of a public study by simulated people fitted to other people.",
-        options.People,
-        {"people": 1},
-    ),
     "calibration": Measurement(
         "Measure what is calibrated of the simulated people: pushes and mode switches.",
         options.Calibrating,

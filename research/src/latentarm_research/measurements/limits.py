@@ -25,7 +25,12 @@ from latentarm_research.measurements.pushing import HARMS, Pusher, scene
 
 PUSH_TICKS: Final = 200
 REST_TICKS: Final = 40
-LIMITS: Final = ("joint_position_rad", "joint_speed_rad_s", "link_speed_m_s", "clearance_m")
+LIMITS: Final = (
+    ("joint_position", "rad"),
+    ("joint_speed", "rad_s"),
+    ("link_speed", "m_s"),
+    ("clearance", "m"),
+)
 
 
 def measure(options: Limits, work: Work) -> Outcome:
@@ -39,8 +44,9 @@ def measure(options: Limits, work: Work) -> Outcome:
             continue
         excess = np.concatenate([each for each, _ in mine])
         figures: dict[str, float] = {"ticks": len(excess), "stops": sum(stopped for _, stopped in mine)}
-        for limit, worst, ticks in zip(LIMITS, excess.max(axis=0), (excess > 0.0).sum(axis=0), strict=True):
-            figures |= {f"past_{limit}": max(0.0, worst), f"past_{limit.split('_')[0]}_ticks": ticks}
+        passed = (excess.max(axis=0), (excess > 0.0).sum(axis=0))
+        for (limit, unit), worst, ticks in zip(LIMITS, *passed, strict=True):
+            figures |= {f"past_{limit}_{unit}": max(0.0, worst), f"past_{limit}_ticks": ticks}
         figures["least_distance_mm"] = 1000 * (SafetyConfig().clearance - excess[:, 3].max())
         rows += line("limits", f"{late} ticks late", len(mine), figures)
     return Outcome(rows)

@@ -86,14 +86,6 @@ class WayBack:
 
 
 @dataclass(frozen=True)
-class People:
-    """Options of ``people``."""
-
-    clone: Annotated[Path, arg(help="Clone of github.com/mpan31415/AutonomyFitts, which is not shipped.")]
-    people: Annotated[int, arg(help="Simulated in each try of the fit; four times as many predict.")] = 4
-
-
-@dataclass(frozen=True)
 class Calibrating:
     """Options of ``calibration``."""
 
