@@ -7,7 +7,9 @@ from pathlib import Path
 
 import pytest
 
+from documentation import ROOT
 from latentarm_research.measurements import catalogue
+from latentarm_research.measurements.calibration import traits
 from latentarm_research.measurements.catalogue import MEASUREMENTS, load_measurement
 from latentarm_research.measurements.measurement import Outcome, line
 
@@ -81,3 +83,7 @@ def test_the_catalogue_has_every_module_with_a_measurement() -> None:
     modules = {path.stem for path in folder.glob("*.py") if "\ndef measure(" in path.read_text("utf-8")}
     assert modules == {name.replace("-", "_") for name in MEASUREMENTS}
     assert all(callable(load_measurement(name)) for name in MEASUREMENTS if name not in ELSEWHERE)
+
+
+def test_the_evidence_has_the_traits_that_simulated_people_have() -> None:
+    assert traits() in (ROOT / "docs/evidence/simulated_people.md").read_text(encoding="utf-8")

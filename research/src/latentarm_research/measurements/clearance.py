@@ -5,7 +5,7 @@ person pushes one point of the arm at the obstacle, or at another part of the ar
 then stops. The filters keep their distance by capsules and distance code that `Judge` does not use.
 """
 
-from functools import cache
+from functools import cache, partial
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Final
@@ -35,7 +35,7 @@ ARMS: Final = ("panda", "planar", "planar2", "ur5e", "jaco")
 def measure(options: Clearance, work: Work) -> Outcome:
     """Drives, drives within twice the clearance, and the least distance of each arm."""
     numbers = range(options.drives)
-    least_m = dict(zip(numbers, work.each(numbered, numbers), strict=True))
+    least_m = dict(zip(numbers, work.each(partial(numbered, work.seed), numbers), strict=True))
     rows, broken = [], list[str]()
     for index, name in enumerate(ARMS):
         mine = {number: one for number, one in least_m.items() if number % len(ARMS) == index}
@@ -50,11 +50,11 @@ def measure(options: Clearance, work: Work) -> Outcome:
     return Outcome(rows, broken)
 
 
-def numbered(number: int) -> float:
+def numbered(seed: int, number: int) -> float:
     """The least distance of a drive by its number, m."""
     harm = HARMS[number // len(ARMS) % len(HARMS)]
     period_s = PERIODS_S[number // 25 % len(PERIODS_S)]
-    return drive(arm(ARMS[number % len(ARMS)]), harm, period_s, np.random.default_rng([0, number]))
+    return drive(arm(ARMS[number % len(ARMS)]), harm, period_s, np.random.default_rng([seed, number]))
 
 
 @cache
