@@ -4,7 +4,6 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final, TypeVar, final
 
-from latentarm.core.parallel.grid import run_grid
 from latentarm.core.types import Row
 
 Cell = TypeVar("Cell")
@@ -59,7 +58,9 @@ class Work:
     bars: bool = False
 
     def each(self, function: Callable[[Cell], Result], cells: Sequence[Cell]) -> list[Result]:
-        """Results of a function of picklable cells, in their order; see `run_grid`."""
+        """Results of a function of picklable cells, in their order."""
+        from latentarm.core.parallel.grid import run_grid  # brings joblib, which no help needs
+
         return run_grid(function, cells, jobs=self.jobs, backend="joblib", label=str, bars=self.bars)
 
 
