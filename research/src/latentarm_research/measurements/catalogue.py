@@ -46,7 +46,7 @@ MEASUREMENTS: Final[Mapping[str, Measurement]] = {
     "published-help": Measurement(
         "Measure what published kinds of help are worth to simulated people at marshmallows, in physics.",
         options.PublishedHelp,
-        {"drives": 1, "beta": (1000.0,), "help": ("hindsight",)},
+        {"drives": 1, "beta": (1000.0,), "kinds": ("hindsight",)},
     ),
     "way-back": Measurement(
         "Measure how far an adversary leads the tool off demonstrations, with a way back and without.",

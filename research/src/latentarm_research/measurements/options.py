@@ -4,10 +4,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
-from tyro.conf import UseAppendAction, arg
+from tyro.conf import arg
 
-Names = UseAppendAction[tuple[str, ...]]
-Numbers = UseAppendAction[tuple[float, ...]]
+Names = tuple[str, ...]
+Numbers = tuple[float, ...]
 
 
 @dataclass(frozen=True)
@@ -73,7 +73,9 @@ class PublishedHelp:
 
     drives: Annotated[int, arg(help="To each marshmallow.")] = 10
     beta: Annotated[Numbers, arg(help="Rationality of equation 24, 1/m².")] = (50.0, 200.0, 1000.0)
-    help: Annotated[Names, arg(help="Kinds of help, of `latentarm drive --assistance`; by default all.")] = ()
+    kinds: Annotated[
+        Names, arg(help="Kinds of help, of `latentarm drive --assistance`; by default all.")
+    ] = ()
 
 
 @dataclass(frozen=True)

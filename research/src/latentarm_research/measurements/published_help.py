@@ -32,7 +32,7 @@ WAYS: Final = (NONE, "hindsight", "low_assist", "high_assist", "full_assist", "p
 
 def measure(options: PublishedHelp, work: Work) -> Outcome:
     """How many arrive, and mean and SD of all drives, failed ones until they ended."""
-    ways = options.help or WAYS
+    ways = options.kinds or WAYS
     if unknown := set(ways) - set(WAYS):
         raise UserError(f"There is no help {min(unknown)!r}: choose from {', '.join(WAYS)}.")
     cells = [(beta, way) for beta in options.beta for way in ways]
