@@ -5,19 +5,16 @@ meet all conditions, or of forty who meet one each: a test should be significant
 injected effect of dz = 0.8 within people, or d = 0.8 between them, it should be found as often as the power
 analysis says. Orders, people's levels, and chance from trial to trial are drawn as a study has them. Nobody
 drives.
-
-``python scripts/study_null_checks.py --out FILE.json`` writes what it found, and fails where a rate is off.
 """
 
-import argparse
-import sys
-from dataclasses import asdict, dataclass, replace
-from pathlib import Path
+from dataclasses import replace
+from typing import Final
 
 import numpy as np
 from statsmodels.stats.power import TTestIndPower, TTestPower
 
-from latentarm.runs.results_folder import write_json
+from latentarm_research.measurements.measurement import Outcome, Work, line
+from latentarm_research.measurements.options import NullChecks
 from latentarm_research.studies.statistics import LEVEL
 from latentarm_research.user_studies.analysis.claims import claims_tested, sides_of
 from latentarm_research.user_studies.catalogue import load_definition
@@ -26,38 +23,35 @@ from latentarm_research.user_studies.designs.catalogue import design_of
 from latentarm_research.user_studies.hypothesis import Claim, Hypothesis
 from latentarm_research.user_studies.record import Trial
 
-PEOPLE = {"within": 12, "between": 40}
-EFFECT = 0.8
+PEOPLE: Final = {"within": 12, "between": 40}
+EFFECT: Final = 0.8
 """In SDs of people's differences within them, of people between."""
 
 PERSON_SD, ORDER_EFFECT, TRIAL_SD, CONDITION_SD = 4.0, -0.1, 1.0, 1.0
 """Of the drawn trials, in units of the chance from trial to trial: how people differ, what each place in the
 order adds, and how much the difference between two conditions varies from person to person."""
 
-TOLERANCE = 0.02
-"""How far the share of false findings may be from 5 %."""
+TOLERANCE: Final = 0.02
+"""How far the share of false findings may be from 5 %, with enough studies."""
 
 
-@dataclass(frozen=True)
-class Check:
-    """One rate.
+Check = tuple[str, float, float]
+"""A test, the share of studies in which it was significant, and the expected share."""
 
-    Attributes:
-        test: which test.
-        expected: share of the studies in which it should be significant.
-        found: in which it was.
-        tolerance: how far the two may be apart.
-    """
 
-    test: str
-    expected: float
-    found: float
-    tolerance: float
-
-    @property
-    def passes(self) -> bool:
-        """Whether they are near enough."""
-        return abs(self.found - self.expected) <= self.tolerance
+def measure(options: NullChecks, work: Work) -> Outcome:
+    """All rates; those that are off break a limit."""
+    rows, broken = [], list[str]()
+    for test, found, expected in checks(options.studies, work.seed):
+        # Two standard errors of a share of so many studies.
+        tolerance = 2.0 * float(np.sqrt(expected * (1.0 - expected) / options.studies))
+        if expected == LEVEL:
+            tolerance = max(TOLERANCE, tolerance)
+        figures = {"significant": found, "expected": expected, "tolerance": tolerance}
+        in_percent = {f"{name}_percent": 100.0 * one for name, one in figures.items()}
+        rows += line("null-checks", test, options.studies, in_percent)
+        broken += [f"{test}: {found:.1%} instead of {expected:.1%}"] * (abs(found - expected) > tolerance)
+    return Outcome(rows, broken, "Trials are drawn; nobody drives.")
 
 
 def drawn(definition: Definition, rng: np.random.Generator, effects: dict[str, float]) -> list[Trial]:
@@ -121,17 +115,10 @@ def t_checks(definition: Definition, claim: Claim, power: float, studies: int, s
     kind, size = ("paired t", "dz") if definition.design == "within" else ("Welch's t", "d")
     itself = rates(definition, claim, 0.0, studies, seed)
     injected = rates(definition, claim, -effect_of(definition), studies, seed + 1)
-    # Two standard errors of a share of so many studies.
-    apart = 2.0 * float(np.sqrt(power * (1.0 - power) / studies))
     return [
-        Check(f"{kind}, a condition against itself", LEVEL, itself["t"], TOLERANCE),
-        Check(
-            f"randomisation test {definition.design} people, a condition against itself",
-            LEVEL,
-            itself["randomisation"],
-            TOLERANCE,
-        ),
-        Check(f"{kind}, {size} = {EFFECT}", power, injected["t"], apart),
+        (f"{kind}, a condition against itself", itself["t"], LEVEL),
+        (f"randomisation test {definition.design} people, the same", itself["randomisation"], LEVEL),
+        (f"{kind}, {size} = {EFFECT}", injected["t"], power),
     ]
 
 
@@ -150,43 +137,12 @@ def checks(studies: int, seed: int) -> list[Check]:
         hypotheses=(Hypothesis("H1", "cVAE is quicker.", (claim,)),),
         printed=(),
     )
+    unpaired = replace(eating, design="between")
     within = float(TTestPower().power(EFFECT, PEOPLE["within"], LEVEL))
     between = float(TTestIndPower().power(EFFECT, PEOPLE["between"] / 2, LEVEL))
     return [
         *t_checks(harmonic, claim, within, studies, seed),
-        Check(
-            "repeated-measures F, no effects",
-            LEVEL,
-            anova_rate(eating, factors, studies, seed + 2),
-            TOLERANCE,
-        ),
+        ("repeated-measures F, no effects", anova_rate(eating, factors, studies, seed + 2), LEVEL),
         *t_checks(apart, claim, between, studies, seed),
-        Check(
-            "F between people, no effects",
-            LEVEL,
-            anova_rate(replace(eating, design="between"), factors, studies, seed + 2),
-            TOLERANCE,
-        ),
+        ("F between people, no effects", anova_rate(unpaired, factors, studies, seed + 2), LEVEL),
     ]
-
-
-def main() -> int:
-    """Run the checks, print and write them; 1 where one fails."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--studies", type=int, default=500)
-    parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--out", type=Path)
-    options = parser.parse_args()
-    found = checks(options.studies, options.seed)
-    for one in found:
-        verdict = "ok" if one.passes else "OFF"
-        rate = f"{one.found:.1%} of {options.studies} studies, {one.expected:.1%} expected"
-        print(f"{one.test}: {rate}: {verdict}")
-    if options.out is not None:
-        entries = [{**asdict(one), "passes": one.passes} for one in found]
-        write_json(options.out, {"studies": options.studies, "seed": options.seed, "checks": entries})
-    return 0 if all(one.passes for one in found) else 1
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -3,10 +3,12 @@
 import socket
 import threading
 from contextlib import suppress
+from typing import Final, final
 
-_MOST = 65536
+_MOST: Final = 65536
 
 
+@final
 class Proxy:
     """Listens on a port of its own and passes bytes both ways.
 

@@ -1,9 +1,5 @@
 """Distances as MuJoCo measures them on the robots' own geoms: no capsule and no distance code of ours."""
 
-import importlib.util
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -11,36 +7,19 @@ from latentarm.robots.assemble import assemble
 from latentarm.robots.kinematics.obstacles import Box, Capsule, HalfSpace, Sphere
 from latentarm.robots.kinematics.reader import read
 from latentarm.robots.limits import JointLimits
-
-SCRIPT = Path(__file__).parents[2] / "scripts" / "clearance_drives.py"
-ARMS = ("panda", "planar", "planar2", "ur5e", "jaco")
-HARMS = ("wall", "box", "ball", "rod", "itself")
-
-
-@pytest.fixture(scope="module")
-def drives():
-    """The script that docs/results.md quotes."""
-    spec = importlib.util.spec_from_file_location("clearance_drives", SCRIPT)
-    module = importlib.util.module_from_spec(spec)
-    sys.modules["clearance_drives"] = module
-    spec.loader.exec_module(module)
-    yield module
-    del sys.modules["clearance_drives"]
-
-
-@pytest.fixture(scope="module")
-def arms(drives):
-    return {name: drives.arm(name) for name in ARMS}
+from latentarm_research.measurements.clearance import ARMS, PERIODS_S, ROUNDING_M, arm, drive
+from latentarm_research.measurements.geom_distances import Judge, outside, solid_geoms
+from latentarm_research.measurements.pushing import HARMS, scene
 
 
 @pytest.mark.parametrize("name", ARMS)
-def test_every_geom_lies_in_the_capsule_that_stands_for_it(drives, arms, name):
-    robot = arms[name]
+def test_every_geom_lies_in_the_capsule_that_stands_for_it(name):
+    robot = arm(name)
     model = robot.model()
     reading = read(model, [tool.name for tool in robot.chain.tools])
     stood_for = 0
-    for geom in drives.solid_geoms(model):
-        gaps, mine = drives.outside(robot, model, reading, geom)
+    for geom in solid_geoms(model):
+        gaps, mine = outside(robot, model, reading, geom)
         if mine:
             stood_for += 1
             assert gaps.max(axis=1).min() < 1e-6
@@ -56,21 +35,21 @@ def test_every_geom_lies_in_the_capsule_that_stands_for_it(drives, arms, name):
         (Box("box", np.array([0.3, 0.0, 0.0]), np.eye(3), np.array([0.1, 0.2, 0.3])), 0.2 - 0.05),
     ],
 )
-def test_the_judge_knows_these_distances(drives, thing, expected):
+def test_the_judge_knows_these_distances(thing, expected):
     """A ball that slides, at its origin."""
     text = """<mujoco><worldbody><body name="ball">
       <joint name="x" type="slide" axis="1 0.5 0.3" range="-1 1"/><geom size="0.05"/><site name="tip"/>
       </body></worldbody></mujoco>"""
     one = np.ones(1)
     robot = assemble("ball", text, ["tip"], JointLimits(-one, one, one, one, one), 0 * one, 1.0)
-    judge = drives.Judge(robot, (thing,))
+    judge = Judge(robot, (thing,))
     assert judge.distances(np.zeros(1), 1.0) == pytest.approx([expected], abs=1e-6)
 
 
-def test_the_judge_does_not_depend_on_how_far_it_looks(drives, arms):
+def test_the_judge_does_not_depend_on_how_far_it_looks():
     """With the Jaco's own settings MuJoCo answers 30 mm or -65 mm, by the largest distance asked for."""
     rng = np.random.default_rng([0, 19])
-    _obstacles, judge, q, _push = drives.scene(arms["jaco"], "rod", rng)
+    _obstacles, judge, q, _push = scene(arm("jaco"), "rod", rng)
     for _ in range(5):
         state = q + rng.normal(size=6) * 0.1
         near, far = judge.distances(state, 0.06), judge.distances(state, 1.0)
@@ -81,19 +60,19 @@ def test_the_judge_does_not_depend_on_how_far_it_looks(drives, arms):
     ("name", "harm"),
     [(name, HARMS[(row + shift) % 5]) for row, name in enumerate(ARMS) for shift in (0, 1, 3)],
 )
-def test_no_arm_comes_nearer_than_it_may(drives, arms, name, harm):
+def test_no_arm_comes_nearer_than_it_may(name, harm):
     rng = np.random.default_rng([7, ARMS.index(name)])
-    assert drives.drive(arms[name], harm, 0.01, rng) >= 0.02 - drives.ROUNDING_M
+    assert drive(arm(name), harm, 0.01, rng) >= 0.02 - ROUNDING_M
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ARMS)
-def test_nor_in_many_more_drives(drives, arms, name):
+def test_nor_in_many_more_drives(name):
     nearest = []
     for seed in range(60):
         rng = np.random.default_rng([11, seed])
-        harm, period_s = drives.HARMS[seed % 5], drives.PERIODS_S[seed // 5 % 3]
-        nearest.append(drives.drive(arms[name], harm, period_s, rng))
-    assert min(nearest) >= 0.02 - drives.ROUNDING_M
+        harm, period_s = HARMS[seed % 5], PERIODS_S[seed // 5 % 3]
+        nearest.append(drive(arm(name), harm, period_s, rng))
+    assert min(nearest) >= 0.02 - ROUNDING_M
     # They are not safe for want of trying.
     assert np.median(nearest) < 0.04

@@ -1,25 +1,19 @@
-"""How hard an arm presses on what its safety filters do not know, and for how long after its stop.
+"""Measure how hard an arm presses on what its safety filters do not know, and for how long after its stop.
 
 A Panda in MuJoCo with 1 kg at its tool, noise on its readings, and readings that are 0 to 3 ticks late, is
 pushed down at 100 Hz with full input, from places over the whole table. Most of the time the stick points
 straight down; the rest of the time anywhere. The thing is the table, or a spring without mass and friction
-that begins above it. The filters do not limit force. What ends the pushing is the following error: the joints
+that begins above it. The filters do not limit force. The following error ends the pushing: the joints
 move less far than they are commanded to. Where that has not happened after 4 s, the person presses Stop.
-
-    python scripts/contact_force.py --drives 8 --zone 0.05
 """
 
-import argparse
 import itertools
+from functools import partial
 from typing import Final, final
 
 import mujoco
 import numpy as np
-from rich.console import Console
-from rich.progress import track
-from rich.table import Table
 
-from enabled_arm import enabled
 from latentarm.arms.mujoco import MujocoArm
 from latentarm.assistance.controllers.end_effector import EndEffectorController
 from latentarm.control.clock import SimulatedClock
@@ -32,7 +26,9 @@ from latentarm.robots.scene.scene import TABLE, TOOL, Scene
 from latentarm.safety.config import SafetyConfig
 from latentarm.safety.zones import Zone
 from latentarm.tasks.inverse_kinematics import solve
-from physics_safety import LATE_TICKS, PERIOD_S, imperfect
+from latentarm_research.measurements.imperfect_arm import LATE_TICKS, PERIOD_S, enabled, imperfect
+from latentarm_research.measurements.measurement import Outcome, Work, line
+from latentarm_research.measurements.options import Force
 
 PRESSED_TICKS: Final = 400
 
@@ -55,8 +51,29 @@ AFTER_S: Final = (0.0, 0.2, 1.0, 3.0)
 
 WATCHED_TICKS: Final = round(AFTER_S[-1] / PERIOD_S)
 
-STIFFNESS_N_MM: Final = (150.0, 75.0, 25.0, 10.0)
-"""Of the springs."""
+
+def measure(options: Force, work: Work) -> Outcome:
+    """Median and largest force at the table, known or not, and at each spring, of the drives that touched."""
+    rows = []
+    springs = [(f"{one:g} N/mm", one) for one in options.stiffness_n_mm]
+    for name, stiffness in [("known table", None), ("table", None), *springs]:
+        place_m = np.array([0.0, 0.0, 0.0 if stiffness is None else SPRING_M])
+        thing = HalfSpace("thing", place_m, np.array([0.0, 0.0, 1.0]))
+        config = SafetyConfig(
+            obstacles=(thing,) if name == "known table" else (),
+            zones=(Zone(thing, options.zone),) if options.zone else (),
+        )
+        cells = [(work.seed, number) for number in range(options.drives)]
+        touched = [one for one in work.each(partial(drive, stiffness, config), cells) if one is not None]
+        found = {"touched_drives": len(touched)}
+        if touched:
+            forces = np.array(touched)
+            median, most = np.median(forces, axis=0), forces.max(axis=0)
+            found |= {"stopped_by_itself": forces[:, -1].sum(), "touch_to_stop_median_s": median[0]}
+            for index, when in enumerate(("peak", *(f"{after_s:g}_s_after" for after_s in AFTER_S)), 1):
+                found |= {f"{when}_median_n": median[index], f"{when}_most_n": most[index]}
+        rows += line("force", name, options.drives, found)
+    return Outcome(rows)
 
 
 @final
@@ -96,14 +113,19 @@ def start(robot: Robot, rng: np.random.Generator) -> FloatArray:
     return solve(robot, Pose(place, home.rotation), robot.home)
 
 
-def drive(number: int, stiffness_n_mm: float | None, config: SafetyConfig, seed: int) -> FloatArray | None:
+def drive(stiffness_n_mm: float | None, config: SafetyConfig, cell: tuple[int, int]) -> FloatArray | None:
     """Push down once.
+
+    Args:
+        stiffness_n_mm: of the spring, N/mm; None for the table.
+        config: what the filters know.
+        cell: seed and number of the drive.
 
     Returns:
         From touch to stop, s; the peak, and the forces at `AFTER_S`, N; whether the arm stopped by itself.
         None where it touched nothing.
     """
-    late, robot, rng = LATE_TICKS[number % len(LATE_TICKS)], panda(), np.random.default_rng([seed, number])
+    late, robot, rng = LATE_TICKS[cell[1] % len(LATE_TICKS)], panda(), np.random.default_rng(cell)
     clock = SimulatedClock()
     arm = MujocoArm(robot, start(robot, rng), clock.now_s, imperfect(late, rng), Scene())
     thing, step = Thing(arm, stiffness_n_mm), Step(robot, EndEffectorController(robot), config, dt_s=PERIOD_S)
@@ -128,37 +150,3 @@ def drive(number: int, stiffness_n_mm: float | None, config: SafetyConfig, seed:
         return None
     after = [forces[stop + round(after_s / PERIOD_S)] for after_s in AFTER_S]
     return np.array([PERIOD_S * (stop - touch), max(forces), *after, stop < touch + PRESSED_TICKS])
-
-
-def main() -> None:
-    """Drive, and print a table."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--drives", type=int, default=8, help="at each thing")
-    parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--zone", type=float, help="speed that a zone about the thing allows, m/s")
-    options = parser.parse_args()
-    at = [f"{after_s:g} s after" for after_s in AFTER_S]
-    table = Table("N/mm", "touched", "stopped by itself", "touch to stop (s)", "peak (N)", *at)
-    cells = [("known table", None), ("table", None), *((f"{one:g}", one) for one in STIFFNESS_N_MM)]
-    for name, stiffness in track(cells, "drives", console=Console(stderr=True)):
-        place_m = np.array([0.0, 0.0, 0.0 if stiffness is None else SPRING_M])
-        thing = HalfSpace("thing", place_m, np.array([0.0, 0.0, 1.0]))
-        config = SafetyConfig(
-            obstacles=(thing,) if name == "known table" else (),
-            zones=(Zone(thing, options.zone),) if options.zone else (),
-        )
-        found = [drive(number, stiffness, config, options.seed) for number in range(options.drives)]
-        figures = np.array([one for one in found if one is not None])
-        row = [name, f"{len(figures)} of {len(found)}"]
-        if len(figures):
-            medians, most = np.median(figures, axis=0), figures.max(axis=0)
-            row += [f"{figures[:, -1].sum():.0f}", f"{medians[0]:.2f}"]
-            row += [f"{one:.0f} / {top:.0f}" for one, top in zip(medians[1:-1], most[1:-1], strict=True)]
-        table.add_row(*row)
-    Console(width=150).print(table, "median / largest of the drives that touched")
-
-
-if __name__ == "__main__":
-    main()

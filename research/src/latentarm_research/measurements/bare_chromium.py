@@ -12,27 +12,37 @@ import signal
 import subprocess
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Final, final
 
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 
-from teleop_page import SOFTWARE_GL, find_chromium, sandboxed
+from latentarm.core.errors import UserError
 
-START_S = 30.0
-ANSWER_S = 20.0
-WINDOW = "--window-size=1280,900"
+NAMES: Final = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+ARGUMENTS: Final = (
+    "--headless=new",
+    "--no-first-run",
+    "--remote-debugging-port=0",
+    "--window-size=1280,900",
+    # It draws without a graphics processor.
+    "--use-gl=angle",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+)
+START_S: Final = 30.0
+ANSWER_S: Final = 20.0
 
 
-@dataclass
+@final
+@dataclass(frozen=True)
 class Tab:
     """One tab of a `Browser`."""
 
-    id: str
     socket: ClientConnection
     numbers: Iterator[int]
 
@@ -53,14 +63,14 @@ class Tab:
         return number
 
     def evaluate(self, script: str) -> Any:
-        """What a script in the tab comes to."""
+        """Value of a script in the tab."""
         answer = self.ask("Runtime.evaluate", expression=script, returnByValue=True)
         if "exceptionDetails" in answer:
             raise RuntimeError(f"{script}: {answer['exceptionDetails']}")
         return answer["result"].get("value")
 
     def wait(self, condition: str, within_s: float) -> bool:
-        """Whether a script in the tab comes to something true in time."""
+        """Whether a script in the tab has a true value in time."""
         end_s = time.monotonic() + within_s
         while time.monotonic() < end_s:
             if self.evaluate(f"Boolean({condition})"):
@@ -80,17 +90,25 @@ class Tab:
         self.socket.close()
 
 
+@final
 class Browser:
     """A running Chromium and its tabs.
 
     Args:
         folder: of its profile.
         arguments: more of its command line.
+
+    Raises:
+        UserError: there is no Chromium here, or it does not start.
     """
 
     def __init__(self, folder: Path, *arguments: str) -> None:
-        command = [find_chromium(), "--headless=new", "--no-first-run", "--remote-debugging-port=0", WINDOW]
-        command += [*SOFTWARE_GL, *sandboxed(), f"--user-data-dir={folder}", *arguments, "about:blank"]
+        found = next((path for name in NAMES if (path := shutil.which(name))), None)
+        if found is None:
+            raise UserError(f"No Chromium is installed: looked for {', '.join(NAMES)}.")
+        # As root, as in containers, it has no sandbox.
+        rights = ["--no-sandbox"] if os.getuid() == 0 else []
+        command = [found, *ARGUMENTS, *rights, f"--user-data-dir={folder}", *arguments, "about:blank"]
         self.process = subprocess.Popen(
             command, start_new_session=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
         )
@@ -100,7 +118,7 @@ class Browser:
     def open(self, address: str, script: str) -> Tab:
         """A new tab in front of the others; ``script`` runs before those of the page."""
         target = self._ask("new?about:blank", "PUT")
-        tab = Tab(target["id"], connect(target["webSocketDebuggerUrl"]).__enter__(), self._numbers)
+        tab = Tab(connect(target["webSocketDebuggerUrl"]), self._numbers)
         tab.ask("Page.enable")
         tab.ask("Page.addScriptToEvaluateOnNewDocument", source=script)
         tab.ask("Page.navigate", url=address)
@@ -124,7 +142,7 @@ class Browser:
 
 
 @contextmanager
-def browser(*arguments: str) -> Iterator[Browser]:
+def browser(*arguments: str) -> Generator[Browser]:
     """A Chromium as long as the block lasts."""
     folder = Path(tempfile.mkdtemp())
     running = Browser(folder, *arguments)
@@ -143,4 +161,4 @@ def _debugging_port(file: Path) -> int:
         if file.exists() and (words := file.read_text().split()):
             return int(words[0])
         time.sleep(0.05)
-    raise SystemExit("Chromium did not start.")
+    raise UserError("Chromium did not start.")
