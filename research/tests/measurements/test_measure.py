@@ -34,8 +34,8 @@ def required(name: str, tmp_path: Path) -> list[object]:
 
 
 SLOW = {"clearance", "zones", "help", "published-help", "way-back", "calibration"}
-# The page's needs a trained run and a Chromium: tests/web/browser/test_fault_times.py.
-ELSEWHERE = {"page-stops"}
+# One needs a trained run and a Chromium (tests/web/browser/test_fault_times.py), one a log that is not ours.
+ELSEWHERE = {"page-stops", "people"}
 
 
 @pytest.mark.parametrize(

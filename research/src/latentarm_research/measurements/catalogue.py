@@ -58,6 +58,11 @@ MEASUREMENTS: Final[Mapping[str, Measurement]] = {
         options.Calibrating,
         {"people": 2, "tasks": ("avoid",), "distances_m": (0.03,)},
     ),
+    "people": Measurement(
+        "Fit the simulated people to half of a public study's persons, and predict the other half.",
+        options.People,
+        {"people": 1},
+    ),
     "null-checks": Measurement(
         "Measure how often the analysis of user studies finds what is not there, and what is.",
         options.NullChecks,

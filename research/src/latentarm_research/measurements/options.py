@@ -112,3 +112,11 @@ class Torque:
     limits: Annotated[Path, arg(help="Limits file, TOML or YAML.")]
     stall_n_m: Annotated[Numbers, arg(help="Torques of motors at standstill, N·m.")] = ()
     poses: Annotated[int, arg(help="Random poses.")] = 20_000
+
+
+@dataclass(frozen=True)
+class People:
+    """Options of ``people``."""
+
+    clone: Annotated[Path, arg(help="A clone of mpan31415/AutonomyFitts.")]
+    people: Annotated[int, arg(help="Simulated in each try of the fit; four times as many predict.")] = 4
