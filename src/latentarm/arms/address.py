@@ -33,9 +33,6 @@ class ArmAddress:
 
         Args:
             names: that the driver knows.
-
-        Raises:
-            UserError: there is another one.
         """
         unknown = sorted(set(self.options) - set(names))
         if unknown:
@@ -50,11 +47,7 @@ def is_address(name: str) -> bool:
 
 
 def parse_address(text: str) -> ArmAddress:
-    """Read an address.
-
-    Raises:
-        UserError: it is not one.
-    """
+    """Read an address."""
     try:
         parts = urlsplit(text)
         host, port = parts.hostname or parts.path, parts.port

@@ -99,22 +99,14 @@ def check_named(name: str) -> None:
 
 
 def check_simulated(name: str) -> None:
-    """Check what ``--arm`` names where time is simulated; see `check_named`.
-
-    Raises:
-        UserError: as `check_named`, and for the address of a real arm.
-    """
+    """Check what ``--arm`` names where time is simulated; see `check_named`."""
     if is_address(name):
         raise _real(name)
     check_named(name)
 
 
 def make_simulated_arm(name: str, robot: Robot, state: FloatArray, now_s: Callable[[], float]) -> Arm:
-    """An arm for simulated time; see `make_arm`.
-
-    Raises:
-        UserError: as `make_arm`, and where the arm is real: it would not wait for simulated time.
-    """
+    """An arm for simulated time; see `make_arm`."""
     check_simulated(name)
     return _simulated(name, make_arm(name, robot, state, now_s))
 
@@ -130,9 +122,6 @@ def make_scene_arm(
         state: (n,), where the arm starts, rad.
         now_s: the clock that readings are timed by, s; never goes back.
         scene: what stands about the arm.
-
-    Raises:
-        UserError: as `make_arm`, and where the arm can have no things about it.
     """
     check_simulated(name)
     factory = ARMS.find(name, "--arm")

@@ -174,9 +174,6 @@ def check_arm(spec: ArmSpec, robot: Robot) -> None:
     Args:
         spec: what the arm's driver knows of it.
         robot: what is to be driven.
-
-    Raises:
-        UserError: the first of `arm_refusals`.
     """
     for refusal in arm_refusals(spec, robot):
         raise UserError(refusal)
@@ -188,9 +185,6 @@ def check_rate(spec: ArmSpec, dt_s: float) -> None:
     Args:
         spec: what the arm's driver knows of it.
         dt_s: the loop's period, s.
-
-    Raises:
-        UserError: it does.
     """
     if spec.rate_hz < (1.0 - 1e-9) / dt_s:
         raise UserError(

@@ -85,9 +85,6 @@ class HelperProcess:
 
     Attributes:
         port: this process's end.
-
-    Raises:
-        UserError: this system has no such sockets.
     """
 
     def __init__(self, module: str) -> None:

@@ -73,9 +73,6 @@ def torque_limits(model: mujoco.MjModel, joints: IntArray, robot: Robot) -> Floa
         model: the robot's own.
         joints: (n,), ids of its joints.
         robot: for what is said where a limit is missing.
-
-    Raises:
-        UserError: neither a joint nor an actuator of it has a limit.
     """
     limits = np.zeros(len(joints))
     for index, joint in enumerate(joints):

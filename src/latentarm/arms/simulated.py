@@ -218,9 +218,6 @@ def check_start(robot: Robot, state: FloatArray) -> None:
     Args:
         robot: whose joints these are.
         state: (n,), where the arm is to start, rad.
-
-    Raises:
-        UserError: ``state`` has the wrong shape, is not finite, or lies outside the limits.
     """
     start = np.array(state, dtype=np.float64)
     if start.shape != (robot.dof,) or not np.isfinite(start).all():

@@ -38,12 +38,7 @@ class PluginWarning(UserWarning):
 @final
 @dataclass(frozen=True)
 class Origin:
-    """The distribution that something comes from.
-
-    Attributes:
-        distribution: its name, as ``pip install`` takes it.
-        version: installed version.
-    """
+    """The distribution that registered a plug-in."""
 
     distribution: str
     version: str
@@ -60,10 +55,10 @@ class Catalogue(Mapping[str, T], Generic[T]):
 
     Args:
         group: of entry points, such as ``latentarm.models``.
-        noun: what one of them is called in messages, such as ``model``.
-        own: what this project has, each as ``package.module:attribute``.
-        check: makes the family's object of what was imported; raises TypeError or ValueError, with a reason,
-            for anything else.
+        noun: the word for one of them in messages, such as ``model``
+        own: this project's, each as ``package.module:attribute``
+        check: makes the family's object of an import; raises TypeError or ValueError, with a reason, for
+            anything else
     """
 
     def __init__(
@@ -96,13 +91,8 @@ class Catalogue(Mapping[str, T], Generic[T]):
     def find(self, name: str, where: str, origin: str | None = None) -> T:
         """The thing that a file or a person names.
 
-        Args:
-            name: as it is written there.
-            where: the file and field, or the option, for the message.
-            origin: the distribution that it came from when the file was written, if that is known.
-
-        Raises:
-            UserError: nobody registered that name, or it does not load.
+        ``where`` is the file and field, or the option. ``origin`` is the distribution that it came from when
+        the file was written, if known.
         """
         if name in self:
             return self[name]
@@ -114,11 +104,7 @@ class Catalogue(Mapping[str, T], Generic[T]):
         raise UserError(f"{where} names the {self._noun} '{name}', which is not one of {', '.join(self)}.")
 
     def usable(self) -> dict[str, T]:
-        """Everything that loads, by name. Warns of each plug-in that does not.
-
-        Warns:
-            PluginWarning: once for each plug-in left out.
-        """
+        """Everything that loads, by name, with a `PluginWarning` for each plug-in that does not."""
         found: dict[str, T] = {}
         for name in self:
             try:
@@ -134,15 +120,7 @@ class Catalogue(Mapping[str, T], Generic[T]):
         return _origin(self._plugins[name][0]) if name in self._plugins else None
 
     def running(self, name: str, act: Callable[[], R]) -> R:
-        """Run code of a registered thing; if it fails, name its distribution.
-
-        Args:
-            name: of the thing.
-            act: runs the code.
-
-        Raises:
-            UserError: the code is a plug-in's and failed.
-        """
+        """Run code of a registered thing; if a plug-in's code fails, name its distribution."""
         if name in self._own:
             return act()
         try:

@@ -1,9 +1,4 @@
-"""The vocabulary shared by every package: small frozen records of NumPy arrays.
-
-Symbols follow Losey et al., "Learning Latent Actions to Control Assistive Robots":
-state ``s`` (rad), action ``a`` (rad/s), latent action ``z``, input ``u``, context ``c``,
-belief ``b``, goal ``g``, end-effector pose ``x``.
-"""
+"""The vocabulary of every package: small frozen records of NumPy arrays, with the symbols of Losey et al."""
 
 import math
 from collections.abc import Mapping
@@ -51,9 +46,8 @@ class Goal:
     """A goal ``g`` that the person may want.
 
     Attributes:
-        name: what a person would call it.
         configuration: (n,), rad.
-        pose: the end-effector pose at ``configuration``.
+        pose: end-effector pose at ``configuration``.
     """
 
     name: str
@@ -63,15 +57,15 @@ class Goal:
 
 @dataclass(frozen=True)
 class Provenance:
-    """Who and what recorded an episode; "" where that is unknown.
+    """Who and what recorded an episode; "" where unknown.
 
     Attributes:
-        person: who drove.
-        run: name of the trained run that they drove with.
+        person: the driver.
+        run: the trained run that they drove with.
         run_fingerprint: of its model's file.
         profile: the person whose alignment was used.
         device: kind of input device, such as ``keyboard``; ``simulated`` for a simulated person.
-        controller: what turned inputs into motion when the episode began.
+        controller: when the episode began.
         version: of this package.
         started_utc: when the episode began, ISO 8601 in UTC.
         complete: whether the recording was ended, rather than cut short.
@@ -96,9 +90,9 @@ class Episode:
         state: (T, n), joint positions, rad.
         timestamp: (T,), s from the episode's start.
         action: (T, m), joint velocities, rad/s, or None where none were recorded.
-        task: what was done, in words.
+        task: in words.
         extras: further features of the dataset by name (``belief``, ``input.u``, ...), each (T, k).
-        provenance: who and what recorded it, or None where nothing is known of that.
+        provenance: None where unknown.
     """
 
     state: FloatArray
@@ -111,14 +105,14 @@ class Episode:
 
 @dataclass(frozen=True)
 class StatedJointLimits:
-    """What somebody states of one joint; None where they do not. A sliding joint has m instead of rad.
+    """Limits that somebody states of one joint; None where unstated. A sliding joint has m instead of rad.
 
     Attributes:
         position: lowest and highest, rad.
         velocity: rad/s.
         acceleration: rad/s².
         jerk: rad/s³.
-        sliding: whether the figures are those of a sliding joint; None where there are no figures.
+        sliding: None where there are no figures.
     """
 
     position: tuple[float, float] | None = None
@@ -130,10 +124,10 @@ class StatedJointLimits:
 
 @dataclass(frozen=True)
 class StatedGripper:
-    """What somebody states of a gripper; see `latentarm.robots.gripper.Gripper`.
+    """Figures that somebody states of a gripper; see `latentarm.robots.gripper.Gripper`.
 
     Attributes:
-        joints: of the robot's model, that move its fingers or its jaw; empty where the model has none.
+        joints: of the robot's model that move the fingers or the jaw; empty where the model has none.
         width: the largest opening, m.
         speed: the fastest change of the opening, m/s.
         force: the largest force between the fingers, N.
@@ -147,12 +141,11 @@ class StatedGripper:
 
 @dataclass(frozen=True)
 class StatedLimits:
-    """What somebody states of a robot's limits, as in a limits file.
+    """Limits that somebody states of a robot, as in a limits file.
 
     Attributes:
-        joints: by name; joints that nothing is said of are left out.
-        tool_speed: largest speed of the tool, m/s, or None.
-        gripper: its gripper, or None where nothing is said of one.
+        joints: by name, without unstated ones.
+        tool_speed: m/s.
     """
 
     joints: Mapping[str, StatedJointLimits]
@@ -165,16 +158,14 @@ class Demonstrations:
     """The dataset ``D`` as stored on disk: whole episodes of one robot.
 
     Attributes:
-        episodes: the episodes, all with the same n.
+        episodes: all with the same n.
         rate_hz: nominal sampling rate.
-        joint_names: n names.
         robot: name or model path of the robot, or "" where unknown.
         goals: the discrete goals ``G``, empty where none are known.
-        import_record: what importing decided about units, joints and so on, by subject, in words; empty for
+        import_record: decisions of the import about units, joints and so on, by subject, in words; empty for
             demonstrations that were never imported.
-        end_effector: which site, body or link of a model file is the end-effector; None where the robot
-            has but one.
-        limits: what was stated of the robot's limits, or None.
+        end_effector: site, body or link of the model file; None where the robot has but one.
+        limits: as stated, or None.
         objects: names of the K things whose poses the feature ``observation.environment_state`` (T, 7 K)
             holds: position, m, and quaternion (w, x, y, z), in the base frame; empty where it holds none.
     """
@@ -196,7 +187,7 @@ class Demonstrations:
 
     @property
     def warnings(self) -> list[str]:
-        """What importing warned of, now or before."""
+        """Warnings of this import and earlier ones."""
         return [said for subject, said in self.import_record.items() if subject.endswith("warning")]
 
 
@@ -204,17 +195,15 @@ class Demonstrations:
 class Pairs:
     """Context-action pairs ``(c, a)`` drawn from demonstrations.
 
-    The action is always taken from the states as they were demonstrated. State noise, where
-    asked for, is added to ``context`` afterwards, so that it can never be reconstructed from
-    the action: ``clean_context`` is the same context without it.
+    The action always comes from the states as they were demonstrated. State noise is added to ``context``
+    only, so that nobody can reconstruct it from the action.
 
     Attributes:
-        context: (N, c), what the decoder sees; its first n entries are the state, rad.
+        context: (N, c); its first n entries are the state, rad.
         clean_context: (N, c), ``context`` before state noise.
         action: (N, m), noise-free joint velocity, rad/s.
-        episode: (N,), index of the episode that each pair comes from.
-        held: (N, K), which of the things in the context move with the arm's tool; none where the arm is not
-            known.
+        episode: (N,), index of each pair's episode.
+        held: (N, K), whether each thing in the context moves with the tool; K = 0 where the arm is unknown.
     """
 
     context: FloatArray
@@ -226,16 +215,16 @@ class Pairs:
 
 @dataclass(frozen=True)
 class Context:
-    """What the robot knows when it decodes an input; a decoder sees some of it (`latentarm.core.context`).
+    """Everything that a decoder may see at one moment; `latentarm.core.context` picks its features.
 
     Attributes:
         state: (n,), joint positions ``s``, rad.
         belief: (G,), probability over goals ``b``; empty where there are no goals.
-        gripper: (1,), opening of the gripper, m; empty where it is not known.
+        gripper: (1,), opening of the gripper, m; empty where unknown.
         objects: (K, 9), poses in the base frame of the things that matter: position, m, and the first two
             columns of the rotation matrix (`latentarm.robots.kinematics.pose_rows`); empty where unknown.
-        gripper_target: (1,), opening that the gripper was told to go to, m; until it was told anything, its
-            own, and 0 where it holds something. Empty where that is not known.
+        gripper_target: (1,), commanded opening, m: its own before the first command, and 0 where it holds
+            something; empty where unknown.
     """
 
     state: FloatArray
@@ -251,16 +240,15 @@ GripperAsk = Literal["open", "close", "toggle"]
 
 @dataclass(frozen=True)
 class Input:
-    """What the person does with their interface at one moment.
+    """A person's input at one moment.
 
     Attributes:
         u: (d,), each entry in [-1, 1].
         switch_mode: the person asks for the controller's next mode.
-        gripper: what the person asks of the gripper; None asks nothing. Like a mode switch it counts once,
-            however long it is held.
+        gripper: request to the gripper, or None. Like a mode switch it counts once, however long it is held.
         pace: share of the speed, in [0, 1], that a second person leaves the first. It counts after all
             limits, for everything that moves: what the robot adds, a way back, the gripper.
-        opens: whether the person holds down what opens the gripper of an arm that is not enabled.
+        opens: whether the person holds down the button that opens the gripper of a disabled arm.
     """
 
     u: FloatArray
@@ -272,11 +260,11 @@ class Input:
 
 @dataclass(frozen=True)
 class GripperReading:
-    """What a gripper measured at one moment.
+    """A gripper's measurements at one moment.
 
     Attributes:
         width_m: opening between the fingers, m.
-        holding: whether something is held between them.
+        holding: whether it holds something.
     """
 
     width_m: float
@@ -285,14 +273,14 @@ class GripperReading:
 
 @dataclass(frozen=True)
 class Reading:
-    """What an arm measured at one moment.
+    """An arm's measurements at one moment.
 
     Attributes:
         q: (n,), joint positions, rad.
         dq: (n,), joint velocities, rad/s.
-        time_s: when they were measured, on the control loop's clock, s.
+        time_s: of the measurement, on the control loop's clock, s.
         sequence: grows with every new reading, across reconnections too.
-        gripper: of its gripper, or None where it has none.
+        gripper: None where the arm has none.
     """
 
     q: FloatArray
@@ -338,9 +326,8 @@ class Stop:
     Attributes:
         reason: one short sentence for the person, in English.
         untrusted: the readings of the joints cannot be true; a recording ends before them.
-        code: what kind of stop it is, for interfaces in other languages; None where somebody else than this
-            package says why.
-        parameters: what such a sentence names; a name of a number ends in its unit.
+        code: kind of stop, for interfaces in other languages; None for a stop from outside this package.
+        parameters: values in that sentence, by name; a number's name ends in its unit.
     """
 
     reason: str
@@ -351,13 +338,13 @@ class Stop:
 
 @dataclass(frozen=True)
 class GripperCommand:
-    """Where a gripper is to go, and how hard it may press.
+    """A gripper's target, and the force that it may press with.
 
     Attributes:
-        width_m: opening to reach, m.
-        speed_m_s: how fast the opening may change, m/s. At 0 the fingers stay where they are, whatever the
-            width says, and hold what they hold as hard as they do now, and no harder.
-        force_n: how hard the fingers may press together, N; a gripper that holds something keeps this force.
+        width_m: target opening, m.
+        speed_m_s: limit on the opening's rate, m/s. At 0 the fingers stay where they are, whatever the width
+            says, and neither loosen nor tighten their hold.
+        force_n: limit on the force between the fingers, N; a gripper that holds something keeps it.
     """
 
     width_m: float
@@ -367,15 +354,15 @@ class GripperCommand:
 
 @dataclass(frozen=True)
 class Command:
-    """What leaves the safety filter for the robot.
+    """The safety filters' output, for the robot.
 
     Attributes:
         velocity: (n,), rad/s, finite and within limits.
-        duration_s: the robot must stop by itself if no new command arrives within this time.
-        stop: why the arm is being stopped, or None.
-        limited_by: names of the filters that changed what was asked for.
-        gripper: where the gripper is to go, or None where it is to stay as it is. Unlike a velocity it does
-            not run out: what is held must not fall when commands end.
+        duration_s: the robot stops by itself if no new command arrives within this time.
+        stop: why the arm stops, or None.
+        limited_by: names of the filters that changed it.
+        gripper: target of the gripper, or None to leave it as it is. Unlike a velocity it does not run out,
+            so that nothing falls when commands end.
     """
 
     velocity: FloatArray
@@ -387,29 +374,27 @@ class Command:
 
 @dataclass(frozen=True)
 class StepRecord:
-    """Everything that one pass through Algorithm 1 read and decided.
+    """Every value that one pass through Algorithm 1 read and decided.
 
     Attributes:
         time_s: the loop's monotonic clock.
-        state: (n,), ``s``, rad; NaN where the arm's reading could not be used.
-        input: (d,), ``u`` as it was used (zero where it was stale or refused).
+        state: (n,), ``s``, rad; NaN where the arm's reading was unusable.
+        input: (d,), ``u`` as used (zero where it was stale or refused).
         latent: (d,), ``z``.
         action_human: (m,), ``a_h``, rad/s.
         action_assist: (m,), ``a_r``, rad/s.
         alpha: arbitration in [0, 1] (equation 2).
-        belief: (G,), belief that this step used.
-        mode: index of the controller's mode.
-        command: what was sent.
-        bound_rad: radius ``delta / b(g)`` of the ball about the likeliest goal that help towards the
-            goals constrains the arm to (equation 14), rad; NaN without goals or help, and for help that
-            the equation is not about.
-        gripper: what the gripper measured, or None without one.
-        things: (K, 7), where the things about the arm stand, in the order of the episode's header: position,
-            m, and quaternion (w, x, y, z), in the base frame; empty where nobody looks. `Step` does not.
-        pace: share of the speed that a second person left, see `Input.pace`.
-        added: how much of the assistive action was added to the person's: what the filters were asked for is
-            ``(1 - alpha) a_h + (alpha + added) a_r``. 0 where help takes the place of the person's
-            action, as in equation 2.
+        belief: (G,).
+        mode: index in the controller.
+        command: as sent.
+        bound_rad: radius ``delta / b(g)`` of the ball about the likeliest goal that help constrains the arm
+            to (equation 14), rad; NaN without goals or help, and for help that the equation does not cover.
+        gripper: as measured, or None without one.
+        things: (K, 7), poses of the things about the arm in the order of the episode's header: position, m,
+            and quaternion (w, x, y, z), in the base frame. `Step` leaves it empty.
+        pace: see `Input.pace`.
+        added: weight of the assistive action on top of the blend: the filters get ``(1 - alpha) a_h + (alpha
+            + added) a_r``. 0 where help replaces the person's action, as in equation 2.
     """
 
     time_s: float
@@ -431,9 +416,9 @@ class StepRecord:
 
 @dataclass(frozen=True)
 class Row:
-    """One figure of any study, in the one format that every command prints as JSON.
+    """One figure of any study, in the JSON format of every command.
 
-    Absent fields are None. ``measure`` names are snake_case, ``n`` is the number of runs.
+    ``measure`` names are snake_case, ``n`` is the number of runs.
     """
 
     study: str
@@ -449,5 +434,5 @@ class Row:
     paper_sd: float | None = None
 
     def as_json(self) -> dict[str, object]:
-        """Plain mapping, ready for ``json.dumps``."""
+        """The fields by name, ready for ``json.dumps``."""
         return asdict(self)

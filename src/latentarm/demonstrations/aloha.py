@@ -41,9 +41,6 @@ def read_aloha(source: Path, rate_hz: float | None = None, task: str | None = No
         source: the file.
         rate_hz: sampling rate.
         task: what was done; the folder's name by default.
-
-    Raises:
-        UserError: no rate is given, or the file is damaged.
     """
     if rate_hz is None:
         raise UserError(f"{source} is of ALOHA and does not say its rate: pass --rate-hz 50, ALOHA's own.")

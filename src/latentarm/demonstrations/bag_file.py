@@ -43,9 +43,6 @@ def read_bag(
         topic: where the joints are told, if there are several such topics.
         rate_hz: nominal sampling rate; by default that of the timestamps.
         task: what was done; the file's name by default.
-
-    Raises:
-        UserError: `rosbags` is not installed, the topic must be named, or a file is damaged.
     """
     source = files[0]
     messages = [message for file in files for message in _messages(file, topic)]

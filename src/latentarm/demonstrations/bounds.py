@@ -31,9 +31,6 @@ def check_values(source: Path, what: str, count: int) -> None:
         source: file that declares the numbers.
         what: what they are, for the message.
         count: how many the file declares.
-
-    Raises:
-        UserError: there are more than `MAX_VALUES`.
     """
     if count > MAX_VALUES:
         raise UserError(

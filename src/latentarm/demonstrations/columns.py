@@ -62,9 +62,6 @@ def find_columns(
             robot's order; a column is a name or a number, counted from zero. Empty to find them by name.
         gripper: the gripper's column, or None to find it by name.
         source: the file, for the message.
-
-    Raises:
-        UserError: a joint's column cannot be determined, or what the user said does not fit.
     """
     for joint in joints:
         if is_gripper(joint):

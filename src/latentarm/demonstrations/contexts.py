@@ -31,9 +31,6 @@ def episode_contexts(episode: Episode, context: Named, index: int | None = None)
         episode: with T samples.
         context: the features that it sees, see `feature_names`.
         index: number of the episode, for messages.
-
-    Raises:
-        UserError: a feature is unknown, or the episode does not hold it.
     """
     names = feature_names(context)
     where = "An episode" if index is None else f"Episode {index}"
@@ -52,12 +49,7 @@ def episode_contexts(episode: Episode, context: Named, index: int | None = None)
 
 
 def context_layout(demonstrations: Demonstrations, context: Named) -> ContextLayout:
-    """Where the features lie in the contexts of demonstrations.
-
-    Raises:
-        UserError: a feature is unknown, or the demonstrations do not hold it or do not say which things'
-            poses they hold.
-    """
+    """Where the features lie in the contexts of demonstrations."""
     names, first = feature_names(context), demonstrations.episodes[0]
     width = episode_contexts(first, names, 0).shape[1]
     sees_objects = OBJECTS in names or OBJECTS_IN_TOOL in names

@@ -68,9 +68,6 @@ def read_csv(
         rate_hz: nominal sampling rate; by default that of the timestamps.
         task: what was done, where the file has no such column; the file's name by default.
         time_unit: of the timestamps; by default s, or a shorter one where steps are too long for s.
-
-    Raises:
-        UserError: naming the file and the line that cannot be understood.
     """
     table = CsvTable(source)
     header, rows = table.header, table.rows()

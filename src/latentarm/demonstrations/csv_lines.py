@@ -25,11 +25,7 @@ MAX_RECORD_LINES: Final = 100
 
 
 def read_lines(source: Path) -> Iterator[tuple[int, list[str]]]:
-    """Line numbers, from one, and fields of every record that is not empty.
-
-    Raises:
-        UserError: the file cannot be read, is too large, or is no CSV file in UTF-8.
-    """
+    """Line numbers, from one, and fields of every record that is not empty."""
     with opened(source, MAX_TEXT_BYTES) as stream:
         packed = stream.read(len(GZIP)) == GZIP
         stream.seek(0)
@@ -58,9 +54,6 @@ class CsvTable:
 
     Attributes:
         header: names of the columns.
-
-    Raises:
-        UserError: see `read_lines`.
     """
 
     def __init__(self, source: Path) -> None:
@@ -69,11 +62,7 @@ class CsvTable:
         self.header = [name.strip() for name in next(self._lines, (0, []))[1]]
 
     def rows(self) -> Iterator[tuple[int, list[str]]]:
-        """Line numbers and fields of all further records.
-
-        Raises:
-            UserError: there is none, or one has more or fewer fields than the header.
-        """
+        """Line numbers and fields of all further records."""
         number = 0
         for number, fields in self._lines:
             if len(fields) != len(self.header):
@@ -86,11 +75,7 @@ class CsvTable:
             raise UserError(f"{self.source} has no line after its header.")
 
     def number(self, text: str, line: int, column: str) -> float:
-        """A field's number.
-
-        Raises:
-            UserError: it is none.
-        """
+        """A field's number."""
         try:
             return float(text if "." in text else text.replace(",", ".", 1))
         except ValueError as error:

@@ -20,9 +20,6 @@ def locked(folder: Path, lock_file: Path, remedy: str = "wait for it") -> Genera
         folder: what is written.
         lock_file: what all its writers lock; made here and removed afterwards.
         remedy: what to do about another one, for the message.
-
-    Raises:
-        UserError: another program is writing there, or the lock file cannot be made.
     """
     if not lock_file.parent.is_dir():
         raise UserError(f"{folder} cannot be opened: there is no such folder.")
@@ -42,11 +39,7 @@ def locked(folder: Path, lock_file: Path, remedy: str = "wait for it") -> Genera
 
 
 def check_vacant(destination: Path) -> None:
-    """Refuse a destination that holds anything already.
-
-    Raises:
-        UserError: it is a file, or a folder with something in it.
-    """
+    """Refuse a destination that holds anything already."""
     try:
         if destination.is_dir():
             if any(destination.iterdir()):
@@ -64,9 +57,6 @@ def staged_folder(destination: Path) -> Generator[Path]:
     On any error nothing is left behind. After a kill the staging folder ``.NAME.part`` and the lock
     file ``.NAME.lock`` remain. Nothing reads them, and the next attempt at the same destination removes
     them.
-
-    Raises:
-        UserError: the destination is taken, or cannot be written.
     """
     destination = destination.resolve()
     check_vacant(destination)
@@ -99,11 +89,7 @@ def remove_parts(folder: Path) -> None:
 
 
 def remove_files(paths: Iterable[Path]) -> None:
-    """Delete files.
-
-    Raises:
-        UserError: one of them cannot be deleted.
-    """
+    """Delete files."""
     for path in paths:
         try:
             path.unlink(missing_ok=True)

@@ -49,11 +49,7 @@ _RIGID: Final = 1e-3
 
 
 def harmonic_runs(source: Path) -> tuple[Path, ...]:
-    """The runs in a folder, or the folder itself where it is one, in the order of their names.
-
-    Raises:
-        UserError: there are too many.
-    """
+    """The runs in a folder, or the folder itself where it is one, in the order of their names."""
     runs: list[Path] = []
     for folder, inner, _ in os.walk(source):
         here = Path(folder)
@@ -80,9 +76,6 @@ def read_harmonic(runs: Sequence[Path], rate_hz: float | None = None, task: str 
         runs: folders, see `harmonic_runs`.
         rate_hz: nominal sampling rate; by default that of the timestamps.
         task: what was done; the stated goal by default.
-
-    Raises:
-        UserError: naming the file that is missing or cannot be understood; or no run has all morsels.
     """
     episodes: list[Episode] = []
     unseen = count = 0
@@ -148,9 +141,6 @@ class _Table:
 
     Args:
         path: the file.
-
-    Raises:
-        UserError: it is missing, damaged, or has no line after its header.
     """
 
     def __init__(self, path: Path) -> None:
@@ -163,11 +153,7 @@ class _Table:
         return name in self._csv.header
 
     def columns(self, names: Sequence[str]) -> FloatArray:
-        """Columns by name, (T, k).
-
-        Raises:
-            UserError: there is no such column, or it holds something else than numbers.
-        """
+        """Columns by name, (T, k)."""
         for name in names:
             if self._csv.header.count(name) != 1:
                 raise UserError(f"{self.path} must have one column {name!r}, as runs of HARMONIC have.")

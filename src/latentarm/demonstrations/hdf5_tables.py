@@ -24,11 +24,7 @@ MAX_CHUNKS: Final = 100_000
 
 @contextmanager
 def opened_hdf5(source: Path) -> Generator[h5py.File]:
-    """Open a file.
-
-    Raises:
-        UserError: it is missing, too large or damaged; also for what the library raises within.
-    """
+    """Open a file."""
     check_file(source, MAX_FILE_BYTES)
     try:
         with h5py.File(source, "r") as file:
@@ -38,11 +34,7 @@ def opened_hdf5(source: Path) -> Generator[h5py.File]:
 
 
 def group(parent: h5py.Group, name: str, source: Path) -> h5py.Group:
-    """A group of this file.
-
-    Raises:
-        UserError: there is none of that name.
-    """
+    """A group of this file."""
     found = member(parent, name)
     if not isinstance(found, h5py.Group):
         raise UserError(f"{source} has no group {path_in(parent, name)}.")
@@ -60,11 +52,7 @@ def path_in(parent: h5py.Group, name: str) -> str:
 
 
 def table(parent: h5py.Group, name: str, source: Path) -> FloatArray | None:
-    """A plain dataset of numbers (T, k), or None where there is none.
-
-    Raises:
-        UserError: it is no plain table, or in too many pieces.
-    """
+    """A plain dataset of numbers (T, k), or None where there is none."""
     found = member(parent, name)
     if not isinstance(found, h5py.Dataset):
         return None

@@ -143,11 +143,7 @@ def import_demonstrations(
 def import_to(
     source: Path, destination: Path, robot: Robot | None = None, **options: Unpack[ImportOptions]
 ) -> Demonstrations:
-    """`import_demonstrations`, then `write_dataset`; on any error nothing is written to ``destination``.
-
-    Raises:
-        UserError: see those two.
-    """
+    """`import_demonstrations`, then `write_dataset`; on any error nothing is written to ``destination``."""
     check_vacant(destination)
     demonstrations = import_demonstrations(source, robot, **options)
     write_dataset(demonstrations, destination)

@@ -177,10 +177,6 @@ def read_info(root: Path) -> Info:
 
     Args:
         root: the dataset's folder.
-
-    Raises:
-        UserError: there is none, it is another version's, it does not say what it must, or it
-            promises more than an import may hold.
     """
     path = root / INFO_PATH
     if is_missing(path):
@@ -242,9 +238,6 @@ def parse_goals(entries: object, where: str) -> tuple[Goal, ...]:
     Args:
         entries: as `goals_document` gives them.
         where: the file, for messages.
-
-    Raises:
-        UserError: an entry is not a goal.
     """
     try:
         return tuple(

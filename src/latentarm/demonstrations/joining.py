@@ -25,9 +25,6 @@ def join(parts: Mapping[str, Demonstrations]) -> Demonstrations:
 
     Returns:
         With the rate of the first, and the record of each import.
-
-    Raises:
-        UserError: two parts differ in anything that a dataset has one of.
     """
     (where, first), *others = parts.items()
     for name, other in others:

@@ -41,9 +41,6 @@ def read_npz(source: Path, rate_hz: float | None = None, task: str | None = None
         source: the file.
         rate_hz: sampling rate, where the file says none or is wrong.
         task: what was done; the file's name by default.
-
-    Raises:
-        UserError: the file is damaged, holds anything but plain arrays, or lacks a key.
     """
     arrays = _read_arrays(source)
     for key in ("q", "episode_ends"):

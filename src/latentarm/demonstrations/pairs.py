@@ -47,10 +47,6 @@ def make_pairs(
 
     Returns:
         The pairs, episode by episode. Context (N, c), action (N, n) in rad/s.
-
-    Raises:
-        UserError: a parameter makes no sense, a feature of the context or a recorded action is asked for
-            and missing, or nothing moves.
     """
     if window < 1:
         raise UserError(f"The pair window is {window} samples; it must be at least 1.")

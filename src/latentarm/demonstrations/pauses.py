@@ -32,9 +32,6 @@ def without_pauses(demonstrations: Demonstrations, rate_hz: float) -> Demonstrat
 
     Returns:
         Episodes of at least two samples; those in which nothing moves are left out.
-
-    Raises:
-        UserError: nothing moves in any episode.
     """
     episodes = [_moving(episode, rate_hz) for episode in demonstrations.episodes]
     kept = tuple(episode for episode in episodes if episode is not None)

@@ -24,9 +24,6 @@ def check_rate(demonstrations: Demonstrations, source: str) -> None:
     Args:
         demonstrations: validated.
         source: the file, for the message.
-
-    Raises:
-        UserError: see above.
     """
     rate = demonstrations.rate_hz
     if not SLOWEST_HZ <= rate <= FASTEST_HZ:
@@ -56,9 +53,6 @@ def speed_warning(demonstrations: Demonstrations, robot: Robot, source: str, nam
 
     Returns:
         A sentence about the joint that is furthest beyond its limit, or "" where none is.
-
-    Raises:
-        UserError: a joint is faster than `IMPLAUSIBLE_RAD_S` and than its limit.
     """
     limit = robot.limits.velocity
     peak, over, count = np.zeros(robot.dof), 0, 0

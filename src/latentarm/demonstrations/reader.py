@@ -21,11 +21,7 @@ from latentarm.demonstrations.tables import TASK_COLUMN, Table, float_column, in
 
 
 def read_tasks(root: Path) -> list[str]:
-    """Task texts in the order of their indices.
-
-    Raises:
-        UserError: the table of tasks is missing or damaged.
-    """
+    """Task texts in the order of their indices."""
     path = root / "meta/tasks.parquet"
     table = read_table(path, ["task_index", TASK_COLUMN])
     texts = ["; ".join(text) for text in _texts(table.column(TASK_COLUMN), path)]
@@ -35,11 +31,7 @@ def read_tasks(root: Path) -> list[str]:
 
 
 def committed_episodes(root: Path, info: Info) -> Table:
-    """The table of episodes without rows that a killed writer left.
-
-    Raises:
-        UserError: rows are missing or out of order.
-    """
+    """The table of episodes without rows that a killed writer left."""
     folder = root / "meta/episodes"
     paths = sorted(folder.glob("*/*.parquet"))
     if not paths:
@@ -117,9 +109,6 @@ def read_file(
         first: number of its first episode.
         lengths: samples in each of its episodes.
         tasks: what was done in each.
-
-    Raises:
-        UserError: the file is missing, damaged or too large, or an episode is not all there.
     """
     widths = {feature.name: feature.width for feature in info.features} | {"timestamp": 1}
     table = read_table(path, [*widths, "episode_index", "frame_index"])
@@ -160,9 +149,6 @@ def read_episodes_v2(root: Path, info: Info) -> tuple[Episode, ...]:
     Args:
         root: the dataset's folder.
         info: what its ``meta/info.json`` says.
-
-    Raises:
-        UserError: a file is missing, damaged or too large, or an episode is not all there.
     """
     path = root / V2_EPISODES_PATH
     lines = read_bytes(path, MOST_BYTES).splitlines()

@@ -52,9 +52,6 @@ def read_robomimic(
         task: what was done; the environment's name by default, else the file's.
         actions: ``"known"`` keeps actions as described above; ``"joint_velocity"`` takes the
             caller's word that the first n entries are joint velocities in rad/s.
-
-    Raises:
-        UserError: the file is damaged, or not of this layout.
     """
     with opened_hdf5(source) as file:
         data = group(file, "data", source)

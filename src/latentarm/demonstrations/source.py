@@ -39,11 +39,7 @@ class SourceData:
         return self.names or tuple(map(str, range(len(self.demonstrations.episodes))))
 
     def without(self, names: Sequence[str], source: str) -> "SourceData":
-        """All episodes but those of some names.
-
-        Raises:
-            UserError: there is no such episode.
-        """
+        """All episodes but those of some names."""
         known = self.episode_names
         for name in names:
             if name not in known:
@@ -64,9 +60,6 @@ def join_files(files: Mapping[str, SourceData], source: str) -> SourceData:
     Args:
         files: what each holds, by its name.
         source: the folder, for messages.
-
-    Raises:
-        UserError: they do not fit each other.
     """
     first, *others = files.values()
     names = [

@@ -23,9 +23,6 @@ def split_episodes(
 
     Returns:
         Indices (E_train,) and (E_kept,) into ``demonstrations.episodes``, each rising.
-
-    Raises:
-        UserError: there are fewer than two episodes, or the fraction is not within (0, 1).
     """
     episodes = len(demonstrations.episodes)
     if not 0 < fraction < 1:
@@ -38,11 +35,7 @@ def split_episodes(
 
 
 def select_episodes(demonstrations: Demonstrations, episodes: Sequence[int] | IntArray) -> Demonstrations:
-    """The same demonstrations with only the episodes at the given indices, in the given order.
-
-    Raises:
-        UserError: an index names no episode.
-    """
+    """The same demonstrations with only the episodes at the given indices, in the given order."""
     for index in episodes:
         if not 0 <= index < len(demonstrations.episodes):
             raise UserError(f"There is no episode {index}: the dataset has {len(demonstrations.episodes)}.")
@@ -97,9 +90,6 @@ def make_folds(episodes: int, count: int, rng: np.random.Generator) -> tuple[Fol
         episodes: of the dataset.
         count: number of folds.
         rng: which episodes go together, and in which order the others are taken.
-
-    Raises:
-        UserError: there are fewer episodes than folds.
     """
     if episodes < count:
         raise UserError(

@@ -111,11 +111,7 @@ def episode_row(
 
 
 def statistics_json(episodes: Table) -> str:
-    """``meta/stats.json`` from the rows of the table of episodes.
-
-    Raises:
-        UserError: a row holds no statistics.
-    """
+    """``meta/stats.json`` from the rows of the table of episodes."""
     names = [column.split("/")[1] for column in episodes.column_names if column.endswith("/mean")]
     document: dict[str, dict[str, list[Any]]] = {}
     for name in names:
@@ -178,11 +174,7 @@ def task_table(tasks: Sequence[str]) -> Table:
 
 
 def read_table(path: Path, columns: Sequence[str] | None = None) -> Table:
-    """Read a Parquet file, or the named columns of it, once its size is known to be bearable.
-
-    Raises:
-        UserError: it is missing, damaged, too large, or lacks a column.
-    """
+    """Read a Parquet file, or the named columns of it, once its size is known to be bearable."""
     if is_missing(path):
         raise UserError(f"{path} is missing; the dataset is damaged.")
     with opened(path, MAX_FILE_BYTES) as stream, bounded_memory(str(path), os.fstat(stream.fileno()).st_size):
@@ -227,9 +219,6 @@ def float_column(table: Table, name: str, width: int, path: Path) -> FloatArray:
 
     Returns:
         (N, width).
-
-    Raises:
-        UserError: an entry is missing or of another width.
     """
     column = table.column(name).combine_chunks()
     kind = column.type
@@ -250,11 +239,7 @@ def float_column(table: Table, name: str, width: int, path: Path) -> FloatArray:
 
 
 def integer_column(table: Table, name: str, path: Path) -> IntArray:
-    """A column of whole numbers as an array (N,).
-
-    Raises:
-        UserError: an entry is missing or not a whole number.
-    """
+    """A column of whole numbers as an array (N,)."""
     column = table.column(name)
     if column.null_count or not pa.types.is_integer(column.type):
         raise UserError(f"{path}: the column {name} must hold whole numbers.")

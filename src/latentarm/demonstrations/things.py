@@ -33,9 +33,6 @@ def check_things(objects: Sequence[str], episode: Episode, source: str) -> None:
         objects: K names, at least one.
         episode: the first of the dataset; the others have the same features.
         source: the file or folder it came from, for the message.
-
-    Raises:
-        UserError: a name is empty or comes twice, or the feature has not 7 entries for each.
     """
     if not all(objects) or len(set(objects)) != len(objects):
         raise UserError(f"{source}: the names of its things, {', '.join(objects)}, must be distinct.")

@@ -42,9 +42,6 @@ def split_at_gaps(data: SourceData, gaps: Gaps, source: str) -> SourceData:
 
     Returns:
         The same where there is no gap; else with a note in the record. Parts of one sample are left out.
-
-    Raises:
-        UserError: there is a gap, and ``gaps`` is ``"refuse"``.
     """
     found: list[str] = []
     parts: list[tuple[str, Episode]] = []
@@ -91,9 +88,6 @@ def check_one_rate(demonstrations: Demonstrations, names: Sequence[str], source:
         demonstrations: validated.
         names: of the episodes.
         source: the file, for the message.
-
-    Raises:
-        UserError: see above.
     """
     # Of an even number of steps the lower of the two in the middle: a pause in a short episode is no rate.
     steps = [np.percentile(np.diff(one.timestamp), 50, method="lower") for one in demonstrations.episodes]
@@ -117,10 +111,6 @@ def resampled(
         rate_hz: samples per second.
         names: of the episodes.
         source: the file, for messages.
-
-    Raises:
-        UserError: the rate makes no sense, an episode is too short for it, or has a gap, across which nobody
-            knows the motion.
     """
     if not 0 < rate_hz < np.inf:
         raise UserError(f"--resample-hz is {rate_hz:g}: it must be a finite number above zero.")

@@ -27,9 +27,6 @@ def widths_from_toggles(
     Returns:
         The episodes with `GRIPPER_WIDTH` and `ACTION_GRIPPER` in place of the toggles, and what was decided,
         in words; "" where nothing was.
-
-    Raises:
-        UserError: the start is given, and there are no toggles or the robot has no gripper.
     """
     known = bool(episodes) and all(GRIPPER_TOGGLED in one.extras for one in episodes)
     if gripper is None or not known:

@@ -73,9 +73,6 @@ def translate(data: SourceData, robot: Robot, told: Translation, source: str) ->
     Returns:
         States and actions of the robot's joints in its order, rad and rad/s; the gripper, and positions
         that were commanded, as features of their own; and what was decided in ``import_record``.
-
-    Raises:
-        UserError: the file names another robot, or its columns or units cannot be known.
     """
     given = data.demonstrations
     _check_robot(given.robot, robot, told.recorded_on, source)

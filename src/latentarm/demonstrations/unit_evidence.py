@@ -30,9 +30,6 @@ def check_degrees(
         units: of each joint.
         robot: that was recorded.
         source: the file, for the message.
-
-    Raises:
-        UserError: see above.
     """
     values = _positions(demonstrations, joints)
     hinges = np.array([unit == "rad" for unit in units]) & ~robot.chain.slide

@@ -51,9 +51,6 @@ def parse_units(words: Sequence[str], joints: Sequence[str]) -> tuple[Unit | Non
     Args:
         words: ``deg``, or ``JOINT=deg``, any number of them.
         joints: the robot's joint names.
-
-    Raises:
-        UserError: a word is neither, or an unknown joint or unit.
     """
     general: Unit | None = None
     single: dict[str, Unit] = {}

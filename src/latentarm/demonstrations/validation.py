@@ -48,9 +48,6 @@ def validate(
         source: the file or folder it came from, for the message.
         limits: the robot's joint limits; states may pass them by `LIMIT_TOLERANCE_RAD`.
         episode_names: what messages call the episodes; their numbers by default.
-
-    Raises:
-        UserError: one sentence naming the source, the episode and the sample.
     """
     names = demonstrations.joint_names
     if not names or not all(names) or len(set(names)) != len(names) or not all(map(_is_text, names)):
@@ -95,9 +92,6 @@ def validate_episode(
         joint_names: n names.
         source: the file or folder it came from, for the message.
         limits: the robot's joint limits, or None where the robot is unknown.
-
-    Raises:
-        UserError: one sentence naming the source, the episode and the sample.
     """
     where = f"{source}: episode {index}"
     _check_shapes(episode, len(joint_names), where)
@@ -114,11 +108,7 @@ def validate_episode(
 
 
 def check_same_features(first: Episode, other: Episode, index: int | str, source: str) -> None:
-    """Check that two episodes record the same things: a dataset has one set of features.
-
-    Raises:
-        UserError: naming the feature that only one of them has, or that differs in width.
-    """
+    """Check that two episodes record the same things: a dataset has one set of features."""
     widths = {name: values.shape[1:] for name, values in _features(first)}
     others = {name: values.shape[1:] for name, values in _features(other)}
     for name in sorted(widths.keys() | others.keys()):
@@ -234,9 +224,6 @@ def check_goal(goal: Goal, index: int, dof: int, source: str) -> None:
         index: which of the goals it is, from 0.
         dof: n.
         source: the file, for messages.
-
-    Raises:
-        UserError: its sizes are not those of n joints and a pose, or a number is not finite.
     """
     shapes = (goal.configuration.shape, goal.pose.position.shape, goal.pose.rotation.shape)
     if shapes != ((dof,), (3,), (3, 3)):

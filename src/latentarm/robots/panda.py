@@ -1,4 +1,4 @@
-"""The Franka Emika Panda and the Franka Research 3, built from the manufacturer's published figures."""
+"""The Franka Emika Panda and the Franka Research 3, from the manufacturer's published figures."""
 
 from functools import cache
 
@@ -146,31 +146,20 @@ _NEVER_MEET = (
 
 @cache
 def panda() -> Robot:
-    """The Panda with its hand; "tool" is the point between the fingertips.
-
-    Returns the same object each time; do not write to its arrays.
-    """
+    """The Panda with its hand; "tool" lies between the fingertips. Cached: do not write to its arrays."""
     return franka("panda", LIMITS, TOOL_SPEED_LIMIT)
 
 
 @cache
 def fr3() -> Robot:
-    """The FR3 with its hand; "tool" is the point between the fingertips.
-
-    Its links are as long as the Panda's, and its shell is taken for the same. Returns the same object each
-    time; do not write to its arrays.
-    """
+    """The FR3 with its hand, with the Panda's links and shell. Cached: do not write to its arrays."""
     return franka("fr3", FR3_LIMITS, FR3_TOOL_SPEED_LIMIT)
 
 
 def franka(model: str, limits: JointLimits, tool_speed_limit: float) -> Robot:
     """An arm with the Panda's links and hand.
 
-    Args:
-        model: name of the robot.
-        limits: of its seven joints, positions within those of the Panda: for these it is known which links
-            never meet.
-        tool_speed_limit: of the end-effector, m/s.
+    Positions must lie within the Panda's limits: only for those is it known which links never meet.
     """
     spec = mujoco.MjSpec()
     spec.modelname = model

@@ -1,4 +1,4 @@
-"""Planar arms as in the paper's simulations: n links of equal length, one arm or two."""
+"""Planar arms of the paper's simulations: n links of equal length, one arm or two."""
 
 from functools import cache
 
@@ -21,19 +21,9 @@ _RADIUS_M = 0.02
 
 @cache
 def planar(n_links: int = 5, arms: int = 1) -> Robot:
-    """A planar arm in the x-y plane, or two side by side whose states are one vector.
+    """A planar arm in the x-y plane, or two side by side whose states are one vector, the left arm's first.
 
-    Returns the same object each time; do not write to its arrays.
-
-    Args:
-        n_links: joints of each arm.
-        arms: 1 or 2; with two, the left arm's joints come first, and each arm has a tool.
-
-    Returns:
-        The robot, with ``n_links * arms`` joints.
-
-    Raises:
-        UserError: no links, or neither one nor two arms.
+    Cached: do not write to its arrays.
     """
     if n_links < 1 or arms not in (1, 2):
         raise UserError(

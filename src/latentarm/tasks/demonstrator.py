@@ -105,9 +105,6 @@ def demonstrations_of(
         episode: makes the episode with an index.
         episodes: how many.
         hand: how the simulated person moves.
-
-    Raises:
-        UserError: fewer than one episode is asked for.
     """
     if episodes < 1:
         raise UserError(f"Ask for at least one demonstration, not {episodes}.")

@@ -30,9 +30,6 @@ def solve(robot: Robot, pose: Pose, posture: FloatArray, held: Sequence[int] = (
 
     Returns:
         (n,), rad.
-
-    Raises:
-        UserError: the arm does not reach the pose from there.
     """
     import mink
 

@@ -31,9 +31,6 @@ class Reach(Task):
         robot: the arm.
         goals: how many poses.
         seed: which poses; the same seed gives the same task.
-
-    Raises:
-        UserError: fewer than one goal is asked for, or the tool hardly moves.
     """
 
     any_robot = True
@@ -71,11 +68,7 @@ class Reach(Task):
         return ()
 
     def sample_start(self, goal: int, rng: np.random.Generator) -> FloatArray:
-        """About home and not yet at the goal, (n,), rad.
-
-        Raises:
-            UserError: the goal is wherever the arm could start.
-        """
+        """About home and not yet at the goal, (n,), rad."""
         for _ in range(TRIES):
             start = self._about_home(START_SPREAD, rng)
             if not self.reached(self.robot.chain.forward(start), self.goals[goal].pose):
@@ -83,11 +76,7 @@ class Reach(Task):
         raise self._hardly_moves()
 
     def waypoints(self, goal: int, manner: str) -> tuple[Pose, ...]:
-        """The goal's pose alone.
-
-        Raises:
-            UserError: there is no such goal or manner.
-        """
+        """The goal's pose alone."""
         if not 0 <= goal < len(self.goals) or manner not in self.manners:
             raise UserError(f"One can reach the goals 0 to {len(self.goals) - 1}, not {manner!r} {goal}.")
         return (self.goals[goal].pose,)

@@ -182,11 +182,7 @@ class Replay(GripperTask):
 
 
 def _leaving(robot: Robot, demonstrations: Demonstrations) -> list[Episode]:
-    """The episodes in which the tool goes somewhere, without the still samples at their ends.
-
-    Raises:
-        UserError: there is no such episode.
-    """
+    """The episodes in which the tool goes somewhere, without the still samples at their ends."""
     found: list[Episode] = []
     for one in demonstrations.episodes:
         moving = slice(*moving_range(one.state, one.timestamp))

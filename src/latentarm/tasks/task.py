@@ -115,9 +115,6 @@ def check_not_done(task: Task, start: FloatArray, waypoints: Sequence[Pose]) -> 
         task: the task.
         start: (n,), where the arm is to start, rad.
         waypoints: what the tool must come to.
-
-    Raises:
-        UserError: the tool is at every waypoint already.
     """
     pose = task.robot.chain.forward(start)
     if all(task.reached(pose, waypoint) for waypoint in waypoints):

@@ -116,11 +116,7 @@ class TwoCups(Task, ABC):
         return self.start + rng.normal(0.0, START_SPREAD_RAD, self.robot.dof)
 
     def waypoints(self, goal: int, manner: str) -> tuple[Pose, ...]:
-        """Just before the cup, then where the grasp ends.
-
-        Raises:
-            UserError: there is no such goal or manner.
-        """
+        """Just before the cup, then where the grasp ends."""
         if not 0 <= goal < len(CUPS) or manner not in self.manners:
             raise UserError(
                 f"There are cups 0 and 1, to be grasped from the {' or the '.join(self.manners)}, "

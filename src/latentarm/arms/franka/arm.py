@@ -37,10 +37,6 @@ class FrankaArm(GuidableArm):
         robot: what the arm is.
         address: ``franka://HOST`` with the options of `FrankaOptions`.
         now_s: the clock that readings are timed by, s; never goes back.
-
-    Raises:
-        UserError: an option is unknown or out of its range, the robot has not seven joints or carries
-            something whose mass is not stated, or franky-control is not installed.
     """
 
     def __init__(self, robot: Robot, address: ArmAddress, now_s: Callable[[], float]) -> None:
@@ -205,11 +201,7 @@ class FrankaArm(GuidableArm):
         return open_link(self._host, self._options, self._robot)
 
     def _ready_link(self) -> Link:
-        """A link that may be driven.
-
-        Raises:
-            UserError: the arm does not answer, or is refused.
-        """
+        """A link that may be driven."""
         link = self._open()
         try:
             for reason in refusals(link, self._options, self._robot):

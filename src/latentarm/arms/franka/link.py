@@ -75,11 +75,7 @@ class Link:
 
 
 def library() -> Any:
-    """The module ``franky``.
-
-    Raises:
-        UserError: it is not installed.
-    """
+    """The module ``franky``."""
     try:
         import franky
     except ImportError as error:
@@ -97,9 +93,6 @@ def open_link(host: str, options: FrankaOptions, robot: Robot) -> Link:
         host: name or address of the arm.
         options: its thresholds, and whether a realtime kernel is needed.
         robot: what the arm is meant to be.
-
-    Raises:
-        UserError: there is no arm or no hand, it does not answer, or it speaks another version.
     """
     franky = library()
     found: list[Link] = []
@@ -142,9 +135,6 @@ def set_up(link: Link, options: FrankaOptions, robot: Robot) -> None:
         link: open; none of its `refusals` apply.
         options: what to set.
         robot: whose limits motions keep to.
-
-    Raises:
-        UserError: the arm does not take them.
     """
     limits = link.limits
     if limits is None:

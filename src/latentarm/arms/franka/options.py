@@ -52,11 +52,7 @@ class FrankaOptions:
 
 
 def read_options(address: ArmAddress) -> FrankaOptions:
-    """The options of an address.
-
-    Raises:
-        UserError: one is unknown, no number, or out of its range; or a port is given.
-    """
+    """The options of an address."""
     if address.port is not None:
         raise UserError("--arm franka takes no port: a Franka always listens on 1337 and 1338.")
     given = address.only(*_NAMES)

@@ -50,9 +50,6 @@ class LerobotArm(GuidableArm):
         robot: what the arm is; its joints have the names of the motors.
         address: ``port`` of the bus, and the file ``calibration`` or the ``id`` that lerobot-calibrate got.
         now_s: the clock that readings are timed by, s.
-
-    Raises:
-        UserError: LeRobot is not installed or has no such arm, or the address lacks something.
     """
 
     def __init__(self, robot: Robot, address: ArmAddress, now_s: Callable[[], float]) -> None:
@@ -225,11 +222,7 @@ class LerobotArm(GuidableArm):
             self._process.port.send({"do": what, **details})
 
     def _ask(self, what: str) -> dict[str, Any]:
-        """Ask and wait.
-
-        Raises:
-            UserError: the arm refuses, or nobody answers.
-        """
+        """Ask and wait."""
         process = self._process
         if process is None or not process.alive:
             self._end()

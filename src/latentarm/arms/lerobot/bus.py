@@ -63,9 +63,6 @@ class MotorsBus:
 
     Args:
         options: the robot.
-
-    Raises:
-        UserError: LeRobot has no such robot, or reads one of its joints in no angle.
     """
 
     def __init__(self, options: Options) -> None:
@@ -84,11 +81,7 @@ class MotorsBus:
                 )
 
     def open(self) -> None:
-        """Open the port and see that all motors are there; changes nothing.
-
-        Raises:
-            UserError: the port or a motor does not answer.
-        """
+        """Open the port and see that all motors are there; changes nothing."""
         kind, port = self._options.kind, self._options.port
         try:
             _again(self._open_once)

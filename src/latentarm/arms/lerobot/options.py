@@ -27,11 +27,7 @@ class Options:
 
     @classmethod
     def of(cls, address: ArmAddress) -> Self:
-        """What an address says.
-
-        Raises:
-            UserError: an option is unknown or missing, or the address has a port number.
-        """
+        """What an address says."""
         given = address.only("port", "id", "calibration")
         example = f"--arm lerobot://{address.host}?port=/dev/ttyACM0&calibration=FILE.json"
         if address.port is not None:

@@ -68,9 +68,6 @@ class Ros2Arm(GuidableArm):
         robot: what the arm is.
         address: of rosbridge, with the options of `Ros2Options`.
         now_s: the clock that readings are timed by, s; never goes back.
-
-    Raises:
-        UserError: an option is unknown or wrong, or roslibpy is not installed.
     """
 
     def __init__(self, robot: Robot, address: ArmAddress, now_s: Callable[[], float]) -> None:
@@ -181,11 +178,7 @@ class Ros2Arm(GuidableArm):
             self._halt_gripper(self._open)
 
     def guide(self) -> None:
-        """Always refused: ros2_control has no common way to let go of an arm.
-
-        Raises:
-            UserError: it says so.
-        """
+        """Always refused: ros2_control has no common way to let go of an arm."""
         raise UserError(
             "This arm is not released over ROS 2: switch on its own mode for guiding by hand at the arm, such"
             " as freedrive, and record here while you move it."
@@ -257,11 +250,7 @@ class Ros2Arm(GuidableArm):
         return _Open(link, session, feed, gripper)
 
     def _claimed(self) -> _Open:
-        """A new connection with an arm that is ours; it is disabled.
-
-        Raises:
-            UserError: nothing answers, or what answers is refused.
-        """
+        """A new connection with an arm that is ours; it is disabled."""
         opened = self._opened()
         refusals = inspect(opened.link, opened.session, opened.feed, self._options).refusals
         if not refusals:

@@ -13,11 +13,7 @@ CONNECTING_S: Final = 3.0
 
 
 def check_installed() -> None:
-    """Check that roslibpy is there.
-
-    Raises:
-        UserError: it is not.
-    """
+    """Check that roslibpy is there."""
     if importlib.util.find_spec("roslibpy") is None:
         raise UserError("--arm ros2 needs roslibpy: pip install 'latentarm[ros2]'.")
 
@@ -32,9 +28,6 @@ class Link:
     Args:
         host: where rosbridge is.
         port: its port.
-
-    Raises:
-        UserError: nothing answers there, or something else than rosbridge.
     """
 
     def __init__(self, host: str, port: int) -> None:

@@ -64,9 +64,6 @@ def read_options(address: ArmAddress, robot: Robot) -> Ros2Options:
     Args:
         address: what was given.
         robot: what the arm is.
-
-    Raises:
-        UserError: an option is unknown, missing or not what it should be.
     """
     given = address.only(
         "controller",

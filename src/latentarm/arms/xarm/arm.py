@@ -42,9 +42,6 @@ class XArm(GuidableArm):
         robot: what the arm is; its joints are J1, J2, ... in their order.
         address: ``xarm://HOST[:PORT]``; see `latentarm.arms.xarm.session.Options`.
         now_s: the clock that readings are timed by, s.
-
-    Raises:
-        UserError: the library is missing, or an option is unknown.
     """
 
     def __init__(self, robot: Robot, address: ArmAddress, now_s: Callable[[], float]) -> None:
@@ -205,9 +202,6 @@ class XArm(GuidableArm):
         Args:
             number: that reports are numbered from.
             clear: whether an error is cleared: somebody has asked for it.
-
-        Raises:
-            UserError: the arm does not answer, or is refused.
         """
         session: Session | None = None
         try:

@@ -132,11 +132,7 @@ class Sdk:
 
 @cache
 def load_sdk() -> Sdk:
-    """Import the library.
-
-    Raises:
-        UserError: it is not installed, or cannot be imported.
-    """
+    """Import the library."""
     try:
         # It prints its version, and logs to what standard output is at this moment.
         with contextlib.redirect_stdout(sys.stderr):

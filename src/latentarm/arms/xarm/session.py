@@ -39,11 +39,7 @@ class Options:
 
 
 def read_options(address: ArmAddress) -> Options:
-    """Read the options of an address.
-
-    Raises:
-        UserError: one is unknown or out of range.
-    """
+    """Read the options of an address."""
     given = address.only("gripper_port", "joints_port", "load", "status_port")
     load = given.get("load")
     if load not in (None, "none"):

@@ -1,4 +1,4 @@
-"""Where the cells of a grid run: processes of this machine, or a cluster of machines.
+"""Where the cells of a grid run: processes of this machine, or a cluster.
 
 joblib is the one interface; Ray and Dask are joblib's own backends. Each of the context managers here
 makes its backend the active one and ends what it has started, and nothing else.
@@ -26,14 +26,13 @@ ANSWER_S: Final = 10.0
 
 @contextmanager
 def _processes(jobs: int) -> Generator[int]:
-    """Processes of this machine."""
     with joblib.parallel_config("loky"):
         yield _available(jobs)
 
 
 @contextmanager
 def _ray(jobs: int) -> Generator[int]:
-    """A Ray cluster: that of ``RAY_ADDRESS``, or a new one on this machine."""
+    """A Ray cluster at ``RAY_ADDRESS``, or a new one on this machine."""
     os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")  # no usage statistics
     try:
         import ray
@@ -57,9 +56,6 @@ def _start_ray() -> None:
     """Join the cluster that the environment names, or else start one.
 
     Without an address Ray would look for a cluster on this machine, and wait for one that has ended.
-
-    Raises:
-        UserError: the cluster does not answer, or wants a token that the environment does not name.
     """
     import ray
 
@@ -83,7 +79,6 @@ def _start_ray() -> None:
 
 @contextmanager
 def _dask(jobs: int) -> Generator[int]:
-    """A Dask cluster: that of ``DASK_SCHEDULER_ADDRESS``, or a new one of processes on this machine."""
     try:
         import dask.config
     except ImportError as error:
@@ -96,7 +91,6 @@ def _dask(jobs: int) -> Generator[int]:
 
 @contextmanager
 def _dask_processes(jobs: int) -> Generator["Client"]:
-    """A client of a new Dask cluster on this machine, which ends with it."""
     from dask.distributed import Client, LocalCluster
 
     settings: dict[str, Any] = {"threads_per_worker": 1, "dashboard_address": None, "memory_limit": None}
@@ -109,11 +103,6 @@ def _dask_processes(jobs: int) -> Generator["Client"]:
 
 @contextmanager
 def _dask_cluster(address: str) -> Generator["Client"]:
-    """A client of the Dask cluster at an address.
-
-    Raises:
-        UserError: it does not answer, or has no workers.
-    """
     from dask.distributed import Client
 
     try:
@@ -129,7 +118,6 @@ def _dask_cluster(address: str) -> Generator["Client"]:
 
 
 def _available(jobs: int) -> int:
-    """How many processes the active backend has for a number of jobs."""
     return cast(int, joblib.effective_n_jobs(jobs))
 
 

@@ -39,29 +39,12 @@ class _FaultError(ValueError):
 
 
 def read_object(path: Path, limit: int = MOST_BYTES) -> dict[str, Any]:
-    """The JSON object that a file consists of.
-
-    Args:
-        path: the file.
-        limit: bytes that it may have.
-
-    Raises:
-        UserError: see `read_bytes` and `parse_object`.
-    """
+    """The JSON object in a file of at most ``limit`` bytes."""
     return parse_object(read_bytes(path, limit), str(path))
 
 
 def parse_object(document: bytes | str, where: str) -> dict[str, Any]:
-    """The JSON object that a document consists of.
-
-    Args:
-        document: UTF-8, or text.
-        where: what errors call it.
-
-    Raises:
-        UserError: it is not a JSON object, or holds what no document of ours does: values beyond the
-            limits above, NaN or infinity, a key twice, half a character.
-    """
+    """The JSON object in a document in UTF-8; ``where`` names the document in errors."""
     try:
         content = document.encode() if isinstance(document, str) else document
         _check_shape(content)
@@ -84,7 +67,7 @@ def parse_object(document: bytes | str, where: str) -> dict[str, Any]:
 
 
 def _check_shape(content: bytes) -> None:
-    """Bound what the parser would build, by cheap passes over the bytes."""
+    """Bound the parser's output by cheap passes over the bytes."""
     if len(content) > MOST_BYTES:
         raise _FaultError(f"has more than {MOST_BYTES:,} bytes")
     # Without escapes every quotation mark begins or ends a text.

@@ -1,4 +1,4 @@
-"""When an arm moves and when it stands still: one meaning for training, measuring and driving."""
+"""When an arm moves and when it stands still, for training, measuring and driving alike."""
 
 from typing import Final
 
@@ -11,14 +11,9 @@ STILL_RAD_S: Final = 0.01
 
 
 def moving_range(state: FloatArray, timestamp: FloatArray) -> tuple[int, int]:
-    """First and last sample of an episode's motion, from the still arm before it to the one after.
+    """Half-open range of samples from the still arm before an episode's motion to the one after.
 
-    Args:
-        state: (T, n), rad.
-        timestamp: (T,), s.
-
-    Returns:
-        Half-open range of samples; empty where no joint ever exceeds `STILL_RAD_S`.
+    Empty where no joint ever exceeds `STILL_RAD_S`. States are (T, n), rad.
     """
     speed = np.abs(np.diff(state, axis=0)).max(axis=1) / np.diff(timestamp)
     steps = np.flatnonzero(speed > STILL_RAD_S)

@@ -7,14 +7,8 @@ from typing import final
 @final
 @dataclass(frozen=True)
 class Interior:
-    """The room inside a container: an upright cylinder in its frame.
-
-    Attributes:
-        radius_m: m.
-        bottom_m: lowest height in the thing's frame, m.
-        top_m: height of the rim in the thing's frame, m.
-    """
+    """The room inside a container: an upright cylinder in its frame."""
 
     radius_m: float
-    bottom_m: float
-    top_m: float
+    bottom_m: float  # lowest height in the thing's frame
+    top_m: float  # height of the rim in the thing's frame
