@@ -14,11 +14,11 @@ import numpy as np
 
 from latentarm.assistance.catalogue import AssistanceName, published_assistance, published_belief
 from latentarm.assistance.controllers.end_effector import EndEffectorController
-from latentarm_research.tasks.over_marshmallow import OverMarshmallow
 from latentarm_research.drives.task_drive import TaskSetup, TaskTrace
 from latentarm_research.drives.task_drives import Series, drive_series
 from latentarm_research.people.catalogue import PEOPLE
 from latentarm_research.people.person import Person
+from latentarm_research.tasks.over_marshmallow import OverMarshmallow
 
 SPEED_M_S: Final = 0.2
 TURN_RAD_S: Final = 0.4

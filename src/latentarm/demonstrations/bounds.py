@@ -25,13 +25,7 @@ MAX_FILE_BYTES: Final = 1 << 34
 
 
 def check_values(source: Path, what: str, count: int) -> None:
-    """Refuse more numbers than an import may hold.
-
-    Args:
-        source: file that declares the numbers.
-        what: what they are, for the message.
-        count: how many the file declares.
-    """
+    """Refuse more numbers than an import may hold."""
     if count > MAX_VALUES:
         raise UserError(
             f"{source}: {what} declares {count:,} numbers, over the limit of {MAX_VALUES:,}; split the file."

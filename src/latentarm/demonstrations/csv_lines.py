@@ -1,7 +1,7 @@
-"""The records of CSV files that others wrote, within bounds.
+"""The records of CSV files by any writer, within bounds.
 
-The first line decides what separates fields: commas, semicolons or tabs, whichever it has most of. A comma
-within a number is a decimal comma. Files may be packed with gzip.
+The first line decides the separator: comma, semicolon or tab, whichever is most frequent. A comma within a
+number is a decimal comma. Files may be packed with gzip.
 """
 
 import csv
@@ -25,7 +25,7 @@ MAX_RECORD_LINES: Final = 100
 
 
 def read_lines(source: Path) -> Iterator[tuple[int, list[str]]]:
-    """Line numbers, from one, and fields of every record that is not empty."""
+    """Line numbers, from one, and fields of every non-empty record."""
     with opened(source, MAX_TEXT_BYTES) as stream:
         packed = stream.read(len(GZIP)) == GZIP
         stream.seek(0)
@@ -47,14 +47,7 @@ def read_lines(source: Path) -> Iterator[tuple[int, list[str]]]:
 
 @final
 class CsvTable:
-    """A table whose first line names its columns.
-
-    Args:
-        source: the file.
-
-    Attributes:
-        header: names of the columns.
-    """
+    """A table whose first line names its columns, in ``header``."""
 
     def __init__(self, source: Path) -> None:
         self.source = source
@@ -86,16 +79,7 @@ class CsvTable:
 
 @final
 class _Lines:
-    """Lines of bounded length: the parser takes as much as it is given.
-
-    Args:
-        stream: the file.
-        source: its path.
-
-    Attributes:
-        number: lines so far.
-        in_record: lines since this was last set to zero; a text in quotation marks may go over several.
-    """
+    """Lines of bounded length. ``in_record`` counts those since a reader set it to zero."""
 
     def __init__(self, stream: TextIO, source: Path) -> None:
         self._stream = stream

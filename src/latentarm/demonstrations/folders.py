@@ -1,4 +1,4 @@
-"""Folders that are written atomically, by one program at a time."""
+"""Folders that one program at a time writes atomically."""
 
 import os
 import shutil
@@ -14,12 +14,9 @@ from latentarm.core.files import sync_folder
 
 @contextmanager
 def locked(folder: Path, lock_file: Path, remedy: str = "wait for it") -> Generator[None]:
-    """Keep other writers out of ``folder``. The lock is released when the process ends, however it ends.
+    """Keep other writers out of ``folder`` until the block or the process ends.
 
-    Args:
-        folder: what is written.
-        lock_file: what all its writers lock; made here and removed afterwards.
-        remedy: what to do about another one, for the message.
+    ``remedy`` tells the user what to do about another writer.
     """
     if not lock_file.parent.is_dir():
         raise UserError(f"{folder} cannot be opened: there is no such folder.")
@@ -39,7 +36,7 @@ def locked(folder: Path, lock_file: Path, remedy: str = "wait for it") -> Genera
 
 
 def check_vacant(destination: Path) -> None:
-    """Refuse a destination that holds anything already."""
+    """Refuse a destination that is not empty."""
     try:
         if destination.is_dir():
             if any(destination.iterdir()):
@@ -54,9 +51,8 @@ def check_vacant(destination: Path) -> None:
 def staged_folder(destination: Path) -> Generator[Path]:
     """Yield a folder beside ``destination``; on success rename it there.
 
-    On any error nothing is left behind. After a kill the staging folder ``.NAME.part`` and the lock
-    file ``.NAME.lock`` remain. Nothing reads them, and the next attempt at the same destination removes
-    them.
+    On any error nothing remains. After a kill the staging folder ``.NAME.part`` and the lock file
+    ``.NAME.lock`` remain, until the next attempt at the same destination removes them.
     """
     destination = destination.resolve()
     check_vacant(destination)
@@ -80,16 +76,12 @@ def staged_folder(destination: Path) -> Generator[Path]:
 
 
 def remove_parts(folder: Path) -> None:
-    """Delete what killed writers left in ``folder``: temporary files that were never renamed.
-
-    Raises:
-        UserError: one of them cannot be deleted.
-    """
+    """Delete temporary files of killed writers in ``folder``."""
     remove_files(folder.rglob(".*.part"))
 
 
 def remove_files(paths: Iterable[Path]) -> None:
-    """Delete files."""
+    """Delete files, or say which one cannot be deleted."""
     for path in paths:
         try:
             path.unlink(missing_ok=True)

@@ -1,7 +1,7 @@
-"""Tables in HDF5 files that others wrote: plain ones of this file, within bounds.
+"""Tables in HDF5 files by any writer: plain ones of this file, within bounds.
 
-The HDF5 library is not hardened: a file that was damaged on purpose may end the whole process. Even then the
-destination of an import stays empty, because it is written only after everything was read.
+The HDF5 library is not hardened: a maliciously damaged file may end the whole process. Even then the
+destination of an import stays empty, because it is written only after all reading.
 """
 
 import math
@@ -24,7 +24,7 @@ MAX_CHUNKS: Final = 100_000
 
 @contextmanager
 def opened_hdf5(source: Path) -> Generator[h5py.File]:
-    """Open a file."""
+    """Open a file, and turn any damage into a `UserError`."""
     check_file(source, MAX_FILE_BYTES)
     try:
         with h5py.File(source, "r") as file:
@@ -34,7 +34,7 @@ def opened_hdf5(source: Path) -> Generator[h5py.File]:
 
 
 def group(parent: h5py.Group, name: str, source: Path) -> h5py.Group:
-    """A group of this file."""
+    """The group of that name in this file."""
     found = member(parent, name)
     if not isinstance(found, h5py.Group):
         raise UserError(f"{source} has no group {path_in(parent, name)}.")
@@ -47,7 +47,7 @@ def member(parent: h5py.Group, name: str) -> object:
 
 
 def path_in(parent: h5py.Group, name: str) -> str:
-    """Where a member lies, for messages."""
+    """Path of a member, for messages."""
     return f"{parent.name}/{name}".lstrip("/")
 
 

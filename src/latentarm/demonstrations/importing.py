@@ -46,42 +46,28 @@ BAG_INFO: Final = "metadata.yaml"
 
 
 class ImportOptions(TypedDict, total=False):
-    """What the user states about a file; everything is optional.
+    """The user's statements about a file; all are optional."""
 
-    Attributes:
-        rate_hz: sampling rate, for files that do not say it or say it wrongly.
-        task: what was done, in words, for files that do not say it.
-        actions: ``"known"`` keeps recorded actions only if the source says what they are;
-            ``"joint_velocity"`` and ``"joint_position"`` state it.
-        units: ``rad``, ``deg`` or ``normalized`` (-100 to 100), or ``JOINT=deg`` for single joints.
-        joints: the column of each joint, see `find_columns`.
-        gripper: the gripper's column.
-        gripper_starts: how the gripper is when an episode begins, for files that say only when it was
-            toggled; open by default.
-        recorded_on: the file's word for the robot, where that is another than the robot's name.
-        clip_rad: positions that lie up to this far outside a joint's limits are moved to the limit.
-        leave_out: names of episodes that are not imported: what a CSV file calls them, ``demo_0`` and so on
-            in HDF5 files, the file's name in a folder of files, else their number from 0.
-        gaps: what becomes of an episode with a gap, see `Gaps`; refused by default.
-        resample_hz: the rate that every episode is brought to, see `resampled`.
-        time_unit: of a CSV file's timestamps; known from their spacing by default.
-        topic: of a bag's joints, if it has several.
-    """
-
-    rate_hz: float | None
-    task: str | None
+    rate_hz: float | None  # sampling rate, for files that lack it or have a wrong one
+    task: str | None  # in words, for files that lack it
+    # ``"known"`` keeps actions only if the source says what they are; ``"joint_velocity"`` and
+    # ``"joint_position"`` state it
     actions: ActionChoice
+    # ``rad``, ``deg`` or ``normalized`` (-100 to 100), or ``JOINT=deg`` for single joints
     units: Sequence[str]
-    joints: Sequence[str]
-    gripper: str | None
+    joints: Sequence[str]  # the column of each joint, see `find_columns`
+    gripper: str | None  # the gripper's column
+    # the gripper when an episode begins, for files that record only toggles; open by default
     gripper_starts: GripperStart | None
-    recorded_on: str | None
-    clip_rad: float
+    recorded_on: str | None  # the file's word for the robot, if that differs from the robot's name
+    clip_rad: float  # positions up to this far outside a joint's limits move to the limit
+    # names of episodes to omit: as in a CSV file, ``demo_0`` and so on in HDF5 files, the file's name in a
+    # folder of files, else their number from 0
     leave_out: Sequence[str]
-    gaps: Gaps
-    resample_hz: float | None
-    time_unit: TimeUnit | None
-    topic: str | None
+    gaps: Gaps  # treatment of an episode with a gap, see `Gaps`; refused by default
+    resample_hz: float | None  # common rate of all episodes, see `resampled`
+    time_unit: TimeUnit | None  # of a CSV file's timestamps; by default inferred from their spacing
+    topic: str | None  # of a bag's joints, if it has several
 
 
 def import_demonstrations(
@@ -91,12 +77,12 @@ def import_demonstrations(
 
     The format is recognised by content: a folder with a LeRobot layout (v2.0, v2.1, v3.0) or with runs of
     HARMONIC, a NumPy archive, an HDF5 file in robomimic's or ALOHA's layout, a bag of ROS 1 or ROS 2, an MCAP
-    or a CSV file, or a folder of such files. What was decided is in the result's ``import_record``.
+    or a CSV file, or a folder of such files. The result's ``import_record`` lists all decisions.
 
     Args:
         source: the file or folder.
-        robot: the arm that was recorded: its joints are found among the columns, and its limits are checked.
-            Without one, every column is taken for a joint in rad.
+        robot: the recorded arm: its joints are found among the columns, and its limits are checked. Without
+            one, every column counts as a joint in rad.
         options: see `ImportOptions`.
 
     Raises:
@@ -212,14 +198,13 @@ def _read_folder(source: Path, robot: Robot | None, options: ImportOptions) -> S
 
 
 def _at_rate(data: SourceData, rate_hz: float | None) -> SourceData:
-    """The same with a rate that the user states."""
     if rate_hz is None:
         return data
     return replace(data, demonstrations=replace(data.demonstrations, rate_hz=rate_hz))
 
 
 def _beginning(source: Path) -> tuple[bytes | None, int]:
-    """The first bytes of a file, by which it is known, and its size; None for a folder."""
+    """The first bytes of a file and its size; None for a folder."""
     try:
         if source.is_dir():
             return None, 0

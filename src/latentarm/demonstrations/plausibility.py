@@ -1,4 +1,4 @@
-"""Detects implausible rates and speeds, and speeds beyond this arm's limits."""
+"""Detects implausible rates and speeds, and speeds beyond the arm's limits."""
 
 from collections.abc import Sequence
 from typing import Final
@@ -19,12 +19,7 @@ IMPLAUSIBLE_RAD_S: Final = 30.0
 
 
 def check_rate(demonstrations: Demonstrations, source: str) -> None:
-    """Refuse rates that no recording of an arm has, or that the timestamps contradict.
-
-    Args:
-        demonstrations: validated.
-        source: the file, for the message.
-    """
+    """Refuse rates that no recording of an arm has, or that the timestamps contradict."""
     rate = demonstrations.rate_hz
     if not SLOWEST_HZ <= rate <= FASTEST_HZ:
         raise UserError(
@@ -43,17 +38,7 @@ def check_rate(demonstrations: Demonstrations, source: str) -> None:
 
 
 def speed_warning(demonstrations: Demonstrations, robot: Robot, source: str, names: Sequence[str]) -> str:
-    """Refuse impossible speeds; report those beyond the robot's limits.
-
-    Args:
-        demonstrations: validated, of the robot.
-        robot: that was recorded.
-        source: the file, for the message.
-        names: of the episodes.
-
-    Returns:
-        A sentence about the joint that is furthest beyond its limit, or "" where none is.
-    """
+    """Refuse impossible speeds; return a sentence about the joint furthest beyond its limit, or ""."""
     limit = robot.limits.velocity
     peak, over, count = np.zeros(robot.dof), 0, 0
     for name, episode in zip(names, demonstrations.episodes, strict=True):

@@ -1,4 +1,4 @@
-"""The dataset's Parquet tables: samples, episodes and tasks, column for column as LeRobot v3.0 has them."""
+"""The dataset's Parquet tables: samples, episodes and tasks, in the columns of LeRobot v3.0."""
 
 import json
 import os
@@ -33,18 +33,9 @@ INTEGER_COLUMNS: Final = tuple(name for name, dtype in INDEX_DTYPES.items() if d
 def sample_columns(
     episode: Episode, features: Sequence[Feature], *, episode_index: int, first_index: int, task_index: int
 ) -> dict[str, FloatArray]:
-    """One episode as columns.
+    """One episode's columns of the sample table by name, (T, k), in the layout's order.
 
-    Args:
-        episode: whole and validated.
-        features: the dataset's features.
-        episode_index: its place in the dataset.
-        first_index: samples in the dataset before it.
-        task_index: place of its task in the table of tasks.
-
-    Returns:
-        Every column of the sample table by name, (T, k), in the layout's order and in single
-        precision where the layout has it.
+    Values are in single precision where the layout has it.
     """
     samples = len(episode.timestamp)
     recorded = {STATE: episode.state, ACTION: episode.action, **episode.extras}
@@ -78,14 +69,7 @@ def sample_table(columns: dict[str, FloatArray]) -> Table:
 def episode_row(
     columns: dict[str, FloatArray], task: str, *, data_place: tuple[int, int], episodes_place: tuple[int, int]
 ) -> Table:
-    """The row that the table of episodes holds for one episode.
-
-    Args:
-        columns: what `sample_columns` gave.
-        task: what was done, in words.
-        data_place: chunk and file with its samples.
-        episodes_place: chunk and file with this row.
-    """
+    """One episode's row in the table of episodes; places are chunk and file."""
     index = columns["index"]
     plain = {
         "episode_index": int(columns["episode_index"][0, 0]),
@@ -132,7 +116,7 @@ def statistics_json(episodes: Table) -> str:
 
 
 def task_table(tasks: Sequence[str]) -> Table:
-    """The table of tasks, with the note by which pandas finds its index in it."""
+    """The table of tasks, with the note that tells pandas its index."""
     note = {
         "index_columns": [TASK_COLUMN],
         "column_indexes": [
@@ -174,7 +158,7 @@ def task_table(tasks: Sequence[str]) -> Table:
 
 
 def read_table(path: Path, columns: Sequence[str] | None = None) -> Table:
-    """Read a Parquet file, or the named columns of it, once its size is known to be bearable."""
+    """Read a Parquet file, or named columns of it, if its size is bearable."""
     if is_missing(path):
         raise UserError(f"{path} is missing; the dataset is damaged.")
     with opened(path, MAX_FILE_BYTES) as stream, bounded_memory(str(path), os.fstat(stream.fileno()).st_size):
@@ -215,11 +199,7 @@ def _stored_values(metadata: Any, columns: Sequence[str] | None) -> int:
 
 
 def float_column(table: Table, name: str, width: int, path: Path) -> FloatArray:
-    """A column of vectors (or of scalars, where the width is 1) as an array.
-
-    Returns:
-        (N, width).
-    """
+    """A column of vectors (or of scalars, where the width is 1) as an array (N, width)."""
     column = table.column(name).combine_chunks()
     kind = column.type
     if pa.types.is_fixed_size_list(kind):

@@ -1,4 +1,4 @@
-"""Gaps within episodes, and episodes that were sampled at different rates."""
+"""Gaps within episodes, and episodes of different rates."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -23,7 +23,7 @@ _ROUNDING: Final = 1e-6
 
 
 def typical_rate_hz(episodes: Sequence[Episode]) -> float:
-    """Samples per second outside gaps, a whole number where within 1 % of one; 0 where no time passes."""
+    """Samples per second outside gaps, rounded to a whole number within 1 %; 0 where no time passes."""
     steps = np.concatenate([np.zeros(0), *(np.diff(one.timestamp) for one in episodes)])
     steps = steps[~_is_gap(steps)]
     elapsed_s = float(steps.sum())
@@ -33,15 +33,9 @@ def typical_rate_hz(episodes: Sequence[Episode]) -> float:
 
 
 def split_at_gaps(data: SourceData, gaps: Gaps, source: str) -> SourceData:
-    """Deal with gaps within episodes.
+    """Refuse, split or keep episodes with gaps; unchanged data without any, else with a note.
 
-    Args:
-        data: what the file holds; episodes whose times do not grow are left for validation to refuse.
-        gaps: what becomes of episodes with gaps.
-        source: the file, for messages.
-
-    Returns:
-        The same where there is no gap; else with a note in the record. Parts of one sample are left out.
+    Parts of one sample are omitted. Validation later refuses episodes whose times do not grow.
     """
     found: list[str] = []
     parts: list[tuple[str, Episode]] = []
@@ -82,13 +76,7 @@ def split_at_gaps(data: SourceData, gaps: Gaps, source: str) -> SourceData:
 
 
 def check_one_rate(demonstrations: Demonstrations, names: Sequence[str], source: str) -> None:
-    """Refuse episodes that were sampled at different rates.
-
-    Args:
-        demonstrations: validated.
-        names: of the episodes.
-        source: the file, for the message.
-    """
+    """Refuse episodes of different rates."""
     # Of an even number of steps the lower of the two in the middle: a pause in a short episode is no rate.
     steps = [np.percentile(np.diff(one.timestamp), 50, method="lower") for one in demonstrations.episodes]
     rates = [1.0 / float(step) for step in steps]
@@ -104,14 +92,7 @@ def check_one_rate(demonstrations: Demonstrations, names: Sequence[str], source:
 def resampled(
     demonstrations: Demonstrations, rate_hz: float, names: Sequence[str], source: str
 ) -> Demonstrations:
-    """Every episode at one rate: joints by linear interpolation, all else as it was recorded last.
-
-    Args:
-        demonstrations: validated.
-        rate_hz: samples per second.
-        names: of the episodes.
-        source: the file, for messages.
-    """
+    """Every episode at one rate: joints by linear interpolation, all else with its latest values."""
     if not 0 < rate_hz < np.inf:
         raise UserError(f"--resample-hz is {rate_hz:g}: it must be a finite number above zero.")
     episodes: list[Episode] = []
@@ -147,7 +128,7 @@ def _gaps(episode: Episode) -> IntArray:
 
 
 def _at(episode: Episode, samples: IntArray) -> Episode:
-    """Some samples of an episode, whose time begins anew."""
+    """Some samples of an episode, with time from zero."""
     time_s = episode.timestamp[samples]
     return replace(
         episode,

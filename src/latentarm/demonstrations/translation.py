@@ -1,4 +1,4 @@
-"""From a file's columns and units to a robot's joints in rad, with a record of what was decided."""
+"""Converts a file's columns and units to a robot's joints in rad, with a record of all decisions."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -40,39 +40,21 @@ ActionChoice = Literal["known", "joint_velocity", "joint_position"]
 @final
 @dataclass(frozen=True)
 class Translation:
-    """What the user says of a file.
+    """The user's statements about a file."""
 
-    Attributes:
-        units: see `parse_units`.
-        joints: see `find_columns`.
-        gripper: the gripper's column.
-        gripper_starts: how the gripper is when an episode begins, for files that say when it was toggled.
-        recorded_on: the file's word for the robot, to take its robot for the one that is meant.
-        actions: what the file's actions are.
-        clip_rad: positions that lie up to this far outside a joint's limits are moved to the limit, rad.
-    """
-
-    units: Sequence[str] = ()
-    joints: Sequence[str] = ()
-    gripper: str | None = None
-    gripper_starts: GripperStart | None = None
-    recorded_on: str | None = None
+    units: Sequence[str] = ()  # see `parse_units`
+    joints: Sequence[str] = ()  # see `find_columns`
+    gripper: str | None = None  # the gripper's column
+    gripper_starts: GripperStart | None = None  # at an episode's beginning, for files with toggles
+    recorded_on: str | None = None  # the file's word for the robot, to accept it as this robot
     actions: ActionChoice = "known"
-    clip_rad: float = 0.0
+    clip_rad: float = 0.0  # positions up to this far outside a joint's limits move to the limit
 
 
 def translate(data: SourceData, robot: Robot, told: Translation, source: str) -> Demonstrations:
-    """A file's demonstrations as the robot's own.
+    """A file's demonstrations in the robot's joints and order, rad and rad/s.
 
-    Args:
-        data: what the file holds.
-        robot: that was recorded.
-        told: what the user says of the file.
-        source: the file, for messages and the record.
-
-    Returns:
-        States and actions of the robot's joints in its order, rad and rad/s; the gripper, and positions
-        that were commanded, as features of their own; and what was decided in ``import_record``.
+    The gripper and commanded positions become features; ``import_record`` holds all decisions.
     """
     given = data.demonstrations
     _check_robot(given.robot, robot, told.recorded_on, source)
@@ -172,7 +154,7 @@ def _units(
 
 
 def _gripper_feature(column: str, motors: bool, robot: Robot) -> tuple[str, float]:
-    """What the gripper's column is stored as, and how much of that one of its units is."""
+    """The feature for the gripper's column, and the factor to its unit."""
     if motors:
         opens = robot.gripper
         return (GRIPPER_OPENING, 0.01) if opens is None else (GRIPPER_WIDTH, 0.01 * opens.width_m)
@@ -205,7 +187,7 @@ def _episode(
 
 
 def _clipped(episodes: tuple[Episode, ...], robot: Robot, clip_rad: float) -> tuple[tuple[Episode, ...], str]:
-    """Positions a little outside the limits moved to them, and how many these were."""
+    """Move positions a little outside the limits to them, and count these."""
     if clip_rad == 0.0:
         return episodes, ""
     limits = robot.limits

@@ -1,6 +1,6 @@
 """Validation of demonstrations, with a one-sentence error for each fault.
 
-Episodes and samples are counted from zero, as in the dataset's ``episode_index`` and ``frame_index``.
+Episodes and samples count from zero, as in the dataset's ``episode_index`` and ``frame_index``.
 """
 
 from collections.abc import Iterator, Sequence
@@ -43,11 +43,7 @@ def validate(
 ) -> None:
     """Check everything about demonstrations that the rest of the package relies on.
 
-    Args:
-        demonstrations: what to check.
-        source: the file or folder it came from, for the message.
-        limits: the robot's joint limits; states may pass them by `LIMIT_TOLERANCE_RAD`.
-        episode_names: what messages call the episodes; their numbers by default.
+    States may pass the limits by `LIMIT_TOLERANCE_RAD`. ``source`` and ``episode_names`` are for messages.
     """
     names = demonstrations.joint_names
     if not names or not all(names) or len(set(names)) != len(names) or not all(map(_is_text, names)):
@@ -84,15 +80,7 @@ def validate_episode(
     source: str,
     limits: JointLimits | None = None,
 ) -> None:
-    """Check one episode by itself.
-
-    Args:
-        episode: what to check.
-        index: its place in the dataset, for the message.
-        joint_names: n names.
-        source: the file or folder it came from, for the message.
-        limits: the robot's joint limits, or None where the robot is unknown.
-    """
+    """Check one episode; ``index`` and ``source`` are for messages."""
     where = f"{source}: episode {index}"
     _check_shapes(episode, len(joint_names), where)
     for name, values in _features(episode):
@@ -108,7 +96,7 @@ def validate_episode(
 
 
 def check_same_features(first: Episode, other: Episode, index: int | str, source: str) -> None:
-    """Check that two episodes record the same things: a dataset has one set of features."""
+    """Check that two episodes have the same features, as one dataset requires."""
     widths = {name: values.shape[1:] for name, values in _features(first)}
     others = {name: values.shape[1:] for name, values in _features(other)}
     for name in sorted(widths.keys() | others.keys()):
@@ -217,14 +205,7 @@ def _check_limits(state: FloatArray, joint_names: tuple[str, ...], limits: Joint
 
 
 def check_goal(goal: Goal, index: int, dof: int, source: str) -> None:
-    """Check one goal by itself.
-
-    Args:
-        goal: the goal.
-        index: which of the goals it is, from 0.
-        dof: n.
-        source: the file, for messages.
-    """
+    """Check one goal for n = ``dof`` joints."""
     shapes = (goal.configuration.shape, goal.pose.position.shape, goal.pose.rotation.shape)
     if shapes != ((dof,), (3,), (3, 3)):
         raise UserError(f"{source}: goal {index} must be a configuration of {dof} joints with its pose.")

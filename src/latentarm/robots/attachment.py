@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Final, final
 
 from latentarm.core.types import FloatArray, Pose
-from latentarm.robots.scene.interior import Interior
+from latentarm.robots.scene.thing import Interior
 
 TINES_BODY: Final = "tines"
 """Name of the body of an attachment's tines in the robot's model; its frame is the tool's."""

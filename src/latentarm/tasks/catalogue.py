@@ -1,4 +1,4 @@
-"""The tasks that an arm can be driven at, by name: ours, and those that other distributions register."""
+"""Tasks for driving, by name: ours, and those that other distributions register."""
 
 from typing import Final
 
@@ -51,14 +51,7 @@ SCENE_TASKS: Final = Catalogue(
 
 
 def make_scene_task(name: str) -> SceneTask:
-    """A task with things.
-
-    Args:
-        name: a name in `SCENE_TASKS`.
-
-    Raises:
-        UserError: there is no such task, or it does not load.
-    """
+    """The task of that name in `SCENE_TASKS`."""
     return SCENE_TASKS.find(name, "--task")()
 
 

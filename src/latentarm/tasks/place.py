@@ -1,4 +1,4 @@
-"""What an arm is driven at, whatever is to be done there."""
+"""Places: a robot with goals and obstacles, whatever the task."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ from latentarm.robots.robot import Robot
 
 
 class Place(Protocol):
-    """A robot, what its person may want, and what it must keep clear of. Every `Task` is one."""
+    """A robot, its goals and its obstacles. Every `Task` is one."""
 
     @property
     def robot(self) -> Robot:
@@ -19,26 +19,19 @@ class Place(Protocol):
 
     @property
     def goals(self) -> tuple[Goal, ...]:
-        """The discrete goals ``G`` that a person may have."""
+        """The discrete goals ``G``."""
         ...
 
     @property
     def obstacles(self) -> Sequence[Obstacle]:
-        """What the arm must keep clear of."""
+        """Shapes that the arm must keep clear of."""
         ...
 
 
 @final
 @dataclass(frozen=True, eq=False)
 class ScenePlace:
-    """Where one run of a `SceneTask` is driven.
-
-    Attributes:
-        robot: the arm, with what it carries.
-        goals: what the person may want first.
-        obstacles: what the arm must keep clear of.
-        objects: names of the things that matter, see `Beginning`.
-    """
+    """The place of one run of a `SceneTask`; ``objects`` as in `Beginning`."""
 
     robot: Robot
     goals: tuple[Goal, ...]

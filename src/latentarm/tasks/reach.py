@@ -1,4 +1,4 @@
-"""Any arm, reachable poses: the task for a robot of which nothing else is known."""
+"""Reachable poses for any arm: the task for a robot without a task of its own."""
 
 from typing import final
 
@@ -28,9 +28,8 @@ class Reach(Task):
     """Bring the tool of any arm to poses about its home configuration, in free space.
 
     Args:
-        robot: the arm.
-        goals: how many poses.
-        seed: which poses; the same seed gives the same task.
+        goals: number of poses
+        seed: the same seed gives the same poses
     """
 
     any_robot = True
@@ -64,7 +63,7 @@ class Reach(Task):
 
     @property
     def obstacles(self) -> tuple[()]:
-        """None: nothing is known of the place."""
+        """None: the place is unknown."""
         return ()
 
     def sample_start(self, goal: int, rng: np.random.Generator) -> FloatArray:
@@ -86,17 +85,13 @@ class Reach(Task):
         return within(pose, waypoint)
 
     def demonstrate(self, episodes: int, rng: np.random.Generator) -> Demonstrations:
-        """Straight to the goals in turn, as a simulated person would.
-
-        Raises:
-            UserError: fewer than one episode is asked for.
-        """
+        """Straight strokes to the goals in turn, by a simulated person."""
         return demonstrate_goals(
             self, lambda goal: self.goals[goal].configuration[None], "reach", episodes, rng
         )
 
     def _goal(self, name: str, rng: np.random.Generator) -> Goal:
-        """A goal that is not where the arm stands at home."""
+        """A goal away from home."""
         chain = self.robot.chain
         home = chain.forward(self._about_home(0.0, rng))
         for _ in range(TRIES):
@@ -114,7 +109,7 @@ class Reach(Task):
         )
 
     def _about_home(self, spread: float, rng: np.random.Generator) -> FloatArray:
-        """Home with each joint moved at random, kept off the limits (half-way between narrow ones)."""
+        """Home with each joint moved at random, off the limits (half-way between narrow ones)."""
         limits = self.robot.limits
         middle = (limits.lower + limits.upper) / 2
         lowest = np.minimum(limits.lower + MARGIN, middle)

@@ -1,4 +1,4 @@
-"""Where the things are that a decoder looks at."""
+"""Poses of the things that a decoder sees."""
 
 from collections.abc import Callable, Mapping, Sequence
 
@@ -8,15 +8,7 @@ from latentarm.tasks.place import Place
 
 
 def surroundings_of(place: Place, objects: Sequence[str]) -> Callable[[], FloatArray] | None:
-    """What tells `Step` the poses (K, 9) of things where nothing moves: the goals of a place.
-
-    Args:
-        place: its goals are the things.
-        objects: names of those that a controller uses; if empty, the result is None.
-
-    Raises:
-        UserError: an object is not among the place's goals.
-    """
+    """A source of the poses (K, 9) of goals as things that never move; None without objects."""
     if not objects:
         return None
     rows = object_rows({goal.name: goal.pose for goal in place.goals}, objects)
@@ -27,15 +19,7 @@ def surroundings_of(place: Place, objects: Sequence[str]) -> Callable[[], FloatA
 def watched(
     poses: Callable[[], Mapping[str, Pose]], objects: Sequence[str]
 ) -> Callable[[], FloatArray] | None:
-    """What tells `Step` the poses (K, 9) of things that may move.
-
-    Args:
-        poses: where things are now, by name.
-        objects: names of those that a controller uses; if empty, the result is None.
-
-    Raises:
-        UserError: there is no thing of a name.
-    """
+    """A source of the poses (K, 9) of things that may move; None without objects."""
     if not objects:
         return None
     object_rows(poses(), objects)  # fails now rather than in the loop

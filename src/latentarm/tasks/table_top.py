@@ -1,4 +1,4 @@
-"""A Panda at a table with three food items, each to be reached and then stabbed or scooped."""
+"""A Panda at a table with three food items, each to reach and then to stab or scoop."""
 
 from functools import cached_property
 from typing import final
@@ -48,10 +48,10 @@ _VIA = 3
 class TableTop(Task):
     """Three food items on a table, in an arc in front of a Panda whose hand holds a fork.
 
-    The tool point stands for the fork's tip and its z axis for where the fork points. A goal is the
-    configuration with the fork upright above an item, turned outwards from the base. To stab, the
-    fork goes straight down from there; to scoop, it tilts, goes low before the item and sweeps
-    outwards through it. The demonstrator is a simulated person.
+    The tool point stands for the fork's tip, and its z axis for the fork's direction. A goal is the
+    configuration with the fork upright above an item, turned outwards from the base. To stab, the fork goes
+    straight down from there; to scoop, it tilts, goes low before the item and sweeps outwards through it. The
+    demonstrator is a simulated person.
     """
 
     @property
@@ -71,7 +71,7 @@ class TableTop(Task):
 
     @property
     def obstacles(self) -> tuple[Obstacle, ...]:
-        """The table; the food and its dishes are soft and may be touched."""
+        """The table; the arm may touch the soft food and its dishes."""
         return (HalfSpace("table", np.array([0.0, 0.0, TABLE_HEIGHT]), np.array([0.0, 0.0, 1.0])),)
 
     @property
@@ -89,11 +89,7 @@ class TableTop(Task):
         return self.robot.home + rng.uniform(-START_SPREAD, START_SPREAD)
 
     def waypoints(self, goal: int, manner: str) -> tuple[Pose, ...]:
-        """The pose above the item, then the end of the stab or scoop.
-
-        Raises:
-            UserError: there is no such goal or manner.
-        """
+        """The pose above the item, then the end of the stab or scoop."""
         if not 0 <= goal < len(ITEMS):
             raise UserError(f"The table has goals 0 to {len(ITEMS) - 1}, not {goal}.")
         return self.goals[goal].pose, self.robot.chain.forward(self._manipulation(goal, manner)[-1])
@@ -103,11 +99,7 @@ class TableTop(Task):
         return within(pose, waypoint)
 
     def demonstrate(self, episodes: int, rng: np.random.Generator) -> Demonstrations:
-        """Reach and manipulate, goals and manners in turn, as a simulated person would.
-
-        Raises:
-            UserError: fewer than one episode is asked for.
-        """
+        """Reach and manipulate, goals and manners in turn, by a simulated person."""
         hand = Hand()
         return demonstrations_of(self, lambda index: self._episode(index, hand, rng), episodes, hand)
 
@@ -142,7 +134,6 @@ class TableTop(Task):
         return Goal(name, configuration, self.robot.chain.forward(configuration))
 
     def _manipulation(self, goal: int, manner: str) -> FloatArray:
-        """Configurations along a stab or scoop after the goal, (V, 7), rad."""
         if manner not in self.manners:
             raise UserError(f"At the table one can {' or '.join(self.manners)}, not {manner!r}.")
         return self._manipulations[goal, manner]
@@ -156,7 +147,7 @@ class TableTop(Task):
         }
 
     def _along(self, goal: Goal, poses: list[Pose]) -> FloatArray:
-        """Configurations for poses one after the other, each found from the one before, (V, n), rad."""
+        """Configurations (V, n), rad, for poses in turn, each found from the one before."""
         configurations = [goal.configuration]
         for pose in poses:
             configurations.append(solve(self.robot, pose, configurations[-1]))
@@ -164,7 +155,6 @@ class TableTop(Task):
 
 
 def _line(name: str, manner: str) -> list[Pose]:
-    """Poses of the tool along a stab or scoop, after the pose above the item."""
     share = np.linspace(0.0, 1.0, _VIA + 2)[1:]
     if manner == "stab":
         return [_above(name, height=HOVER * (1.0 - s)) for s in share]
@@ -180,14 +170,6 @@ def _line(name: str, manner: str) -> list[Pose]:
 
 
 def _above(name: str, height: float, tilt: float = 0.0, outwards: float = 0.0) -> Pose:
-    """A pose of the fork over an item.
-
-    Args:
-        name: of the item.
-        height: of the tip above the food, m.
-        tilt: of the fork from upright, its tip outwards, rad.
-        outwards: shift away from the robot's base, m.
-    """
     x, y = ITEMS[name]
     direction = np.array([x, y]) / np.hypot(x, y)
     out = np.array([*direction, 0.0])

@@ -8,8 +8,7 @@ from scipy.spatial.transform import Rotation
 
 from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray, Pose
-from latentarm.robots.scene.interior import Interior
-from latentarm.robots.scene.thing import Part
+from latentarm.robots.scene.thing import Interior, Part
 
 Colour = tuple[float, float, float, float]
 

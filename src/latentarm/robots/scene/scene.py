@@ -9,8 +9,7 @@ import numpy as np
 from latentarm.core.errors import UserError
 from latentarm.core.types import BoolArray, FloatArray, Pose
 from latentarm.robots.kinematics.obstacles import HalfSpace
-from latentarm.robots.scene.interior import Interior
-from latentarm.robots.scene.thing import Bond, Grains, Thing
+from latentarm.robots.scene.thing import Bond, Grains, Interior, Thing
 
 TABLE: Final = "table"
 """Name of the table in `SceneState.force_n`."""

@@ -5,7 +5,6 @@ from typing import Literal, final
 
 from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray, Pose
-from latentarm.robots.scene.interior import Interior
 
 Shape = Literal["box", "cylinder", "capsule", "sphere"]
 
@@ -26,6 +25,16 @@ class Part:
     quaternion: tuple[float, float, float, float] = UPRIGHT  # in the thing's frame, (w, x, y, z)
     # red, green, blue, opacity, each in [0, 1]
     colour: tuple[float, float, float, float] = (0.8, 0.8, 0.8, 1.0)
+
+
+@final
+@dataclass(frozen=True)
+class Interior:
+    """The room inside a container: an upright cylinder in its frame."""
+
+    radius_m: float
+    bottom_m: float  # lowest height in the thing's frame
+    top_m: float  # height of the rim in the thing's frame
 
 
 @final

@@ -7,9 +7,8 @@ from typing import Final, final
 import numpy as np
 
 from latentarm.robots.scene.containers import bowl, packed
-from latentarm.robots.scene.interior import Interior
 from latentarm.robots.scene.scene import Scene
-from latentarm.robots.scene.thing import Grains, Part, Thing
+from latentarm.robots.scene.thing import Grains, Interior, Part, Thing
 from latentarm.tasks.eating.fork_task import OFF_M, ForkTask, fallen
 from latentarm.tasks.eating.stabbing import above, carried_over, stab
 from latentarm.tasks.eating.table import (
@@ -95,7 +94,7 @@ class Dessert(ForkTask):
         return 180.0
 
     def begin(self, choice: int, rng: np.random.Generator) -> Beginning:
-        """The marshmallow anywhere in the middle of its plate."""
+        """The marshmallow at random near the middle of its plate."""
         x, y = np.array(MIDDLE_M) + rng.uniform(-SPREAD_M, SPREAD_M, 2)
         made = bowl(BOWL_RADIUS_M, BOWL_HEIGHT_M)
         dish = Thing("rice bowl", made.parts, 0.5, at(*RICE_M, STAND_M), fixed=True, interior=made.interior)
@@ -130,7 +129,7 @@ class Dessert(ForkTask):
 
 
 def icing(name: str, x: float, y: float) -> Thing:
-    """Icing on a plate, its frame in the middle of the plate's top. Only the plate is solid."""
+    """Icing on a plate, with its frame in the middle of the plate's top. Only the plate is solid."""
     size, middle = (WET.radius_m, (WET.top_m - WET.bottom_m) / 2), (WET.top_m + WET.bottom_m) / 2
     soft = Part("cylinder", size, (0.0, 0.0, middle), colour=_ICING)
     return replace(plate(name, x, y, ICING_RADIUS_M), soft=(soft,))

@@ -62,7 +62,7 @@ class Entree(ForkTask):
         return 120.0
 
     def begin(self, choice: int, rng: np.random.Generator) -> Beginning:
-        """Tofu anywhere in the middle of its dish, turned a little."""
+        """Tofu at random near the middle of its dish, turned a little."""
         turn = float(rng.uniform(-TURN_RAD, TURN_RAD))
         x, y = np.array(DISH_M) + rng.uniform(-SPREAD_M, SPREAD_M, 2)
         scene = Scene(
@@ -126,7 +126,7 @@ def tofu(x: float, y: float, turn_rad: float) -> tuple[Thing, Thing]:
 
 
 def cut_between() -> Bond:
-    """What holds the slice to the block."""
+    """The bond between slice and block."""
     return Bond(
         "tofu",
         "slice",
@@ -138,7 +138,6 @@ def cut_between() -> Bond:
 
 
 def _at_cut(state: SceneState, height_m: float, turn_rad: float) -> Pose:
-    """The fork's edge over the plane of the cut, at a height over the top of the tofu."""
     pose = state.poses["tofu"]
     place = pose.position + pose.rotation @ np.array([0.0, HALF_M[1], HALF_M[2]])
     return fork(place, height_m, turn_rad)

@@ -8,13 +8,11 @@ import numpy as np
 
 from latentarm.core.types import FloatArray, Pose
 from latentarm.robots.scene.containers import bowl, cup
-from latentarm.robots.scene.interior import Interior
 from latentarm.robots.scene.scene import Scene, SceneState
-from latentarm.robots.scene.thing import Part, Thing
+from latentarm.robots.scene.thing import Interior, Part, Thing
 from latentarm.tasks.eating.table import at
 from latentarm.tasks.predicates import CarriedOver, KnockedOver, Placed, Stirred, Within
-from latentarm.tasks.region import Region, anywhere
-from latentarm.tasks.scene_task import Beginning
+from latentarm.tasks.scene_task import Beginning, Region, anywhere
 from latentarm.tasks.serving.counter import (
     BOWL_HEIGHT_M,
     FLOUR,
@@ -98,7 +96,7 @@ class ApplePie(CounterTask):
         return 180.0
 
     def begin(self, choice: int, rng: np.random.Generator) -> Beginning:
-        """Shelf, bowl and bin anywhere in their regions."""
+        """Shelf, bowl and bin at random in their regions."""
         shelf = np.append(anywhere(SHELF_AT_M, rng), TOP_M + SHELF_M)
         things = _things(shelf, anywhere(BOWL_AT_M, rng), anywhere(BIN_AT_M, rng))
         grains = (
@@ -149,20 +147,19 @@ def _things(shelf: FloatArray, bowl_at: FloatArray, bin_at: FloatArray) -> dict[
 
 
 def _bin(x: float, y: float) -> Thing:
-    """The recycling bin, which stays where it stands."""
     made = bowl(0.06, 0.09, (0.25, 0.45, 0.3, 1.0))
     return Thing("bin", made.parts, 0.5, at(x, y, TOP_M), fixed=True, interior=made.interior)
 
 
 def _apple(place: FloatArray) -> Thing:
-    """An apple that stands on its flat end, its frame in the middle of that."""
+    """An apple that stands on its flat end, with its frame in the middle of that."""
     flesh = Part("sphere", (APPLE_RADIUS_M,), (0.0, 0.0, APPLE_RADIUS_M), colour=(0.8, 0.15, 0.15, 1.0))
     end = Part("cylinder", (0.014, 0.004), (0.0, 0.0, 0.004), colour=(0.8, 0.15, 0.15, 1.0))
     return Thing("apple", (flesh, end), 0.10, Pose(place, np.eye(3)), friction=0.9)
 
 
 def _spoon(x: float, y: float) -> tuple[Thing, Thing]:
-    """A spoon that stands in a holder; its frame is in the middle of its lower end."""
+    """A spoon that stands in a holder, with its frame in the middle of its lower end."""
     made = cup(0.016, 0.06, (0.5, 0.5, 0.52, 1.0))
     holder = Thing("holder", made.parts, 0.3, at(x, y, TOP_M), fixed=True)
     steel = (0.7, 0.7, 0.72, 1.0)
@@ -217,7 +214,6 @@ def _apple_steps(things: Mapping[str, Thing], rooms: Mapping[str, Interior]) -> 
 
 
 def _away(cup: str, room: Interior) -> TaskStep:
-    """Drop a cup into the bin."""
     upright = Waypoint(partial(over, thing="bowl", height_m=0.20), within_rad=0.5)
     above = Waypoint(partial(over, thing="bin", height_m=0.22))
     let_go = Waypoint(partial(over, thing="bin", height_m=0.17), gripper="open", wait_s=0.8)
@@ -227,7 +223,6 @@ def _away(cup: str, room: Interior) -> TaskStep:
 
 
 def _back(cup: str, place: FloatArray) -> TaskStep:
-    """Put a cup back where it came from."""
     grip = place + np.array([0.0, 0.0, GRIP_M + 0.004])
     lift = np.array([0.0, 0.0, LIFT_M])
     upright = Waypoint(partial(over, thing="bowl", height_m=0.20), within_rad=0.5)
@@ -241,18 +236,14 @@ def _back(cup: str, place: FloatArray) -> TaskStep:
 
 @final
 class _Strokes:
-    """Where the hand leads the spoon: to and fro on the side of the bowl where the apple is not.
-
-    Args:
-        up_m: height of the hand over the bowl's underside, m.
-    """
+    """The hand's strokes with the spoon on the side of the bowl opposite the apple."""
 
     def __init__(self, up_m: float) -> None:
         self._up_m = up_m
         self._entered_rad = 0.0
 
     def pose(self, state: SceneState, index: int, up_m: float = 0.0) -> Pose:
-        """An end of a stroke, or over it; which side is settled while the spoon is over the bowl."""
+        """An end of a stroke, or over it; the side is fixed while the spoon is over the bowl."""
         middle = state.poses["bowl"].position
         if state.poses["spoon"].position[2] > middle[2] + BOWL_HEIGHT_M:
             apple = state.poses["apple"].position - middle

@@ -1,4 +1,4 @@
-"""The counter that cups and bowls stand on, and how a hand is held over it."""
+"""The counter with cups and bowls, and the hand over it."""
 
 from typing import Final
 
@@ -39,7 +39,7 @@ _WOOD: Final = (0.55, 0.42, 0.30, 1.0)
 
 
 def counter() -> Thing:
-    """The counter, its frame in the middle of its top."""
+    """The counter, with its frame in the middle of its top."""
     (x0, x1), (y0, y1) = COUNTER_M
     half = ((x1 - x0) / 2, (y1 - y0) / 2, TOP_M / 2)
     block = Part("box", half, (0.0, 0.0, -TOP_M / 2), colour=_WOOD)
@@ -55,7 +55,7 @@ def counter_cup(
 
 
 def counter_bowl(name: str, x: float, y: float, radius_m: float = BOWL_RADIUS_M) -> Thing:
-    """A bowl that stays where it stands on the counter; the radius is that of its floor, m."""
+    """A fixed bowl on the counter; the radius is its floor's, m."""
     made = bowl(radius_m, BOWL_HEIGHT_M)
     return Thing(name, made.parts, 0.5, at(x, y, TOP_M), fixed=True, interior=made.interior)
 
@@ -69,7 +69,7 @@ def filled(
     colour: Colour,
     sizes: tuple[float, ...] = (1.0,),
 ) -> Grains:
-    """Grains that begin in a container."""
+    """Grains that fill a container."""
     places = packed(container.room, container.pose, count, radius_m)
     return Grains(name, radius_m, grain_kg, places, colour, sizes)
 
@@ -80,12 +80,10 @@ def bearing_of(place: FloatArray) -> float:
 
 
 def hand(place: FloatArray, bearing_rad: float, tilt_rad: float = 0.0) -> Pose:
-    """A pose of the hand, its fingers closing sideways.
+    """A pose of the hand, whose fingers close sideways, with their tips at ``place``, (3,), m.
 
-    Args:
-        place: (3,), of the point between the fingertips, m.
-        bearing_rad: in which it points, as seen from above.
-        tilt_rad: how far what it holds leans to the left, about that bearing, rad.
+    ``bearing_rad`` is its horizontal direction. Its load leans to the left by ``tilt_rad``, about that
+    bearing.
     """
     out = np.array([np.cos(bearing_rad), np.sin(bearing_rad), 0.0])
     up = np.array([0.0, 0.0, 1.0])
@@ -98,12 +96,10 @@ def hand(place: FloatArray, bearing_rad: float, tilt_rad: float = 0.0) -> Pose:
 
 
 def pouring(bowl_at: FloatArray, tilt_rad: float, over_m: float) -> Pose:
-    """A hand that tilts a cup so that what it holds falls into the middle of a bowl.
+    """A hand that tilts a cup so that its load falls into the middle of a bowl.
 
-    Args:
-        bowl_at: (3,), middle of the bowl's underside, m.
-        tilt_rad: of the cup, to the left as seen from the base if positive, rad.
-        over_m: height of the fingertips over the bowl's rim, m.
+    ``bowl_at`` is the middle of the bowl's underside, (3,), m; the cup tilts to the left as seen from the
+    base if ``tilt_rad`` is positive; ``over_m`` is the height of the fingertips over the bowl's rim.
     """
     bearing = bearing_of(bowl_at)
     left = np.array([-np.sin(bearing), np.cos(bearing), 0.0])

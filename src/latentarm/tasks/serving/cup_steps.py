@@ -1,4 +1,4 @@
-"""The steps that tasks with cups have in common: to take one, to pour it out, to put it down."""
+"""Steps of tasks with cups: take one and pour it out."""
 
 from functools import partial
 from typing import Final
@@ -6,8 +6,8 @@ from typing import Final
 import numpy as np
 
 from latentarm.core.types import FloatArray, Pose
-from latentarm.robots.scene.interior import Interior
 from latentarm.robots.scene.scene import SceneState
+from latentarm.robots.scene.thing import Interior
 from latentarm.tasks.predicates import CarriedOver, Holding, Poured, Taken
 from latentarm.tasks.serving.counter import GRIP_M, TOP_M, bearing_of, hand, pouring
 from latentarm.tasks.steps import TaskStep, Waypoint
@@ -34,10 +34,7 @@ POUR_RAD: Final = 1.8
 def take(cup: str, stands_m: float = TOP_M, grip_m: float = GRIP_M) -> tuple[TaskStep, ...]:
     """Reach for a cup, close the fingers about it, lift it.
 
-    Args:
-        cup: its name.
-        stands_m: height of its underside, m.
-        grip_m: height over its underside at which it is taken, m.
+    ``stands_m`` is the height of its underside; the fingers take it ``grip_m`` above that.
     """
     before = Waypoint(partial(_at, cup=cup, back_m=BEFORE_M, up_m=grip_m), gripper="open")
     about = Waypoint(
@@ -67,17 +64,10 @@ def pour(
     tip_speed: float = 0.5,
     leaving: tuple[str, float] | None = None,
 ) -> tuple[TaskStep, ...]:
-    """Carry a cup over a bowl, and pour it out.
+    """Carry a cup over a bowl, and pour the given share of its grains into it.
 
-    Args:
-        cup: its name.
-        grains: what is in it.
-        bowl: where that goes.
-        interior: the room in the bowl.
-        share: of the grains that must be in the bowl, in (0, 1].
-        side: 1 to pour to the left, -1 to the right.
-        tip_speed: how fast the cup is tipped at last, as a share of the person's usual speed.
-        leaving: bowl and side that were poured to before: first the cup is set upright there.
+    ``side`` is 1 to pour to the left and -1 to the right; ``tip_speed`` is a share of the person's usual
+    speed. ``leaving`` is the bowl and side of a pour before this: the cup is first set upright there.
     """
     upright = Waypoint(partial(_over, bowl=bowl, tilt_rad=0.05 * side))
     half = Waypoint(partial(_over, bowl=bowl, tilt_rad=0.6 * POUR_RAD * side), speed=0.7)
@@ -103,7 +93,6 @@ def _at(state: SceneState, cup: str, back_m: float, up_m: float) -> Pose:
 
 
 def _lifted(state: SceneState, cup: str, height_m: float) -> Pose:
-    """The hand at a height over the base, wherever the cup is."""
     place = state.poses[cup].position.copy()
     place[2] = height_m
     return hand(place, bearing_of(place))

@@ -5,8 +5,7 @@ from typing import Final, final
 import numpy as np
 
 from latentarm.robots.scene.scene import Scene
-from latentarm.tasks.region import Region, anywhere
-from latentarm.tasks.scene_task import Beginning
+from latentarm.tasks.scene_task import Beginning, Region, anywhere
 from latentarm.tasks.serving.counter import (
     FLOUR,
     GRAIN_KG,
@@ -64,7 +63,7 @@ class Pour(CounterTask):
         return 120.0
 
     def begin(self, choice: int, rng: np.random.Generator) -> Beginning:
-        """Cup and bowls anywhere in their regions of the counter."""
+        """Cup and bowls at random in their regions of the counter."""
         cup = counter_cup("cup", *anywhere(CUP_AT_M, rng), floor_m=FLOOR_M)
         left = counter_bowl("left bowl", *anywhere(LEFT_AT_M, rng))
         right = counter_bowl("right bowl", *anywhere(RIGHT_AT_M, rng))

@@ -6,8 +6,7 @@ from typing import Final, final
 import numpy as np
 
 from latentarm.robots.scene.scene import Scene
-from latentarm.tasks.region import Region, anywhere
-from latentarm.tasks.scene_task import Beginning
+from latentarm.tasks.scene_task import Beginning, Region, anywhere
 from latentarm.tasks.serving.counter import (
     FLOUR,
     GRAIN_KG,
@@ -32,14 +31,9 @@ GRAINS: Final = 24
 @final
 @dataclass(frozen=True, eq=False)
 class ReachAndPour(CounterTask):
-    """Take a cup, carry it over a bowl, and pour it out.
+    """Take a cup, carry it over a bowl, and pour it out."""
 
-    Attributes:
-        cup_at_m: where the cup may stand, x and y, m.
-        bowl_at_m: where the bowl may stand.
-    """
-
-    cup_at_m: Region = CUP_AT_M
+    cup_at_m: Region = CUP_AT_M  # region of the cup, x and y, m
     bowl_at_m: Region = BOWL_AT_M
 
     @property
@@ -58,7 +52,7 @@ class ReachAndPour(CounterTask):
         return 120.0
 
     def begin(self, choice: int, rng: np.random.Generator) -> Beginning:
-        """Cup and bowl anywhere in their regions of the counter."""
+        """Cup and bowl at random in their regions of the counter."""
         cup = counter_cup("cup", *anywhere(self.cup_at_m, rng))
         bowl = counter_bowl("bowl", *anywhere(self.bowl_at_m, rng))
         grains = filled("grains", cup, GRAINS, GRAIN_RADIUS_M, GRAIN_KG, FLOUR)
