@@ -1,4 +1,4 @@
-"""Looking at a real arm before it is driven: what its driver finds out, and what all arms must be."""
+"""Inspection of a real arm before driving: the driver's findings, and checks for all arms."""
 
 from pathlib import Path
 from typing import Final
@@ -15,18 +15,9 @@ _BEYOND: Final = 1e-3
 
 
 def look_at(arm: RealArm, robot: Robot, dt_s: float) -> Findings:
-    """What there is to know of an arm before it is driven; nothing moves.
+    """Inspect an arm that is not connected, without moving it, for a loop of period ``dt_s``.
 
-    Args:
-        arm: its driver, not connected.
-        robot: what it is to be driven as.
-        dt_s: period of the loop that is to drive it, s.
-
-    Returns:
-        What the driver found, with what holds for all arms; refusals without repetition.
-
-    Raises:
-        UserError: there is no arm, or what is there does not answer as one.
+    Returns the driver's findings with those common to all arms, and refusals without repetition.
     """
     spec, found = arm.spec, arm.look()
     refusals = [*arm_refusals(spec, robot), *found.refusals]
@@ -52,7 +43,7 @@ def look_at(arm: RealArm, robot: Robot, dt_s: float) -> Findings:
 
 
 def _beyond(own: FoundLimits, robot: Robot) -> list[str]:
-    """Limits of the robot that the arm would not let it use: it would stop there with a fault."""
+    """Limits of the robot beyond the arm's own, where the arm would stop with a fault."""
     shape = (robot.dof,)
     if not own.lower.shape == own.upper.shape == own.velocity.shape == shape:
         return [

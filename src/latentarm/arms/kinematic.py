@@ -1,4 +1,4 @@
-"""An arm without inertia: it does what it is told, and stops by itself when told nothing more."""
+"""An arm without inertia: it follows every command, and stops by itself when commands end."""
 
 import math
 from collections.abc import Callable
@@ -19,11 +19,10 @@ RATE_HZ: Final = 1000.0
 class KinematicArm(SimulatedArm):
     """Kinematic simulation of the paper's transition, ``s' = s + a dt``.
 
-    A joint that reaches a limit stays there, as at a hard stop. A gripper opens and closes as it is told.
+    A joint that reaches a limit stays there, as at a hard stop. A gripper follows its commands.
 
     Args:
-        robot: whose joints these are.
-        state: (n,), where the arm starts, rad.
+        state: (n,), start, rad.
         now_s: the clock, s; never goes back.
 
     Raises:

@@ -34,34 +34,27 @@ _SLEEP_TOLERANCE_M_S: Final = 2e-3
 
 
 def thing_body(name: str) -> str:
-    """The name of a thing's body in the model; its frame is the thing's."""
+    """Name of a thing's body in the model; its frame is the thing's."""
     return f"thing {name}"
 
 
 def grain_body(name: str, index: int) -> str:
-    """The name of a grain's body in the model."""
+    """Name of a grain's body in the model."""
     return f"grain {name} {index}"
 
 
 def bond_name(bond: Bond) -> str:
-    """The name of a bond's constraint in the model."""
+    """Name of a bond's constraint in the model."""
     return f"bond {bond.first} {bond.second}"
 
 
 def stab_name(name: str) -> str:
-    """The name of the constraint that holds a food on tines."""
+    """Name of the constraint that holds a food on tines."""
     return f"stab {name}"
 
 
 def add_scene(spec: mujoco.MjSpec, scene: Scene, attachment: Attachment | None, *, grips: bool) -> None:
-    """Add a scene to a robot's model.
-
-    Args:
-        spec: the robot's.
-        scene: what stands about it.
-        attachment: what the robot carries, or None.
-        grips: whether it has a gripper.
-    """
+    """Add a scene to a robot's model; ``grips`` says whether the robot has a gripper."""
     tined = attachment is not None and attachment.tines is not None
     if tined:
         for geom in spec.body(TINES_BODY).geoms:
@@ -111,7 +104,7 @@ def _add_thing(spec: mujoco.MjSpec, thing: Thing) -> None:
 
 
 def _add_grains(spec: mujoco.MjSpec, grains: Grains) -> None:
-    """Frictionless balls: they never turn, so each slides along three axes and no more."""
+    """Frictionless balls: they never turn, so each slides along three axes only."""
     drag = grains.mass_kg / _GRAIN_DRAG_S
     for index, position in enumerate(grains.positions):
         name = grain_body(grains.name, index)

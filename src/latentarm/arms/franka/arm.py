@@ -12,8 +12,7 @@ from latentarm.arms.franka.hand import Hand
 from latentarm.arms.franka.link import Link, findings, library, open_link, refusals, set_up
 from latentarm.arms.franka.options import read_options
 from latentarm.arms.franka.worker import Order, Trouble, Worker
-from latentarm.arms.guiding import GuidableArm
-from latentarm.arms.real import Findings
+from latentarm.arms.real import Findings, GuidableArm
 from latentarm.core.errors import UserError
 from latentarm.core.types import Command, GripperCommand, GripperReading, Reading
 from latentarm.robots.robot import Robot
@@ -34,9 +33,8 @@ class FrankaArm(GuidableArm):
     """A Franka Research 3 or Panda, by joint velocities at up to 100 Hz; its 1 kHz is franky's, in C++.
 
     Args:
-        robot: what the arm is.
         address: ``franka://HOST`` with the options of `FrankaOptions`.
-        now_s: the clock that readings are timed by, s; never goes back.
+        now_s: the clock of readings, s; never goes back
     """
 
     def __init__(self, robot: Robot, address: ArmAddress, now_s: Callable[[], float]) -> None:
@@ -64,11 +62,11 @@ class FrankaArm(GuidableArm):
 
     @property
     def spec(self) -> ArmSpec:
-        """See the base class."""
+        """The arm's fixed properties."""
         return self._spec
 
     def look(self) -> Findings:
-        """See the base class. The arm's collision thresholds do change: they are set on connecting."""
+        """Inspect the arm without moving it. Its collision thresholds do change, by connecting."""
         if self._worker is not None:
             raise RuntimeError("the arm is connected; look before that")
         link = self._open()
@@ -78,7 +76,7 @@ class FrankaArm(GuidableArm):
             link.close()
 
     def connect(self) -> None:
-        """See the base class."""
+        """Connect; the arm is then disabled."""
         self.close()
         link = self._ready_link()
         # franky and libfranka raise exceptions of their own.
@@ -92,7 +90,7 @@ class FrankaArm(GuidableArm):
             ) from error
 
     def close(self) -> None:
-        """See the base class."""
+        """Stop the arm and disconnect."""
         self._enabled = False
         if self._worker is not None:
             self._last = self.read()
@@ -103,7 +101,7 @@ class FrankaArm(GuidableArm):
             self._hand = None
 
     def read(self) -> Reading:
-        """See the base class."""
+        """The newest reading."""
         if self._worker is None:
             if self._last is None:
                 raise RuntimeError("the arm was never connected")
@@ -117,7 +115,7 @@ class FrankaArm(GuidableArm):
         return last
 
     def status(self) -> ArmStatus:
-        """See the base class."""
+        """Whether the arm can move, and if not, why."""
         worker = self._worker
         if worker is None:
             return ArmStatus("off", "The arm is not connected.")
@@ -133,39 +131,35 @@ class FrankaArm(GuidableArm):
         return ArmStatus("moving" if worker.running else "ready")
 
     def enable(self) -> None:
-        """See the base class."""
+        """Ask to take commands."""
         if self._worker is not None and self.status().phase == "disabled":
             if not self._enabled:
                 self._halt()
             self._enabled = True
 
     def disable(self) -> None:
-        """See the base class."""
+        """Stop, and take no commands."""
         self._enabled = False
         self._halt()
 
     def guide(self) -> None:
-        """See the base class. It ends within a second where this process does."""
+        """Ask to be moved by hand. It ends within a second where this process does."""
         if self._worker is not None and not self._enabled and self.status().phase == "disabled":
             self._worker.guide()
 
     def move_gripper(self, command: GripperCommand) -> None:
-        """See the base class."""
+        """Move the gripper of an arm that takes no commands."""
         if self._worker is not None and self._hand is not None and not self.status().takes_commands:
             self._hand.ask(command)
 
     def recover(self) -> None:
-        """See the base class. A lost connection is made again; the hand's too."""
+        """Ask to end a recoverable fault. A lost connection is made again; the hand's too."""
         if self._worker is not None:
             self._enabled = False
             self._worker.recover()
 
     def send(self, command: Command) -> None:
-        """See the base class.
-
-        Raises:
-            ValueError: the command is not 7 finite joint velocities for a finite time.
-        """
+        """Take a command; ignored unless enabled."""
         velocity = np.array(command.velocity, dtype=np.float64)
         if velocity.shape != (7,) or not np.isfinite(velocity).all():
             raise ValueError("a command needs 7 finite joint velocities")
@@ -180,7 +174,7 @@ class FrankaArm(GuidableArm):
             self._hand.ask(command.gripper)
 
     def stop(self) -> None:
-        """See the base class."""
+        """Stop now, and stay enabled."""
         self._halt()
 
     def _halt(self) -> None:
@@ -188,7 +182,7 @@ class FrankaArm(GuidableArm):
             self._worker.give(Order(None, self._now_s()))
 
     def _watch(self, worker: Worker) -> None:
-        """Notice what the worker cannot: that it waits for a silent arm, or that the hand is gone."""
+        """Detect faults that the worker cannot: it waits for a silent arm, or the hand is gone."""
         silent_s = self._now_s() - worker.measured.time_s
         if silent_s > _SILENT_S:
             reason = f"Nothing has come from the arm for {silent_s:.1f} s: check its power and cable."
@@ -201,7 +195,7 @@ class FrankaArm(GuidableArm):
         return open_link(self._host, self._options, self._robot)
 
     def _ready_link(self) -> Link:
-        """A link that may be driven."""
+        """A link that is ready to drive."""
         link = self._open()
         try:
             for reason in refusals(link, self._options, self._robot):

@@ -1,4 +1,4 @@
-"""Guiding a Franka by hand: torque control without stiffness, as the arm carries its own weight."""
+"""Guiding a Franka by hand: torque control without stiffness; the arm carries its own weight."""
 
 from typing import Any, Final, Literal, final
 
@@ -19,14 +19,11 @@ _DAMPING: Final = (1.0, 1.0, 1.0, 1.0, 0.5, 0.5, 0.5)
 
 @final
 class Guiding:
-    """What the arm's worker does for guiding; called in its thread.
+    """Guiding for the arm's worker, in its thread.
 
-    Each motion is bounded in franky's control thread, at 1 kHz: where the worker does not renew it, a
-    `TorqueStopMotion` brings the arm to rest, and it then holds its position.
-
-    Args:
-        franky: the module.
-        limits: what the arm can do; near the ends of its joints it pushes back.
+    Franky's control thread bounds each motion, at 1 kHz: if the worker does not renew it, a
+    `TorqueStopMotion` brings the arm to rest, and it then holds its position. Near the ends of its joints it
+    pushes back.
     """
 
     def __init__(self, franky: Any, limits: FrankaLimits) -> None:
@@ -36,14 +33,7 @@ class Guiding:
         self.phase: Literal["no", "on", "ending"] = "no"
 
     def follow(self, link: Link, q: FloatArray, now_s: float, *, wanted: bool) -> None:
-        """Begin, renew or end it.
-
-        Args:
-            link: open.
-            q: (7,), where the joints are, rad.
-            now_s: our clock, s.
-            wanted: whether the arm is to be guided.
-        """
+        """Begin, renew or end guiding; joints are at ``q``, (7,), rad."""
         if wanted and (self.phase == "no" or (self.phase == "on" and now_s - self._began_s > _RENEWED_S)):
             link.arm.move(self._motion(q), asynchronous=True)
             self.phase, self._began_s = "on", now_s
@@ -52,7 +42,7 @@ class Guiding:
             self.phase = "ending"
 
     def ended(self, link: Link) -> bool:
-        """Whether the arm has ended it by itself, and rests.
+        """Whether the arm has ended guiding by itself, and rests.
 
         Raises:
             Exception: of franky, where an error has ended it.

@@ -1,4 +1,4 @@
-"""A connection to a Franka: opened, looked at, set up. Nothing here moves it."""
+"""A connection to a Franka: opened, inspected, set up. Nothing here moves it."""
 
 import statistics
 import threading
@@ -33,12 +33,9 @@ _ROUND_TRIPS: Final = 9
 
 @final
 class Link:
-    """An open connection. It ends with `close`: franky itself has only the end of its objects for that.
+    """An open connection, which ends with `close`: franky ends it only with its objects.
 
-    Args:
-        arm: franky's robot.
-        hand: franky's gripper, or None where the robot has none.
-        limits: what the arm can do; None where it is an arm that is not known.
+    ``limits`` is None for an unknown arm.
     """
 
     def __init__(
@@ -50,23 +47,19 @@ class Link:
 
     @property
     def arm(self) -> "franky.Robot":
-        """Franky's robot; nobody keeps it.
-
-        Raises:
-            RuntimeError: the connection has ended.
-        """
+        """Franky's robot; do not keep a reference."""
         if self._arm is None:
             raise RuntimeError("the connection to the arm has ended")
         return self._arm
 
     @property
     def hand(self) -> "franky.Gripper | None":
-        """Franky's gripper, or None; nobody keeps it longer than this link."""
+        """Franky's gripper, or None; do not keep a reference longer than this link."""
         return self._hand
 
     @property
     def limits(self) -> FrankaLimits | None:
-        """What the arm can do, or None."""
+        """The arm's limits, or None."""
         return self._limits
 
     def close(self) -> None:
@@ -87,13 +80,7 @@ def library() -> Any:
 
 
 def open_link(host: str, options: FrankaOptions, robot: Robot) -> Link:
-    """Connect. The arm's collision thresholds are set as it is connected; nothing moves.
-
-    Args:
-        host: name or address of the arm.
-        options: its thresholds, and whether a realtime kernel is needed.
-        robot: what the arm is meant to be.
-    """
+    """Connect. This sets the arm's collision thresholds; nothing moves."""
     franky = library()
     found: list[Link] = []
     failed: list[Exception] = []
@@ -129,13 +116,7 @@ def open_link(host: str, options: FrankaOptions, robot: Robot) -> Link:
 
 
 def set_up(link: Link, options: FrankaOptions, robot: Robot) -> None:
-    """Tell the arm its thresholds, payload and attachment, and franky the limits of its motions.
-
-    Args:
-        link: open; none of its `refusals` apply.
-        options: what to set.
-        robot: whose limits motions keep to.
-    """
+    """Set the arm's thresholds, payload and attachment, and the limits of franky's motions."""
     limits = link.limits
     if limits is None:
         raise ValueError("an arm that is not known is refused before it is set up")
@@ -162,7 +143,7 @@ def set_up(link: Link, options: FrankaOptions, robot: Robot) -> None:
 
 
 def refusals(link: Link, options: FrankaOptions, robot: Robot) -> tuple[str, ...]:
-    """Why this arm is not driven as this robot; empty where it can be."""
+    """Reasons not to drive this arm as this robot."""
     found: list[str] = []
     if link.limits is None:
         found.append("The arm says it is neither an FR3 nor a Panda: it is not known what it can do.")
@@ -190,7 +171,7 @@ def refusals(link: Link, options: FrankaOptions, robot: Robot) -> tuple[str, ...
 
 
 def findings(link: Link, options: FrankaOptions, robot: Robot) -> Findings:
-    """What the arm says of itself, and why it is not driven, if so."""
+    """The arm's facts, and reasons not to drive it."""
     state = link.arm.state
     limits = link.limits
     facts = [
@@ -230,7 +211,7 @@ def _set_thresholds(link: Link, options: FrankaOptions) -> None:
 
 
 def _axes_apart(link: Link, robot: Robot) -> str:
-    """How far the joint axes of the arm and of the model lie apart, in words; "" where they are the same."""
+    """Distance between the joint axes of the arm and of the model, in words, or ""."""
     franky = library()
     state = link.arm.state
     jacobian = np.asarray(link.arm.model.zero_jacobian(franky.Frame.Flange, state))
@@ -283,13 +264,13 @@ def _width(robot: Robot) -> float:
 
 
 def _realtime(franky: Any, options: FrankaOptions) -> Any:
-    """Libfranka is asked to insist only where it will get it; else `refusals` says so."""
+    """Insist on real time only where libfranka will get it; else `refusals` says so."""
     insist = options.realtime == "enforce" and has_realtime()
     return franky.RealtimeConfig.Enforce if insist else franky.RealtimeConfig.Ignore
 
 
 def has_realtime() -> bool:
-    """Whether this computer runs a realtime kernel, as libfranka looks for it."""
+    """Whether this computer runs a realtime kernel, by libfranka's test."""
     try:
         return _REALTIME_FILE.read_text(encoding="ascii").strip() == "1"
     except OSError:

@@ -1,9 +1,9 @@
 """The process next to the bus: it holds the arm's position when commands run out.
 
-The servos of LeRobot's arms know positions only, and stay at the last one they were told. This process tells
-them a new one a hundred times a second while a command is in force. When commands run out, when the process
-that sends them stalls or is killed, and when this one is killed, the last position stands: the arm stops,
-under power, and does not drop.
+The servos of LeRobot's arms know positions only, and stay at the last target. This process sends a new one a
+hundred times a second while a command is in force. When commands run out, when the commanding process stalls
+or is killed, and when this one is killed, the last target stands: the arm stops, under power, and does not
+drop.
 """
 
 import signal
@@ -46,17 +46,16 @@ _MOVING_RAD_S: Final = 0.05
 
 
 def now_s() -> float:
-    """The clock that all processes of this machine share, and that goes on while it sleeps, s."""
+    """The clock that all processes of this machine share, and that goes on during suspend, s."""
     return time.clock_gettime(time.CLOCK_BOOTTIME)
 
 
 @final
 class Keeper:
-    """Keeps one arm.
+    """Keeps one arm, for the commanding process at the other end of ``port``.
 
     Args:
-        port: to the process that commands.
-        bus: the arm's, not open.
+        bus: not open
         setup: ``joints``, ``lower``, ``upper`` and ``speed`` (n each, rad, rad/s), and ``width_m`` of the
             gripper or None.
     """
@@ -75,7 +74,7 @@ class Keeper:
         self._read_s = now_s()
 
     def run(self) -> None:
-        """Keep the arm until the other process is gone; then leave it where it is, under power."""
+        """Keep the arm until the other process is gone; then leave it in place, under power."""
         due_s = now_s()
         try:
             while True:
@@ -127,7 +126,7 @@ class Keeper:
                 pass
 
     def _looked(self) -> dict[str, object]:
-        """What the arm is; its bus is as open as before."""
+        """Facts and refusals; leaves the bus as open as before."""
         begun = self._phase
         try:
             if begun == "off":
@@ -157,7 +156,7 @@ class Keeper:
         return {"connected": True, **self._state()}
 
     def _new_targets(self) -> Targets:
-        """Within the limits of both the model and the calibration."""
+        """Targets within the limits of both the model and the calibration."""
         ranges = self._bus.ranges()
         half = np.deg2rad([ranges[joint] for joint in self._joints])
         lower, upper = (np.array(self._setup[name], dtype=np.float64) for name in ("lower", "upper"))
@@ -208,7 +207,7 @@ class Keeper:
         self._phase, self._reason = "guided", ""
 
     def _hold(self) -> None:
-        """Where the arm is guided, or was: hold it where it is, under power."""
+        """Hold an arm in place, under power, if it is guided or was."""
         if self._phase == "guided":
             self._phase, self._reason = "disabled", ""
         if not self._released:
@@ -221,7 +220,7 @@ class Keeper:
         self._released = False
 
     def _round(self) -> None:
-        """Read the arm, tell it where to be, and say how it is."""
+        """Read the arm, send targets, and report."""
         before_s = self._read_s
         try:
             opening = self._read()
@@ -255,7 +254,7 @@ class Keeper:
             )
 
     def _read(self) -> float:
-        """Read the positions; the gripper's, from 0 to 100."""
+        """Read the positions; returns the gripper's, from 0 to 100."""
         positions = self._bus.positions()
         self._read_s = now_s()
         self._q = np.deg2rad([positions[joint] for joint in self._joints])
@@ -303,7 +302,7 @@ def _sentence(error: Exception) -> str:
 
 
 def main() -> None:
-    """Make the bus that the first message names, say what it is, and keep its arm."""
+    """Open the bus of the first message, describe it, and keep its arm."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     port = MessagePort.of_helper()
     setup = port.receive(wait_s=60.0)

@@ -1,4 +1,4 @@
-"""What is found out about an arm behind ROS 2 before anything moves, and why it may be refused."""
+"""Inspection of an arm behind ROS 2 before anything moves, and reasons to refuse it."""
 
 import time
 from collections.abc import Callable, Iterator, Mapping
@@ -34,14 +34,7 @@ _LIST: Final = "controller_manager_msgs/srv/ListControllers"
 
 
 def inspect(link: Link, session: Session, feed: JointFeed, options: Ros2Options) -> Findings:
-    """Look at everything that is needed to drive, and change nothing.
-
-    Args:
-        link: the connection.
-        session: with the watchdog.
-        feed: of the joint states.
-        options: what the arm should be.
-    """
+    """Inspect everything needed for driving, and change nothing."""
     _wait(lambda: session.state is not None, ANSWER_S)
     _wait(lambda: feed.newest is not None, ANSWER_S)
     answer, trips = _controllers(link, options)
@@ -66,7 +59,7 @@ def inspect(link: Link, session: Session, feed: JointFeed, options: Ros2Options)
 
 
 def _controllers(link: Link, options: Ros2Options) -> tuple[dict[str, Mapping[str, Any]] | None, list[float]]:
-    """The controllers by name, None where nobody answers; and how long each answer took, s."""
+    """The controllers by name, None where nobody answers; and the time of each answer, s."""
     found: dict[str, Mapping[str, Any]] | None = None
     trips: list[float] = []
     for _ in range(_TRIPS):
@@ -81,9 +74,9 @@ def _controllers(link: Link, options: Ros2Options) -> tuple[dict[str, Mapping[st
 
 
 def _rate(feed: JointFeed) -> tuple[float, int]:
-    """How many joint states come per second, and how many repeated the one before.
+    """Joint states per second, and how many repeated the one before.
 
-    What hesitates for a moment, as a busy computer does, gets a second and a third chance.
+    A busy computer that hesitates for a moment gets a second and a third chance.
     """
     rate_hz, before = 0.0, feed.repeats
     for _ in range(_CHANCES):

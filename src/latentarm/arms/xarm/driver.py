@@ -1,4 +1,4 @@
-"""The thread that talks to the arm, so that nothing else waits for it."""
+"""The thread that talks to the arm, so that no other thread waits for it."""
 
 import threading
 import time
@@ -44,17 +44,10 @@ _RESTING_S: Final = 1.0
 
 @final
 class Driver(threading.Thread):
-    """Carries out what is asked for in `Shared`, and looks at what the arm reports.
+    """Carries out the requests in `Shared`, and checks the arm's reports.
 
-    Args:
-        sdk: the manufacturer's library.
-        robot: what the arm is.
-        shared: what it is asked, and what it says.
-        session: open.
-        reopen: opens another session after a lost one, numbering reports from a number on.
-
-    Attributes:
-        session: the one in use.
+    ``session`` is the open one; ``reopen`` opens another after a lost one, numbering reports from a number
+    on.
     """
 
     def __init__(
@@ -78,7 +71,7 @@ class Driver(threading.Thread):
         self._asked_errors_s = 0.0
 
     def run(self) -> None:
-        """Until the arm is closed."""
+        """Run until the arm is closed."""
         try:
             while self._turn():
                 pass
@@ -148,15 +141,7 @@ class Driver(threading.Thread):
         self.session.controller.move(command.velocity, left_s)
 
     def _become_ready(self, mode: int, while_: Condition) -> bool:
-        """Switch the arm to a mode and wait until it is ready in it.
-
-        Args:
-            mode: of the controller.
-            while_: nobody has changed their mind as long as this is the condition.
-
-        Returns:
-            Whether it is.
-        """
+        """Switch the arm to a mode and wait until it is ready; False once ``while_`` has changed."""
         shared, controller = self._shared, self.session.controller
         if reason := unfit(self._sdk, self.session, self._robot):
             self._fault(reason)
@@ -256,8 +241,8 @@ class Driver(threading.Thread):
     def _await_release(self, now_s: float) -> None:
         """Whether the button is still pressed: an error that is cleared comes back as long as it is.
 
-        The controller keeps its error after the release, and does not tell one from the other. Clearing it
-        neither switches on the motors nor lets the arm take commands.
+        The controller keeps its error after the release. Clearing it neither switches on the motors nor lets
+        the arm take commands.
         """
         if now_s - self._asked_errors_s < _RELEASED_S:
             return
@@ -269,7 +254,7 @@ class Driver(threading.Thread):
             self._fault("The emergency stop was released: enable the arm again when it is safe.")
 
     def _error(self, code: int) -> bool:
-        """Whether the controller has an error; then the arm takes no commands any more."""
+        """Whether the controller has an error; then the arm takes no more commands."""
         if code == 0:
             return False
         if code in EMERGENCY_STOPS:
@@ -308,7 +293,7 @@ class Driver(threading.Thread):
         self._shared.become("lost", reason, recoverable=True)
 
     def _halt(self) -> None:
-        """Stop the arm for good, if it can be reached; else its last command ends by itself."""
+        """Stop the arm for good, if reachable; else its last command ends by itself."""
         if not self._drives:
             return
         self._drives = False

@@ -1,4 +1,4 @@
-"""What an arm's controller says it is."""
+"""The controller's description of its arm."""
 
 import re
 from dataclasses import dataclass
@@ -24,21 +24,13 @@ TIMED_REPORTS: Final = (2, 1, 0)
 @final
 @dataclass(frozen=True)
 class Identity:
-    """What the controller says of its arm.
+    """The controller's description of its arm."""
 
-    Attributes:
-        firmware: major, minor and patch.
-        axes: number of joints; None where the firmware is too old to say.
-        kind: the manufacturer's number of its type, or None.
-        arm_serial: serial number of the arm, or "".
-        box_serial: serial number of the control box, or "".
-    """
-
-    firmware: tuple[int, int, int]
-    axes: int | None = None
-    kind: int | None = None
-    arm_serial: str = ""
-    box_serial: str = ""
+    firmware: tuple[int, int, int]  # major, minor and patch
+    axes: int | None = None  # number of joints; None where the firmware is too old to say
+    kind: int | None = None  # the manufacturer's number of the type
+    arm_serial: str = ""  # or ""
+    box_serial: str = ""  # of the control box, or ""
 
     @property
     def version(self) -> str:
@@ -47,12 +39,12 @@ class Identity:
 
     @property
     def name(self) -> str:
-        """What the arm is sold as."""
+        """The arm's name on the market."""
         return _NAMES.get(self.kind or 0, f"xArm {self.axes}" if self.axes else "xArm")
 
 
 def read_identity(told: str) -> Identity:
-    """Read what the controller answers when asked for its version.
+    """Parse the controller's answer about its version.
 
     Raises:
         LinkLostError: it is no version.

@@ -30,7 +30,7 @@ def emergency_stop(code: int) -> str:
 
 
 def controller_error(sdk: Sdk, code: int) -> str:
-    """What an error of the controller means, and what to do about it."""
+    """An error of the controller in words, and what to do about it."""
     known = sdk.errors.get(code)
     if known is None:
         return (
@@ -44,7 +44,7 @@ def controller_error(sdk: Sdk, code: int) -> str:
 
 
 def gripper_error(sdk: Sdk, code: int) -> str:
-    """What an error of the gripper means."""
+    """An error of the gripper in words."""
     known = sdk.gripper_errors.get(code)
     title = known["en"]["title"].rstrip(".") if known else "unknown"
     return f"The gripper reports error {code}, {title}: check what it holds, then enable the arm again."
