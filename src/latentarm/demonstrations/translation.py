@@ -1,9 +1,9 @@
 """Converts a file's columns and units to a robot's joints in rad, with a record of all decisions."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
-from typing import Final, Literal, final
+from typing import Final
 
 import numpy as np
 
@@ -16,8 +16,8 @@ from latentarm.demonstrations.gripper import (
     GRIPPER_OPENING,
     GRIPPER_WIDTH,
     OBSERVED,
-    GripperStart,
 )
+from latentarm.demonstrations.import_options import ImportOptions
 from latentarm.demonstrations.robot_names import is_so_arm, may_be
 from latentarm.demonstrations.source import SourceData
 from latentarm.demonstrations.toggles import widths_from_toggles
@@ -34,24 +34,8 @@ _OLD_PREFIX: Final = "main_"
 _EARLIER: Final = "before: "
 """Marks what an earlier import decided, in a dataset of ours that is imported again."""
 
-ActionChoice = Literal["known", "joint_velocity", "joint_position"]
 
-
-@final
-@dataclass(frozen=True)
-class Translation:
-    """The user's statements about a file."""
-
-    units: Sequence[str] = ()  # see `parse_units`
-    joints: Sequence[str] = ()  # see `find_columns`
-    gripper: str | None = None  # the gripper's column
-    gripper_starts: GripperStart | None = None  # at an episode's beginning, for files with toggles
-    recorded_on: str | None = None  # the file's word for the robot, to accept it as this robot
-    actions: ActionChoice = "known"
-    clip_rad: float = 0.0  # positions up to this far outside a joint's limits move to the limit
-
-
-def translate(data: SourceData, robot: Robot, told: Translation, source: str) -> Demonstrations:
+def translate(data: SourceData, robot: Robot, told: ImportOptions, source: str) -> Demonstrations:
     """A file's demonstrations in the robot's joints and order, rad and rad/s.
 
     The gripper and commanded positions become features; ``import_record`` holds all decisions.
@@ -123,7 +107,7 @@ def _check_robot(named: str, robot: Robot, recorded_on: str | None, source: str)
 
 
 def _units(
-    data: SourceData, robot: Robot, told: Translation, columns: Columns, motors: bool, source: str
+    data: SourceData, robot: Robot, told: ImportOptions, columns: Columns, motors: bool, source: str
 ) -> tuple[list[Unit], str]:
     """A unit for each joint, and how they are known."""
     general, single = parse_units(told.units, robot.joint_names)
