@@ -7,8 +7,7 @@ from urllib.parse import parse_qsl, urlsplit
 
 from latentarm.core.errors import UserError
 
-MARK: Final = "://"
-"""What tells the address of a real arm from the name of a simulated one."""
+MARK: Final = "://"  # marks the address of a real arm
 
 
 @final

@@ -54,8 +54,7 @@ ARMS: Final = Catalogue(
 
 DEFAULT_ARM: Final = "kinematic"
 
-PHYSICAL_ARM: Final = "mujoco"
-"""The arm that can touch and hold things."""
+PHYSICAL_ARM: Final = "mujoco"  # can touch and hold things
 
 
 def make_arm(name: str, robot: Robot, state: FloatArray, now_s: Callable[[], float]) -> Arm:

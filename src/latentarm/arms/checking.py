@@ -10,8 +10,7 @@ from latentarm.arms.real import Fact, Findings, FoundLimits, RealArm
 from latentarm.core.errors import UserError
 from latentarm.robots.robot import Robot
 
-_BEYOND: Final = 1e-3
-"""A limit of the robot may lie this far beyond the arm's own, rad or rad/s: such figures are rounded."""
+_BEYOND: Final = 1e-3  # rounding that a limit of the robot may exceed the arm's own by, rad or rad/s
 
 
 def look_at(arm: RealArm, robot: Robot, dt_s: float) -> Findings:

@@ -16,8 +16,7 @@ from latentarm.robots.scene.scene import SceneState
 ArmPhase = Literal["off", "disabled", "guided", "ready", "moving", "fault", "emergency_stop"]
 """What state an arm is in."""
 
-STOPS_AFTER_S: Final = 0.1
-"""An arm that takes longer than this to notice that its commands have ended is refused, s."""
+STOPS_AFTER_S: Final = 0.1  # an arm that takes longer to notice the end of its commands is refused, s
 
 
 @final

@@ -13,20 +13,11 @@ from latentarm.arms.simulated_gripper import SimulatedGripper
 from latentarm.core.types import FloatArray, GripperReading
 from latentarm.robots.gripper import Gripper
 
-FREQUENCY_RAD_S: Final = 300.0
-"""Natural frequency of a finger that only its servo moves, rad/s; it is critically damped."""
-
-_STILL_M_S: Final = 0.002
-"""Fingers slower than this count as stalled, m/s of the opening."""
-
-_STALLED_M: Final = 3e-4
-"""Fingers that stand this far before where their servo pulls them press on something, m each."""
-
-_STALLED_S: Final = 0.05
-"""Fingers that have stalled for so long hold something, s."""
-
-_LEAST_N: Final = 0.2
-"""Fingers that may not press this hard hold nothing, N."""
+FREQUENCY_RAD_S: Final = 300.0  # natural frequency of a free finger, critically damped
+_STILL_M_S: Final = 0.002  # fingers slower than this count as stalled, m/s of the opening
+_STALLED_M: Final = 3e-4  # fingers that stand this far before their servo's target press on something, m each
+_STALLED_S: Final = 0.05  # fingers that have stalled for so long hold something, s
+_LEAST_N: Final = 0.2  # fingers that may not press this hard hold nothing, N
 
 
 @final

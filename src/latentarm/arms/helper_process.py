@@ -15,8 +15,7 @@ from typing import Any, Final, Self, cast, final
 
 from latentarm.core.errors import UserError
 
-_LARGEST: Final = 1 << 16
-"""Bytes of a message."""
+_LARGEST: Final = 1 << 16  # bytes of a message
 
 
 @final

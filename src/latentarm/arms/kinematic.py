@@ -11,8 +11,7 @@ from latentarm.arms.simulated_gripper import KinematicGripper
 from latentarm.core.types import FloatArray
 from latentarm.robots.robot import Robot
 
-RATE_HZ: Final = 1000.0
-"""It takes commands as fast as any loop sends them."""
+RATE_HZ: Final = 1000.0  # as fast as any loop
 
 
 @final

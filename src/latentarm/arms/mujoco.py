@@ -21,20 +21,11 @@ from latentarm.robots.kinematics.reader import ModelChain, read, reference_posit
 from latentarm.robots.robot import Robot
 from latentarm.robots.scene.scene import Scene, SceneState
 
-STEP_S: Final = 0.001
-"""Time step of the physics and of the servo, s."""
-
-_HARD_STOP: Final = (2.0 * STEP_S, 1.0)
-"""Joints end at stops of metal: as stiff as the time step allows."""
-
-RATE_HZ: Final = 1000.0
-"""How many commands the servo takes per second."""
-
-LOOK_STEPS: Final = 4
-"""Contacts, stabs and cuts are looked at after so many time steps."""
-
-SCENE_SETTLED_S: Final = 10.0
-"""Without a command, things about an arm have come to rest after this time, s."""
+STEP_S: Final = 0.001  # time step of the physics and of the servo, s
+_HARD_STOP: Final = (2.0 * STEP_S, 1.0)  # stops of metal: as stiff as the time step allows
+RATE_HZ: Final = 1000.0  # of the servo
+LOOK_STEPS: Final = 4  # time steps between checks of contacts, stabs and cuts
+SCENE_SETTLED_S: Final = 10.0  # without a command, things about an arm are at rest by then
 
 
 @final

@@ -12,17 +12,10 @@ from latentarm.robots.parts import add_parts
 from latentarm.robots.scene.scene import TABLE, Scene
 from latentarm.robots.scene.thing import Bond, Grains, Thing
 
-SOLID: Final = 1
-"""Bit of what collides with everything solid."""
-
-TINE: Final = 2
-"""Bit of tines: a thing that lacks it lets them in."""
-
-_GRAIN_DRAG_S: Final = 0.1
-"""A grain that nothing touches loses its speed within this time, s."""
-
-_ROLLING: Final = (0.005, 0.0001)
-"""Friction against turning on the spot and against rolling, m."""
+SOLID: Final = 1  # bit of everything that collides with solids
+TINE: Final = 2  # bit of tines: a thing without it lets them in
+_GRAIN_DRAG_S: Final = 0.1  # a grain that nothing touches loses its speed within this time, s
+_ROLLING: Final = (0.005, 0.0001)  # friction against turning on the spot and against rolling, m
 
 _STIFF: Final = (0.005, 1.0)
 """What hits something at 1 m/s enters it by 2 mm, less than a wall is thick; with MuJoCo's 0.02 by 7 mm."""

@@ -11,8 +11,7 @@ from latentarm.core.types import FloatArray, IntArray
 from latentarm.robots.kinematics.reader import reference_positions
 from latentarm.robots.robot import Robot
 
-FREQUENCY_RAD_S: Final = 100.0
-"""Natural frequency of a joint that only its servo moves, rad/s; it is critically damped."""
+FREQUENCY_RAD_S: Final = 100.0  # natural frequency of a free joint, critically damped
 
 _JOINT: Final = int(mujoco.mjtTrn.mjTRN_JOINT)
 _NO_BIAS: Final = int(mujoco.mjtBias.mjBIAS_NONE)

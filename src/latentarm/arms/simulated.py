@@ -14,11 +14,8 @@ from latentarm.core.types import Command, FloatArray, GripperCommand, Reading
 from latentarm.robots.kinematics.stillness import STILL_RAD_S
 from latentarm.robots.robot import Robot
 
-_CLOCK_DIGITS: Final = 9
-"""Time passes in whole nanoseconds, so that equal periods of a clock are equally long for the arm."""
-
-SETTLED_S: Final = 1.0
-"""An arm without a command is at rest after this time, s: no more of it is simulated."""
+_CLOCK_DIGITS: Final = 9  # whole nanoseconds, so that equal periods are equally long
+SETTLED_S: Final = 1.0  # an arm without a command is at rest by then
 
 _REASONS: Final[dict[ArmPhase, str]] = {
     "off": "The arm is not connected.",

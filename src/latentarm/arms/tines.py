@@ -14,11 +14,8 @@ from latentarm.robots.scene.thing import Bond, Food, Part, Thing
 CUT_WITHIN_M: Final = 0.01
 """An edge cuts a bond whose plane it is this near to, m; over the top and past the sides of it as well."""
 
-_SPACING_M: Final = 0.001
-"""Tines are looked at by points this far apart, m."""
-
-_CLEAR_M: Final = 0.003
-"""Food collides with tines again once they are this far out of it, m: more than they are thick."""
+_SPACING_M: Final = 0.001  # of the sampled points on tines
+_CLEAR_M: Final = 0.003  # food collides with tines again this far out of it: more than they are thick
 
 _EQUALITY: Final = int(mujoco.mjtConstraint.mjCNSTR_EQUALITY)
 

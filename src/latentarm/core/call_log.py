@@ -17,8 +17,7 @@ from latentarm.core.types import Command, FloatArray, StepRecord, Stop
 from latentarm.core.untrusted.documents import parse_object
 from latentarm.core.untrusted.opening import opened
 
-MOST_FILE_BYTES: Final = 256 << 20
-"""Length from which a file takes no more calls."""
+MOST_FILE_BYTES: Final = 256 << 20  # a longer file takes no more calls
 
 _GZIP: Final = 31
 _FLUSHED: Final = b"\0\0\xff\xff"

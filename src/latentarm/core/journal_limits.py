@@ -8,8 +8,7 @@ from typing import final
 
 from latentarm.core.errors import UserError
 
-_ATTACHED = ("", "-wal")
-"""Endings of the files that belong to a journal while it is written."""
+_ATTACHED = ("", "-wal")  # endings of the files that belong to a journal while it is written
 
 
 @final

@@ -6,8 +6,7 @@ from collections.abc import Generator
 from contextlib import contextmanager, suppress
 from typing import Final
 
-_PRIORITY: Final = 10
-"""Lowest real-time priority."""
+_PRIORITY: Final = 10  # lowest real-time priority
 
 
 def ask_for_priority() -> None:

@@ -31,8 +31,7 @@ TWO_COLUMNS_MM = 175.0
 FONT_SIZE = 8.0
 SMALL_FONT_SIZE = 7.0
 MM_PER_INCH = 25.4
-LEGEND_MARGIN_MM = 4.0
-"""Width kept free around a legend, both sides together."""
+LEGEND_MARGIN_MM = 4.0  # width kept free around a legend, both sides together
 
 
 def tidy(axes: "Axes") -> None:
@@ -47,8 +46,7 @@ def tidy(axes: "Axes") -> None:
     axes.yaxis.label.set_fontsize(FONT_SIZE)
 
 
-MOST_CHARACTERS: Final = 40
-"""Longest name in a figure; longer ones are cut."""
+MOST_CHARACTERS: Final = 40  # longest name in a figure; longer ones are cut
 
 
 def literal(text: str) -> str:

@@ -9,21 +9,15 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-StrPath = str | PathLike[str]
-"""A file or folder, as the public functions take it."""
+StrPath = str | PathLike[str]  # a file or folder, as the public functions take it
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
-NO_GRIPPER: FloatArray = np.zeros(0)
-"""`Context.gripper` and `Context.gripper_target` where they are not known."""
-
-NO_OBJECTS: FloatArray = np.zeros((0, 9))
-"""`Context.objects` where they are not known."""
-
-NO_THINGS: FloatArray = np.zeros((0, 7))
-"""`StepRecord.things` where nobody looks."""
+NO_GRIPPER: FloatArray = np.zeros(0)  # `Context.gripper` and `Context.gripper_target` where unknown
+NO_OBJECTS: FloatArray = np.zeros((0, 9))  # `Context.objects` where unknown
+NO_THINGS: FloatArray = np.zeros((0, 7))  # `StepRecord.things` where nobody looks
 
 NO_GRIPPER.flags.writeable = NO_OBJECTS.flags.writeable = NO_THINGS.flags.writeable = False
 
@@ -234,8 +228,7 @@ class Context:
     gripper_target: FloatArray = field(default_factory=lambda: NO_GRIPPER)
 
 
-GripperAsk = Literal["open", "close", "toggle"]
-"""What a person asks of a gripper."""
+GripperAsk = Literal["open", "close", "toggle"]  # a person's request to a gripper
 
 
 @dataclass(frozen=True)

@@ -20,8 +20,7 @@ from latentarm.demonstrations.source import SourceData
 from latentarm.demonstrations.timing import typical_rate_hz
 
 ROS1: Final = b"#ROSBAG V"
-MCAP: Final = b"\x89MCAP"
-"""How these files begin."""
+MCAP: Final = b"\x89MCAP"  # first bytes of these files
 
 JOINT_STATE: Final = "sensor_msgs/msg/JointState"
 

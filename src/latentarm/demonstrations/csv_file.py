@@ -35,8 +35,7 @@ SECONDS: Final[dict[str, float]] = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9
 _LEAST_STEP: Final[dict[str, float]] = {"ns": 1e6, "us": 1e3, "ms": 5.0}
 """No recording has so few samples a second that its timestamps would advance by this in any longer unit."""
 
-_ROSTOPIC: Final = "%time"
-"""First column of what ``rostopic echo -p`` prints."""
+_ROSTOPIC: Final = "%time"  # first column of what ``rostopic echo -p`` prints
 
 _ROS_NAME: Final = "field.name"
 _ROS_POSITION: Final = "field.position"

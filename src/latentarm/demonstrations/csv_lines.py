@@ -17,11 +17,8 @@ from latentarm.core.errors import UserError
 from latentarm.core.untrusted.opening import opened
 from latentarm.demonstrations.bounds import MAX_LINE, MAX_TEXT_BYTES
 
-GZIP: Final = b"\x1f\x8b"
-"""Begins every file that gzip packed."""
-
-MAX_RECORD_LINES: Final = 100
-"""Lines that one record may have, where its texts hold line breaks."""
+GZIP: Final = b"\x1f\x8b"  # first bytes of a packed file
+MAX_RECORD_LINES: Final = 100  # of one record, whose texts may hold line breaks
 
 
 def read_lines(source: Path) -> Iterator[tuple[int, list[str]]]:

@@ -42,8 +42,7 @@ from latentarm.demonstrations.tables import (
 )
 from latentarm.demonstrations.validation import check_same_features, validate, validate_episode
 
-LOCK_FILE: Final = ".lock"
-"""In a dataset's folder while an episode is appended."""
+LOCK_FILE: Final = ".lock"  # exists during an append
 
 
 def write_dataset(demonstrations: Demonstrations, path: StrPath) -> None:

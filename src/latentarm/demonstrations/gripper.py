@@ -14,8 +14,7 @@ GRIPPER_WIDTH: Final = "observation.gripper_width"
 """Opening between the fingers, m: as measured, or as commanded where only that is known; the record of the
 import then says so."""
 
-GRIPPER_HOLDING: Final = "observation.gripper_holding"
-"""Whether something is held between them: 0 or 1."""
+GRIPPER_HOLDING: Final = "observation.gripper_holding"  # whether something is held between them: 0 or 1
 
 GRIPPER_TOGGLED: Final = "observation.gripper_toggled"
 """Whether the gripper is other than when the episode began: 0 or 1."""
@@ -23,8 +22,7 @@ GRIPPER_TOGGLED: Final = "observation.gripper_toggled"
 GRIPPER_OPENING: Final = "observation.gripper_opening"
 """Share of the gripper's opening, from 0 (closed) to 1 (open)."""
 
-GRIPPER: Final = "observation.gripper"
-"""The gripper as it was recorded, where its unit is unknown."""
+GRIPPER: Final = "observation.gripper"  # as recorded, where its unit is unknown
 
 ACTION_GRIPPER: Final = "action.gripper"
 """Where the gripper is to go, in the unit of what was observed of it: m with `GRIPPER_WIDTH`."""
@@ -32,11 +30,8 @@ ACTION_GRIPPER: Final = "action.gripper"
 OBSERVED: Final = (GRIPPER_WIDTH, GRIPPER_HOLDING, GRIPPER_TOGGLED, GRIPPER_OPENING, GRIPPER)
 """What a gripper is at a moment, rather than what is done with it then."""
 
-GripperStart = Literal["open", "closed"]
-"""How a gripper is when an episode begins."""
-
-_WIDEST_M: Final = 1.0
-"""No gripper opens further: a width beyond it is in another unit, m."""
+GripperStart = Literal["open", "closed"]  # state of a gripper when an episode begins
+_WIDEST_M: Final = 1.0  # a larger width is not in m
 
 _YES_OR_NO: Final = (GRIPPER_HOLDING, GRIPPER_TOGGLED)
 

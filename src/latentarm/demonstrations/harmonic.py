@@ -38,12 +38,10 @@ MEASURED: Final = {"observation.velocity": "_vel", "observation.effort": "_eff"}
 SUCCESS: Final = {"next.success": "goal_success", "next.any_success": "any_success"}
 
 _POSITIONS: Final = Path("text_data/joint_positions.csv")
-_DEEPEST: Final = 4
-"""Levels of folders between the folder that is named and a run."""
+_DEEPEST: Final = 4  # levels of folders above a run
 
 _MOST_YAML_BYTES: Final = 1 << 16
-_RIGID: Final = 1e-3
-"""A pose's rotation may differ from a true one by this."""
+_RIGID: Final = 1e-3  # tolerance of a pose's rotation
 
 
 def harmonic_runs(source: Path) -> tuple[Path, ...]:

@@ -18,8 +18,7 @@ from latentarm.core.types import FloatArray
 from latentarm.core.untrusted.opening import check_file
 from latentarm.demonstrations.bounds import MAX_FILE_BYTES
 
-MAX_CHUNKS: Final = 100_000
-"""Of one table; each is looked up by itself."""
+MAX_CHUNKS: Final = 100_000  # of one table; each needs a look-up
 
 
 @contextmanager

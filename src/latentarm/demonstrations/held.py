@@ -9,11 +9,8 @@ from latentarm.core.types import BoolArray, FloatArray, Pose
 from latentarm.robots.kinematics.chain import Chain
 from latentarm.robots.kinematics.pose_rows import moved_along
 
-MOVES_M: Final = 0.001
-"""Between two samples less motion than this tells nothing, m."""
-
-ASTRAY: Final = 0.3
-"""A thing is held where it ends up within this share of its way from where the tool would have taken it."""
+MOVES_M: Final = 0.001  # smaller motion between two samples tells nothing
+ASTRAY: Final = 0.3  # a held thing ends within this share of its way from where the tool takes it
 
 
 def held_things(chain: Chain | None, layout: ContextLayout, context: FloatArray) -> BoolArray:

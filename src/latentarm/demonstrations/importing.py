@@ -40,8 +40,7 @@ FOREIGN: Final = {
 FILES: Final = (".csv", ".csv.gz", ".npz", ".hdf5", ".h5", ".bag", ".mcap", ".db3")
 """Ends of the names of the files that are read in a folder."""
 
-BAG_INFO: Final = "metadata.yaml"
-"""In the folder of a bag of ROS 2."""
+BAG_INFO: Final = "metadata.yaml"  # in the folder of a bag of ROS 2
 
 
 def import_demonstrations(

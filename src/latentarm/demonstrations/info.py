@@ -21,8 +21,7 @@ from latentarm.demonstrations.things import ENVIRONMENT, entry_names, object_nam
 from latentarm.robots.limits_file import limits_document, parse_limits
 
 CODEBASE_VERSION: Final = "v3.0"
-OLDER_VERSIONS: Final = ("v2.0", "v2.1")
-"""Layouts that can be imported, see `layout_v2`."""
+OLDER_VERSIONS: Final = ("v2.0", "v2.1")  # importable layouts, see `read_episodes_v2`
 
 STATE: Final = "observation.state"
 ACTION: Final = "action"

@@ -28,8 +28,7 @@ from latentarm.demonstrations.gripper import GRIPPER_TOGGLED
 from latentarm.demonstrations.info import default_joint_names
 
 FEATURES: Final = {"dq": "observation.velocity", "tau": "observation.effort"}
-MAX_ARRAYS: Final = 100
-"""In one archive."""
+MAX_ARRAYS: Final = 100  # in one archive
 
 TEXTS: Final = ("joint_names", "robot")
 

@@ -11,8 +11,7 @@ from latentarm.demonstrations.gripper import OBSERVED
 from latentarm.demonstrations.things import ENVIRONMENT
 from latentarm.robots.kinematics.stillness import STILL_RAD_S
 
-_ROUNDING: Final = 1e-6
-"""Of a sample; a span of a whole number of samples must not get one more."""
+_ROUNDING: Final = 1e-6  # of a sample: a span of whole samples must not get one more
 
 
 def without_pauses(demonstrations: Demonstrations, rate_hz: float) -> Demonstrations:

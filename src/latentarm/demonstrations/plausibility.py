@@ -11,8 +11,7 @@ from latentarm.robots.robot import Robot
 
 SLOWEST_HZ: Final = 1.0
 FASTEST_HZ: Final = 1000.0
-RATE_TOLERANCE: Final = 0.2
-"""How far the timestamps' rate may be from the one that is stated, as a share of it."""
+RATE_TOLERANCE: Final = 0.2  # of the timestamps' rate, as a share of the stated one
 
 IMPLAUSIBLE_RAD_S: Final = 30.0
 """Five turns a second, faster than any arm's joint; usually a sign of lost samples or wrong units."""

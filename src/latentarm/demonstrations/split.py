@@ -35,11 +35,8 @@ def select_episodes(demonstrations: Demonstrations, episodes: Sequence[int] | In
     return replace(demonstrations, episodes=tuple(demonstrations.episodes[index] for index in episodes))
 
 
-FEW: Final = 3
-"""With at least this many training demonstrations, one is used for validation ..."""
-
-MANY: Final = 8
-"""... and with at least this many, two."""
+FEW: Final = 3  # with at least this many training demonstrations, one is used for validation ...
+MANY: Final = 8  # ... and with at least this many, two.
 
 
 @dataclass(frozen=True)

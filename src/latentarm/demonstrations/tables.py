@@ -18,14 +18,9 @@ from latentarm.demonstrations.bounds import MAX_FILE_BYTES, check_values
 from latentarm.demonstrations.feature_statistics import MEASURES, episode_statistics, pooled
 from latentarm.demonstrations.info import ACTION, INDEX_DTYPES, STATE, Feature
 
-Table: TypeAlias = Any
-"""A `pyarrow.Table`: the library ships no types."""
-
-TASK_COLUMN: Final = "__index_level_0__"
-"""The name that pandas gives to an index without one: readers of the layout look tasks up in it."""
-
-MAX_TABLE_COLUMNS: Final = 10_000
-"""Of a Parquet file; the table of episodes has some ten for each feature."""
+Table: TypeAlias = Any  # a `pyarrow.Table`: the library ships no types
+TASK_COLUMN: Final = "__index_level_0__"  # pandas' name for an unnamed index, in which readers look tasks up
+MAX_TABLE_COLUMNS: Final = 10_000  # the table of episodes has some ten for each feature
 
 INTEGER_COLUMNS: Final = tuple(name for name, dtype in INDEX_DTYPES.items() if dtype == "int64")
 

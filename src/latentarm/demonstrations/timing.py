@@ -15,11 +15,8 @@ Gaps = Literal["refuse", "split", "keep"]
 """What becomes of an episode with a gap: it is refused, each part becomes an episode, or it stays whole."""
 
 GAP_S: Final = 0.5
-GAP_STEPS: Final = 5.0
-"""A step is a gap where it is longer than `GAP_S` and than so many of its episode's median steps."""
-
-_ROUNDING: Final = 1e-6
-"""Of a sample: a span of a whole number of samples must not lose one."""
+GAP_STEPS: Final = 5.0  # a gap is longer than `GAP_S` and than so many median steps of its episode
+_ROUNDING: Final = 1e-6  # of a sample: a span of whole samples must not lose one
 
 
 def typical_rate_hz(episodes: Sequence[Episode]) -> float:

@@ -31,8 +31,7 @@ LEROBOT_SUFFIX: Final = ".pos"
 """Ends the names of positions of LeRobot's own arms: degrees or -100 to 100, the gripper 0 to 100."""
 
 _OLD_PREFIX: Final = "main_"
-_EARLIER: Final = "before: "
-"""Marks what an earlier import decided, in a dataset of ours that is imported again."""
+_EARLIER: Final = "before: "  # marks decisions of an earlier import of the same data
 
 
 def translate(data: SourceData, robot: Robot, told: ImportOptions, source: str) -> Demonstrations:

@@ -14,8 +14,7 @@ Unit = Literal["rad", "deg", "normalized"]
 
 UNITS: Final[tuple[Unit, ...]] = get_args(Unit)
 
-TARGET_POSITION: Final = "action.target_position"
-"""Joint positions that were commanded, rad."""
+TARGET_POSITION: Final = "action.target_position"  # commanded joint positions, rad
 
 FULL_TURN: Final = "wrist_roll"
 """The joint of SO-100 and SO-101 that LeRobot calibrates to a full turn, whatever its stops."""

@@ -16,11 +16,8 @@ from latentarm.demonstrations.gripper import check_gripper
 from latentarm.demonstrations.things import check_things
 from latentarm.robots.limits import JointLimits
 
-LIMIT_TOLERANCE_RAD: Final = 0.01
-"""How far past a joint limit a state may lie: encoder offsets and compliance, 0.6 degrees."""
-
-CLIP_HINT_RAD: Final = 0.2
-"""Calibrations of one kind of arm differ by less; what is further outside has another reason."""
+LIMIT_TOLERANCE_RAD: Final = 0.01  # of a state past a limit: encoder offsets and compliance, 0.6 degrees
+CLIP_HINT_RAD: Final = 0.2  # calibrations of one kind of arm differ by less
 
 RESERVED_FEATURES: Final = frozenset(
     {

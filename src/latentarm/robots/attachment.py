@@ -6,11 +6,8 @@ from typing import Final, final
 from latentarm.core.types import FloatArray, Pose
 from latentarm.robots.scene.thing import Interior
 
-TINES_BODY: Final = "tines"
-"""Name of the body of an attachment's tines in the robot's model; its frame is the tool's."""
-
-ATTACHMENT_BODY: Final = "attachment"
-"""Name of the body of its other solids; its frame is the tool's."""
+TINES_BODY: Final = "tines"  # the tines' body in the robot's model; its frame is the tool's
+ATTACHMENT_BODY: Final = "attachment"  # the body of its other solids; its frame is the tool's
 
 ATTACHED_BODIES: Final = (ATTACHMENT_BODY, TINES_BODY)
 

@@ -18,8 +18,7 @@ from latentarm.robots.robot import Robot
 from latentarm.robots.scene.containers import WALL_M, cup
 from latentarm.robots.scene.thing import Part
 
-HANDLE_HALF_M: Final = 0.006
-"""Half the thickness of every handle: as far is each finger of a gripper from the middle."""
+HANDLE_HALF_M: Final = 0.006  # half the thickness of every handle
 
 _TOOL: Final = "tool"
 _STEEL: Final = (0.75, 0.77, 0.80, 1.0)
@@ -108,8 +107,7 @@ def _cup() -> _Kind:
     return _Kind(what, _CUP_REACH_M, (_handle(_CUP_REACH_M, wall), *parts), 0.15)
 
 
-ATTACHMENTS: Final = {"fork": _fork, "spoon": _spoon, "cup": _cup}
-"""What `attach` can put in a robot's hand."""
+ATTACHMENTS: Final = {"fork": _fork, "spoon": _spoon, "cup": _cup}  # for `attach`
 
 
 def attach(robot: Robot, attachment: str) -> Robot:

@@ -14,8 +14,7 @@ FINGER: Final = re.compile(r"finger|jaw|gripper|knuckle|thumb|claw", re.IGNORECA
 FINGER_BODY: Final = re.compile(r"finger|jaw|knuckle|thumb|claw|mover", re.IGNORECASE)
 """Names of bodies that only a gripper's joint moves; "gripper" is often the whole hand."""
 
-MOST_NAMED: Final = 12
-"""An error lists at most this many end-effectors."""
+MOST_NAMED: Final = 12  # end-effectors in an error
 
 _DRIVABLE: Final = (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE))
 _JOINT: Final = int(mujoco.mjtEq.mjEQ_JOINT)

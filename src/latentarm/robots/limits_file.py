@@ -33,11 +33,8 @@ from latentarm.core.untrusted.hand_written import check_keys, number_of, table_o
 from latentarm.core.untrusted.opening import read_bytes
 from latentarm.robots.limits import JointLimits, LimitSources, Quantity, Source
 
-MOST_BYTES: Final = 100_000
-"""A longer file is refused: a joint takes some 200 bytes."""
-
-_DEEPEST: Final = 4
-"""Tables within tables of YAML; the parser takes time with the square of the depth."""
+MOST_BYTES: Final = 100_000  # a joint takes some 200
+_DEEPEST: Final = 4  # level of tables in YAML; the parser's time is quadratic in it
 
 TOOL_SPEED: Final = "tool_speed_m_per_s"
 

@@ -20,11 +20,8 @@ from latentarm.robots.model_xml import (
 from latentarm.robots.robot import Robot
 from latentarm.robots.urdf import prepare_urdf
 
-MOST_COPIED: Final = 64 << 20
-"""Bytes of all the files of a copy."""
-
-COPIES: Final = ("model.xml", "model.urdf")
-"""Names of a copy: MJCF or URDF."""
+MOST_COPIED: Final = 64 << 20  # bytes of all the files of a copy
+COPIES: Final = ("model.xml", "model.urdf")  # names of a copy: MJCF or URDF
 
 
 def copy_model(robot: Robot, folder: Path) -> str:

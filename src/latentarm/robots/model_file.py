@@ -20,11 +20,8 @@ from latentarm.robots.model_xml import read_model_xml
 from latentarm.robots.robot import Robot
 from latentarm.robots.urdf import Urdf, prepare_urdf
 
-MOST_JOINTS = 64
-"""Longer chains are rejected: they are not arms, and comparing their pairs of links takes minutes."""
-
-SINGULAR = 0.05
-"""A start whose tool's least singular value is below this share of the best that was found is moved."""
+MOST_JOINTS = 64  # longer chains are no arms, and their pairs of links take minutes
+SINGULAR = 0.05  # a start with a smaller share of the best least singular value is moved
 
 
 @final
@@ -43,11 +40,8 @@ class Defaults:
 
 HINGE = Defaults(range=2.0 * np.pi, velocity=1.0, acceleration=10.0, jerk=1000.0)
 SLIDE = Defaults(range=1.0, velocity=0.25, acceleration=2.5, jerk=250.0)
-LONGEST_LINK_M = 5.0
-"""A link of an arm is shorter; one of 5 mm, taken for m, is not."""
-
-TOOL_SPEED_LIMIT = 1.0
-"""Assumed largest speed of the tool, m/s."""
+LONGEST_LINK_M = 5.0  # a link is shorter, unless its mesh is in mm
+TOOL_SPEED_LIMIT = 1.0  # assumed largest speed of the tool, m/s
 
 
 def load_model_file(path: Path, end_effector: str | None = None) -> Robot:

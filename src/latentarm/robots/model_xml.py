@@ -15,23 +15,12 @@ from xml.parsers import expat
 from latentarm.core.errors import UserError
 from latentarm.core.untrusted.opening import check_file, is_missing, read_bytes
 
-MOST_XML_BYTES: Final = 20_000_000
-"""Of one XML file; meshes lie in files of their own."""
-
-MOST_FILE_BYTES: Final = 1 << 28
-"""Of a mesh, a picture or a height field."""
-
-MOST_FILES: Final = 1000
-"""That a model names."""
-
-MOST_ELEMENTS: Final = 20_000
-"""Of XML in one file, and copies of one element that a model may ask for."""
-
-MOST_LEVELS: Final = 100
-"""Of XML elements in each other, as in MuJoCo's own parser."""
-
-NESTED: Final = frozenset({"include", "model"})
-"""Elements that name another model's file."""
+MOST_XML_BYTES: Final = 20_000_000  # of one XML file without meshes
+MOST_FILE_BYTES: Final = 1 << 28  # of a mesh, a picture or a height field
+MOST_FILES: Final = 1000  # in a model
+MOST_ELEMENTS: Final = 20_000  # in one file, and copies of one element
+MOST_LEVELS: Final = 100  # as in MuJoCo's own parser
+NESTED: Final = frozenset({"include", "model"})  # elements that name another model's file
 
 FILE_ATTRIBUTES: Final = frozenset(
     {"file", "filename", "fileup", "filedown", "fileleft", "fileright", "filefront", "fileback"}

@@ -24,8 +24,7 @@ LIMITS = JointLimits(
 )
 """Franka control-parameters documentation."""
 
-TORQUE_LIMIT = (87.0, 87.0, 87.0, 87.0, 12.0, 12.0, 12.0)
-"""Of each joint, N m; the same documentation."""
+TORQUE_LIMIT = (87.0, 87.0, 87.0, 87.0, 12.0, 12.0, 12.0)  # of each joint, N m; the same documentation
 
 _FR3_LOWER = np.array([-2.7437, -1.7837, -2.9007, -3.0421, -2.8065, 0.5445, -3.0159])
 _FR3_UPPER = np.array([2.7437, 1.7837, 2.9007, -0.1518, 2.8065, 4.5169, 3.0159])
@@ -41,11 +40,8 @@ FR3_LIMITS = JointLimits(
 """The manufacturer's limits of the FR3 (https://frankarobotics.github.io/docs/robot_specifications.html).
 Positions end where the Panda's do too: beyond, it is not known which of the links cannot meet."""
 
-FR3_TOOL_SPEED_LIMIT = 3.0
-"""Cartesian limit of the FR3's end-effector, m/s."""
-
-TOOL_SPEED_LIMIT = 1.7
-"""Cartesian limit of the end-effector, m/s."""
+FR3_TOOL_SPEED_LIMIT = 3.0  # Cartesian limit of the FR3's end-effector, m/s
+TOOL_SPEED_LIMIT = 1.7  # Cartesian limit of the end-effector, m/s
 
 # Modified Denavit-Hartenberg (Craig): a and d in m, alpha in rad. Joint i turns about its own z axis.
 _A = (0.0, 0.0, 0.0, 0.0825, -0.0825, 0.0, 0.088)

@@ -10,11 +10,8 @@ from latentarm.robots.assemble import assemble
 from latentarm.robots.limits import JointLimits, LimitSources
 from latentarm.robots.robot import Robot
 
-REACH_M = 1.0
-"""Length of a whole arm."""
-
-BASES_APART_M = 0.8
-"""Distance between the bases of two arms, along y."""
+REACH_M = 1.0  # length of a whole arm
+BASES_APART_M = 0.8  # distance between the bases of two arms, along y
 
 _RADIUS_M = 0.02
 

@@ -20,11 +20,8 @@ _CAPSULE = int(mujoco.mjtGeom.mjGEOM_CAPSULE)
 _CYLINDER = int(mujoco.mjtGeom.mjGEOM_CYLINDER)
 _MESH = int(mujoco.mjtGeom.mjGEOM_MESH)
 
-PER_BODY = 2
-"""Capsules that one body keeps; more are merged, so that distances stay cheap online."""
-
-PER_LINK = 4
-"""Capsules that one link keeps, over all the bodies fixed to it."""
+PER_BODY = 2  # capsules that one body keeps; more are merged, so that distances stay cheap online
+PER_LINK = 4  # capsules that one link keeps, over all the bodies fixed to it
 
 Balls = tuple[FloatArray, FloatArray]
 """Centres (K, 3), m, and radii (K,), m, of balls whose convex hull covers a shape."""
@@ -218,14 +215,9 @@ def _balls(model: mujoco.MjModel, geom: int, body_transform: FloatArray) -> Ball
     return placed, np.full(len(centres), radius)
 
 
-SAMPLES = 4000
-"""Configurations that are sampled within the joint limits, always the same ones."""
-
-TOUCHING_M = 0.02
-"""Closer than this, two capsules count as touching."""
-
-NEVER_CLOSER_M = 0.05
-"""Pairs that never come closer than this in any sampled configuration are left out."""
+SAMPLES = 4000  # configurations within the joint limits, always the same
+TOUCHING_M = 0.02  # closer than this, two capsules count as touching
+NEVER_CLOSER_M = 0.05  # pairs that never come closer than this in any sampled configuration are left out
 
 
 def self_pairs(

@@ -10,8 +10,7 @@ from latentarm.core.errors import UserError
 from latentarm.core.untrusted.opening import check_file
 from latentarm.robots.model_xml import MOST_FILE_BYTES
 
-MESH_FORMATS = (".stl", ".obj", ".msh")
-"""Mesh files that MuJoCo reads."""
+MESH_FORMATS = (".stl", ".obj", ".msh")  # mesh files that MuJoCo reads
 
 
 @final

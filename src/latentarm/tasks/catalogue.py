@@ -53,5 +53,4 @@ def make_scene_task(name: str) -> SceneTask:
     return SCENE_TASKS.find(name, "--task")()
 
 
-HELD_OUT: Final = "held_out"
-"""Following the held-out episodes of a run, `Replay`: a task that only a run can make."""
+HELD_OUT: Final = "held_out"  # `Replay` of a run's held-out episodes: only a run can make this task

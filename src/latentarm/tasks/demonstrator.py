@@ -12,10 +12,8 @@ from latentarm.core.types import Demonstrations, Episode, FloatArray
 from latentarm.robots.kinematics.chain import Chain
 from latentarm.tasks.task import Task
 
-_FINE = 400
-"""Samples with which a stroke's timing is integrated before it is sampled at the rate asked for."""
-_WAVES = 3
-"""Half-waves, at most, in the low-frequency noise along a stroke."""
+_FINE = 400  # samples for integrating a stroke's timing
+_WAVES = 3  # most half-waves in the low-frequency noise along a stroke
 
 
 @final

@@ -11,10 +11,8 @@ from latentarm.robots.robot import Robot
 
 _STEP_S = 0.1
 _STEPS = 300
-_CLOSE = 1e-4
-"""The pose counts as met within this, m and rad together."""
-_POSTURE_COST = 1e-3
-"""Weight of the preferred posture relative to the tool's pose; it resolves redundancy."""
+_CLOSE = 1e-4  # tolerance of the pose, m and rad together
+_POSTURE_COST = 1e-3  # weight of the preferred posture relative to the tool's pose; it resolves redundancy
 
 
 def solve(robot: Robot, pose: Pose, posture: FloatArray, held: Sequence[int] = ()) -> FloatArray:

@@ -3,8 +3,7 @@
 from dataclasses import dataclass
 from typing import Final, Literal, final
 
-MishapKind = Literal["dropped", "knocked_over", "spilled", "pressed"]
-"""What went wrong."""
+MishapKind = Literal["dropped", "knocked_over", "spilled", "pressed"]  # kind of failure
 
 _SAID: Final[dict[MishapKind, str]] = {
     "dropped": "dropped the",

@@ -10,17 +10,10 @@ from latentarm.robots.robot import Robot
 from latentarm.tasks.demonstrator import demonstrate_goals
 from latentarm.tasks.task import Task, within
 
-SPREAD = 0.5
-"""How far a goal's joints lie from home at most, rad."""
-
-START_SPREAD = 0.1
-"""How far a start's joints lie from home at most, rad."""
-
-TRIES = 100
-"""Starts and goals that are drawn before there is said to be none."""
-
-MARGIN = 0.15
-"""How far starts and goals stay from joint limits, rad."""
+SPREAD = 0.5  # of a goal's joints about home, rad
+START_SPREAD = 0.1  # of a start's joints about home, rad
+TRIES = 100  # draws of a start or goal before giving up
+MARGIN = 0.15  # of starts and goals to joint limits, rad
 
 
 @final

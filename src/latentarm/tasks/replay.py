@@ -23,11 +23,8 @@ from latentarm.robots.robot import Robot
 from latentarm.tasks.demonstrator import demonstrate_goals
 from latentarm.tasks.task import REACHED_ANGLE, REACHED_DISTANCE, GripperTask, within
 
-WAYPOINT_SPACING = 0.25
-"""Way of the tool between two waypoints, m, a radian of turning counted as `RADIAN`."""
-
-RADIAN = 0.2
-"""What a radian of turning counts as way, m."""
+WAYPOINT_SPACING = 0.25  # way of the tool between two waypoints, m
+RADIAN = 0.2  # equivalent way of a radian of turning, m
 
 
 @final

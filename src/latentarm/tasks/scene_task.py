@@ -12,8 +12,7 @@ from latentarm.robots.robot import Robot
 from latentarm.robots.scene.scene import Scene
 from latentarm.tasks.steps import Failure, TaskStep
 
-Region = tuple[tuple[float, float], tuple[float, float]]
-"""Lowest and highest x, lowest and highest y, m."""
+Region = tuple[tuple[float, float], tuple[float, float]]  # lowest and highest x, lowest and highest y, m
 
 
 def anywhere(region: Region, rng: np.random.Generator) -> FloatArray:

@@ -30,23 +30,17 @@ StepKind = Literal[
 Predicate = Callable[[SceneState], bool]
 """Whether something holds of the things at one moment. One that remembers is made anew for every run."""
 
-Failure = Callable[[SceneState], Mishap | None]
-"""What has gone wrong for good, or None."""
+Failure = Callable[[SceneState], Mishap | None]  # an irreversible failure, or None
 
 
-CAREFUL: Final = 0.5
-"""Share of a waypoint's tolerances that counts with each further try of its step."""
+CAREFUL: Final = 0.5  # factor of a waypoint's tolerances with each further try
 
 FINE_M: Final = 0.002
-FINE_RAD: Final = 0.04
-"""No person comes nearer than this where something is done."""
+FINE_RAD: Final = 0.04  # least tolerances where something is done
 
 ROUGH_M: Final = 0.01
-ROUGH_RAD: Final = float(np.deg2rad(7.5))
-"""The same of waypoints that are only passed."""
-
-PATIENCE_S: Final = 3.0
-"""So long a person presses on at a waypoint for what they look at there, s."""
+ROUGH_RAD: Final = float(np.deg2rad(7.5))  # the same at waypoints on the way
+PATIENCE_S: Final = 3.0  # the person waits so long at a waypoint for its condition
 
 
 @final
@@ -109,18 +103,10 @@ class TaskStep:
     holds: str | None = None  # thing that an earlier step took and that must stay in the hand or on the fork
 
 
-RETRY_S: Final = 1.0
-"""A step that is not done so long after its last waypoint is tried again, s."""
-
-LOST_S: Final = 1.0
-"""A thing is lost once it has been away for so long, s: what is put down takes a moment to come to rest."""
-
-LOST_M: Final = 0.03
-"""So far from where it was held it is away, m: what is held may rest on one finger, or be out of touch for a
-moment."""
-
-_TAKES: Final = ("holding", "stabbed")
-"""Kinds of steps in which something is taken."""
+RETRY_S: Final = 1.0  # an unfinished step is tried again so long after its last waypoint
+LOST_S: Final = 1.0  # a thing is lost after so long away: a released thing takes a moment to come to rest
+LOST_M: Final = 0.03  # distance from its hold that counts as away: one finger may lose touch for a moment
+_TAKES: Final = ("holding", "stabbed")  # kinds of steps that take something
 
 
 @final

@@ -11,8 +11,7 @@ from latentarm.robots.scene.thing import Part, Thing
 
 _PLATE_RADIUS_M: Final = 0.06
 _PLATE_HALF_M: Final = 0.005
-_HALF_M: Final = 0.014
-"""Half the height of every item."""
+_HALF_M: Final = 0.014  # half the height of every item
 
 _CHINA: Final = (0.95, 0.95, 0.97, 1.0)
 _WOOD: Final = (0.62, 0.47, 0.33, 1.0)

@@ -16,32 +16,21 @@ from latentarm.tasks.inverse_kinematics import solve
 from latentarm.tasks.table_food import food_on_dishes
 from latentarm.tasks.task import Task, within
 
-TABLE_HEIGHT = 0.0
-"""Height of the table top in the robot's base frame, m: the arm is mounted on the table."""
+TABLE_HEIGHT = 0.0  # in the robot's base frame, m: the arm stands on the table
 
 ITEMS = {"carrot": (0.50, -0.28), "tofu": (0.60, 0.0), "melon": (0.50, 0.28)}
 """Where the food is, x and y, m; each item lies on a raised dish."""
 
-ITEM_HEIGHT = 0.10
-"""Height of the food above the table top, m."""
-
-HOVER = 0.13
-"""How far above the food a reach ends, m."""
-
-SCOOP_TILT = 0.45
-"""How far the tool tilts when it scoops, its tip pointing outwards, rad."""
-
-SCOOP_SWEEP = (-0.03, 0.04)
-"""Where a scoop enters and leaves the food, m outwards from its middle."""
+ITEM_HEIGHT = 0.10  # above the table top, m
+HOVER = 0.13  # height of a reach's end above the food, m
+SCOOP_TILT = 0.45  # of the tool, its tip outwards, rad
+SCOOP_SWEEP = (-0.03, 0.04)  # start and end of a scoop, m outwards from the food's middle
 
 START_SPREAD = np.array([0.3, 0.05, 0.05, 0.05, 0.05, 0.05, 0.05])
 """How far each joint may start from the ready pose, rad: mostly turned about the base."""
 
-NEXT_BITE = 0.15
-"""Share of demonstrations that begin above another item, as when one bite follows another."""
-
-_VIA = 3
-"""Configurations between the ends of a stab or scoop, so that the tool follows a line."""
+NEXT_BITE = 0.15  # share of demonstrations that begin above another item
+_VIA = 3  # configurations along a stab or scoop, so that the tool follows a line
 
 
 @final

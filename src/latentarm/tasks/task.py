@@ -118,11 +118,8 @@ def check_not_done(task: Task, start: FloatArray, waypoints: Sequence[Pose]) -> 
         )
 
 
-REACHED_DISTANCE = 0.03
-"""A waypoint is reached within this distance, m, ..."""
-
-REACHED_ANGLE = np.deg2rad(20.0)
-"""... and this angle, rad."""
+REACHED_DISTANCE = 0.03  # a waypoint is reached within this distance, m, ...
+REACHED_ANGLE = np.deg2rad(20.0)  # ... and this angle, rad.
 
 
 def within(pose: Pose, waypoint: Pose) -> bool:

@@ -24,8 +24,7 @@ STOPS_AFTER_S: Final = 0.03
 ended, because the process was killed or the cable is cut, the arm itself stops after 20 cycles without a
 message."""
 
-_SILENT_S: Final = 0.5
-"""An arm that has said nothing for so long is taken for lost, s."""
+_SILENT_S: Final = 0.5  # an arm that is silent for so long counts as lost
 
 
 @final

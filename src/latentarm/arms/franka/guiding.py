@@ -8,8 +8,7 @@ from latentarm.arms.franka.limits import FrankaLimits
 from latentarm.arms.franka.link import Link
 from latentarm.core.types import FloatArray
 
-LASTS_S: Final = 1.0
-"""The arm comes to rest where guiding is not asked for again within this time, s."""
+LASTS_S: Final = 1.0  # the arm comes to rest if guiding is not renewed within this time
 
 _RENEWED_S: Final = 0.4
 

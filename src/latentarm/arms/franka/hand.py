@@ -10,17 +10,10 @@ from latentarm.robots.gripper import Gripper
 if TYPE_CHECKING:
     import franky
 
-POLL_S: Final = 0.02
-"""Time between two readings, s; the hand itself has some thirty in a second."""
-
-_ANSWER_S: Final = 3.0
-"""A hand that was told to stop says so within this time, s."""
-
-_CLOSED_M: Final = 0.001
-"""A command to a width below this closes the hand on whatever is there, m."""
-
-_NOTHING_M: Final = 0.002
-"""Fingers that are no farther apart than this hold nothing, m."""
+POLL_S: Final = 0.02  # between two readings; the hand has some thirty a second
+_ANSWER_S: Final = 3.0  # a hand confirms a stop within this time
+_CLOSED_M: Final = 0.001  # a command to a smaller width closes the hand
+_NOTHING_M: Final = 0.002  # fingers this close hold nothing
 
 _ALIKE_M: Final = 5e-4
 

@@ -10,11 +10,8 @@ from latentarm.core.types import FloatArray
 from latentarm.robots.panda import LIMITS as PANDA_LIMITS
 from latentarm.robots.robot import Robot
 
-SHARE: Final = 0.99
-"""How much of a limit is used; a share of 1 exceeds some by rounding."""
-
-_AHEAD_S: Final = 0.1
-"""Speeds are kept within the limits of where a joint will be after this time too, s."""
+SHARE: Final = 0.99  # used share of a limit; a share of 1 exceeds some by rounding
+_AHEAD_S: Final = 0.1  # speeds also keep the limits of the position after this time
 
 
 @final

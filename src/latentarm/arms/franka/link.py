@@ -18,12 +18,10 @@ from latentarm.robots.robot import Robot
 if TYPE_CHECKING:
     import franky
 
-_CONNECT_S: Final = 8.0
-"""An arm that has not answered by then is not there, s."""
+_CONNECT_S: Final = 8.0  # an arm that has not answered by then is absent
 
 _AXIS_RAD: Final = 0.01
-_AXIS_M: Final = 0.003
-"""How far a joint's axis may lie from where the robot's model has it."""
+_AXIS_M: Final = 0.003  # tolerance of a joint's axis in the robot's model
 
 _REALTIME_FILE: Final = Path("/sys/kernel/realtime")
 

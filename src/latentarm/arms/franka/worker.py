@@ -19,16 +19,12 @@ from latentarm.core.types import FloatArray
 if TYPE_CHECKING:
     import franky
 
-POLL_S: Final = 0.004
-"""Time between two readings, s."""
-
-_BACK_S: Final = 0.5
-"""The arm's clock may seem to go back by so much: states may overtake each other, s."""
+POLL_S: Final = 0.004  # time between two readings, s
+_BACK_S: Final = 0.5  # the arm's clock may seem to go back by so much: states may overtake each other
 
 _CLOSE_S: Final = 3.0
 
-_RECOVERS_S: Final = 0.2
-"""An error is gone so soon after the arm was told to recover from it, s."""
+_RECOVERS_S: Final = 0.2  # an error is gone so soon after recovery
 
 _BUTTON: Final = "The stop button of the arm is pressed, or its enabling device is let go: release it."
 

@@ -20,35 +20,16 @@ KINDS: Final = ("so100_follower", "so101_follower", "koch_follower", "omx_follow
 
 _MODULES: Final = ("so_follower", "koch_follower", "omx_follower")
 
-GRIPPER: Final = "gripper"
-"""The motor that is the gripper of these robots; LeRobot reads it from 0 (closed) to 100 (open)."""
-
-HOTTEST_C: Final = 60
-"""A motor that is hotter is not driven, °C; its own protection is at 70."""
-
-_ANSWER_S: Final = 0.002
-"""The longest wait for a byte before the servos' SDK looks again whether its own time is over, s."""
-
-RAMP_RAD_S2: Final = 100 * 2 * math.pi / 4096
-"""Unit of the register Acceleration of Feetech's servos: 100 encoder steps/s², in rad/s²."""
-
-SLOWEST_RAMP_RAD_S2: Final = 10.0
-"""A motor that speeds up and slows down by less, by its own registers, does not stop when it is told to."""
-
-_BEYOND_DEG: Final = 15.0
-"""A joint that says that it is farther outside its calibrated range cannot be there, degrees."""
-
-_ALIKE_STEPS: Final = 20
-"""Two readings of a motor that stands still differ by no more encoder steps."""
-
-_TRIES: Final = 3
-"""A bus loses an answer now and then: what has time is asked so many times."""
-
-_MISSING: Final = re.compile(r"- (\d+) \(expected")
-"""Numbers of motors in LeRobot's list of those that do not answer."""
-
-_FAILURES: Final = (OSError, RuntimeError, ValueError)
-"""What LeRobot raises where a bus or a motor does not answer as it should."""
+GRIPPER: Final = "gripper"  # motor of the gripper; LeRobot reads it from 0 (closed) to 100 (open)
+HOTTEST_C: Final = 60  # hotter motors are not driven; their own protection is at 70
+_ANSWER_S: Final = 0.002  # longest wait for a byte before the servos' SDK checks its time-out
+RAMP_RAD_S2: Final = 100 * 2 * math.pi / 4096  # unit of Feetech's register Acceleration: 100 encoder steps/s²
+SLOWEST_RAMP_RAD_S2: Final = 10.0  # a motor with a slower ramp in its registers does not stop in time
+_BEYOND_DEG: Final = 15.0  # a joint cannot be farther outside its calibrated range
+_ALIKE_STEPS: Final = 20  # largest difference between two readings of a motor at rest
+_TRIES: Final = 3  # a bus loses an answer now and then
+_MISSING: Final = re.compile(r"- (\d+) \(expected")  # numbers of missing motors in LeRobot's list
+_FAILURES: Final = (OSError, RuntimeError, ValueError)  # raised by LeRobot for a bad answer
 
 
 _Answer = TypeVar("_Answer")

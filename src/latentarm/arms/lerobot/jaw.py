@@ -4,11 +4,8 @@ from typing import Final, final
 
 import numpy as np
 
-_BEHIND: Final = 6.0
-"""A jaw that stays this far behind its target, of 100, presses on something."""
-
-_HOLDS_S: Final = 0.2
-"""One that has done so for this long holds it, s."""
+_BEHIND: Final = 6.0  # a jaw this far behind its target, of 100, presses on something
+_HOLDS_S: Final = 0.2  # and holds it after this time
 
 
 @final

@@ -26,23 +26,12 @@ from latentarm.core.errors import UserError
 from latentarm.core.punctuality import ask_for_priority, short_collections
 from latentarm.core.types import FloatArray
 
-PERIOD_S: Final = 0.01
-"""Of the targets."""
-
-_FAILURES: Final = 5
-"""After so many rounds in which the bus did not answer the arm has a fault."""
-
-_SILENT_PERIOD_S: Final = 0.2
-"""Of the rounds after that: each one waits for answers that do not come."""
-
-_TORQUE_ROUNDS: Final = 10
-"""In every so many rounds it is seen whether all motors are still under power."""
-
-_VELOCITY_ROUNDS: Final = 5
-"""Velocities are taken over so many rounds: an encoder step in one round is a large one."""
-
-_MOVING_RAD_S: Final = 0.05
-"""An arm that is slower is at rest, rad/s: less is not seen by its encoders in 50 ms."""
+PERIOD_S: Final = 0.01  # of the targets
+_FAILURES: Final = 5  # the arm has a fault after so many rounds without an answer
+_SILENT_PERIOD_S: Final = 0.2  # of later rounds: each waits for answers that do not come
+_TORQUE_ROUNDS: Final = 10  # between checks that all motors are under power
+_VELOCITY_ROUNDS: Final = 5  # span of a velocity: one encoder step in one round is a large one
+_MOVING_RAD_S: Final = 0.05  # slower arms are at rest: encoders resolve no less in 50 ms
 
 
 def now_s() -> float:

@@ -7,14 +7,9 @@ import numpy as np
 
 from latentarm.core.types import FloatArray
 
-LONGEST_STEP_S: Final = 0.02
-"""However late a step is, the targets move for no longer than this, s."""
-
-LEAD_RAD: Final = 0.15
-"""A joint that is held up is not told to go farther ahead of where it is than this, rad."""
-
-STOP_LEAD_RAD: Final = 0.03
-"""What is left of that when the arm is stopped, rad."""
+LONGEST_STEP_S: Final = 0.02  # targets move no longer than this in a late step
+LEAD_RAD: Final = 0.15  # largest lead of a target over a joint that is held up
+STOP_LEAD_RAD: Final = 0.03  # largest lead once the arm is stopped
 
 
 @final

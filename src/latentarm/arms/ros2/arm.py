@@ -23,20 +23,11 @@ from latentarm.core.types import Command, GripperCommand, GripperReading, Readin
 from latentarm.robots.kinematics.stillness import STILL_RAD_S
 from latentarm.robots.robot import Robot
 
-RATE_HZ: Final = 100.0
-"""The watchdog commands the controller so often."""
-
-STOPS_AFTER_S: Final = 0.09
-"""The watchdog brakes so soon after a command has run out; one that takes longer is refused, s."""
-
-LONGEST_S: Final = 0.5
-"""No command is sent for longer than this: the watchdog would cut it short, s."""
-
-HEARTBEAT_S: Final = 0.05
-"""The watchdog hears from us at least so often, s."""
-
-CLAIM_S: Final = 1.0
-"""For how long the watchdog may take to give us the arm, s."""
+RATE_HZ: Final = 100.0  # of the watchdog's commands to the controller
+STOPS_AFTER_S: Final = 0.09  # largest delay of the watchdog's braking after a command has run out
+LONGEST_S: Final = 0.5  # the watchdog would cut a longer command short
+HEARTBEAT_S: Final = 0.05  # largest gap between messages to the watchdog
+CLAIM_S: Final = 1.0  # for the watchdog to give us the arm
 
 
 @final

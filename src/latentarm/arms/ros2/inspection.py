@@ -13,20 +13,11 @@ from latentarm.arms.ros2.options import Ros2Options
 from latentarm.arms.ros2.session import Session
 from latentarm.arms.ros2.watchdog_state import VERSION, WatchdogState
 
-ANSWER_S: Final = 1.0
-"""For how long the watchdog, the controller manager and the joint states are waited for, s."""
-
-FREE_S: Final = 1.5
-"""For how long a client that has gone is waited for, s."""
-
-LISTEN_S: Final = 0.3
-"""Over this time joint states are counted, s."""
-
-LOWEST_HZ: Final = 40.0
-"""Joint states that come more slowly are refused."""
-
-LONGEST_TRIP_S: Final = 0.08
-"""A longer round trip is refused: commands would be too old when they arrive, s."""
+ANSWER_S: Final = 1.0  # wait for the watchdog, the controller manager and the joint states
+FREE_S: Final = 1.5  # wait for a client that has gone
+LISTEN_S: Final = 0.3  # span in which joint states are counted
+LOWEST_HZ: Final = 40.0  # slower joint states are refused
+LONGEST_TRIP_S: Final = 0.08  # a longer round trip is refused: commands would arrive too old
 
 _TRIPS: Final = 5
 _CHANCES: Final = 3

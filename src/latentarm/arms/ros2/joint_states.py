@@ -10,11 +10,8 @@ import numpy as np
 
 from latentarm.core.types import FloatArray
 
-WINDOW: Final = 200
-"""Over so many joint states the difference of the clocks is reckoned."""
-
-JUMP_S: Final = 0.1
-"""A clock that runs ahead by this at once has been set, s."""
+WINDOW: Final = 200  # joint states from which the difference of the clocks is estimated
+JUMP_S: Final = 0.1  # a clock that jumps ahead by this has been set
 
 
 class ClockJumpedError(Exception):

@@ -8,8 +8,7 @@ from typing import Any, Final, final
 
 from latentarm.core.errors import UserError
 
-CONNECTING_S: Final = 3.0
-"""For how long rosbridge may take to answer, s."""
+CONNECTING_S: Final = 3.0  # for rosbridge to answer
 
 
 def check_installed() -> None:

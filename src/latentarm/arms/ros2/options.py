@@ -10,8 +10,7 @@ from latentarm.arms.address import ArmAddress
 from latentarm.core.errors import UserError
 from latentarm.robots.robot import Robot
 
-PORT: Final = 9090
-"""The usual port of rosbridge."""
+PORT: Final = 9090  # the usual port of rosbridge
 
 Kind = Literal["velocity", "trajectory"]
 

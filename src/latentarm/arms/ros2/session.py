@@ -12,8 +12,7 @@ from latentarm.arms.ros2.watchdog_state import WatchdogState, parse_state
 
 STRING: Final = "std_msgs/msg/String"
 
-SILENT_S: Final = 0.5
-"""A watchdog that has said nothing for so long is out of reach, s."""
+SILENT_S: Final = 0.5  # a watchdog that is silent for so long is out of reach
 
 
 @final

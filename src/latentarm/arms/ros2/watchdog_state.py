@@ -8,8 +8,7 @@ from typing import Any, Final, Literal, cast, final, get_args
 from latentarm.core.errors import UserError
 from latentarm.core.untrusted.documents import parse_object
 
-VERSION: Final = 1
-"""Of the messages between the watchdog and us, as in ``docs/your-arm/latentarm_watchdog.py``."""
+VERSION: Final = 1  # of its messages, as in ``docs/your-arm/latentarm_watchdog.py``
 
 _LONGEST: Final = 65536
 

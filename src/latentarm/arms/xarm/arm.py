@@ -23,8 +23,7 @@ from latentarm.robots.robot import Robot
 
 RATE_HZ: Final = 100.0
 
-_CYCLE_S: Final = 0.02
-"""Of the controller, with what it needs to act on the end of a command, s."""
+_CYCLE_S: Final = 0.02  # of the controller, including its reaction to the end of a command
 
 _JOIN_S: Final = 8.0
 

@@ -10,8 +10,7 @@ from latentarm.arms.xarm.sdk import Port
 
 _HEADER: Final = 6
 _LARGEST: Final = 1024
-_SMALLEST: Final = 8
-"""A shorter frame has no code, and the library cannot read it."""
+_SMALLEST: Final = 8  # shorter frames lack a code, and the library cannot read them
 
 
 @final

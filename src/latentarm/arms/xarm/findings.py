@@ -15,14 +15,12 @@ from latentarm.arms.xarm.words import EMERGENCY_STOPS, controller_error, emergen
 from latentarm.robots.kinematics.stillness import STILL_RAD_S
 from latentarm.robots.robot import Robot
 
-_SLOW_S: Final = 0.02
-"""An arm whose answers take longer at the median cannot be driven at 50 Hz, s."""
+_SLOW_S: Final = 0.02  # an arm with a longer median answer cannot be driven at 50 Hz
 
 _OUTSIDE_RAD: Final = 0.1
 _APART_RAD: Final = 0.02
 _RATE_OVER_S: Final = 0.1
-_SINGLE: Final = 1e-3
-"""Limits of the controller are single precision: a share by which they may be below the robot's."""
+_SINGLE: Final = 1e-3  # rounding of the controller's limits, in single precision
 
 
 def basic_facts(identity: Identity) -> tuple[Fact, ...]:

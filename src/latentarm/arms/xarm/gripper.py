@@ -14,11 +14,8 @@ from latentarm.robots.gripper import Gripper
 
 PORT: Final = 503
 
-OPEN_UNITS: Final = 850
-"""The position at which the gripper is fully open, in the manufacturer's units; closed it is 0."""
-
-FASTEST_UNITS: Final = 5000
-"""The fastest speed, in the manufacturer's units."""
+OPEN_UNITS: Final = 850  # position of the open gripper; 0 is closed
+FASTEST_UNITS: Final = 5000  # its largest speed
 
 _SLOWEST_UNITS: Final = 300
 _ANSWER_S: Final = 0.5

@@ -11,14 +11,9 @@ _FIRMWARE: Final = re.compile(r"[vV]?(\d+)\.(\d+)\.(\d+)")
 
 _NAMES: Final = {9: "Lite 6", 12: "850"}
 
-BOUNDED_COMMANDS: Final = (1, 8, 0)
-"""Older firmware drops the duration of a velocity command without a word, and moves on for ever."""
-
-GRIPPER_PORT: Final = (1, 11, 0)
-"""From this firmware on, the gripper has a port of its own."""
-
-TIMED_REPORTS: Final = (2, 1, 0)
-"""From this firmware on, reports say when they were measured."""
+BOUNDED_COMMANDS: Final = (1, 8, 0)  # older firmware silently drops a velocity's duration, and moves for ever
+GRIPPER_PORT: Final = (1, 11, 0)  # from this firmware on, the gripper has its own port
+TIMED_REPORTS: Final = (2, 1, 0)  # from this firmware on, reports have a time of measurement
 
 
 @final

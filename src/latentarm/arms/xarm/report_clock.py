@@ -2,14 +2,9 @@
 
 from typing import Final, final
 
-_DRIFT: Final = 2e-4
-"""How much faster one clock may run than the other."""
-
-_AHEAD_S: Final = 0.05
-"""A report that left before it was measured, by more than this, says that a clock has jumped, s."""
-
-_BEHIND_S: Final = 0.5
-"""So late is no report by itself, s."""
+_DRIFT: Final = 2e-4  # largest relative drift between the clocks
+_AHEAD_S: Final = 0.05  # a report that arrives this long before its measurement shows that a clock jumped
+_BEHIND_S: Final = 0.5  # no report is so late without a fault
 
 _OWN_JUMP_S: Final = 0.05
 

@@ -16,21 +16,15 @@ from latentarm.arms.xarm.report_clock import ReportClock
 from latentarm.arms.xarm.sdk import Sdk
 from latentarm.core.types import FloatArray
 
-TIMED_PORT: Final = 30000
-"""Joint states with the controller's time, 200 per second; from firmware 2.1 on."""
-
-PLAIN_PORT: Final = 30003
-"""Joint angles without a time, 100 per second."""
-
-STATUS_PORT: Final = 30002
-"""Everything else, a few times per second."""
+TIMED_PORT: Final = 30000  # joint states with the controller's time, 200 per second; from firmware 2.1 on
+PLAIN_PORT: Final = 30003  # joint angles without a time, 100 per second
+STATUS_PORT: Final = 30002  # everything else, a few times per second
 
 _LEAST: Final[dict[int, int]] = {TIMED_PORT: 172, PLAIN_PORT: 87, STATUS_PORT: 245}
 """A frame with fewer bytes does not hold what is read from it."""
 
 _LARGEST: Final = 4096
-_DIFFERENCED_S: Final = 0.04
-"""Where velocities are not reported, they are the change of the angles over about this time, s."""
+_DIFFERENCED_S: Final = 0.04  # span of the angles' change where velocities are not reported
 
 
 @final

@@ -9,14 +9,9 @@ from latentarm.arms.xarm.reports import JointReport
 from latentarm.core.types import FloatArray
 from latentarm.robots.kinematics.stillness import STILL_RAD_S
 
-_FROZEN_S: Final = 0.12
-"""A joint that was commanded for so long has begun to move, whatever its lag, s."""
-
-_COMMANDED_RAD_S: Final = 0.02
-"""Slower commands do not count for that, rad/s."""
-
-_SETTLED_S: Final = 0.5
-"""So long after its last command an arm stands still, s."""
+_FROZEN_S: Final = 0.12  # a joint moves after so long a command, whatever its lag
+_COMMANDED_RAD_S: Final = 0.02  # slower commands do not count for that
+_SETTLED_S: Final = 0.5  # an arm stands still so long after its last command
 
 _UNTOLD_RAD_S: Final = 5.0 * STILL_RAD_S
 

@@ -4,8 +4,7 @@ from typing import Final
 
 from latentarm.arms.xarm.sdk import Sdk
 
-EMERGENCY_STOPS: Final = (1, 2, 3)
-"""Errors of emergency stops: on the control box, on its inputs, on a three-state switch."""
+EMERGENCY_STOPS: Final = (1, 2, 3)  # codes: on the control box, on its inputs, on a three-state switch
 
 _BUTTONS: Final = {
     1: "The emergency stop button on the control box is pressed",

@@ -20,8 +20,7 @@ if TYPE_CHECKING:
 
 EXTRA: Final = "pip install 'latentarm[cluster]'"
 
-ANSWER_S: Final = 10.0
-"""How long a cluster may take to answer at its address, s."""
+ANSWER_S: Final = 10.0  # for a cluster to answer at its address
 
 
 @contextmanager

@@ -15,20 +15,11 @@ from typing import Any, Final, cast
 from latentarm.core.errors import UserError
 from latentarm.core.untrusted.opening import read_bytes
 
-MOST_BYTES: Final = 1 << 24
-"""Largest document: 16 MiB."""
-
-MOST_VALUES: Final = 1_000_000
-"""Values in a document, containers included; at worst 100 MB as Python objects."""
-
-MOST_LEVELS: Final = 32
-"""Nesting depth of containers."""
-
-MOST_TEXT_BYTES: Final = 1 << 16
-"""Length of one string as written in the document."""
-
-MOST_DIGITS: Final = 20
-"""Digits of an integer; more than a 64-bit one can have."""
+MOST_BYTES: Final = 1 << 24  # largest document: 16 MiB
+MOST_VALUES: Final = 1_000_000  # values in a document, containers included; at worst 100 MB as Python objects
+MOST_LEVELS: Final = 32  # nesting depth of containers
+MOST_TEXT_BYTES: Final = 1 << 16  # length of one string as written in the document
+MOST_DIGITS: Final = 20  # digits of an integer; more than a 64-bit one can have
 
 _NO_BRACKETS: Final = bytes(set(range(256)) - set(b"[]{}"))
 _SURROGATE: Final = re.compile(rb"\\u[dD][89a-fA-F]")

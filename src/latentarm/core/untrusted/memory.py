@@ -18,17 +18,13 @@ try:
 except ImportError:  # Windows
     resource = None
 
-ALLOWANCE: Final = 256 << 20
-"""Memory that any file may take, bytes."""
-
-PER_BYTE: Final = 64
-"""Bytes beyond those for every byte of the file: numbers are packed well where an arm stands still."""
+ALLOWANCE: Final = 256 << 20  # memory that any file may take, bytes
+PER_BYTE: Final = 64  # of the file: numbers are packed well where an arm stands still
 
 _STATUS: Final = Path("/proc/self/status")
 _UNLIMITED: Final = 1 << 62
 _lock = threading.Lock()
-_bounds: list[int] = []
-"""Limits of all current readers, after the original limit; the smallest applies."""
+_bounds: list[int] = []  # limits of all current readers, after the original limit; the smallest applies
 
 
 @contextmanager

@@ -7,11 +7,8 @@ that reverse the text direction. They appear as escapes in Python's notation and
 import unicodedata
 from typing import Final
 
-MOST_CHARACTERS: Final = 1000
-"""Length of a message; both ends of a longer one are shown."""
-
-_JOINERS: Final = "\u200c\u200d"
-"""Invisible, but Persian and emoji are not written without them."""
+MOST_CHARACTERS: Final = 1000  # length of a message; both ends of a longer one are shown
+_JOINERS: Final = "\u200c\u200d"  # invisible, but Persian and emoji are not written without them
 
 _HIDDEN: Final = frozenset({"Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp"})
 """Unicode's categories of controls, formats, halves of characters, private and unassigned ones, and ends

@@ -10,8 +10,7 @@ from latentarm.core.errors import UserError
 from latentarm.core.types import NO_THINGS, FloatArray, Pose
 from latentarm.robots.kinematics.rotations import quaternion
 
-STORED: Final = 7
-"""Position and quaternion (w, x, y, z)."""
+STORED: Final = 7  # position and quaternion (w, x, y, z)
 
 
 def pose_rows(pose: Pose) -> FloatArray:

@@ -6,8 +6,7 @@ import numpy as np
 
 from latentarm.core.types import FloatArray
 
-STILL_RAD_S: Final = 0.01
-"""A joint slower than this stands still. The same figure ends a stop of the real arm."""
+STILL_RAD_S: Final = 0.01  # a slower joint stands still; the same figure ends a stop of the real arm
 
 
 def moving_range(state: FloatArray, timestamp: FloatArray) -> tuple[int, int]:

@@ -12,11 +12,8 @@ from latentarm.robots.scene.thing import Interior, Part
 
 Colour = tuple[float, float, float, float]
 
-WALL_M: Final = 0.003
-"""Thickness of walls and floors: thick enough that no grain passes through one within a time step."""
-
-SIDES: Final = 12
-"""Walls of a round container; four of them stand across x and y, where a gripper takes hold."""
+WALL_M: Final = 0.003  # of walls and floors: no grain passes through one within a time step
+SIDES: Final = 12  # walls of a round container; four of them stand across x and y, where a gripper takes hold
 
 _CHINA: Final = (0.92, 0.93, 0.95, 1.0)
 _WOOD: Final = (0.76, 0.60, 0.42, 1.0)

@@ -11,11 +11,8 @@ from latentarm.core.types import BoolArray, FloatArray, Pose
 from latentarm.robots.kinematics.obstacles import HalfSpace
 from latentarm.robots.scene.thing import Bond, Grains, Interior, Thing
 
-TABLE: Final = "table"
-"""Name of the table in `SceneState.force_n`."""
-
-TOOL: Final = "tool"
-"""Name of everything that the arm carries beyond its last joint, in `SceneState.force_n`."""
+TABLE: Final = "table"  # the table in `SceneState.force_n`
+TOOL: Final = "tool"  # everything beyond the arm's last joint, in `SceneState.force_n`
 
 
 @final

@@ -8,8 +8,7 @@ from latentarm.core.types import FloatArray, Pose
 
 Shape = Literal["box", "cylinder", "capsule", "sphere"]
 
-UPRIGHT = (1.0, 0.0, 0.0, 0.0)
-"""The quaternion of a part that is not turned."""
+UPRIGHT = (1.0, 0.0, 0.0, 0.0)  # the quaternion of a part that is not turned
 
 
 @final

@@ -20,8 +20,7 @@ from latentarm.tasks.scene_task import SceneTask
 START_SPREAD_RAD: Final = np.array([0.3, 0.05, 0.05, 0.05, 0.05, 0.05, 0.05])
 """How far each joint may start from the robot's home, at most: mostly turned about the base."""
 
-OFF_M: Final = STAND_M - 0.02
-"""Lower than this, food has fallen off its dish and rice is spilled."""
+OFF_M: Final = STAND_M - 0.02  # lower food has fallen off its dish, and lower rice is spilled
 
 
 class ForkTask(SceneTask):

@@ -17,14 +17,9 @@ PLATE_AT_M: Final[Region] = ((0.5, 0.5), (0.0, 0.0))
 
 NAMES: Final = ("left marshmallow", "middle marshmallow", "right marshmallow")
 
-BEARINGS_RAD: Final = (np.pi / 2, 0.0, -np.pi / 2)
-"""From the plate's middle to that of each marshmallow's sector."""
-
-SECTOR_RAD: Final = 0.6
-"""How far to either side of that bearing it lies, at most."""
-
-OUT_M: Final = (0.045, 0.075)
-"""How far from the plate's middle."""
+BEARINGS_RAD: Final = (np.pi / 2, 0.0, -np.pi / 2)  # of the sectors from the plate's middle
+SECTOR_RAD: Final = 0.6  # half the width of a sector
+OUT_M: Final = (0.045, 0.075)  # distance from the plate's middle
 
 
 @final

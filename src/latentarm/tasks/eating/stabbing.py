@@ -11,14 +11,9 @@ from latentarm.tasks.eating.table import MARSHMALLOW_HALF_M, STAND_M, fork
 from latentarm.tasks.predicates import Above, Stabbed, Taken
 from latentarm.tasks.steps import TaskStep, Waypoint
 
-HOVER_M: Final = 0.10
-"""How far over the middle of the food a reach ends."""
-
-INTO_M: Final = 0.004
-"""How far below its middle the tip is meant to go."""
-
-LIFTED_M: Final = 0.04
-"""How far food must have left its plate."""
+HOVER_M: Final = 0.10  # height of a reach's end over the middle of the food
+INTO_M: Final = 0.004  # target depth of the tip below the food's middle
+LIFTED_M: Final = 0.04  # height of lifted food over its plate
 
 
 def above(thing: str, turn_rad: float | None = None) -> TaskStep:

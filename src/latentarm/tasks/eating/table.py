@@ -7,12 +7,10 @@ import numpy as np
 from latentarm.core.types import FloatArray, Pose
 from latentarm.robots.scene.thing import Food, Part, Thing
 
-STAND_M: Final = 0.06
-"""Dishes stand this high over the table, on stands: the arm keeps clear of the table top."""
+STAND_M: Final = 0.06  # height of dishes over the table: the arm keeps clear of its top
 
 PLATE_RADIUS_M: Final = 0.10
-PLATE_M: Final = 0.012
-"""Thickness of a plate, m."""
+PLATE_M: Final = 0.012  # thickness of a plate, m
 
 MARSHMALLOW: Final = Food(pierce_n=1.0, depth_m=0.010, grip_n=4.0)
 """Chosen: it takes about a newton to enter soft food, and a pull of a few to take it off."""

@@ -29,26 +29,13 @@ from latentarm.tasks.serving.counter_task import CounterTask, fallen, spilled
 from latentarm.tasks.serving.cup_steps import LIFT_M, POURED, at_place, over, pour, take
 from latentarm.tasks.steps import TaskStep, Waypoint
 
-SHELF_AT_M: Final[Region] = ((0.57, 0.61), (-0.27, -0.23))
-"""Where the middle of the shelf is, x and y."""
-
-BOWL_AT_M: Final[Region] = ((0.55, 0.60), (0.05, 0.09))
-"""Where the bowl stands."""
-
-MIXING_RADIUS_M: Final = 0.075
-"""Of the bowl's floor: an apple and a spoon fit side by side."""
-
-BIN_AT_M: Final[Region] = ((0.50, 0.54), (0.34, 0.38))
-"""Where the recycling bin stands."""
-
-SPOON_AT_M: Final = (0.72, -0.08)
-"""Where the spoon stands in its holder."""
-
-SHELF_M: Final = 0.02
-"""Height of the shelf over the counter."""
-
-APART_M: Final = 0.16
-"""From one thing on the shelf to the next."""
+SHELF_AT_M: Final[Region] = ((0.57, 0.61), (-0.27, -0.23))  # the shelf's middle, x and y
+BOWL_AT_M: Final[Region] = ((0.55, 0.60), (0.05, 0.09))  # the bowl
+MIXING_RADIUS_M: Final = 0.075  # of the bowl's floor: an apple and a spoon fit side by side
+BIN_AT_M: Final[Region] = ((0.50, 0.54), (0.34, 0.38))  # the recycling bin
+SPOON_AT_M: Final = (0.72, -0.08)  # the spoon in its holder
+SHELF_M: Final = 0.02  # height of the shelf over the counter
+APART_M: Final = 0.16  # between things on the shelf
 
 CHOICES: Final = ("eggs", "flour", "apple")
 
@@ -59,21 +46,16 @@ GRAINS: Final = 30
 
 APPLE_RADIUS_M: Final = 0.028
 
-STAND_M: Final = 0.05
-"""How high the apple stands over the shelf: the hand that takes it stays over the cups."""
-
-SPOON_M: Final = 0.17
-"""Length of the spoon."""
+STAND_M: Final = 0.05  # height of the apple over the shelf: the hand stays over the cups
+SPOON_M: Final = 0.17  # length of the spoon
 
 STIR_TURNS: Final = 1.5
 STIR_RADIUS_M: Final = 0.05
-STIR_RAD: Final = 0.9
-"""How far the spoon is led to either side, opposite the apple."""
+STIR_RAD: Final = 0.9  # sweep of the spoon to either side, opposite the apple
 
 STIR_STROKES: Final = 6
 
-STROKE_M: Final = 0.009
-"""How near the end of a stroke the spoon must come: there is 12 mm of room under it."""
+STROKE_M: Final = 0.009  # tolerance at the end of a stroke: there is 12 mm of room under the spoon
 
 
 @final

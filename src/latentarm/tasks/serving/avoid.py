@@ -16,23 +16,12 @@ from latentarm.tasks.serving.counter_task import CounterTask
 from latentarm.tasks.serving.cup_steps import at_place
 from latentarm.tasks.steps import TaskStep, Waypoint
 
-BOTTLE_AT_M: Final[Region] = ((0.60, 0.66), (-0.05, 0.05))
-"""Where the bottle stands, x and y."""
-
-GOAL_AT_M: Final[Region] = ((0.56, 0.62), (0.24, 0.30))
-"""Where the hand is to go."""
-
-START_AT_M: Final[Region] = ((0.56, 0.62), (-0.30, -0.24))
-"""Where it begins."""
-
-PLANE_M: Final = TOP_M + 0.12
-"""Height of the plane in which the hand moves."""
-
-ROUND_M: Final = 0.16
-"""How far before the bottle's middle the hand goes round."""
-
-TOUCHED_N: Final = 0.5
-"""A touch harder than this has failed."""
+BOTTLE_AT_M: Final[Region] = ((0.60, 0.66), (-0.05, 0.05))  # the bottle, x and y
+GOAL_AT_M: Final[Region] = ((0.56, 0.62), (0.24, 0.30))  # the hand's goal
+START_AT_M: Final[Region] = ((0.56, 0.62), (-0.30, -0.24))  # its start
+PLANE_M: Final = TOP_M + 0.12  # height of the hand's plane
+ROUND_M: Final = 0.16  # distance of the hand's way before the bottle's middle
+TOUCHED_N: Final = 0.5  # a harder touch is a failure
 
 _HALF_M: Final = 0.11
 _RADIUS_M: Final = 0.03

@@ -10,19 +10,13 @@ from latentarm.robots.scene.containers import WALL_M, Colour, bowl, cup, packed
 from latentarm.robots.scene.thing import Grains, Part, Thing
 from latentarm.tasks.eating.table import at
 
-TOP_M: Final = 0.28
-"""Height of the counter's top in the base frame of the arm: high enough for a Panda to tilt what it holds."""
-
-COUNTER_M: Final = ((0.44, 0.80), (-0.45, 0.45))
-"""Where the counter is, along x and along y."""
-
-PITCH_RAD: Final = -0.9
-"""Of the hand's pointing direction above the horizontal: from this side it can pour to either side."""
+TOP_M: Final = 0.28  # of the counter in the base frame: a Panda can tilt its load there
+COUNTER_M: Final = ((0.44, 0.80), (-0.45, 0.45))  # extent along x and y
+PITCH_RAD: Final = -0.9  # of the hand above the horizontal: it can pour to either side from here
 
 CUP_RADIUS_M: Final = 0.025
 CUP_HEIGHT_M: Final = 0.08
-GRIP_M: Final = 0.064
-"""Height over a cup's underside at which the fingers take it: the palm stays clear of its rim."""
+GRIP_M: Final = 0.064  # height of the fingers over a cup's underside: the palm stays clear of its rim
 
 BOWL_RADIUS_M: Final = 0.055
 BOWL_HEIGHT_M: Final = 0.05

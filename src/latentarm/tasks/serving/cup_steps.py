@@ -12,23 +12,12 @@ from latentarm.tasks.predicates import CarriedOver, Holding, Poured, Taken
 from latentarm.tasks.serving.counter import GRIP_M, TOP_M, bearing_of, hand, pouring
 from latentarm.tasks.steps import TaskStep, Waypoint
 
-BEFORE_M: Final = 0.08
-"""How far before a cup the hand stops first."""
-
-LIFT_M: Final = 0.14
-"""How far a cup is lifted."""
-
-LIFTED_M: Final = 0.10
-"""So far over where it stood it counts as held: over whatever stands next to it."""
-
-POURING_M: Final = 0.14
-"""How far over a bowl's rim the fingers are while they pour."""
-
-POURED: Final = 0.8
-"""Share of what is in a cup that must end in the bowl, where it is to be emptied."""
-
-POUR_RAD: Final = 1.8
-"""How far a cup is tilted to be emptied."""
+BEFORE_M: Final = 0.08  # first stop before a cup
+LIFT_M: Final = 0.14  # lift of a cup
+LIFTED_M: Final = 0.10  # height at which it counts as held: over all things next to it
+POURING_M: Final = 0.14  # height of the fingers over a bowl's rim
+POURED: Final = 0.8  # share of a cup's grains that must end in the bowl
+POUR_RAD: Final = 1.8  # tilt that empties a cup
 
 
 def take(cup: str, stands_m: float = TOP_M, grip_m: float = GRIP_M) -> tuple[TaskStep, ...]:

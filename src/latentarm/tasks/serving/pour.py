@@ -17,30 +17,21 @@ from latentarm.tasks.serving.counter import (
 from latentarm.tasks.serving.counter_task import CounterTask, fallen, spilled
 from latentarm.tasks.serving.cup_steps import pour, take
 
-CUP_AT_M: Final[Region] = ((0.54, 0.58), (-0.02, 0.02))
-"""Where the cup stands, x and y."""
-
-LEFT_AT_M: Final[Region] = ((0.54, 0.58), (0.20, 0.24))
-"""Where the left bowl stands."""
-
-RIGHT_AT_M: Final[Region] = ((0.54, 0.58), (-0.24, -0.20))
-"""Where the right bowl stands."""
+CUP_AT_M: Final[Region] = ((0.54, 0.58), (-0.02, 0.02))  # the cup, x and y
+LEFT_AT_M: Final[Region] = ((0.54, 0.58), (0.20, 0.24))  # the left bowl
+RIGHT_AT_M: Final[Region] = ((0.54, 0.58), (-0.24, -0.20))  # the right bowl
 
 GRAINS: Final = 36
 
 GRAIN_M: Final = 0.0049
-SIZES: Final = (1.0, 0.96, 0.92, 0.88, 0.84)
-"""Radii of the grains, as shares of `GRAIN_M`, the largest."""
+SIZES: Final = (1.0, 0.96, 0.92, 0.88, 0.84)  # radii of the grains, as shares of `GRAIN_M`, the largest
 
 FLOOR_M: Final = 0.059
 """Thickness of the cup's floor: the cup is shallow and full, so that grains begin to leave it at a tilt of
 about 60 degrees, and more of them the farther it is tilted."""
 
-SHARE: Final = 0.2
-"""Share of the grains that must end in each bowl."""
-
-TIP_SPEED: Final = 0.12
-"""How fast the cup is tipped, as a share of the person's usual speed: some must stay in it."""
+SHARE: Final = 0.2  # of the grains that must end in each bowl
+TIP_SPEED: Final = 0.12  # of tipping, as a share of the person's usual speed: some must stay in the cup
 
 
 @final

@@ -19,11 +19,8 @@ from latentarm.tasks.serving.counter import (
 from latentarm.tasks.serving.counter_task import CounterTask, fallen, spilled
 from latentarm.tasks.serving.cup_steps import POURED, pour, take
 
-CUP_AT_M: Final[Region] = ((0.53, 0.62), (-0.28, -0.10))
-"""Where the cup stands, x and y."""
-
-BOWL_AT_M: Final[Region] = ((0.54, 0.60), (0.12, 0.24))
-"""Where the bowl stands."""
+CUP_AT_M: Final[Region] = ((0.53, 0.62), (-0.28, -0.10))  # the cup, x and y
+BOWL_AT_M: Final[Region] = ((0.54, 0.60), (0.12, 0.24))  # the bowl
 
 GRAINS: Final = 24
 
