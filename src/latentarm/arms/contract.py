@@ -14,7 +14,7 @@ from latentarm.robots.robot import Robot
 from latentarm.robots.scene.scene import SceneState
 
 ArmPhase = Literal["off", "disabled", "guided", "ready", "moving", "fault", "emergency_stop"]
-"""What state an arm is in."""
+"""Phases of an arm, see `ArmStatus`."""
 
 STOPS_AFTER_S: Final = 0.1  # an arm that takes longer to notice the end of its commands is refused, s
 

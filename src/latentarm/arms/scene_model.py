@@ -18,7 +18,7 @@ _GRAIN_DRAG_S: Final = 0.1  # a grain that nothing touches loses its speed withi
 _ROLLING: Final = (0.005, 0.0001)  # friction against turning on the spot and against rolling, m
 
 _STIFF: Final = (0.005, 1.0)
-"""What hits something at 1 m/s enters it by 2 mm, less than a wall is thick; with MuJoCo's 0.02 by 7 mm."""
+"""A thing at 1 m/s enters another by 2 mm, less than a wall's thickness; with MuJoCo's 0.02 by 7 mm."""
 
 _TABLE_FRICTION: Final = (0.8, 0.005, 0.0001)
 _TABLE_COLOUR: Final = (0.72, 0.66, 0.58, 1.0)

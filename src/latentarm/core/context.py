@@ -81,7 +81,7 @@ _REST: Final[Mapping[str, Callable[[Context], FloatArray]]] = {
 @final
 @dataclass(frozen=True)
 class ContextLayout:
-    """Where the features lie in the vector of a context."""
+    """The layout of the features in the vector of a context."""
 
     features: tuple[str, ...]
     joints: int  # n

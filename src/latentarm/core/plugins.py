@@ -5,8 +5,8 @@ A distribution adds a model, an arm, a task or a belief with a few lines in its 
     [project.entry-points."latentarm.models"]
     theirs = "their_package.module:Theirs"
 
-Nothing of it is imported before it is looked up by name. A name read from a file is only ever compared
-with registered names, so a file cannot make us import a module.
+Nothing is imported before its name is looked up. A name from a file is only compared with registered names,
+so a file cannot make us import a module.
 """
 
 import re
@@ -21,11 +21,10 @@ from warnings import warn
 from latentarm.core.errors import UserError
 
 NAME: Final = re.compile(r"[a-z][a-z0-9_]{0,39}")
-"""What a plug-in may be called: it becomes a command line choice, a file's entry and a figure's label."""
+"""A plug-in's name becomes a command line choice, a file's entry and a figure's label."""
 
 
 DISTRIBUTION: Final = re.compile(r"[A-Za-z0-9]([A-Za-z0-9._-]{0,98}[A-Za-z0-9])?")
-"""What a distribution may be called."""
 
 T = TypeVar("T")
 R = TypeVar("R")

@@ -20,7 +20,7 @@ from latentarm.demonstrations.source import SourceData
 
 _ARM: Final = ("waist", "shoulder", "elbow", "forearm_roll", "wrist_angle", "wrist_rotate", "gripper")
 COLUMNS: Final = tuple(f"{side}_{joint}" for side in ("left", "right") for joint in _ARM)
-"""What ALOHA's own ``qpos`` holds."""
+"""Columns of ALOHA's own ``qpos``."""
 
 
 def is_aloha(source: Path) -> bool:

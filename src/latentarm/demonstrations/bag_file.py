@@ -25,7 +25,7 @@ MCAP: Final = b"\x89MCAP"  # first bytes of these files
 JOINT_STATE: Final = "sensor_msgs/msg/JointState"
 
 _DAMAGE: Final = (ArithmeticError, AssertionError, EOFError, LookupError, OSError, RuntimeError, struct.error)
-"""What reading damaged files raises, besides `TypeError`, `ValueError` and the errors of the libraries."""
+"""Raised by damaged files, besides `TypeError`, `ValueError` and the errors of the libraries."""
 
 
 def read_bag(

@@ -25,10 +25,10 @@ GRIPPER_OPENING: Final = "observation.gripper_opening"
 GRIPPER: Final = "observation.gripper"  # as recorded, where its unit is unknown
 
 ACTION_GRIPPER: Final = "action.gripper"
-"""Where the gripper is to go, in the unit of what was observed of it: m with `GRIPPER_WIDTH`."""
+"""Target of the gripper, in the unit of its observation: m with `GRIPPER_WIDTH`."""
 
 OBSERVED: Final = (GRIPPER_WIDTH, GRIPPER_HOLDING, GRIPPER_TOGGLED, GRIPPER_OPENING, GRIPPER)
-"""What a gripper is at a moment, rather than what is done with it then."""
+"""States of a gripper, rather than commands."""
 
 GripperStart = Literal["open", "closed"]  # state of a gripper when an episode begins
 _WIDEST_M: Final = 1.0  # a larger width is not in m

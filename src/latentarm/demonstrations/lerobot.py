@@ -10,8 +10,8 @@ from latentarm.demonstrations.reader import read_episodes, read_episodes_v2
 from latentarm.demonstrations.source import ActionKind, SourceData
 
 PLUGIN: Final = "latentarm"
-"""What LeRobot calls the robot of `lerobot_robot_latentarm`: positions in rad, the gripper's width in m.
-It does not say which arm that drove."""
+"""LeRobot's name for the robot of `lerobot_robot_latentarm`, whatever arm it drives: positions in rad, the
+gripper's width in m."""
 
 
 def read_lerobot(source: Path) -> SourceData:

@@ -7,7 +7,7 @@ from typing import Final
 from latentarm.robots.robot import Robot
 
 SO_ARMS: Final = ("so100", "so101", "soarm100", "soarm101")
-"""What files call the arms whose positions LeRobot records in degrees or in -100 to 100."""
+"""Names of the arms whose positions LeRobot records in degrees or in -100 to 100."""
 
 _ALIASES: Final = {
     "franka": "panda",

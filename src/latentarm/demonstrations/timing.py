@@ -12,7 +12,7 @@ from latentarm.demonstrations.plausibility import RATE_TOLERANCE
 from latentarm.demonstrations.source import SourceData
 
 Gaps = Literal["refuse", "split", "keep"]
-"""What becomes of an episode with a gap: it is refused, each part becomes an episode, or it stays whole."""
+"""Refuse an episode with a gap, make an episode of each part, or keep it whole."""
 
 GAP_S: Final = 0.5
 GAP_STEPS: Final = 5.0  # a gap is longer than `GAP_S` and than so many median steps of its episode

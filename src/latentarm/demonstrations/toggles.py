@@ -39,7 +39,7 @@ def widths_from_toggles(
 def _with_width(episode: Episode, starts: GripperStart, most_m: float) -> Episode:
     toggled = episode.extras[GRIPPER_TOGGLED]
     width: FloatArray = np.where((toggled > 0.0) ^ (starts == "open"), most_m, 0.0)
-    # Toggled after a sample: it is told there, and is so at the next.
+    # A toggle after a sample is commanded there, and takes effect at the next.
     target = np.concatenate([width[1:], width[-1:]])
     kept = {name: values for name, values in episode.extras.items() if name != GRIPPER_TOGGLED}
     return replace(episode, extras={**kept, GRIPPER_WIDTH: width, ACTION_GRIPPER: target})

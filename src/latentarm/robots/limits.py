@@ -9,7 +9,7 @@ from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray
 
 Source = Literal["model", "manufacturer", "limits_file", "assumed"]
-"""Where a limit comes from: the robot's model, its manufacturer, a limits file, or an assumption."""
+"""Source of a limit."""
 
 Quantity = Literal["position", "velocity", "acceleration", "jerk"]
 QUANTITIES: Final[tuple[Quantity, ...]] = ("position", "velocity", "acceleration", "jerk")

@@ -25,7 +25,7 @@ StepKind = Literal[
     "stirred",
     "placed",
 ]
-"""What is done in a step."""
+"""Kinds of acts in a step."""
 
 Predicate = Callable[[SceneState], bool]
 """Whether something holds of the things at one moment. One that remembers is made anew for every run."""

@@ -19,7 +19,7 @@ from latentarm.tasks.task import Task, within
 TABLE_HEIGHT = 0.0  # in the robot's base frame, m: the arm stands on the table
 
 ITEMS = {"carrot": (0.50, -0.28), "tofu": (0.60, 0.0), "melon": (0.50, 0.28)}
-"""Where the food is, x and y, m; each item lies on a raised dish."""
+"""x and y of the food, m; each item lies on a raised dish."""
 
 ITEM_HEIGHT = 0.10  # above the table top, m
 HOVER = 0.13  # height of a reach's end above the food, m

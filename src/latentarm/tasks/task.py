@@ -42,7 +42,7 @@ class Task(ABC):
     @property
     @abstractmethod
     def manners(self) -> tuple[str, ...]:
-        """What one can do at a goal, at least one name."""
+        """Names of the acts that are possible at a goal, at least one."""
 
     @property
     @abstractmethod

@@ -13,7 +13,7 @@ LASTS_S: Final = 1.0  # the arm comes to rest if guiding is not renewed within t
 _RENEWED_S: Final = 0.4
 
 _DAMPING: Final = (1.0, 1.0, 1.0, 1.0, 0.5, 0.5, 0.5)
-"""What resists the hand, N m s/rad: enough that an arm that is let go comes to rest."""
+"""N m s/rad, against the hand, so that a released arm comes to rest."""
 
 
 @final

@@ -31,7 +31,7 @@ _FAILURES: Final = 5  # the arm has a fault after so many rounds without an answ
 _SILENT_PERIOD_S: Final = 0.2  # of later rounds: each waits for answers that do not come
 _TORQUE_ROUNDS: Final = 10  # between checks that all motors are under power
 _VELOCITY_ROUNDS: Final = 5  # span of a velocity: one encoder step in one round is a large one
-_MOVING_RAD_S: Final = 0.05  # slower arms are at rest: encoders resolve no less in 50 ms
+_MOVING_RAD_S: Final = 0.05  # slower motion is below the encoders' resolution over 50 ms
 
 
 def now_s() -> float:

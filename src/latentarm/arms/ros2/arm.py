@@ -85,7 +85,7 @@ class Ros2Arm(GuidableArm):
     def look(self) -> Findings:
         """Inspect the arm without moving it."""
         if self._open is not None:
-            raise RuntimeError("an arm is looked at before it is connected")
+            raise RuntimeError("the arm is connected; look before that")
         opened = self._opened()
         try:
             return inspect(opened.link, opened.session, opened.feed, self._options)

@@ -20,11 +20,11 @@ _OWN: Final = {
     31: "check what the arm has hit, its payload and its collision sensitivity",
     35: "move the arm back inside its safety boundary in UFACTORY Studio's manual mode",
 }
-"""What to do where the manufacturer's advice is about programs or paths."""
+"""Advice that replaces the manufacturer's, which is about programs or paths."""
 
 
 def emergency_stop(code: int) -> str:
-    """What to do about an emergency stop."""
+    """Advice about an emergency stop."""
     return f"{_BUTTONS[code]}: release it when it is safe, then enable the arm again."
 
 

@@ -1,4 +1,4 @@
-"""Where the cells of a grid run: processes of this machine, or a cluster.
+"""Backends for the cells of a grid: processes of this machine, or a cluster.
 
 joblib is the one interface; Ray and Dask are joblib's own backends. Each of the context managers here
 makes its backend the active one and ends what it has started, and nothing else.

@@ -25,7 +25,7 @@ GRAIN_RADIUS_M: Final = 0.005
 GRAIN_KG: Final = 4e-4
 
 POSTURE_RAD: Final = (0.0, -0.5, 0.0, -2.3, 0.0, 2.2, np.pi / 4)
-"""From where configurations are looked for, rad: the hand before the chest, pointing out and down."""
+"""Start of the search for configurations: the hand before the chest, pointing out and down."""
 
 FLOUR: Final = (0.9, 0.85, 0.7, 1.0)
 _BLUE: Final = (0.36, 0.55, 0.75, 1.0)
