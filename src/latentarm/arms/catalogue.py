@@ -25,7 +25,6 @@ class ArmFactory(Protocol):
             state: (n,), start of a simulated arm, rad; a real arm ignores it.
             now_s: the clock of readings, s; never goes back.
         """
-        ...
 
 
 class SceneArmFactory(Protocol):
@@ -33,7 +32,6 @@ class SceneArmFactory(Protocol):
 
     def __call__(self, robot: Robot, state: FloatArray, now_s: Callable[[], float], *, scene: Scene) -> Arm:
         """An arm that is not connected, in a scene; see `ArmFactory`."""
-        ...
 
 
 def _factory(name: str, thing: object) -> ArmFactory:

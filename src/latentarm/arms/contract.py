@@ -6,8 +6,10 @@ from dataclasses import dataclass
 from types import TracebackType
 from typing import Final, Literal, Self, final
 
+import numpy as np
+
 from latentarm.core.errors import UserError
-from latentarm.core.types import Command, GripperCommand, Reading
+from latentarm.core.types import Command, FloatArray, GripperCommand, Reading
 from latentarm.robots.gripper import Gripper
 from latentarm.robots.notices import assumed_limits
 from latentarm.robots.robot import Robot
@@ -166,6 +168,14 @@ class SceneArm(Arm, ABC):
         Repeated calls at one moment give the same state. Forces are the largest since the state of an earlier
         moment, so a single reader at every tick misses none.
         """
+
+
+def finite_velocity(command: Command, dof: int) -> FloatArray:
+    """A copy of a command's velocity, (n,), rad/s; ValueError unless it has n finite entries."""
+    velocity = np.array(command.velocity, dtype=np.float64)
+    if velocity.shape != (dof,) or not np.isfinite(velocity).all():
+        raise ValueError(f"a command needs {dof} finite joint velocities, rad/s")
+    return velocity
 
 
 def check_arm(spec: ArmSpec, robot: Robot) -> None:

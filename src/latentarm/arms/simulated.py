@@ -7,7 +7,7 @@ from typing import Final, final
 
 import numpy as np
 
-from latentarm.arms.contract import Arm, ArmPhase, ArmSpec, ArmStatus
+from latentarm.arms.contract import Arm, ArmPhase, ArmSpec, ArmStatus, finite_velocity
 from latentarm.arms.simulated_gripper import SimulatedGripper
 from latentarm.core.errors import UserError
 from latentarm.core.types import Command, FloatArray, GripperCommand, Reading
@@ -142,9 +142,7 @@ class SimulatedArm(Arm):
     @final
     def send(self, command: Command) -> None:
         """Take a command; ignored unless enabled."""
-        velocity = np.array(command.velocity, dtype=np.float64)
-        if velocity.shape != self._rest.shape or not np.isfinite(velocity).all():
-            raise ValueError(f"a command needs {len(self._rest)} finite joint velocities")
+        velocity = finite_velocity(command, len(self._rest))
         if command.gripper is not None and self._gripper is None:
             raise ValueError("this arm has no gripper to command")
         self._elapse()

@@ -89,9 +89,8 @@ def _as_told(names: Sequence[str], joints: Sequence[str], told: Sequence[str], s
         columns = list(told)
     else:
         raise UserError(
-            f"--joints must name {len(joints)} columns, for {', '.join(joints)} in this order, or be"
-            f" pairs such as"
-            f" {joints[0]}=COLUMN."
+            f"--joints must name {len(joints)} columns, for {', '.join(joints)} in this order, or be pairs"
+            f" such as {joints[0]}=COLUMN."
         )
     found = [_column(column, names, source) for column in columns]
     for index in found:
@@ -133,10 +132,8 @@ def _by_name(
     suggestion = " ".join(names[index] for index in candidates[: len(joints)])
     raise UserError(
         f"{source}: the columns {', '.join(names)} cannot be matched to the robot's joints"
-        f" {', '.join(joints)}."
-        f" Choose the robot that was recorded with --robot, or name the column of each joint in the"
-        f" robot's order,"
-        f" as in --joints {suggestion}."
+        f" {', '.join(joints)}. Choose the robot that was recorded with --robot, or name the column of each"
+        f" joint in the robot's order, as in --joints {suggestion}."
     )
 
 

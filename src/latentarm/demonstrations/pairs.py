@@ -47,7 +47,7 @@ def make_pairs(
     held: list[BoolArray] = []
     layout = context_layout(demonstrations, context)
     for index, episode in enumerate(demonstrations.episodes):
-        moving = _moving(episode)
+        moving = slice(*moving_range(episode.state, episode.timestamp))
         start, action = (
             _recorded(episode, moving, index)
             if actions == "recorded"
@@ -71,10 +71,6 @@ def make_pairs(
         episode=np.concatenate(owner),
         held=holding,
     )
-
-
-def _moving(episode: Episode) -> slice:
-    return slice(*moving_range(episode.state, episode.timestamp))
 
 
 def _displaced(episode: Episode, moving: slice, window: int) -> tuple[IntArray, FloatArray]:

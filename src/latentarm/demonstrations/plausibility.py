@@ -30,9 +30,8 @@ def check_rate(demonstrations: Demonstrations, source: str) -> None:
     timed = 1.0 / float(np.median(steps))
     if abs(timed - rate) > RATE_TOLERANCE * rate:
         raise UserError(
-            f"{source}: the timestamps advance at {timed:.4g} Hz, but the rate is {rate:g} Hz: one of"
-            f" them is wrong, and"
-            f" so are all speeds. If the timestamps are right, pass --rate-hz {timed:.4g}."
+            f"{source}: the timestamps advance at {timed:.4g} Hz, but the rate is {rate:g} Hz: one of them is"
+            f" wrong, and so are all speeds. If the timestamps are right, pass --rate-hz {timed:.4g}."
         )
 
 
@@ -46,9 +45,8 @@ def speed_warning(demonstrations: Demonstrations, robot: Robot, source: str, nam
         for sample, joint in np.argwhere(wild)[:1]:
             raise UserError(
                 f"{source}: episode {name}, sample {sample + 1}: joint {robot.joint_names[joint]} moves at"
-                f" {speed[sample, joint]:.0f} rad/s, which no arm can do: look for lost samples, wrong"
-                f" units (--units) or a"
-                " wrong rate (--rate-hz)."
+                f" {speed[sample, joint]:.0f} rad/s, which no arm can do: look for lost samples, wrong units"
+                " (--units) or a wrong rate (--rate-hz)."
             )
         peak = np.maximum(peak, speed.max(axis=0))
         over += int((speed > limit).any(axis=1).sum())

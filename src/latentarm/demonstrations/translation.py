@@ -50,9 +50,8 @@ def translate(data: SourceData, robot: Robot, told: ImportOptions, source: str) 
     if motors and not told.joints and all(names[index].startswith(_OLD_PREFIX) for index in columns.joints):
         raise UserError(
             f"{source}: LeRobot named columns {_OLD_PREFIX}* before June 2025, when zero was the arm"
-            f" stretched out"
-            " and not the middle of each range: convert the positions first, then name the columns"
-            " with --joints."
+            " stretched out and not the middle of each range: convert the positions first, then name the"
+            " columns with --joints."
         )
     units, how = _units(data, robot, told, columns, motors, source)
     turned = conversion(
@@ -99,9 +98,8 @@ def _check_robot(named: str, robot: Robot, recorded_on: str | None, source: str)
         raise UserError(f"{source} says that it was recorded on {named!r}, not on {recorded_on!r}.")
     if named and recorded_on is None and not may_be(named, robot):
         raise UserError(
-            f"{source} says that it was recorded on {named!r}, and the robot is {robot.name}: name"
-            f" the robot that was"
-            f" recorded with --robot, or pass --recorded-on {named} if these are the same."
+            f"{source} says that it was recorded on {named!r}, and the robot is {robot.name}: name the robot"
+            f" that was recorded with --robot, or pass --recorded-on {named} if these are the same."
         )
 
 
@@ -113,9 +111,8 @@ def _units(
     missing = any(joint not in single for joint in robot.joint_names)
     if missing and general is None and motors and not data.in_rad:
         raise UserError(
-            f"{source} does not say its units, and LeRobot records these joints in degrees or from"
-            f" -100 to 100 alike:"
-            " say which with --units deg (recorded with use_degrees=true) or --units normalized."
+            f"{source} does not say its units, and LeRobot records these joints in degrees or from -100 to"
+            " 100 alike: say which with --units deg (recorded with use_degrees=true) or --units normalized."
         )
     units: list[Unit] = [single.get(joint, general or "rad") for joint in robot.joint_names]
     if told.units:

@@ -153,7 +153,7 @@ def _leaving(robot: Robot, demonstrations: Demonstrations) -> list[Episode]:
     for one in demonstrations.episodes:
         moving = slice(*moving_range(one.state, one.timestamp))
         path = one.state[moving]
-        if len(path) and _leaves(robot, path):
+        if len(path) and _away(robot, path).max() > 1.0:
             extras = {name: values[moving] for name, values in one.extras.items()}
             found.append(Episode(path, one.timestamp[moving], extras=extras))
     if not found:
@@ -178,10 +178,6 @@ def _stops(robot: Robot, path: FloatArray) -> IntArray:
     stops = np.array([0, *at, len(path) - 1])
     away = _away(robot, path)
     return stops if away[stops].max() > 1.0 else np.union1d(stops, away.argmax())
-
-
-def _leaves(robot: Robot, path: FloatArray) -> bool:
-    return bool(_away(robot, path).max() > 1.0)
 
 
 def _away(robot: Robot, path: FloatArray) -> FloatArray:

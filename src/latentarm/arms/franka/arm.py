@@ -4,10 +4,8 @@ import math
 from collections.abc import Callable
 from typing import Final, final
 
-import numpy as np
-
 from latentarm.arms.address import ArmAddress
-from latentarm.arms.contract import ArmSpec, ArmStatus
+from latentarm.arms.contract import ArmSpec, ArmStatus, finite_velocity
 from latentarm.arms.franka.hand import Hand
 from latentarm.arms.franka.link import Link, findings, library, open_link, refusals, set_up
 from latentarm.arms.franka.options import read_options
@@ -159,9 +157,7 @@ class FrankaArm(GuidableArm):
 
     def send(self, command: Command) -> None:
         """Take a command; ignored unless enabled."""
-        velocity = np.array(command.velocity, dtype=np.float64)
-        if velocity.shape != (7,) or not np.isfinite(velocity).all():
-            raise ValueError("a command needs 7 finite joint velocities")
+        velocity = finite_velocity(command, 7)
         if not math.isfinite(command.duration_s):
             raise ValueError("a command needs a finite duration")
         worker = self._worker

@@ -8,7 +8,7 @@ from typing import Any, Final, cast, final
 import numpy as np
 
 from latentarm.arms.address import ArmAddress
-from latentarm.arms.contract import ArmPhase, ArmSpec, ArmStatus
+from latentarm.arms.contract import ArmPhase, ArmSpec, ArmStatus, finite_velocity
 from latentarm.arms.helper_process import HelperProcess
 from latentarm.arms.lerobot import keeper
 from latentarm.arms.lerobot.options import Options
@@ -146,9 +146,7 @@ class LerobotArm(GuidableArm):
 
     def send(self, command: Command) -> None:
         """Take a command; ignored unless enabled."""
-        velocity = np.array(command.velocity, dtype=np.float64)
-        if velocity.shape != (self._robot.dof,) or not np.isfinite(velocity).all():
-            raise ValueError(f"a command needs {self._robot.dof} finite joint velocities")
+        velocity = finite_velocity(command, self._robot.dof)
         gripper = command.gripper
         self._tell(
             "move",

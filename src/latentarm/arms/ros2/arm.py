@@ -9,7 +9,7 @@ from typing import Final, final
 import numpy as np
 
 from latentarm.arms.address import ArmAddress
-from latentarm.arms.contract import ArmSpec, ArmStatus
+from latentarm.arms.contract import ArmSpec, ArmStatus, finite_velocity
 from latentarm.arms.real import Findings, GuidableArm
 from latentarm.arms.ros2.feed import JointFeed
 from latentarm.arms.ros2.gripper import Ros2Gripper
@@ -187,9 +187,7 @@ class Ros2Arm(GuidableArm):
 
     def send(self, command: Command) -> None:
         """Take a command; ignored unless enabled."""
-        velocity = np.array(command.velocity, dtype=np.float64)
-        if velocity.shape != (self._dof,) or not np.isfinite(velocity).all():
-            raise ValueError(f"a command needs {self._dof} finite joint velocities")
+        velocity = finite_velocity(command, self._dof)
         if command.gripper is not None and self._gripper is None:
             raise ValueError("this arm has no gripper to command")
         opened = self._open

@@ -7,7 +7,7 @@ from typing import Final, final
 import numpy as np
 
 from latentarm.arms.address import ArmAddress
-from latentarm.arms.contract import ArmSpec, ArmStatus
+from latentarm.arms.contract import ArmSpec, ArmStatus, finite_velocity
 from latentarm.arms.real import Findings, GuidableArm
 from latentarm.arms.xarm.controller import ANSWER_S, LinkLostError
 from latentarm.arms.xarm.driver import Driver
@@ -164,9 +164,7 @@ class XArm(GuidableArm):
 
     def send(self, command: Command) -> None:
         """Take a command; ignored unless enabled."""
-        velocity = np.array(command.velocity, dtype=np.float64)
-        if velocity.shape != (self._robot.dof,) or not np.isfinite(velocity).all():
-            raise ValueError(f"a command needs {self._robot.dof} finite joint velocities, rad/s")
+        velocity = finite_velocity(command, self._robot.dof)
         driver = self._driver
         with self._shared.changed:
             if driver is None or self._shared.condition not in TAKES_COMMANDS:
