@@ -31,13 +31,7 @@ class KinematicArm(SimulatedArm):
     def __init__(self, robot: Robot, state: FloatArray, now_s: Callable[[], float]) -> None:
         self._fingers = None if robot.gripper is None else KinematicGripper(robot.gripper)
         super().__init__(
-            robot,
-            state,
-            now_s,
-            rate_hz=RATE_HZ,
-            stops_after_s=0.0,
-            gripper=self._fingers,
-            settles_s=math.inf,
+            robot, state, now_s, rate_hz=RATE_HZ, stops_after_s=0.0, gripper=self._fingers, settles_s=math.inf
         )
         self._limits = robot.limits
         self._state = np.array(state, dtype=np.float64)

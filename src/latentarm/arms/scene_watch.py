@@ -22,12 +22,7 @@ class SceneWatch:
     """
 
     def __init__(
-        self,
-        model: mujoco.MjModel,
-        data: mujoco.MjData,
-        robot: Robot,
-        body_link: IntArray,
-        scene: Scene,
+        self, model: mujoco.MjModel, data: mujoco.MjData, robot: Robot, body_link: IntArray, scene: Scene
     ) -> None:
         self._data, self._scene, self._chain = data, scene, robot.chain
         self._names = (TOOL, TABLE, *scene.names)

@@ -39,11 +39,7 @@ def is_width(name: str) -> bool:
 
 
 def find_columns(
-    names: Sequence[str],
-    joints: Sequence[str],
-    told: Sequence[str],
-    gripper: str | None,
-    source: str,
+    names: Sequence[str], joints: Sequence[str], told: Sequence[str], gripper: str | None, source: str
 ) -> Columns:
     """Find the column of each joint, by name where ``told`` is empty.
 

@@ -153,11 +153,7 @@ def _joints(header: list[str], joint_names: Sequence[str], source: Path) -> tupl
 
 
 def _runs(
-    table: CsvTable,
-    header: list[str],
-    rows: Iterator[tuple[int, list[str]]],
-    columns: list[str],
-    task: str,
+    table: CsvTable, header: list[str], rows: Iterator[tuple[int, list[str]]], columns: list[str], task: str
 ) -> list[_Run]:
     place = {name: index for index, name in enumerate(header)}
     wanted = [place[name] for name in columns]

@@ -231,10 +231,7 @@ def _data_to_extend(path: Path, info: Info, rows: Table, added: Table) -> tuple[
 def _write_tables(path: Path, tables: list[Table]) -> None:
     """Write tables of one schema to one Parquet file, each as its own row group."""
     schema = tables[0].schema
-    with (
-        written_whole(path) as part,
-        pq.ParquetWriter(part, schema, write_page_checksum=True) as writer,
-    ):
+    with written_whole(path) as part, pq.ParquetWriter(part, schema, write_page_checksum=True) as writer:
         for table in tables:
             writer.write_table(table)
 

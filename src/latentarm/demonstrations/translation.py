@@ -10,13 +10,7 @@ import numpy as np
 from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations, Episode
 from latentarm.demonstrations.columns import Columns, find_columns, is_width
-from latentarm.demonstrations.gripper import (
-    ACTION_GRIPPER,
-    GRIPPER,
-    GRIPPER_OPENING,
-    GRIPPER_WIDTH,
-    OBSERVED,
-)
+from latentarm.demonstrations.gripper import ACTION_GRIPPER, GRIPPER, GRIPPER_OPENING, GRIPPER_WIDTH, OBSERVED
 from latentarm.demonstrations.import_options import ImportOptions
 from latentarm.demonstrations.robot_names import is_so_arm, may_be
 from latentarm.demonstrations.source import SourceData

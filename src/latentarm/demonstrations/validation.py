@@ -20,15 +20,7 @@ LIMIT_TOLERANCE_RAD: Final = 0.01  # of a state past a limit: encoder offsets an
 CLIP_HINT_RAD: Final = 0.2  # calibrations of one kind of arm differ by less
 
 RESERVED_FEATURES: Final = frozenset(
-    {
-        "action",
-        "episode_index",
-        "frame_index",
-        "index",
-        "observation.state",
-        "task_index",
-        "timestamp",
-    }
+    {"action", "episode_index", "frame_index", "index", "observation.state", "task_index", "timestamp"}
 )
 
 

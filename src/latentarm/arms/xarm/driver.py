@@ -44,12 +44,7 @@ class Driver(threading.Thread):
     """
 
     def __init__(
-        self,
-        sdk: Sdk,
-        robot: Robot,
-        shared: Shared,
-        session: Session,
-        reopen: Callable[[int], Session],
+        self, sdk: Sdk, robot: Robot, shared: Shared, session: Session, reopen: Callable[[int], Session]
     ) -> None:
         super().__init__(name="xarm driver", daemon=True)
         self._sdk = sdk

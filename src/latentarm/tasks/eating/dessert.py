@@ -11,13 +11,7 @@ from latentarm.robots.scene.scene import Scene
 from latentarm.robots.scene.thing import Grains, Interior, Part, Thing
 from latentarm.tasks.eating.fork_task import OFF_M, ForkTask, fallen
 from latentarm.tasks.eating.stabbing import above, carried_over, stab
-from latentarm.tasks.eating.table import (
-    MARSHMALLOW_HALF_M,
-    STAND_M,
-    at,
-    marshmallow,
-    plate,
-)
+from latentarm.tasks.eating.table import MARSHMALLOW_HALF_M, STAND_M, at, marshmallow, plate
 from latentarm.tasks.predicates import CarriedOver, Placed, Spilled, Swept, Within
 from latentarm.tasks.scene_task import Beginning
 from latentarm.tasks.steps import TaskStep, Waypoint
@@ -95,10 +89,7 @@ class Dessert(ForkTask):
             state=self.start(rng),
             scene=scene,
             steps=_steps(room),
-            failures=(
-                *fallen(MARSHMALLOW),
-                Spilled("rice", OFF_M, (("rice bowl", room),), SPILLED),
-            ),
+            failures=(*fallen(MARSHMALLOW), Spilled("rice", OFF_M, (("rice bowl", room),), SPILLED)),
             goals=self.goals(scene.thing(name) for name in NAMES),
             objects=NAMES,
             text="dip the marshmallow in icing and rice",

@@ -28,11 +28,7 @@ def stab(thing: str, turn_rad: float | None = None, half_m: float = MARSHMALLOW_
     lying_m = STAND_M + half_m
     near = Waypoint(partial(above_it, height_m=half_m + 0.02), within_m=0.008, speed=0.6)
     into = Waypoint(
-        partial(above_it, height_m=-INTO_M),
-        within_m=0.008,
-        wait_s=0.1,
-        speed=0.4,
-        until=Taken(thing),
+        partial(above_it, height_m=-INTO_M), within_m=0.008, wait_s=0.1, speed=0.4, until=Taken(thing)
     )
     lifted = Waypoint(partial(_over_plate, thing=thing, height_m=lying_m + HOVER_M, turn_rad=turn_rad))
     done = Stabbed(thing, lying_m + LIFTED_M)

@@ -109,10 +109,7 @@ def _things(shelf: FloatArray, bowl_at: FloatArray, bin_at: FloatArray) -> dict[
     half = (0.05, APART_M + 0.05, SHELF_M / 2)
     board = Part("box", half, (0.0, 0.0, -SHELF_M / 2), colour=(0.8, 0.7, 0.55, 1.0))
     stand = Part("cylinder", (0.02, STAND_M / 2), (0.0, -APART_M, STAND_M / 2), colour=(0.8, 0.7, 0.55, 1.0))
-    cups = {
-        "egg cup": (APART_M, (0.85, 0.85, 0.88, 1.0)),
-        "flour cup": (0.0, (0.45, 0.35, 0.6, 1.0)),
-    }
+    cups = {"egg cup": (APART_M, (0.85, 0.85, 0.88, 1.0)), "flour cup": (0.0, (0.45, 0.35, 0.6, 1.0))}
     things = [
         counter(),
         Thing("shelf", (board, stand), 2.0, at(*shelf), fixed=True),

@@ -6,14 +6,7 @@ import numpy as np
 
 from latentarm.robots.scene.scene import Scene
 from latentarm.tasks.scene_task import Beginning, Region, anywhere
-from latentarm.tasks.serving.counter import (
-    FLOUR,
-    GRAIN_KG,
-    counter,
-    counter_bowl,
-    counter_cup,
-    filled,
-)
+from latentarm.tasks.serving.counter import FLOUR, GRAIN_KG, counter, counter_bowl, counter_cup, filled
 from latentarm.tasks.serving.counter_task import CounterTask, fallen, spilled
 from latentarm.tasks.serving.cup_steps import pour, take
 
