@@ -51,29 +51,17 @@ class Goal:
 
 @dataclass(frozen=True)
 class Provenance:
-    """Who and what recorded an episode; "" where unknown.
+    """Who and what recorded an episode; "" where unknown."""
 
-    Attributes:
-        person: the driver.
-        run: the trained run that they drove with.
-        run_fingerprint: of its model's file.
-        profile: the person whose alignment was used.
-        device: kind of input device, such as ``keyboard``; ``simulated`` for a simulated person.
-        controller: when the episode began.
-        version: of this package.
-        started_utc: when the episode began, ISO 8601 in UTC.
-        complete: whether the recording was ended, rather than cut short.
-    """
-
-    person: str = ""
-    run: str = ""
-    run_fingerprint: str = ""
-    profile: str = ""
-    device: str = ""
-    controller: str = ""
-    version: str = ""
-    started_utc: str = ""
-    complete: bool = True
+    person: str = ""  # the driver
+    run: str = ""  # the trained run that they drove with
+    run_fingerprint: str = ""  # of its model's file
+    profile: str = ""  # the person whose alignment was used
+    device: str = ""  # kind of input device, such as ``keyboard``; ``simulated`` for a simulated person
+    controller: str = ""  # when the episode began
+    version: str = ""  # of this package
+    started_utc: str = ""  # when the episode began, ISO 8601 in UTC
+    complete: bool = True  # whether the recording was ended, rather than cut short
 
 
 @dataclass(frozen=True)
@@ -99,51 +87,32 @@ class Episode:
 
 @dataclass(frozen=True)
 class StatedJointLimits:
-    """Limits that somebody states of one joint; None where unstated. A sliding joint has m instead of rad.
+    """Limits that somebody states of one joint; None where unstated. A sliding joint has m instead of rad."""
 
-    Attributes:
-        position: lowest and highest, rad.
-        velocity: rad/s.
-        acceleration: rad/s².
-        jerk: rad/s³.
-        sliding: None where there are no figures.
-    """
-
-    position: tuple[float, float] | None = None
-    velocity: float | None = None
-    acceleration: float | None = None
-    jerk: float | None = None
-    sliding: bool | None = None
+    position: tuple[float, float] | None = None  # lowest and highest, rad
+    velocity: float | None = None  # rad/s
+    acceleration: float | None = None  # rad/s²
+    jerk: float | None = None  # rad/s³
+    sliding: bool | None = None  # None where there are no figures
 
 
 @dataclass(frozen=True)
 class StatedGripper:
-    """Figures that somebody states of a gripper; see `latentarm.robots.gripper.Gripper`.
+    """Figures that somebody states of a gripper; see `latentarm.robots.gripper.Gripper`."""
 
-    Attributes:
-        joints: of the robot's model that move the fingers or the jaw; empty where the model has none.
-        width: the largest opening, m.
-        speed: the fastest change of the opening, m/s.
-        force: the largest force between the fingers, N.
-    """
-
+    # of the robot's model that move the fingers or the jaw; empty where the model has none
     joints: tuple[str, ...]
-    width: float
-    speed: float
-    force: float
+    width: float  # the largest opening, m
+    speed: float  # the fastest change of the opening, m/s
+    force: float  # the largest force between the fingers, N
 
 
 @dataclass(frozen=True)
 class StatedLimits:
-    """Limits that somebody states of a robot, as in a limits file.
+    """Limits that somebody states of a robot, as in a limits file."""
 
-    Attributes:
-        joints: by name, without unstated ones.
-        tool_speed: m/s.
-    """
-
-    joints: Mapping[str, StatedJointLimits]
-    tool_speed: float | None = None
+    joints: Mapping[str, StatedJointLimits]  # by name, without unstated ones
+    tool_speed: float | None = None  # m/s
     gripper: StatedGripper | None = None
 
 
@@ -191,19 +160,13 @@ class Pairs:
 
     The action always comes from the states as they were demonstrated. State noise is added to ``context``
     only, so that nobody can reconstruct it from the action.
-
-    Attributes:
-        context: (N, c); its first n entries are the state, rad.
-        clean_context: (N, c), ``context`` before state noise.
-        action: (N, m), noise-free joint velocity, rad/s.
-        episode: (N,), index of each pair's episode.
-        held: (N, K), whether each thing in the context moves with the tool; K = 0 where the arm is unknown.
     """
 
-    context: FloatArray
-    clean_context: FloatArray
-    action: FloatArray
-    episode: IntArray
+    context: FloatArray  # (N, c); its first n entries are the state, rad
+    clean_context: FloatArray  # (N, c), ``context`` before state noise
+    action: FloatArray  # (N, m), noise-free joint velocity, rad/s
+    episode: IntArray  # (N,), index of each pair's episode
+    # (N, K), whether each thing in the context moves with the tool; K = 0 where the arm is unknown
     held: BoolArray
 
 
@@ -253,15 +216,10 @@ class Input:
 
 @dataclass(frozen=True)
 class GripperReading:
-    """A gripper's measurements at one moment.
+    """A gripper's measurements at one moment."""
 
-    Attributes:
-        width_m: opening between the fingers, m.
-        holding: whether it holds something.
-    """
-
-    width_m: float
-    holding: bool = False
+    width_m: float  # opening between the fingers, m
+    holding: bool = False  # whether it holds something
 
 
 @dataclass(frozen=True)
@@ -314,96 +272,64 @@ StopCode = Literal[
 
 @dataclass(frozen=True)
 class Stop:
-    """A safety filter's refusal.
+    """A safety filter's refusal."""
 
-    Attributes:
-        reason: one short sentence for the person, in English.
-        untrusted: the readings of the joints cannot be true; a recording ends before them.
-        code: kind of stop, for interfaces in other languages; None for a stop from outside this package.
-        parameters: values in that sentence, by name; a number's name ends in its unit.
-    """
-
-    reason: str
-    untrusted: bool = False
+    reason: str  # one short sentence for the person, in English
+    untrusted: bool = False  # the readings of the joints cannot be true; a recording ends before them
+    # kind of stop, for interfaces in other languages; None for a stop from outside this package
     code: StopCode | None = field(default=None, compare=False)
+    # values in that sentence, by name; a number's name ends in its unit
     parameters: Mapping[str, str | int] = field(default_factory=dict, compare=False)
 
 
 @dataclass(frozen=True)
 class GripperCommand:
-    """A gripper's target, and the force that it may press with.
+    """A gripper's target, and the force that it may press with."""
 
-    Attributes:
-        width_m: target opening, m.
-        speed_m_s: limit on the opening's rate, m/s. At 0 the fingers stay where they are, whatever the width
-            says, and neither loosen nor tighten their hold.
-        force_n: limit on the force between the fingers, N; a gripper that holds something keeps it.
-    """
-
-    width_m: float
+    width_m: float  # target opening, m
+    # limit on the opening's rate, m/s. At 0 the fingers stay where they are, whatever the width says, and
+    # neither loosen nor tighten their hold.
     speed_m_s: float
-    force_n: float
+    force_n: float  # limit on the force between the fingers, N; a gripper that holds something keeps it
 
 
 @dataclass(frozen=True)
 class Command:
-    """The safety filters' output, for the robot.
+    """The safety filters' output, for the robot."""
 
-    Attributes:
-        velocity: (n,), rad/s, finite and within limits.
-        duration_s: the robot stops by itself if no new command arrives within this time.
-        stop: why the arm stops, or None.
-        limited_by: names of the filters that changed it.
-        gripper: target of the gripper, or None to leave it as it is. Unlike a velocity it does not run out,
-            so that nothing falls when commands end.
-    """
-
-    velocity: FloatArray
-    duration_s: float
-    stop: Stop | None = None
-    limited_by: tuple[str, ...] = ()
+    velocity: FloatArray  # (n,), rad/s, finite and within limits
+    duration_s: float  # the robot stops by itself if no new command arrives within this time
+    stop: Stop | None = None  # why the arm stops, or None
+    limited_by: tuple[str, ...] = ()  # names of the filters that changed it
+    # target of the gripper, or None to leave it as it is. Unlike a velocity it does not run out, so that
+    # nothing falls when commands end.
     gripper: GripperCommand | None = None
 
 
 @dataclass(frozen=True)
 class StepRecord:
-    """Every value that one pass through Algorithm 1 read and decided.
+    """Every value that one pass through Algorithm 1 read and decided."""
 
-    Attributes:
-        time_s: the loop's monotonic clock.
-        state: (n,), ``s``, rad; NaN where the arm's reading was unusable.
-        input: (d,), ``u`` as used (zero where it was stale or refused).
-        latent: (d,), ``z``.
-        action_human: (m,), ``a_h``, rad/s.
-        action_assist: (m,), ``a_r``, rad/s.
-        alpha: arbitration in [0, 1] (equation 2).
-        belief: (G,).
-        mode: index in the controller.
-        command: as sent.
-        bound_rad: radius ``delta / b(g)`` of the ball about the likeliest goal that help constrains the arm
-            to (equation 14), rad; NaN without goals or help, and for help that the equation does not cover.
-        gripper: as measured, or None without one.
-        things: (K, 7), poses of the things about the arm in the order of the episode's header: position, m,
-            and quaternion (w, x, y, z), in the base frame. `Step` leaves it empty.
-        pace: see `Input.pace`.
-        added: weight of the assistive action on top of the blend: the filters get ``(1 - alpha) a_h + (alpha
-            + added) a_r``. 0 where help replaces the person's action, as in equation 2.
-    """
-
-    time_s: float
-    state: FloatArray
-    input: FloatArray
-    latent: FloatArray
-    action_human: FloatArray
-    action_assist: FloatArray
-    alpha: float
-    belief: FloatArray
-    mode: int
-    command: Command
+    time_s: float  # the loop's monotonic clock
+    state: FloatArray  # (n,), ``s``, rad; NaN where the arm's reading was unusable
+    input: FloatArray  # (d,), ``u`` as used (zero where it was stale or refused)
+    latent: FloatArray  # (d,), ``z``
+    action_human: FloatArray  # (m,), ``a_h``, rad/s
+    action_assist: FloatArray  # (m,), ``a_r``, rad/s
+    alpha: float  # arbitration in [0, 1] (equation 2)
+    belief: FloatArray  # (G,)
+    mode: int  # index in the controller
+    command: Command  # as sent
+    # radius ``delta / b(g)`` of the ball about the likeliest goal that help constrains the arm to (equation
+    # 14), rad; NaN without goals or help, and for help that the equation does not cover
     bound_rad: float = math.nan
-    gripper: GripperReading | None = None
+    gripper: GripperReading | None = None  # as measured, or None without one
+    # (K, 7), poses of the things about the arm in the order of the episode's header: position, m, and
+    # quaternion (w, x, y, z), in the base frame. `Step` leaves it empty.
     things: FloatArray = field(default_factory=lambda: NO_THINGS)
-    pace: float = 1.0
+    pace: float = 1.0  # see `Input.pace`
+    # weight of the assistive action on top of the blend: the filters get ``(1 - alpha) a_h + (alpha + added)
+    # a_r``. 0 where help replaces the person's action, as in equation 2.
     added: float = 0.0
 
 

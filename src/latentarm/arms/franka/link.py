@@ -33,15 +33,15 @@ _ROUND_TRIPS: Final = 9
 class Link:
     """An open connection, which ends with `close`: franky ends it only with its objects.
 
-    ``limits`` is None for an unknown arm.
+    ``hand`` is franky's gripper; ``limits`` is None for an unknown arm.
     """
 
     def __init__(
         self, arm: "franky.Robot", hand: "franky.Gripper | None", limits: FrankaLimits | None
     ) -> None:
         self._arm: franky.Robot | None = arm
-        self._hand = hand
-        self._limits = limits
+        self.hand = hand  # do not keep it longer than this link
+        self.limits = limits
 
     @property
     def arm(self) -> "franky.Robot":
@@ -50,19 +50,9 @@ class Link:
             raise RuntimeError("the connection to the arm has ended")
         return self._arm
 
-    @property
-    def hand(self) -> "franky.Gripper | None":
-        """Franky's gripper, or None; do not keep a reference longer than this link."""
-        return self._hand
-
-    @property
-    def limits(self) -> FrankaLimits | None:
-        """The arm's limits, or None."""
-        return self._limits
-
     def close(self) -> None:
         """End the connection; the arm then stops by itself."""
-        self._arm = self._hand = None
+        self._arm = self.hand = None
 
 
 def library() -> Any:
