@@ -14,10 +14,7 @@ _BEYOND: Final = 1e-3  # rounding that a limit of the robot may exceed the arm's
 
 
 def look_at(arm: RealArm, robot: Robot, dt_s: float) -> Findings:
-    """Inspect an arm that is not connected, without moving it, for a loop of period ``dt_s``.
-
-    Returns the driver's findings with those common to all arms, and refusals without repetition.
-    """
+    """Findings of a driver that is not connected, and checks of all arms; ``dt_s`` is the loop's period."""
     spec, found = arm.spec, arm.look()
     refusals = [*arm_refusals(spec, robot), *found.refusals]
     try:

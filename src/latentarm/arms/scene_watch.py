@@ -16,10 +16,7 @@ _UNNAMED: Final = -1
 
 @final
 class SceneWatch:
-    """Reads a scene out of a simulation.
-
-    ``body_link`` (nbody of the robot,) is the link of each of its bodies.
-    """
+    """Reads a scene out of a simulation; ``body_link`` (nbody of the robot,) is each body's link."""
 
     def __init__(
         self, model: mujoco.MjModel, data: mujoco.MjData, robot: Robot, body_link: IntArray, scene: Scene

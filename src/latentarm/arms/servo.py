@@ -57,10 +57,7 @@ class Servo:
 
 
 def torque_limits(model: mujoco.MjModel, joints: IntArray, robot: Robot) -> FloatArray:
-    """(n,), the largest torque of each joint in the model, N m; N where it slides.
-
-    A limit of the joint itself takes precedence over its actuators'.
-    """
+    """(n,), largest torque of each joint, N m (N where it slides): its own, or else its actuators'."""
     limits = np.zeros(len(joints))
     for index, joint in enumerate(joints):
         if model.jnt_actfrclimited[joint]:

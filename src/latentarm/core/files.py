@@ -23,10 +23,7 @@ def sync_folder(folder: Path) -> None:
 
 @contextmanager
 def written_whole(path: Path) -> Generator[Path]:
-    """Yield a temporary path in the folder of ``path``; on success flush it and rename it into place.
-
-    On any error nothing is left behind and an older ``path`` is untouched.
-    """
+    """Yield a temporary path beside ``path``, then flush it and rename it there, or leave no trace."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)

@@ -335,10 +335,7 @@ class StepRecord:
 
 @dataclass(frozen=True)
 class Row:
-    """One figure of any study, in the JSON format of every command.
-
-    ``measure`` names are snake_case, ``n`` is the number of runs.
-    """
+    """One figure of any study in JSON: ``measure`` is snake_case, ``n`` the number of runs."""
 
     study: str
     measure: str

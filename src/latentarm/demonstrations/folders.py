@@ -14,10 +14,7 @@ from latentarm.core.files import sync_folder
 
 @contextmanager
 def locked(folder: Path, lock_file: Path, remedy: str = "wait for it") -> Generator[None]:
-    """Keep other writers out of ``folder`` until the block or the process ends.
-
-    ``remedy`` tells the user what to do about another writer.
-    """
+    """Keep other writers out of ``folder`` until the block or the process ends."""
     if not lock_file.parent.is_dir():
         raise UserError(f"{folder} cannot be opened: there is no such folder.")
     lock = FileLock(lock_file, blocking=False)

@@ -138,10 +138,7 @@ def opening_source(extras: Mapping[str, FloatArray]) -> str:
 
 
 def told_by(demonstrations: Demonstrations, source: str) -> Demonstrations:
-    """Demonstrations without the commands to the gripper if ``source`` is the measured width.
-
-    This serves models trained on the measured width; see `opening_source`.
-    """
+    """Demonstrations for a model that was trained on a feature, see `opening_source`."""
     if source != GRIPPER_WIDTH:
         return demonstrations
     episodes = (

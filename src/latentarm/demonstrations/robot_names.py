@@ -36,10 +36,7 @@ def is_so_arm(name: str) -> bool:
 
 
 def may_be(named: str, robot: Robot) -> bool:
-    """Whether a file's name for its robot, or a model's path there, can mean this robot.
-
-    The robot is known by its name in the catalogue, or by its file's, folder's and model's name.
-    """
+    """Whether a file's name for its robot can mean this robot, by its name, file, folder or model."""
     if named == robot.name:
         return True
     path = Path(robot.name)

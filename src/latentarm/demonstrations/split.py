@@ -13,10 +13,7 @@ from latentarm.core.types import Demonstrations, IntArray
 def split_episodes(
     demonstrations: Demonstrations, fraction: float, rng: np.random.Generator
 ) -> tuple[IntArray, IntArray]:
-    """Draw rising indices (E_train,) and (E_kept,): the share ``fraction`` is kept back from training.
-
-    At least one episode ends up on each side.
-    """
+    """Draw rising indices (E_train,) and (E_kept,), at least one each; a ``fraction`` is kept back."""
     episodes = len(demonstrations.episodes)
     if not 0 < fraction < 1:
         raise UserError(f"The share of episodes to keep back is {fraction:g}; it must lie between 0 and 1.")

@@ -28,10 +28,7 @@ INTEGER_COLUMNS: Final = tuple(name for name, dtype in INDEX_DTYPES.items() if d
 def sample_columns(
     episode: Episode, features: Sequence[Feature], *, episode_index: int, first_index: int, task_index: int
 ) -> dict[str, FloatArray]:
-    """One episode's columns of the sample table by name, (T, k), in the layout's order.
-
-    Values are in single precision where the layout has it.
-    """
+    """One episode's columns, (T, k), by name in the layout's order and precision."""
     samples = len(episode.timestamp)
     recorded = {STATE: episode.state, ACTION: episode.action, **episode.extras}
     columns = {feature.name: cast(FloatArray, recorded[feature.name]) for feature in features}

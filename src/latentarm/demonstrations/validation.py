@@ -30,10 +30,7 @@ def validate(
     limits: JointLimits | None = None,
     episode_names: Sequence[str] = (),
 ) -> None:
-    """Check everything about demonstrations that the rest of the package relies on.
-
-    States may pass the limits by `LIMIT_TOLERANCE_RAD`. ``source`` and ``episode_names`` are for messages.
-    """
+    """Check all that the package relies on; states may pass the limits by `LIMIT_TOLERANCE_RAD`."""
     names = demonstrations.joint_names
     if not names or not all(names) or len(set(names)) != len(names) or not all(map(_is_text, names)):
         raise UserError(f"{source}: the joint names {names} must be distinct, not empty and at least one.")

@@ -18,10 +18,7 @@ _RADIUS_M = 0.02
 
 @cache
 def planar(n_links: int = 5, arms: int = 1) -> Robot:
-    """A planar arm in the x-y plane, or two side by side whose states are one vector, the left arm's first.
-
-    Cached: do not write to its arrays.
-    """
+    """A planar arm, or two side by side with one state, the left first. Do not write to its arrays."""
     if n_links < 1 or arms not in (1, 2):
         raise UserError(
             f"A planar robot has at least one link and one or two arms, not {n_links} links and {arms} arms."

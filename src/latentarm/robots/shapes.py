@@ -101,10 +101,7 @@ def body_name(model: mujoco.MjModel, body: int) -> str:
 
 
 def bounding_capsule(centres: FloatArray, radii: FloatArray) -> tuple[FloatArray, FloatArray, float]:
-    """Ends, each (3,), and radius of a small capsule around balls, m.
-
-    The smallest along a principal axis, the longest extent or an axis of the frame.
-    """
+    """Ends, each (3,), and radius, m, of the smallest capsule along several axes around balls."""
     spread = centres - centres.mean(axis=0)
     farthest = spread[np.argmax(np.vecdot(spread, spread))]
     longest = centres[np.argmax(np.linalg.norm(centres - centres.mean(axis=0) - farthest, axis=1))]

@@ -35,10 +35,7 @@ class Hand:
 def demonstrate(
     chain: Chain, start: FloatArray, strokes: Sequence[FloatArray], hand: Hand, rng: np.random.Generator
 ) -> FloatArray:
-    """States (T, n), rad, every ``1 / hand.rate_hz`` s, from a start along strokes with short rests between.
-
-    Each stroke is (V, n), rad: configurations to pass after the end of the one before.
-    """
+    """States (T, n), rad, from a start along strokes, each of configurations (V, n), rad, with rests."""
     parts = [start[None]]
     for via in strokes:
         moved = _stroke(chain, np.concatenate([parts[-1][-1:], via]), hand, rng)

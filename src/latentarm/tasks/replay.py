@@ -40,10 +40,7 @@ class GripperRoutes:
 def gripper_routes_of(
     robot: Robot, demonstrations: Demonstrations, is_told_open: Callable[[Episode], BoolArray]
 ) -> GripperRoutes:
-    """Routes of demonstrations with their commands to the gripper.
-
-    ``is_told_open`` gives, for each sample (T,) of an episode, whether the gripper is commanded to be open.
-    """
+    """Routes of demonstrations with their commands to the gripper, open or not, (T,) per episode."""
     states: list[FloatArray] = []
     open_at: list[FloatArray] = []
     for episode in _leaving(robot, demonstrations):
@@ -56,10 +53,7 @@ def gripper_routes_of(
 
 
 def routes_of(robot: Robot, demonstrations: Demonstrations) -> tuple[FloatArray, ...]:
-    """Each episode's start and the waypoints to its end, (K + 1, n), rad.
-
-    Episodes in which the tool goes nowhere are left out; it is a UserError if it does so in all.
-    """
+    """Each episode's start and waypoints to its end, (K + 1, n), rad, where its tool goes anywhere."""
     return tuple(one.state[_stops(robot, one.state)] for one in _leaving(robot, demonstrations))
 
 
@@ -166,10 +160,7 @@ def _leaving(robot: Robot, demonstrations: Demonstrations) -> list[Episode]:
 
 
 def _stops(robot: Robot, path: FloatArray) -> IntArray:
-    """Indices of an episode's start and waypoints among its states (T, n), (K + 1,).
-
-    At least one is away from the start, also where the way is short and leads back.
-    """
+    """Indices of an episode's start and waypoints, (K + 1,); at least one is away from the start."""
     poses = robot.chain.forward(path)
     turned = angle_between(poses.rotation[1:], poses.rotation[:-1])
     way = np.cumsum(np.linalg.norm(np.diff(poses.position, axis=0), axis=1) + RADIAN * turned)

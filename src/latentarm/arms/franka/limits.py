@@ -29,10 +29,7 @@ class FrankaLimits:
     offset: FloatArray  # (7,), reduction of the speed there, rad/s
 
     def speeds(self, q: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Lowest and highest velocity, each (7,), rad/s, at a position (7,), rad; zero lies between them.
-
-        libfranka computes them so from the model of an FR3.
-        """
+        """Velocity limits, each (7,), rad/s, at a position (7,), rad, by libfranka's formula for an FR3."""
         down = np.sqrt(2.0 * self.deceleration * np.maximum(q - self.lower, 0.0)) - self.offset
         up = np.sqrt(2.0 * self.deceleration * np.maximum(self.upper - q, 0.0)) - self.offset
         return -np.clip(down, 0.0, self.velocity), np.clip(up, 0.0, self.velocity)

@@ -31,10 +31,7 @@ _ROUND_TRIPS: Final = 9
 
 @final
 class Link:
-    """An open connection, which ends with `close`: franky ends it only with its objects.
-
-    ``hand`` is franky's gripper; ``limits`` is None for an unknown arm.
-    """
+    """An open connection until `close`; ``hand`` may be None, and ``limits`` is None for an unknown arm."""
 
     def __init__(
         self, arm: "franky.Robot", hand: "franky.Gripper | None", limits: FrankaLimits | None

@@ -65,10 +65,7 @@ def _controllers(link: Link, options: Ros2Options) -> tuple[dict[str, Mapping[st
 
 
 def _rate(feed: JointFeed) -> tuple[float, int]:
-    """Joint states per second, and how many repeated the one before.
-
-    A busy computer that hesitates for a moment gets a second and a third chance.
-    """
+    """Joint states per second, with chances for a busy computer, and how many repeated the one before."""
     rate_hz, before = 0.0, feed.repeats
     for _ in range(_CHANCES):
         count, began_s = feed.count, time.monotonic()

@@ -34,11 +34,7 @@ class Measured:
 
 @final
 class JointStates:
-    """Picks the joints of an arm out of messages, by their names in ROS.
-
-    ``gripper`` is the newest position of the gripper's joint, which may come in messages of its own; None at
-    first.
-    """
+    """Picks an arm's joints out of messages by name; keeps the newest position of its ``gripper``."""
 
     def __init__(self, joints: tuple[str, ...], gripper_joint: str) -> None:
         self._joints = joints

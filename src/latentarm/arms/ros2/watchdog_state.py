@@ -38,10 +38,7 @@ class WatchdogState:
 
 
 def parse_state(text: object) -> WatchdogState:
-    """Parse a state.
-
-    Raises ValueError for anything else.
-    """
+    """Parse a state; raises ValueError for anything else."""
     if not isinstance(text, str) or len(text) > _LONGEST:
         raise ValueError("not a text")
     try:

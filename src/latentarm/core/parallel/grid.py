@@ -103,10 +103,7 @@ def check_processes(jobs: int, backend: str) -> None:
 
 
 def _measure(function: Callable[[Cell], Result], index: int, cell: Cell, name: str) -> _Measured[Result]:
-    """Measure one cell; runs in any process.
-
-    Errors are replaced by ones that hold only text, because others may not survive pickling.
-    """
+    """Measure one cell in any process; errors hold only text, because others may not survive pickling."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", UserWarning)
         warnings.simplefilter("always", RuntimeWarning)

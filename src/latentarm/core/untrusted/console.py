@@ -13,10 +13,7 @@ if TYPE_CHECKING:
 
 @final
 class VisibleConsole(Console):
-    """A rich console that shows every string as it is: no markup, no emoji codes, no escape sequences.
-
-    Rich takes ``[/nope]`` in a cell for markup and raises on it, and passes escape sequences on.
-    """
+    """A rich console without markup, emoji codes or escape sequences, which untrusted text may hold."""
 
     def __init__(self, *, stderr: bool = False, quiet: bool = False) -> None:
         super().__init__(stderr=stderr, quiet=quiet, markup=False, emoji=False)

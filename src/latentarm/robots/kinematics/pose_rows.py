@@ -53,10 +53,7 @@ def thing_rows(poses: Mapping[str, Pose], names: Sequence[str]) -> FloatArray:
 
 
 def seen_rows(stored: FloatArray) -> FloatArray:
-    """Turn poses of datasets, (..., 7), into poses for decoders, (..., 9).
-
-    Quaternions need not have the length 1 exactly, since datasets are in single precision.
-    """
+    """Turn poses of datasets, (..., 7), with quaternions of any length, into decoders', (..., 9)."""
     w, x, y, z = np.moveaxis(stored[..., 3:], -1, 0)
     length = w * w + x * x + y * y + z * z
     if not (length > 1e-6).all():

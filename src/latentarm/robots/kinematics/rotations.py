@@ -33,10 +33,7 @@ _ONE = np.eye(4).ravel()
 
 
 def rotation_vector(rotation: FloatArray) -> FloatArray:
-    """Logarithm (..., 3) of rotation matrices: axis times angle in [0, pi], rad; accurate at 0 and at pi.
-
-    Uses the unit quaternion, with its largest component first (Shepperd's method), to avoid small divisors.
-    """
+    """Axis times angle in [0, pi], rad, (..., 3), accurate at 0 and at pi (Shepperd's method)."""
     turn = quaternion(rotation)
     vector = turn[..., 1:]
     sine = np.sqrt(np.vecdot(vector, vector))

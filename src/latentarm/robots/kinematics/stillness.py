@@ -10,10 +10,7 @@ STILL_RAD_S: Final = 0.01  # a slower joint stands still; the same figure ends a
 
 
 def moving_range(state: FloatArray, timestamp: FloatArray) -> tuple[int, int]:
-    """Half-open range of samples from the still arm before an episode's motion to the one after.
-
-    Empty where no joint ever exceeds `STILL_RAD_S`. States are (T, n), rad.
-    """
+    """Samples from the still arm before the motion to the one after; empty without any motion."""
     speed = np.abs(np.diff(state, axis=0)).max(axis=1) / np.diff(timestamp)
     steps = np.flatnonzero(speed > STILL_RAD_S)
     return (int(steps[0]), int(steps[-1]) + 2) if len(steps) else (0, 0)

@@ -93,10 +93,7 @@ def _quaternion(turn: Rotation) -> tuple[float, float, float, float]:
 
 
 def packed(room: Interior, pose: Pose, count: int, radius_m: float) -> FloatArray:
-    """Middles (count, 3), m, of grains that fill a container from its floor up without touching each other.
-
-    The room must be as wide at its floor as at its rim.
-    """
+    """Middles (count, 3), m, of grains that fill an upright cylinder from its floor up without contact."""
     step = 2.0 * _APART * radius_m
     most = room.radius_m - _APART * radius_m
     layer = _rings(most, step) if most >= 0.0 else np.zeros((0, 2))

@@ -21,10 +21,7 @@ POUR_RAD: Final = 1.8  # tilt that empties a cup
 
 
 def take(cup: str, stands_m: float = TOP_M, grip_m: float = GRIP_M) -> tuple[TaskStep, ...]:
-    """Reach for a cup, close the fingers about it, lift it.
-
-    ``stands_m`` is the height of its underside; the fingers take it ``grip_m`` above that.
-    """
+    """Take a cup that stands at a height, ``grip_m`` above its underside, and lift it."""
     before = Waypoint(partial(_at, cup=cup, back_m=BEFORE_M, up_m=grip_m), gripper="open")
     about = Waypoint(
         partial(_at, cup=cup, back_m=0.0, up_m=grip_m),
