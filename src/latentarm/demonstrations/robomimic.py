@@ -88,7 +88,6 @@ def _robot(arguments: Mapping[str, Any]) -> str:
 
 
 def _declared_count(demo: h5py.Group) -> int:
-    """Numbers that one demonstration's tables declare."""
     observations = member(demo, "obs")
     found = [member(demo, "actions")]
     if isinstance(observations, h5py.Group):
@@ -142,7 +141,6 @@ def _has_panda_gripper(arguments: Mapping[str, Any]) -> bool:
 
 
 def _gripper(demo: h5py.Group, panda: bool, source: Path) -> dict[str, FloatArray]:
-    """Features of one arm's gripper."""
     found = (table(group(demo, "obs", source), key, source) for key in GRIPPER_KEYS)
     joints = next((values for values in found if values is not None), None)
     if joints is None:

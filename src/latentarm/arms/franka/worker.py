@@ -177,7 +177,6 @@ class Worker:
         self._end()
 
     def _pass(self) -> None:
-        """Carry out requests, and take a state."""
         with self._lock:
             order, self._order = self._order, None
             trouble = self._trouble
@@ -265,7 +264,6 @@ class Worker:
         return Measured(q, dq, now_s, float(state.time.to_sec()))
 
     def _see(self, mode: str, state: "franky.RobotState") -> None:
-        """Take note of the arm's mode."""
         if mode == "Reflex":
             self._fault(fault(_names(state.current_errors) or _names(state.last_motion_errors), "a reflex"))
         elif mode in _OTHER_MODES:

@@ -209,7 +209,6 @@ class Keeper:
         self._released = False
 
     def _round(self) -> None:
-        """Read the arm, send targets, and report."""
         before_s = self._read_s
         try:
             opening = self._read()

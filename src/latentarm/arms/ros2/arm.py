@@ -214,7 +214,6 @@ class Ros2Arm(GuidableArm):
             self._halt_gripper(self._open)
 
     def _opened(self) -> _Open:
-        """A new connection."""
         link = Link(self._options.host, self._options.port)
         session = Session(link, self._options.watchdog, self._now_s)
         feed = JointFeed(link, self._options, self._now_s)
@@ -249,7 +248,6 @@ class Ros2Arm(GuidableArm):
         return ""
 
     def _take_reading(self) -> None:
-        """Make a reading of a new measurement, if there is one."""
         opened, before = self._open, self._reading
         newest = None if opened is None else opened.feed.newest
         if opened is None or newest is None or newest[0] is self._measured:

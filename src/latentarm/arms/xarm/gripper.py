@@ -143,7 +143,6 @@ class GripperLink:
         return GripperReading(width_of(position, self._gripper), holding=status[6] & 3 == _HOLDS)
 
     def _ask(self, request: Callable[[], list[int]], figures: int = 0) -> list[int]:
-        """Ask, and check the answer."""
         begun_s = time.monotonic()
         try:
             answer = request()

@@ -188,7 +188,6 @@ def _base_bodies(model: mujoco.MjModel, body_link: IntArray, tools: Sequence[int
 
 
 def _homogeneous(position: FloatArray, rotation: FloatArray) -> FloatArray:
-    """(K, 4, 4) from (K, 3) and (K, 9)."""
     frames = np.zeros((len(position), 4, 4))
     frames[:, :3, :3] = rotation.reshape(-1, 3, 3)
     frames[:, :3, 3] = position
