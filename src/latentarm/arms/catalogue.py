@@ -25,6 +25,7 @@ class ArmFactory(Protocol):
             state: (n,), start of a simulated arm, rad; a real arm ignores it.
             now_s: the clock of readings, s; never goes back.
         """
+        ...
 
 
 class SceneArmFactory(Protocol):
@@ -32,6 +33,7 @@ class SceneArmFactory(Protocol):
 
     def __call__(self, robot: Robot, state: FloatArray, now_s: Callable[[], float], *, scene: Scene) -> Arm:
         """An arm that is not connected, in a scene; see `ArmFactory`."""
+        ...
 
 
 def _factory(name: str, thing: object) -> ArmFactory:

@@ -25,6 +25,7 @@ class RealArmFactory(Protocol):
             UserError: an option of the address is unknown or out of range, or the manufacturer's library is
                 not installed.
         """
+        ...
 
 
 def _factory(name: str, thing: object) -> RealArmFactory:

@@ -16,14 +16,17 @@ class Place(Protocol):
     @property
     def robot(self) -> Robot:
         """The arm."""
+        ...
 
     @property
     def goals(self) -> tuple[Goal, ...]:
         """The discrete goals ``G``."""
+        ...
 
     @property
     def obstacles(self) -> Sequence[Obstacle]:
         """Shapes that the arm must keep clear of."""
+        ...
 
 
 @final
