@@ -15,7 +15,7 @@ from latentarm.control.clock import SimulatedClock
 from latentarm.control.step import Step
 from latentarm.core.types import FloatArray, Input, Pose, StepRecord
 from latentarm.safety.config import SafetyConfig
-from latentarm.tasks.surroundings import surroundings_of
+from latentarm.tasks.place import surroundings_of
 from latentarm.tasks.task import GripperTask, Task, check_not_done
 from latentarm_research.metrics.drives import Drive, GoalDrive, measure_goal_drive
 from latentarm_research.metrics.ending import Ending, why_it_ended

@@ -18,10 +18,10 @@ from latentarm.core.types import FloatArray, Input, Pose, Reading, StepRecord
 from latentarm.robots.kinematics.pose_rows import thing_rows
 from latentarm.robots.scene.scene import TABLE, TOOL, Scene, SceneState
 from latentarm.safety.config import SafetyConfig
+from latentarm.tasks.place import watched
 from latentarm.tasks.predicates import Spilled
 from latentarm.tasks.scene_task import Beginning, SceneTask
 from latentarm.tasks.steps import Progress, TaskStep, Waypoint
-from latentarm.tasks.surroundings import watched
 from latentarm_research.drives.drive import BELIEF_PERIOD_S, RATE_HZ
 from latentarm_research.metrics.drives import Drive
 from latentarm_research.metrics.task_drives import (
