@@ -6,7 +6,7 @@ from typing import final
 
 import numpy as np
 
-from latentarm.core.types import FloatArray, Goal
+from latentarm.core.types import FloatArray, Goal, GripperAsk
 from latentarm.robots.kinematics.obstacles import Obstacle
 from latentarm.robots.robot import Robot
 from latentarm.robots.scene.scene import Scene
@@ -26,6 +26,9 @@ class Beginning:
         goals: what the person may want first, for a belief; empty where that is no discrete choice.
         objects: names of the things that matter, in the order of the context feature ``objects``.
         text: what is done, in words.
+        asks: what is asked of the gripper all along: at the start, and once each of the steps is done; ()
+            where only waypoints ask something.
+        patient: whether the run goes on where the tool comes no nearer; else that ends it after a while.
     """
 
     state: FloatArray
@@ -35,6 +38,8 @@ class Beginning:
     goals: tuple[Goal, ...]
     objects: tuple[str, ...]
     text: str
+    asks: tuple[GripperAsk, ...] = ()
+    patient: bool = False
 
 
 class SceneTask(ABC):
