@@ -22,8 +22,8 @@ import numpy as np
 from latentarm.assistance.controllers.end_effector import EndEffectorController
 from latentarm.robots.catalogue import load_robot
 from latentarm.tasks.catalogue import SCENE_TASKS
+from latentarm_research.drives.drive import Setup, drive
 from latentarm_research.drives.pointing import FittsLaw, OneMode, Pointing, point
-from latentarm_research.drives.task_drive import TaskSetup, drive_task
 from latentarm_research.metrics.mode_switching import switching
 from latentarm_research.people.calibration import BEFORE, CALIBRATED, Calibration
 from latentarm_research.people.population import draw_people
@@ -190,9 +190,9 @@ class Bench:
     def _drive(self, traits: Traits, index: int, name: str) -> tuple[float, float, int, bool]:
         """One drive: time in mode switches, s, and in all, s; mode switches; whether the task was done."""
         task = SCENE_TASKS[name]()
-        setup = TaskSetup(task, EndEffectorController(task.robot), traits.person(0, PRACTICE_S))
+        setup = Setup(task, EndEffectorController(task.robot), traits.person(0, PRACTICE_S))
         rng = np.random.default_rng([self.seed, DRIVES, index, traits.number])
-        trace = drive_task(setup, traits.number % len(task.choices), rng)
+        trace = drive(setup, traits.number % len(task.choices), rng)
         spent = switching(trace.mode, np.linalg.norm(trace.input, axis=1) > PUSHED)
         took_s = float(trace.time_s[-1])
         return float(spent.mean()) * took_s, took_s, trace.figures.mode_switches, trace.figures.success

@@ -18,10 +18,12 @@ from latentarm.assistance.goal_blending import blending
 from latentarm.core.types import Demonstrations, FloatArray, Goal, Pose
 from latentarm.robots.kinematics.obstacles import Obstacle
 from latentarm.robots.robot import Robot
+from latentarm.tasks.goal_task import GoalTask
 from latentarm.tasks.table_top import TableTop
 from latentarm.tasks.task import Task
-from latentarm_research.drives.drive import Setup, Trace, simulate
-from latentarm_research.drives.drives import drive_plan
+from latentarm_research.drives.drive import Setup
+from latentarm_research.drives.drives import plan_drives
+from latentarm_research.drives.trace import Trace
 from latentarm_research.people.catalogue import PEOPLE, OperatorName
 
 DRIVES: Final = 8
@@ -92,14 +94,15 @@ def main(run: Path, person: OperatorName) -> None:
     controller = latent_controller(run, None, TABLE.robot, None)
     for name, arbitration in WAYS.items():
         way = None if arbitration is None else blending(arbitration)
-        known = [
-            simulate(Setup(Hover(None), controller, way, PEOPLE[person], LIMIT_S), goal, manner, rng)
-            for goal, manner, rng in drive_plan(Hover(None), DRIVES, 0)
-        ]
+        setups = {
+            item: Setup(GoalTask(Hover(item), "hover", LIMIT_S), controller, PEOPLE[person], way)
+            for item in (None, *range(len(TABLE.goals)))
+        }
+        known = [one.drive() for one in plan_drives([[setups[None]]], DRIVES, 0)]
         hidden = [
-            simulate(Setup(Hover(item), controller, way, PEOPLE[person], LIMIT_S), 0, "hover", rng)
+            one.drive()
             for item in range(len(TABLE.goals))
-            for _, _, rng in drive_plan(Hover(item), DRIVES, item)[:DRIVES]
+            for one in plan_drives([[setups[item]]], DRIVES, item)[:DRIVES]
         ]
         print(f"{person}, {name}: known {figures(known)}; not known {figures(hidden)}", flush=True)
 

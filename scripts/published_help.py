@@ -15,8 +15,9 @@ import numpy as np
 from latentarm.assistance.catalogue import AssistanceName, published_assistance, published_belief
 from latentarm.assistance.controllers.end_effector import EndEffectorController
 from latentarm.tasks.eating.over_marshmallow import OverMarshmallow
-from latentarm_research.drives.task_drive import TaskSetup, TaskTrace
-from latentarm_research.drives.task_drives import Series, drive_series
+from latentarm_research.drives.drive import Setup
+from latentarm_research.drives.drives import drive_all, plan_drives
+from latentarm_research.drives.trace import Trace
 from latentarm_research.people.catalogue import PEOPLE
 from latentarm_research.people.person import Person
 
@@ -60,8 +61,8 @@ def main() -> None:
     print(f"|---:|---|{'---:|' * (len(HEAD) - 2)}")
     for beta in options.beta:
         for name, help_by in WAYS.items():
-            series = Series([setup(help_by, noisy(beta))], options.drives)
-            (traces,) = drive_series([series], options.seed, options.jobs)
+            planned = plan_drives([[setup(help_by, noisy(beta))]], options.drives, options.seed)
+            (traces,) = drive_all([planned], options.jobs)
             print(f"| {beta:g} | {name} | {' | '.join(figures(traces))} |", flush=True)
 
 
@@ -71,10 +72,10 @@ def noisy(beta: float) -> Person:
     return replace(unsteady, decides=replace(unsteady.decides, beta=beta))
 
 
-def setup(help_by: AssistanceName | None, person: Person) -> TaskSetup:
+def setup(help_by: AssistanceName | None, person: Person) -> Setup:
     """Everything that a condition is driven with."""
     task = OverMarshmallow()
-    return TaskSetup(
+    return Setup(
         task,
         EndEffectorController(task.robot, SPEED_M_S, TURN_RAD_S),
         person,
@@ -83,7 +84,7 @@ def setup(help_by: AssistanceName | None, person: Person) -> TaskSetup:
     )
 
 
-def figures(traces: list[TaskTrace]) -> list[str]:
+def figures(traces: list[Trace]) -> list[str]:
     """How many arrive; mean and SD of the other figures over all drives, failed ones until they ended."""
     arrived: dict[int, int] = {}
     for trace in traces:

@@ -6,7 +6,7 @@ from typing import final
 
 import numpy as np
 
-from latentarm.core.types import Pose
+from latentarm.core.types import Goal, Pose
 from latentarm.robots.kinematics.obstacles import Obstacle
 from latentarm.robots.robot import Robot
 from latentarm.robots.scene.scene import Scene, SceneState
@@ -42,6 +42,11 @@ class GoalTask(SceneTask):
     def choices(self) -> tuple[str, ...]:
         """Names of the goals."""
         return tuple(goal.name for goal in self._task.goals)
+
+    @property
+    def goals(self) -> tuple[Goal, ...]:
+        """Those of the task."""
+        return self._task.goals
 
     @property
     def obstacles(self) -> tuple[Obstacle, ...]:
