@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from canary import Canary
 from figure_faults import faults
 
-pytest_plugins = ("command_line",)
+pytest_plugins = ("aligned_arms", "command_line")
 
 # On a busy machine a single example, or making one, may take long without anything being wrong. Fifty
 # examples hit the laws well. `make test` draws the same ones everywhere: Hypothesis seeds each test with a

@@ -14,12 +14,12 @@ import numpy as np
 
 from latentarm.assistance.catalogue import AssistanceName, published_assistance, published_belief
 from latentarm.assistance.controllers.end_effector import EndEffectorController
-from latentarm.tasks.eating.over_marshmallow import OverMarshmallow
 from latentarm_research.drives.drive import Setup
 from latentarm_research.drives.drives import drive_all, plan_drives
 from latentarm_research.drives.trace import Trace
 from latentarm_research.people.catalogue import PEOPLE
 from latentarm_research.people.person import Person
+from latentarm_research.tasks.over_marshmallow import OverMarshmallow
 
 SPEED_M_S: Final = 0.2
 TURN_RAD_S: Final = 0.4

@@ -6,11 +6,11 @@ from latentarm.alignment.answers import Answers, Motions
 from latentarm.alignment.contract import identity
 from latentarm.alignment.error import lengths, outcome, relative_alignment_error
 from latentarm.alignment.poses import ROTATION_WEIGHT_M, pose_vectors
-from latentarm.alignment.transition import TorchPoses
 from latentarm.core.errors import UserError
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.kinematics.rotations import angle_between
 from latentarm.robots.planar import planar
+from latentarm_research.alignment.transition import TorchPoses
 
 ZERO = np.zeros((3, 4))
 

@@ -27,12 +27,12 @@ from latentarm.alignment.profile import (
 )
 from latentarm.alignment.surroundings import Surroundings
 from latentarm.alignment.tool_space import ToolSpace
-from latentarm.alignment.training import FitConfig, fit_alignments
 from latentarm.assistance.controllers.latent import LatentController
 from latentarm.core.errors import UserError
 from latentarm.core.types import Context
 from latentarm.models.saving import load_decoder
 from latentarm.robots.planar import planar
+from latentarm_research.alignment.training import FitConfig, fit_alignments
 
 CONFIG = "profiles/ada/config.json"
 TENSORS = "profiles/ada/alignment.safetensors"

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from latentarm.demonstrations.dataset import write_dataset
-from latentarm.tasks.two_cups import PlanarTwoCups
+from latentarm_research.tasks.two_cups import PlanarTwoCups
 
 Run = Callable[..., tuple[int, str, str]]
 CUPS = ("--demonstrations", "cups", "--latent-dim", "1", "--context", "state_belief", "--seeds", "1")

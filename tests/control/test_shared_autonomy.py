@@ -12,11 +12,8 @@ from hypothesis import strategies as st
 from latentarm.assistance.belief import Belief
 from latentarm.assistance.blending import FixedAlpha, Unprompted
 from latentarm.assistance.boltzmann import BoltzmannBelief
-from latentarm.assistance.bound import radius
 from latentarm.assistance.catalogue import BELIEFS
 from latentarm.assistance.goal_blending import GoalBlending
-from latentarm.assistance.hindsight import HindsightOptimisation
-from latentarm.assistance.hindsight_belief import HindsightBelief
 from latentarm.control.export import demonstrations_of, export_journal
 from latentarm.control.journal import read_journal
 from latentarm.control.recorder import EpisodeHeader, Recorder
@@ -24,6 +21,9 @@ from latentarm.control.shared_autonomy import Choices
 from latentarm.control.step import Step
 from latentarm.core.types import Context, Goal, Input
 from latentarm.safety.config import SafetyConfig
+from latentarm_research.assistance.bound import radius
+from latentarm_research.assistance.hindsight import HindsightOptimisation
+from latentarm_research.assistance.hindsight_belief import HindsightBelief
 from stepping import stepped
 
 now_s = itertools.count(step=0.01).__next__

@@ -98,7 +98,7 @@ def test_the_columns_of_scl_are_orthonormal(trained, context):
     np.testing.assert_allclose(matrix @ matrix.T, np.eye(2), atol=1e-6)
 
 
-@pytest.mark.parametrize("name", ["pca", "scl", "flow"])
+@pytest.mark.parametrize("name", ["pca", "scl"])
 def test_projections_find_the_latent_action_again(trained, samples, name):
     context, z = samples
     model = trained[name]
@@ -145,23 +145,12 @@ def test_the_jacobian_penalty_makes_a_push_mean_the_same_nearby(demonstrations, 
     assert changing(held, unseen) < 0.7 * changing(free, unseen)
 
 
-@pytest.mark.parametrize("name", ["odd_cae", "scn", "flow"])
 @settings(max_examples=25)
 @given(context=arrays(np.float64, (3, 4), elements=finite), z=arrays(np.float64, (3, 2), elements=finite))
-def test_rest_and_reversal_hold_in_every_context(trained, name, context, z):
-    decoder = trained[name].decoder(1)
+def test_rest_and_reversal_hold_in_every_context(trained, context, z):
+    decoder = trained["odd_cae"].decoder(1)
     assert np.abs(decoder.decode(0 * z, context)).max() < 1e-12
-    if trained[name].kind.reverses:
-        np.testing.assert_allclose(decoder.decode(-z, context), -decoder.decode(z, context), atol=1e-12)
-
-
-@settings(max_examples=25)
-@given(context=arrays(np.float64, (3, 4), elements=finite), z=arrays(np.float64, (3, 2), elements=finite))
-def test_the_flow_cannot_hide_its_noise_in_a_change_of_volume(trained, context, z):
-    """z appears at full length in the action, next to a shift at right angles to it."""
-    tensors, action = trained["flow"].trained_.tensors, trained["flow"].decode(z, context)[0]
-    speed = np.linalg.norm(action / tensors["action.scale"], axis=-1)
-    assert (speed >= np.linalg.norm(z * tensors["latent.scale"][0], axis=-1) - 1e-9).all()
+    np.testing.assert_allclose(decoder.decode(-z, context), -decoder.decode(z, context), atol=1e-12)
 
 
 @pytest.mark.parametrize("name", ["ae", "vae", "pca"])

@@ -28,6 +28,8 @@ def trace(duration_s: float = 2.0, success: bool = True, modes: int = 1) -> Trac
         input=np.sin(time_s[:, None] + np.arange(2)),
         mode=np.arange(steps) * modes // steps,
         belief=np.full((steps, 3), 1 / 3),
+        aligned=(),
+        states=(),
     )
 
 

@@ -41,9 +41,6 @@ TURNING_POINT: Final = 1.19967
 BEYOND: Final = 0.15
 """|s''| stays below this beyond the turning point; its maximum there is 0.1477."""
 
-TANH_CURVATURE: Final = 0.7699
-"""Just above the largest |tanh''|, 4 / (3 sqrt 3)."""
-
 
 @final
 @dataclass(frozen=True, eq=False)

@@ -19,8 +19,6 @@ TASKS: Final = Catalogue(
     {
         "table_top": "latentarm.tasks.table_top:TableTop",
         "reach": "latentarm.tasks.reach:Reach",
-        "planar_two_cups": "latentarm.tasks.two_cups:PlanarTwoCups",
-        "panda_two_cups": "latentarm.tasks.two_cups:PandaTwoCups",
     },
     _task,
 )

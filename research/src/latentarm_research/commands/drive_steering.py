@@ -6,7 +6,7 @@ from typing import Final
 from latentarm.assistance.assistance import AssistanceRule
 from latentarm.assistance.belief import Rule
 from latentarm.assistance.blending import ConfidenceAlpha, FixedAlpha
-from latentarm.assistance.catalogue import BELIEFS, published_assistance, published_belief
+from latentarm.assistance.catalogue import BELIEFS
 from latentarm.assistance.controllers.axis_modes import TWO_STICKS
 from latentarm.assistance.controllers.contract import Controller
 from latentarm.assistance.controllers.end_effector import EndEffectorController
@@ -16,6 +16,7 @@ from latentarm.core.errors import UserError
 from latentarm.robots.robot import Robot
 from latentarm.runs.folder import Run, weights_fingerprint
 from latentarm.runs.tasks import usual_arm
+from latentarm_research.assistance.catalogue import published_assistance, published_belief
 from latentarm_research.baselines.retargeting import RetargetingController
 from latentarm_research.commands.drive_options import MODE_SWITCHED, DriveOptions
 from latentarm_research.people.catalogue import PEOPLE, usual_operator

@@ -11,14 +11,14 @@ from latentarm.alignment.contract import Alignment
 from latentarm.alignment.demonstrated import CANDIDATES, demonstrated_motions, shown
 from latentarm.alignment.poses import ROTATION_WEIGHT_M
 from latentarm.alignment.preference import Imprecise
-from latentarm.alignment.priors import NO_PRIORS, Priors
 from latentarm.alignment.queries import order_of_questions
-from latentarm.alignment.training import FitConfig, fit_alignments
 from latentarm.alignment.twists import motion_twists
 from latentarm.core.types import Demonstrations, FloatArray
 from latentarm.models.model import LatentActionModel
 from latentarm.robots.kinematics.chain import Chain
 from latentarm.runs.asking import FASTEST
+from latentarm_research.alignment.priors import NO_PRIORS, Priors
+from latentarm_research.alignment.training import FitConfig, fit_alignments
 from latentarm_research.people.own_directions import InOwnDirections
 from latentarm_research.people.traits import Traits
 from latentarm_research.user_studies.definition import Aligns

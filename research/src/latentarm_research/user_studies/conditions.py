@@ -8,15 +8,15 @@ from latentarm.assistance.assistance import AssistanceRule
 from latentarm.assistance.belief import Rule
 from latentarm.assistance.blending import FixedAlpha
 from latentarm.assistance.boltzmann import BoltzmannBelief
-from latentarm.assistance.catalogue import published_belief
 from latentarm.assistance.controllers.axis_modes import TWO_STICKS
 from latentarm.assistance.controllers.contract import Controller
 from latentarm.assistance.controllers.end_effector import EndEffectorController
 from latentarm.assistance.controllers.latent import LatentController
 from latentarm.assistance.goal_blending import blending
-from latentarm.assistance.interpolation import Interpolation
 from latentarm.robots.robot import Robot
 from latentarm.tasks.scene_task import SceneTask
+from latentarm_research.assistance.catalogue import published_belief
+from latentarm_research.assistance.interpolation import Interpolation
 from latentarm_research.baselines.retargeting import RetargetingController
 from latentarm_research.drives.drive import Setup
 from latentarm_research.people.person import Person

@@ -20,6 +20,6 @@ def scene_of(name: str) -> SceneTask:
     """
     if name != OVER_MARSHMALLOW:
         return make_scene_task(name)
-    from latentarm.tasks.eating.over_marshmallow import OverMarshmallow
+    from latentarm_research.tasks.over_marshmallow import OverMarshmallow
 
     return OverMarshmallow()

@@ -3,9 +3,12 @@ from dataclasses import dataclass, field
 import numpy as np
 import pytest
 
-from latentarm.models.enclosure import TANH_CURVATURE, celled, linear_enclosure
+from latentarm.models.enclosure import celled, linear_enclosure
 from latentarm_research.studies.shared_autonomy.cell import TASKS
 from latentarm_research.studies.shared_autonomy.drive import RULE, STEP_S, Scene
+
+TANH_CURVATURE = 0.7699
+"""Just above the largest |tanh''|, 4 / (3 sqrt 3)."""
 
 
 @dataclass(frozen=True)

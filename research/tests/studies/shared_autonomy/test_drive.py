@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from latentarm.assistance.blending import FixedAlpha
-from latentarm.assistance.distance import DistanceBelief
+from latentarm_research.assistance.distance import DistanceBelief
 from latentarm_research.studies.shared_autonomy import drive as drives
 from latentarm_research.studies.shared_autonomy.drive import HELP, NO_HELP, STEP_S, drive, steps_of
 from latentarm_research.studies.shared_autonomy.measures import (

@@ -139,7 +139,7 @@ class CAEReversal(_Deterministic):
 
     ``‖a - phi(z, c)‖^2 + lambda_r ‖phi(z, c) + phi(-z, c)‖^2``: the penalty is zero where phi is odd in z. Of
     the two ways to an odd decoder in Przystupa et al. (2024, arXiv 2410.21406) this is the soft one, a
-    regulariser on an end-to-end decoder; `SCN` is the other. Our source for the paper is its abstract and
+    regulariser on an end-to-end decoder. Our source for the paper is its abstract and
     what reviews of it say, so the form of the penalty is ours.
 
     Attributes:

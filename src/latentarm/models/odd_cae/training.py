@@ -33,7 +33,7 @@ class OddCAE(NeuralModel):
 
     with c' the context that the demonstrated action leads to within a tenth of a second, as for the
     homogeneous model. Przystupa et al. (arXiv 2410.21406) propose decoders that are odd in the action for the
-    same reason; their construction is `latentarm.models.scn`.
+    same reason; their construction is another one.
 
     Attributes:
         smoothness_weight: lambda_s.

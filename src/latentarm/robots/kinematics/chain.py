@@ -91,6 +91,11 @@ class Chain:
         if self._slides:
             features[..., 3] = flat
         transforms = (features @ constants).reshape(*flat.shape, 4, 4)
+        if q.ndim == 1:
+            single = transforms[:, 0]
+            for link, parent in self._children:
+                single[link] = single[parent].dot(single[link])  # a third of the time of `@`
+            return single
         for link, parent in self._children:
             transforms[link] = transforms[parent] @ transforms[link]
         return transforms.swapaxes(0, 1).reshape(*q.shape, 4, 4)

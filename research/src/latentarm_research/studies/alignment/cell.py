@@ -10,10 +10,10 @@ from threadpoolctl import threadpool_limits
 from latentarm.alignment.affine import fit_affine
 from latentarm.alignment.answers import Answers
 from latentarm.alignment.contract import identity
-from latentarm.alignment.priors import NO_PRIORS
 from latentarm.alignment.queries import order_of_questions
-from latentarm.alignment.training import FitConfig
 from latentarm.core.types import FloatArray
+from latentarm_research.alignment.priors import NO_PRIORS
+from latentarm_research.alignment.training import FitConfig
 from latentarm_research.studies.alignment.preset import (
     CHOSEN,
     IDEAL,

@@ -9,8 +9,8 @@ from threadpoolctl import threadpool_limits
 
 from latentarm.alignment.answers import Answers
 from latentarm.alignment.queries import TOO_FEW, StoppingRule, order_of_questions
-from latentarm.alignment.training import FitConfig
 from latentarm.core.types import FloatArray
+from latentarm_research.alignment.training import FitConfig
 from latentarm_research.studies.alignment.preset import ALL_PRIORS, CHOSEN, TOOL_SPACE, Preset
 from latentarm_research.studies.alignment.scene import LearnedDecoder, Scene, scene_of
 

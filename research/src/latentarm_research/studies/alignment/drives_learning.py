@@ -18,7 +18,6 @@ from latentarm.alignment.contract import Alignment, identity
 from latentarm.alignment.demonstrated import demonstrated_motions, shown
 from latentarm.alignment.error import relative_alignment_error
 from latentarm.alignment.queries import StoppingRule
-from latentarm.alignment.training import FitConfig, fit_alignments
 from latentarm.core.types import Demonstrations, FloatArray
 from latentarm.demonstrations.split import select_episodes, split_episodes
 from latentarm.models.model import LatentActionModel
@@ -26,6 +25,7 @@ from latentarm.robots.kinematics.chain import Chain
 from latentarm.runs.asking import FASTEST, SimulatedPerson
 from latentarm.runs.questions import Scene, ask
 from latentarm.tasks.table_top import TableTop
+from latentarm_research.alignment.training import FitConfig, fit_alignments
 from latentarm_research.drives.drive import STATE_NOISE_RAD
 from latentarm_research.people.expectation import Expectation, displacements, main_directions
 from latentarm_research.studies.alignment.cell import ideal_config

@@ -6,7 +6,7 @@ from enum import IntEnum
 from math import pi
 from typing import Final
 
-from latentarm.alignment.priors import NO_PRIORS, Priors
+from latentarm_research.alignment.priors import NO_PRIORS, Priors
 
 
 @dataclass(frozen=True)

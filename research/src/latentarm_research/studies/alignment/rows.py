@@ -8,9 +8,9 @@ from typing import Final
 
 from threadpoolctl import threadpool_limits
 
-from latentarm.alignment.training import FitConfig
 from latentarm.core.types import FloatArray, Row
 from latentarm.evaluation.summary import Subject, summarise
+from latentarm_research.alignment.training import FitConfig
 from latentarm_research.studies.alignment.cell import CellResult
 from latentarm_research.studies.alignment.curves import CurveResult
 from latentarm_research.studies.alignment.drives import DrivesResult

@@ -18,11 +18,11 @@ from latentarm.alignment.posterior import Posterior, fit_meaning
 from latentarm.alignment.preference import ByPlace, HeightAndTilt, Imprecise, Preference, ToolAxes
 from latentarm.alignment.surroundings import Surroundings
 from latentarm.alignment.tool_space import ToolSpace, ToolSpaceAlignment
-from latentarm.alignment.training import FitConfig, FittedAlignments, fit_alignments
 from latentarm.core.types import Demonstrations, FloatArray
 from latentarm.models.decoder import Decoder
 from latentarm.models.model import LatentActionModel
 from latentarm.robots.kinematics.chain import Chain
+from latentarm_research.alignment.training import FitConfig, FittedAlignments, fit_alignments
 from latentarm_research.studies.alignment.preset import Preset, Stream
 from latentarm_research.studies.fitting import fit_model, validation_episodes
 from latentarm_research.studies.streams import generator, integer, sequence

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Final
 from latentarm.alignment import posterior, queries, tool_space
 from latentarm.alignment.demonstrated import DURATION_S
 from latentarm.alignment.poses import ROTATION_WEIGHT_M
-from latentarm.alignment.priors import Priors
 from latentarm.evaluation.looks import look_of
 from latentarm.tasks.table_top import TableTop
 from latentarm.tasks.task import REACHED_ANGLE, REACHED_DISTANCE
+from latentarm_research.alignment.priors import Priors
 from latentarm_research.studies.alignment import curves, drives
 from latentarm_research.studies.alignment import preset as conditions
 from latentarm_research.studies.alignment.cell import Cell, CellResult, measure_cell

@@ -17,7 +17,6 @@ from latentarm.demonstrations.pairs import make_pairs
 from latentarm.demonstrations.split import select_episodes
 from latentarm.evaluation.accuracy import pca_error, percent_of, reconstruction_error
 from latentarm.models.model import LatentActionModel
-from latentarm.tasks.two_cups import TWO_CUPS, TwoCups
 from latentarm_research.studies.fitting import fit_model, validation_episodes
 from latentarm_research.studies.shared_autonomy.drive import (
     HELP,
@@ -31,6 +30,7 @@ from latentarm_research.studies.shared_autonomy.drive import (
 from latentarm_research.studies.shared_autonomy.measures import measure, state_error, true_belief
 from latentarm_research.studies.shared_autonomy.preset import Entropy, Person, Preset
 from latentarm_research.studies.streams import integer, sequence
+from latentarm_research.tasks.two_cups import TWO_CUPS, TwoCups
 
 WITHOUT_HELP: Final = "LA"
 WITH_HELP: Final = "LA+SA"

@@ -8,7 +8,6 @@ import numpy as np
 from latentarm.core.style import FONT_SIZE, TWO_COLUMNS_MM, new_figure, tidy
 from latentarm.core.types import FloatArray
 from latentarm.evaluation.looks import look_of
-from latentarm.tasks.two_cups import BEARING_RAD, Place, PlanarTwoCups, TwoCups
 from latentarm_research.drives.arm_figure import draw_arm as draw_solid_arm
 from latentarm_research.drives.arm_figure import frame
 from latentarm_research.drives.drive_figures import GOAL_COLOURS, GOAL_MARKERS
@@ -27,6 +26,7 @@ from latentarm_research.studies.shared_autonomy.preset import (
     of_fixed_expertise,
 )
 from latentarm_research.studies.shared_autonomy.rows import MODEL, RECONSTRUCTION, Figure
+from latentarm_research.tasks.two_cups import BEARING_RAD, Place, PlanarTwoCups, TwoCups
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

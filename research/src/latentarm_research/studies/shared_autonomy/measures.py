@@ -7,12 +7,19 @@ from typing import Final
 import numpy as np
 import torch
 
-from latentarm.assistance.bound import Others, certified, certified_along, furthest, known_help, weighted
 from latentarm.assistance.entropy import entropy_over_goals, goal_probabilities, goal_progress
 from latentarm.core.types import BoolArray, FloatArray
 from latentarm.models.decoder import Decoder
 from latentarm.models.tool_contexts import ROTATION_WEIGHT_M, TWIST
 from latentarm.robots.kinematics.torch_chain import TorchChain
+from latentarm_research.assistance.bound import (
+    Others,
+    certified,
+    certified_along,
+    furthest,
+    known_help,
+    weighted,
+)
 from latentarm_research.studies.shared_autonomy.choice import KNOWN
 from latentarm_research.studies.shared_autonomy.drive import GAIN_PER_S, STEP_S, Drives, Scene
 

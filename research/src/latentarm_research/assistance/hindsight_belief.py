@@ -3,10 +3,10 @@
 from typing import Final, Unpack, final
 
 from latentarm.assistance.belief import Belief, BeliefOptions
-from latentarm.assistance.cost_to_go import LOOK_AHEAD_S
-from latentarm.assistance.goal_poses import PosesOf, goal_poses, that_pose
 from latentarm.core.types import FloatArray
 from latentarm.robots.robot import Robot
+from latentarm_research.assistance.cost_to_go import LOOK_AHEAD_S
+from latentarm_research.assistance.goal_poses import PosesOf, goal_poses, that_pose
 
 TICK_S: Final = 1.0 / 40.0
 """How often the published belief is updated, s."""
@@ -19,10 +19,10 @@ MOST_CERTAIN: Final = 0.99
 class HindsightBelief(Belief):
     """A person who lowers the cost-to-go of the tool: ``log b(g)`` falls by ``Q_g - V_g`` 40 times a second.
 
-    ``V_g`` is the cost-to-go from where the tool is (`latentarm.assistance.cost_to_go`), ``Q_g`` that of the
-    person's own action: what it costs for 0.1 s, and the cost-to-go from where it leads. Inputs that the
-    person did not choose are not considered. At another period than 1/40 s an update counts in proportion,
-    so that the belief does not depend on the rate of the loop.
+    ``V_g`` is the cost-to-go from where the tool is (`latentarm_research.assistance.cost_to_go`), ``Q_g``
+    that of the person's own action: what it costs for 0.1 s, and the cost-to-go from where it leads. Inputs
+    that the person did not choose are not considered. At another period than 1/40 s an update counts in
+    proportion, so that the belief does not depend on the rate of the loop.
 
     One thing differs from the public implementation: an input of zero says nothing, as in every `Belief`.
     There the belief goes on changing at rest, in favour of the nearest goal.

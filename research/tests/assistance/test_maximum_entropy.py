@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from latentarm.assistance.boltzmann import BoltzmannBelief
-from latentarm.assistance.maximum_entropy import MaximumEntropyBelief
+from latentarm_research.assistance.maximum_entropy import MaximumEntropyBelief
 
 GOALS = np.random.default_rng(0).normal(0.0, 1.0, (3, 7))
 costs, reaches = st.floats(0.1, 50), st.floats(0.01, 2)

@@ -6,10 +6,10 @@ import pytest
 from latentarm.alignment.answers import Answers, Motions
 from latentarm.alignment.contract import identity
 from latentarm.alignment.error import relative_alignment_error
-from latentarm.alignment.priors import NO_PRIORS, Priors
-from latentarm.alignment.training import FitConfig, fit_alignments
 from latentarm.core.errors import UserError
 from latentarm.models.pca.training import PCA
+from latentarm_research.alignment.priors import NO_PRIORS, Priors
+from latentarm_research.alignment.training import FitConfig, fit_alignments
 
 SMALL = FitConfig(hidden=(8, 8), steps=30, batch_size=8)
 

@@ -7,11 +7,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from latentarm.assistance import bound
 from latentarm.assistance.blending import assistive_action, blend
-from latentarm.assistance.bound import furthest, known_help, weighted
 from latentarm.core.errors import UserError
 from latentarm.models.enclosure import linear_enclosure
+from latentarm_research.assistance import bound
+from latentarm_research.assistance.bound import furthest, known_help, weighted
 
 MOMENTS = 100_000
 FORMS = (furthest, weighted, known_help)

@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from latentarm.assistance.distance import DistanceBelief
+from latentarm_research.assistance.distance import DistanceBelief
 
 GOALS = np.random.default_rng(0).normal(0.0, 1.0, (3, 7))
 

@@ -4,11 +4,11 @@ from typing import final
 
 import numpy as np
 
-from latentarm.assistance.cost_to_go import LOOK_AHEAD_S
-from latentarm.assistance.goal_poses import PosesOf, goal_poses, that_pose
 from latentarm.core.types import FloatArray, Pose
 from latentarm.robots.kinematics.resolved_rates import Damping, joint_velocities
 from latentarm.robots.robot import Robot
+from latentarm_research.assistance.cost_to_go import LOOK_AHEAD_S
+from latentarm_research.assistance.goal_poses import PosesOf, goal_poses, that_pose
 
 
 @final

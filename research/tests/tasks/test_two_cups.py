@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from latentarm.tasks.two_cups import SPEED_RAD_S, TWO_CUPS
+from latentarm_research.tasks.two_cups import SPEED_RAD_S, TWO_CUPS
 
 
 @pytest.fixture(params=sorted(TWO_CUPS), scope="module")

@@ -5,10 +5,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from latentarm.assistance.cost_to_go import ROTATION, TRANSLATION, GoalPoses
-from latentarm.assistance.goal_poses import turned_about_vertical
 from latentarm.core.errors import UserError
 from latentarm.core.types import Pose
+from latentarm_research.assistance.cost_to_go import ROTATION, TRANSLATION, GoalPoses
+from latentarm_research.assistance.goal_poses import turned_about_vertical
 
 
 def turned(angle, axis=2):

@@ -8,11 +8,11 @@ import math
 from typing import Final, Literal, final
 
 from latentarm.assistance.assistance import Assistance, Contribution
-from latentarm.assistance.expected_help import ExpectedHelp
-from latentarm.assistance.goal_poses import PosesOf, that_pose
 from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray
 from latentarm.robots.robot import Robot
+from latentarm_research.assistance.expected_help import ExpectedHelp
+from latentarm_research.assistance.goal_poses import PosesOf, that_pose
 
 Level = Literal["no", "low", "high", "full"]
 

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 import torch
 
-from latentarm.alignment.priors import (
+from latentarm.core.errors import UserError
+from latentarm_research.alignment.priors import (
     NO_PRIORS,
     Priors,
     consistent,
@@ -12,8 +13,7 @@ from latentarm.alignment.priors import (
     reversible,
     supervised,
 )
-from latentarm.alignment.transition import Place, Push
-from latentarm.core.errors import UserError
+from latentarm_research.alignment.transition import Place, Push
 
 RUNS, MANY = 2, 200
 

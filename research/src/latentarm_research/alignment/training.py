@@ -9,8 +9,6 @@ import numpy as np
 import torch
 
 from latentarm.alignment.answers import Answers
-from latentarm.alignment.loss import ANSWERS_AT_ONCE, AlignmentLoss, Draw
-from latentarm.alignment.priors import NO_PRIORS, Priors
 from latentarm.alignment.runtime import LearnedAlignment, layer_shapes
 from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray
@@ -20,6 +18,8 @@ from latentarm.models.networks import FlatNetworks
 from latentarm.models.optimiser import FlatAdam, falling_rate
 from latentarm.models.training import threads_for
 from latentarm.robots.kinematics.chain import Chain
+from latentarm_research.alignment.loss import ANSWERS_AT_ONCE, AlignmentLoss, Draw
+from latentarm_research.alignment.priors import NO_PRIORS, Priors
 
 JUDGED: Final = 512
 """Contexts in which all runs are judged at the end."""

@@ -5,9 +5,9 @@ from functools import partial
 
 import numpy as np
 
-from latentarm.assistance.cost_to_go import MOST_POSES, GoalPoses
 from latentarm.core.types import FloatArray, Pose
 from latentarm.robots.robot import Robot
+from latentarm_research.assistance.cost_to_go import MOST_POSES, GoalPoses
 
 PosesOf = Callable[[Pose], Sequence[Pose]]
 """From the pose of the tool at a goal to all poses at which the goal is reached, 30 at most."""

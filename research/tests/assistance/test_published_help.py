@@ -6,15 +6,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from latentarm.assistance.catalogue import published_assistance, published_belief
-from latentarm.assistance.expected_help import ExpectedHelp
-from latentarm.assistance.hindsight import HindsightOptimisation
-from latentarm.assistance.hindsight_belief import TICK_S, HindsightBelief
-from latentarm.assistance.interpolation import WEIGHTS, Interpolation
-from latentarm.assistance.policy_blending import PolicyBlending
 from latentarm.core.errors import UserError
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.kinematics.resolved_rates import Damping
+from latentarm_research.assistance.catalogue import published_assistance, published_belief
+from latentarm_research.assistance.expected_help import ExpectedHelp
+from latentarm_research.assistance.hindsight import HindsightOptimisation
+from latentarm_research.assistance.hindsight_belief import TICK_S, HindsightBelief
+from latentarm_research.assistance.interpolation import WEIGHTS, Interpolation
+from latentarm_research.assistance.policy_blending import PolicyBlending
 
 PANDA = load_robot("panda")
 GOALS = PANDA.home + np.array(

@@ -14,7 +14,7 @@ from torch import Tensor
 from latentarm.core.errors import UserError
 
 if TYPE_CHECKING:
-    from latentarm.alignment.transition import Push
+    from latentarm_research.alignment.transition import Push
 
 
 @final

@@ -8,10 +8,10 @@ import math
 from typing import final
 
 from latentarm.assistance.assistance import Assistance, Contribution
-from latentarm.assistance.expected_help import ExpectedHelp
-from latentarm.assistance.goal_poses import PosesOf, that_pose
 from latentarm.core.types import FloatArray
 from latentarm.robots.robot import Robot
+from latentarm_research.assistance.expected_help import ExpectedHelp
+from latentarm_research.assistance.goal_poses import PosesOf, that_pose
 
 
 @final

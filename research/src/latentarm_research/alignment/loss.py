@@ -8,9 +8,7 @@ import torch
 from torch import Tensor
 
 from latentarm.alignment.answers import Answers
-from latentarm.alignment.priors import NO_PRIORS, Priors, consistent, proportional, reversible, supervised
 from latentarm.alignment.runtime import NETWORK
-from latentarm.alignment.transition import Place, Push, Transition, joined, parted
 from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray
 from latentarm.models.batches import seed_generator
@@ -18,6 +16,15 @@ from latentarm.models.networks import Networks, mlp
 from latentarm.models.parameters import check_rows
 from latentarm.models.torch_decoder import TorchDecoder
 from latentarm.robots.kinematics.chain import Chain
+from latentarm_research.alignment.priors import (
+    NO_PRIORS,
+    Priors,
+    consistent,
+    proportional,
+    reversible,
+    supervised,
+)
+from latentarm_research.alignment.transition import Place, Push, Transition, joined, parted
 
 ANSWERS_AT_ONCE: Final = 128
 """Maximum number of answers in one step; from more, each step draws this many."""

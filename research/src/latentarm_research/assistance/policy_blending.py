@@ -10,11 +10,11 @@ from typing import final
 import numpy as np
 
 from latentarm.assistance.assistance import Assistance, Contribution
-from latentarm.assistance.expected_help import ExpectedHelp
-from latentarm.assistance.goal_poses import PosesOf, that_pose
 from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray
 from latentarm.robots.robot import Robot
+from latentarm_research.assistance.expected_help import ExpectedHelp
+from latentarm_research.assistance.goal_poses import PosesOf, that_pose
 
 
 @final
