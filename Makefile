@@ -28,7 +28,7 @@ IN_PAIRS := --numprocesses $(if $(filter 1,$(WORKERS)),1,2) --dist loadfile --no
 help: ## Show what can be made.
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 16
 
-$(VENV)/installed: pyproject.toml research/pyproject.toml $(LOCK)
+$(VENV)/installed: pyproject.toml hatch_build.py package-lock.json research/pyproject.toml $(LOCK)
 	$(PYTHON) -m venv $(VENV)
 	$(CONSTRAIN) $(BIN)/pip install --quiet --disable-pip-version-check uv
 	$(INSTALL) --editable '.[train]' --editable research

@@ -31,6 +31,7 @@ from .core.types import Reading as Reading
 from .demonstrations.dataset import append_episode as append_episode
 from .demonstrations.dataset import read_dataset as read_dataset
 from .demonstrations.dataset import write_dataset as write_dataset
+from .demonstrations.import_options import ImportOptions as ImportOptions
 from .demonstrations.importing import import_demonstrations as import_demonstrations
 from .models.autoencoders.training import CAE as CAE
 from .models.autoencoders.training import CVAE as CVAE

@@ -37,6 +37,7 @@ def test_several_datasets_train_one_model(run: Run, tmp_path: Path, monkeypatch:
     # A training that was broken off has left its datasets; another one's are not touched.
     Path("runs/a-b-pca/config.json").unlink()
     assert run(*train)[0] == 0
+    Path("runs/a-b-pca/config.json").unlink()
     code, _, err = run("train", "--demonstrations", "b", "a", "--model", "pca", "--out", "runs/a-b-pca")
     assert (code, "already exists" in err) == (2, True)
 

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from bags import joint_state_bag
 from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations
+from latentarm.demonstrations.import_options import ImportOptions
 from latentarm.demonstrations.importing import import_demonstrations, import_to
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.panda import panda
@@ -140,7 +141,7 @@ def test_degrees_are_recognised_by_evidence(tmp_path: Path, spinner: Robot, seen
     path = table(tmp_path / "a.csv", (TIMES, degrees))
     with pytest.raises(UserError, match=f"{said}.*--units deg"):
         import_demonstrations(path, spinner)
-    one_way(import_demonstrations(path, spinner, units=["deg"]), np.deg2rad(degrees))
+    one_way(import_demonstrations(path, spinner, ImportOptions(units=("deg",))), np.deg2rad(degrees))
 
 
 @pytest.mark.parametrize(
@@ -151,7 +152,9 @@ def test_the_unit_of_timestamps_is_known_from_their_spacing(
     tmp_path: Path, spinner: Robot, scale: float, told: str | None, said: str | None
 ) -> None:
     stamps = 1_636_000_000 * scale + (TIMES * scale if scale == 1 else np.round(TIMES * scale))
-    found = import_demonstrations(table(tmp_path / "a.csv", (stamps, WAY)), spinner, time_unit=told)
+    found = import_demonstrations(
+        table(tmp_path / "a.csv", (stamps, WAY)), spinner, ImportOptions(time_unit=told)
+    )
     assert found.rate_hz == 20.0
     np.testing.assert_allclose(found.episodes[0].timestamp, TIMES, atol=1e-6)
     assert found.import_record.get("timestamps", "").startswith(f"taken for {said}" if said else "")
@@ -168,22 +171,24 @@ def test_a_gap_is_named_and_the_episode_split_or_kept(tmp_path: Path, spinner: R
         UserError, match=r"episode a has 1 gap, the longest of 126 s after 0.95 s.*--gaps split"
     ):
         import_demonstrations(path, spinner)
-    split = import_demonstrations(path, spinner, gaps="split")
+    split = import_demonstrations(path, spinner, ImportOptions(gaps="split"))
     assert [len(one.state) for one in split.episodes] == [20, 40, 60]
     assert split.rate_hz == 20.0
     np.testing.assert_allclose(np.concatenate([one.state for one in split.episodes[:2]]), WAY)
     assert all(one.timestamp[0] == 0 and np.diff(one.timestamp).max() < 0.051 for one in split.episodes)
     assert "split into 3 episodes" in split.import_record["gaps"]
-    kept = import_demonstrations(path, spinner, gaps="keep")
+    kept = import_demonstrations(path, spinner, ImportOptions(gaps="keep"))
     assert len(kept.episodes) == 2
     assert "126 s" in kept.warnings[0]
     with pytest.raises(UserError, match="episode a has a gap: pass --gaps split"):
-        import_demonstrations(path, spinner, gaps="keep", resample_hz=10)
+        import_demonstrations(path, spinner, ImportOptions(gaps="keep", resample_hz=10))
 
 
 def test_parts_of_one_sample_are_no_episodes(tmp_path: Path, spinner: Robot) -> None:
     times = TIMES + 9.0 * (np.arange(T) >= 30) + 9.0 * (np.arange(T) >= 31)
-    split = import_demonstrations(table(tmp_path / "a.csv", (times, WAY)), spinner, gaps="split")
+    split = import_demonstrations(
+        table(tmp_path / "a.csv", (times, WAY)), spinner, ImportOptions(gaps="split")
+    )
     assert [len(one.state) for one in split.episodes] == [30, 29]
 
 
@@ -195,18 +200,20 @@ def test_episodes_of_different_rates_are_named_and_resampled(tmp_path: Path, spi
         UserError, match=r"episode a is sampled at 20 Hz and episode b at 60 Hz.*--resample-hz 20"
     ):
         import_demonstrations(path, spinner)
-    found = import_demonstrations(path, spinner, resample_hz=20)
+    found = import_demonstrations(path, spinner, ImportOptions(resample_hz=20))
     assert "linear interpolation" in found.import_record["resampled"]
     for episode in found.episodes:
         np.testing.assert_allclose(episode.state, WAY, atol=1e-6)
         np.testing.assert_allclose(episode.timestamp, TIMES)
     with pytest.raises(UserError, match="it must be a finite number above zero"):
-        import_demonstrations(path, spinner, resample_hz=0.0)
+        import_demonstrations(path, spinner, ImportOptions(resample_hz=0.0))
 
 
 def test_a_way_across_half_a_turn_is_resampled_along_the_way(tmp_path: Path, spinner: Robot) -> None:
     states = np.concatenate([(WAY[:, :1] + np.pi) % TURN - np.pi, WAY[:, 1:]], axis=1)
-    found = import_demonstrations(table(tmp_path / "a.csv", (TIMES, states)), spinner, resample_hz=50)
+    found = import_demonstrations(
+        table(tmp_path / "a.csv", (TIMES, states)), spinner, ImportOptions(resample_hz=50)
+    )
     speed = np.abs(np.diff(found.episodes[0].state, axis=0)) * 50
     assert speed.max() < 1.5
 
@@ -262,11 +269,11 @@ def test_episodes_are_left_out_by_name(tmp_path: Path, spinner: Robot) -> None:
     path = table(tmp_path / "a.csv", (TIMES, WAY), (TIMES[:1], WAY[:1]), (TIMES, -WAY))
     with pytest.raises(UserError, match=r"episode b has a single sample.*--leave-out"):
         import_demonstrations(path, spinner)
-    found = import_demonstrations(path, spinner, leave_out=["b", "a"])
+    found = import_demonstrations(path, spinner, ImportOptions(leave_out=("b", "a")))
     np.testing.assert_allclose(found.episodes[0].state, -WAY, atol=1e-8)
     assert found.import_record["episodes left out"] == "b, a"
     with pytest.raises(UserError, match=r"has no episode 'x'; it has a, b, c"):
-        import_demonstrations(path, spinner, leave_out=["x"])
+        import_demonstrations(path, spinner, ImportOptions(leave_out=("x",)))
 
 
 def test_a_folder_of_files_has_an_episode_for_each(tmp_path: Path, spinner: Robot) -> None:
@@ -278,7 +285,9 @@ def test_a_folder_of_files_has_an_episode_for_each(tmp_path: Path, spinner: Robo
         np.testing.assert_allclose(episode.state, WAY * (1 - number / 4), atol=1e-8)
     assert found.episodes[1].task == "take1"
     assert "3 files, CSV" in found.import_record["source"]
-    assert len(import_demonstrations(tmp_path, spinner, leave_out=["take1.csv"]).episodes) == 2
+    assert (
+        len(import_demonstrations(tmp_path, spinner, ImportOptions(leave_out=("take1.csv",))).episodes) == 2
+    )
     np.savez(tmp_path / "z.npz", q=WAY, episode_ends=[T], rate_hz=20.0)
     with pytest.raises(UserError, match=r"holds files of different kinds, such as take0\.csv"):
         import_demonstrations(tmp_path, spinner)
@@ -297,7 +306,7 @@ def test_aloha_is_read(tmp_path: Path) -> None:
     source = aloha(tmp_path / "pick")
     with pytest.raises(UserError, match="does not say its rate: pass --rate-hz 50"):
         import_demonstrations(source)
-    found = import_demonstrations(source, rate_hz=50)
+    found = import_demonstrations(source, options=ImportOptions(rate_hz=50))
     assert found.joint_names[0] == "left_waist"
     assert found.joint_names[13] == "right_gripper"
     assert [one.task for one in found.episodes] == ["pick", "pick"]
@@ -323,8 +332,10 @@ def test_the_topic_of_a_bag_is_chosen(tmp_path: Path, spinner: Robot, name: str)
     with pytest.raises(UserError, match="/left, /right; choose one with --topic"):
         import_demonstrations(bag, spinner)
     with pytest.raises(UserError, match="/left, /right; choose one with --topic"):
-        import_demonstrations(bag, spinner, topic="/middle")
-    np.testing.assert_allclose(import_demonstrations(bag, spinner, topic="/right").episodes[0].state, WAY)
+        import_demonstrations(bag, spinner, ImportOptions(topic="/middle"))
+    np.testing.assert_allclose(
+        import_demonstrations(bag, spinner, ImportOptions(topic="/right")).episodes[0].state, WAY
+    )
     with pytest.raises(UserError, match=r"has these topics of sensor_msgs/msg/JointState: none\.$"):
         import_demonstrations(joint_state_bag(tmp_path / f"b{name}", [], [], topics=()), spinner)
 
@@ -372,7 +383,7 @@ PANDA_CASES = {
     "csv_gz": {},
     "csv_rostopic/a.csv": {},
     "csv_rates/a.csv": {"resample_hz": 10.0},
-    "csv_one_row_episode/a.csv": {"leave_out": ["1"]},
+    "csv_one_row_episode/a.csv": {"leave_out": ("1",)},
 }
 REFUSED = {
     "csv_rates/a.csv": "sampled at 10 Hz and episode 1 at 50 Hz",
@@ -392,7 +403,7 @@ def cases() -> Path:
 
 @pytest.mark.parametrize("name", PANDA_CASES)
 def test_an_input_that_failed_is_imported(cases: Path, tmp_path: Path, name: str) -> None:
-    found = import_to(cases / name, tmp_path / "data", panda(), **PANDA_CASES[name])
+    found = import_to(cases / name, tmp_path / "data", panda(), ImportOptions(**PANDA_CASES[name]))
     assert found.rate_hz in (10.0, 20.0)
     assert len(np.concatenate([one.state for one in found.episodes])) >= 60
 
@@ -408,4 +419,4 @@ def test_the_inputs_of_other_arms_are_imported(cases: Path) -> None:
     found = import_demonstrations(cases / "csv_wrap/a.csv", arm)
     assert "j0 wraps 4 times" in found.import_record["turns"]
     assert max(np.abs(np.diff(one.state, axis=0)).max() for one in found.episodes) < 0.1
-    assert len(import_demonstrations(cases / "h5_aloha", rate_hz=50).episodes) == 3
+    assert len(import_demonstrations(cases / "h5_aloha", options=ImportOptions(rate_hz=50)).episodes) == 3

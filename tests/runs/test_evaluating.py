@@ -13,7 +13,8 @@ from latentarm.demonstrations.dataset import write_dataset
 from latentarm.robots.catalogue import load_robot
 from latentarm.runs.evaluating import OVER_FOLDS, evaluate_run
 from latentarm.runs.folder import read_run
-from latentarm.runs.training import TrainConfig, train_run
+from latentarm.runs.options import EvaluateOptions, TrainOptions
+from latentarm.runs.training import train_run
 from latentarm.tasks.reach import Reach
 
 
@@ -24,12 +25,12 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     shown = Reach(load_robot("planar")).demonstrate(6, np.random.default_rng(0))
     episodes = tuple(Episode(one.state[::4], one.timestamp[::4], task=one.task) for one in shown.episodes)
     write_dataset(replace(shown, episodes=episodes, rate_hz=5.0), folder / "reach")
-    train_run(TrainConfig(folder / "reach", "pca", folder / "run", seeds=1))
+    train_run(TrainOptions((folder / "reach",), "pca", out=folder / "run", seeds=1))
     return folder / "run"
 
 
 def test_with_few_episodes_each_is_held_out_once(run: Path, tmp_path: Path) -> None:
-    evaluation = evaluate_run(run, tmp_path, 0)
+    evaluation = evaluate_run(EvaluateOptions(run, out=tmp_path, jobs=1))
     document = json.loads((tmp_path / "metrics.json").read_text())
     own = document["about"]["held_out"]
     assert own == list(read_run(run).held_out)
@@ -44,15 +45,15 @@ def test_with_few_episodes_each_is_held_out_once(run: Path, tmp_path: Path) -> N
 
 
 def test_zero_folds_measure_the_own_split_alone(run: Path, tmp_path: Path) -> None:
-    evaluation = evaluate_run(run, tmp_path, 0, folds=0)
+    evaluation = evaluate_run(EvaluateOptions(run, out=tmp_path, jobs=1, folds=0))
     assert {row.condition for row in evaluation.rows} == {None}
     with pytest.raises(UserError, match="seed 0 there, 1 now"):
-        evaluate_run(run, tmp_path, 1, folds=0)
-    assert evaluate_run(run, tmp_path, 0, folds=0) == evaluation
+        evaluate_run(EvaluateOptions(run, out=tmp_path, seed=1, jobs=1, folds=0))
+    assert evaluate_run(EvaluateOptions(run, out=tmp_path, jobs=1, folds=0)) == evaluation
 
 
 @pytest.mark.parametrize(("folds", "said"), [(1, "at least 2"), (-1, "at least 2"), (7, "too few")])
 def test_folds_that_cannot_be_are_refused(run: Path, tmp_path: Path, folds: int, said: str) -> None:
     with pytest.raises(UserError, match=said):
-        evaluate_run(run, tmp_path, 0, folds=folds)
+        evaluate_run(EvaluateOptions(run, out=tmp_path, jobs=1, folds=folds))
     assert not list(tmp_path.iterdir())

@@ -14,8 +14,9 @@ from latentarm.core.errors import UserError
 from latentarm.demonstrations.dataset import write_dataset
 from latentarm.robots.catalogue import load_robot
 from latentarm.runs.folder import read_run, robot_of
+from latentarm.runs.options import TrainOptions
 from latentarm.runs.tasks import task_of_run
-from latentarm.runs.training import TrainConfig, train_run
+from latentarm.runs.training import train_run
 from latentarm.tasks.reach import Reach
 from latentarm.tasks.table_top import TableTop
 from latentarm.web.arm_process.drive_setup import Spec, load_setup
@@ -47,7 +48,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     arm = load_robot(str(folder / "arm.xml"))
     for name, task in (("table", TableTop()), ("arm", Reach(arm))):
         write_dataset(task.demonstrate(6, rng), folder / f"data-{name}")
-        train_run(TrainConfig(folder / f"data-{name}", "pca", folder / name, seeds=1))
+        train_run(TrainOptions((folder / f"data-{name}",), "pca", out=folder / name, seeds=1))
     return folder
 
 

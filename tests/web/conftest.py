@@ -59,11 +59,12 @@ def wait_for(what: Callable[[], Any], within_s: float = 300.0) -> Any:
 @pytest.fixture(scope="session")
 def trained(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A run for the table: principal components of a few demonstrations."""
-    from latentarm.runs.training import TrainConfig, train_run
+    from latentarm.runs.options import TrainOptions
+    from latentarm.runs.training import train_run
 
     folder = tmp_path_factory.mktemp("trained")
     write_dataset(TableTop().demonstrate(12, np.random.default_rng(0)), folder / "table")
-    train_run(TrainConfig(folder / "table", "pca", folder / "run", seeds=1))
+    train_run(TrainOptions((folder / "table",), "pca", out=folder / "run", seeds=1))
     return folder / "run"
 
 

@@ -28,7 +28,8 @@ from latentarm.core.journal_limits import JournalLimits
 from latentarm.core.types import GripperReading, Input, Reading, Stop
 from latentarm.demonstrations.dataset import write_dataset
 from latentarm.robots.kinematics.obstacles import Box, Sphere
-from latentarm.runs.training import TrainConfig, train_run
+from latentarm.runs.options import TrainOptions
+from latentarm.runs.training import train_run
 from latentarm.safety.zones import Zone
 from latentarm.tasks.table_top import TableTop
 from latentarm.web.arm_process import incident
@@ -246,7 +247,7 @@ def test_a_file_that_was_cut_off_replays_up_to_there(file, tmp_path, length):
 
 def test_another_model_is_refused(file, tmp_path, capsys):
     write_dataset(TableTop().demonstrate(12, np.random.default_rng(1)), tmp_path / "table")
-    train_run(TrainConfig(tmp_path / "table", "pca", tmp_path / "run", seeds=1))
+    train_run(TrainOptions((tmp_path / "table",), "pca", out=tmp_path / "run", seeds=1))
 
     def other_model(lines):
         for line in lines:

@@ -43,7 +43,7 @@ STUDIES = ["properties", "shared-autonomy", "alignment", "tasks"]
 VERBS = ["list", "show", "run", "power"]
 HEAVY = {
     "torch", "mujoco", "matplotlib", "scipy", "statsmodels", "pyarrow", "sklearn", "joblib", "pandas",
-    "ruckig", "mink", "h5py", "pydantic", "fastapi", "uvicorn",
+    "ruckig", "mink", "h5py", "pydantic", "starlette", "uvicorn",
 }  # fmt: skip
 Run = Callable[..., tuple[int, str, str]]
 

@@ -1,19 +1,15 @@
 """`latentarm evaluate`: the properties of a trained model."""
 
 import json as json_format
-import sys
 from collections.abc import Sequence
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
 from rich.box import SIMPLE_HEAD
 from rich.console import RenderableType
 from rich.table import Table
 from rich.text import Text
-from tyro.conf import Positional, arg
 
 from latentarm.commands.configuration import write_options
-from latentarm.commands.options import Jobs, Json, MovedDataset, Seed
 from latentarm.commands.output import print_renderables, say
 from latentarm.core.types import Row
 from latentarm.evaluation.measures import (
@@ -26,6 +22,7 @@ from latentarm.evaluation.measures import (
     measure_of,
 )
 from latentarm.evaluation.table import format_figure, measure_name
+from latentarm.runs.options import EvaluateOptions
 
 if TYPE_CHECKING:
     from latentarm.runs.evaluating import Evaluation
@@ -76,39 +73,21 @@ def definitions(rows: Sequence[Row]) -> RenderableType:
     return table
 
 
-def evaluate(
-    run: Annotated[Positional[Path], arg(metavar="RUN", help="Folder that `latentarm train` wrote.")],
-    folds: Annotated[
-        int | None,
-        arg(
-            help="Refit with each episode held out once, in so many parts, the run's own split among them; 0"
-            " measures that split alone. By default 5 with 20 episodes or fewer, else 0."
-        ),
-    ] = None,
-    explain: Annotated[bool, arg(help="Explain each measure.")] = False,
-    out: Annotated[
-        Path | None, arg(metavar="DIR", help="Folder for metrics and figures; RUN by default.")
-    ] = None,
-    demonstrations: MovedDataset = None,
-    seed: Seed = 0,
-    jobs: Jobs = -1,
-    json: Json = False,
-) -> int:
+def evaluate(options: EvaluateOptions) -> int:
     """Measure a trained model on held-out episodes: four properties, drift, reversal, and a verdict.
 
     For example: latentarm evaluate runs/pour-cae
     """
     from latentarm.runs.evaluating import evaluate_run
 
-    folder = out or run
-    bars = not json and sys.stderr.isatty()
-    evaluation = evaluate_run(run, folder, seed, demonstrations, folds=folds, jobs=jobs, bars=bars)
+    evaluation = evaluate_run(options)
+    folder, json = options.folder, options.json
     write_options(folder, "evaluate")
     if json:
         _print_json(evaluation)
     else:
         print_renderables(evaluation_table(evaluation))
-        if explain:
+        if options.explain:
             print_renderables(definitions(evaluation.rows))
         else:
             say("To explain the measures: --explain.", json)

@@ -8,9 +8,12 @@ from tyro.conf import arg
 
 from latentarm.alignment.seat import Seat
 from latentarm.arms.catalogue import ARMS
+from latentarm.runs.options import EndEffector as EndEffector
+from latentarm.runs.options import Jobs as Jobs
+from latentarm.runs.options import Json as Json
+from latentarm.runs.options import MovedDataset as MovedDataset
+from latentarm.runs.options import Seed as Seed
 
-Json = Annotated[bool, arg(help="Print one JSON document on standard output and nothing else there.")]
-Seed = Annotated[int, arg(help="Seed of all randomness.")]
 _ARMS = ",".join(ARMS)
 Arm = Annotated[
     str | None,
@@ -38,9 +41,6 @@ LinkSpeed = Annotated[
     float | None,
     arg(metavar="M_PER_S", help="Fastest that any point of the arm may move: 0.25 at most, and by default."),
 ]
-EndEffector = Annotated[
-    str | None, arg(help="Site, body or link of the model file that is the end-effector.", metavar="NAME")
-]
 LimitsFile = Annotated[
     Path | None,
     arg(metavar="FILE", help="TOML or YAML file that states the robot's limits, see docs/arms.md."),
@@ -52,17 +52,6 @@ Seated = Annotated[
         " or away in the page's first view. None leaves it as the model learned it, z = u."
     ),
 ]
-Datasets = Annotated[
-    tuple[Path, ...],
-    arg(
-        metavar="DST ...",
-        help="Folders of native datasets; several of one robot are joined in the run's folder.",
-    ),
-]
-MovedDataset = Annotated[
-    Path | None, arg(metavar="DST", help="Where the run's dataset is now, if it was moved and is needed.")
-]
-Jobs = Annotated[int, arg(help="Processes that measure side by side; -1 is one per core.")]
 Backend = Annotated[
     Literal["joblib", "ray", "dask"],
     arg(

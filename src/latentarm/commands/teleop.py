@@ -8,7 +8,6 @@ from typing import Annotated
 
 from tyro.conf import Positional, UseAppendAction, arg
 
-from latentarm.commands.choices import TaskName
 from latentarm.commands.configuration import write_options
 from latentarm.commands.options import (
     AnyArm,
@@ -22,6 +21,7 @@ from latentarm.commands.options import (
 )
 from latentarm.commands.output import draws_blocks, say
 from latentarm.core.errors import UserError
+from latentarm.runs.choices import TaskName
 
 
 def teleop(

@@ -1,10 +1,9 @@
 """Importing demonstrations of any known format into a native dataset."""
 
 import os
-from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Final, TypedDict, Unpack
+from typing import Final
 
 from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations, StrPath
@@ -13,11 +12,11 @@ from latentarm.core.untrusted.opening import is_missing, opened
 from latentarm.demonstrations.aloha import is_aloha, read_aloha
 from latentarm.demonstrations.bag_file import MCAP, ROS1, read_bag
 from latentarm.demonstrations.bounds import MAX_FILE_BYTES
-from latentarm.demonstrations.csv_file import TimeUnit, read_csv
+from latentarm.demonstrations.csv_file import read_csv
 from latentarm.demonstrations.dataset import write_dataset
 from latentarm.demonstrations.folders import check_vacant
-from latentarm.demonstrations.gripper import GripperStart
 from latentarm.demonstrations.harmonic import harmonic_runs, read_harmonic
+from latentarm.demonstrations.import_options import ActionChoice, ImportOptions
 from latentarm.demonstrations.info import INFO_PATH
 from latentarm.demonstrations.lerobot import read_lerobot
 from latentarm.demonstrations.npz_file import read_npz
@@ -25,8 +24,8 @@ from latentarm.demonstrations.plausibility import check_rate, speed_warning
 from latentarm.demonstrations.robomimic import read_robomimic
 from latentarm.demonstrations.robot_names import is_so_arm
 from latentarm.demonstrations.source import SourceData, join_files
-from latentarm.demonstrations.timing import Gaps, check_one_rate, resampled, split_at_gaps
-from latentarm.demonstrations.translation import ActionChoice, Translation, translate
+from latentarm.demonstrations.timing import check_one_rate, resampled, split_at_gaps
+from latentarm.demonstrations.translation import translate
 from latentarm.demonstrations.validation import validate
 from latentarm.robots.robot import Robot
 
@@ -45,47 +44,8 @@ BAG_INFO: Final = "metadata.yaml"
 """In the folder of a bag of ROS 2."""
 
 
-class ImportOptions(TypedDict, total=False):
-    """What the user states about a file; everything is optional.
-
-    Attributes:
-        rate_hz: sampling rate, for files that do not say it or say it wrongly.
-        task: what was done, in words, for files that do not say it.
-        actions: ``"known"`` keeps recorded actions only if the source says what they are;
-            ``"joint_velocity"`` and ``"joint_position"`` state it.
-        units: ``rad``, ``deg`` or ``normalized`` (-100 to 100), or ``JOINT=deg`` for single joints.
-        joints: the column of each joint, see `find_columns`.
-        gripper: the gripper's column.
-        gripper_starts: how the gripper is when an episode begins, for files that say only when it was
-            toggled; open by default.
-        recorded_on: the file's word for the robot, where that is another than the robot's name.
-        clip_rad: positions that lie up to this far outside a joint's limits are moved to the limit.
-        leave_out: names of episodes that are not imported: what a CSV file calls them, ``demo_0`` and so on
-            in HDF5 files, the file's name in a folder of files, else their number from 0.
-        gaps: what becomes of an episode with a gap, see `Gaps`; refused by default.
-        resample_hz: the rate that every episode is brought to, see `resampled`.
-        time_unit: of a CSV file's timestamps; known from their spacing by default.
-        topic: of a bag's joints, if it has several.
-    """
-
-    rate_hz: float | None
-    task: str | None
-    actions: ActionChoice
-    units: Sequence[str]
-    joints: Sequence[str]
-    gripper: str | None
-    gripper_starts: GripperStart | None
-    recorded_on: str | None
-    clip_rad: float
-    leave_out: Sequence[str]
-    gaps: Gaps
-    resample_hz: float | None
-    time_unit: TimeUnit | None
-    topic: str | None
-
-
 def import_demonstrations(
-    source: StrPath, robot: Robot | None = None, **options: Unpack[ImportOptions]
+    source: StrPath, robot: Robot | None = None, options: ImportOptions | None = None
 ) -> Demonstrations:
     """Read demonstrations from a file or folder of any known kind, and check them.
 
@@ -102,32 +62,24 @@ def import_demonstrations(
     Raises:
         UserError: one sentence naming the file and, where it applies, the episode and the sample.
     """
+    options = options or ImportOptions()
     source = Path(source)
     where = str(source)
     data = _read(source, robot, options)
-    if leave_out := options.get("leave_out", ()):
-        data = data.without(leave_out, where)
-    data = split_at_gaps(data, options.get("gaps", "refuse"), where)
-    actions = options.get("actions", "known")
+    if options.leave_out:
+        data = data.without(options.leave_out, where)
+    data = split_at_gaps(data, options.gaps, where)
+    actions = options.actions
     if actions != "known" and any(one.action is None for one in data.demonstrations.episodes):
         raise UserError(f"{source} has no 'action' for the columns of its states.")
     if robot is None:
         demonstrations = _without_robot(data, actions, source)
     else:
-        told = Translation(
-            units=options.get("units", ()),
-            joints=options.get("joints", ()),
-            gripper=options.get("gripper"),
-            gripper_starts=options.get("gripper_starts"),
-            recorded_on=options.get("recorded_on"),
-            actions=actions,
-            clip_rad=options.get("clip_rad", 0.0),
-        )
-        demonstrations = translate(data, robot, told, where)
+        demonstrations = translate(data, robot, options, where)
     names = data.episode_names
     validate(demonstrations, where, None if robot is None else robot.limits, names)
     record = dict(demonstrations.import_record)
-    rate_hz = options.get("resample_hz")
+    rate_hz = options.resample_hz
     if rate_hz is None:
         check_one_rate(demonstrations, names, where)
     else:
@@ -141,7 +93,7 @@ def import_demonstrations(
 
 
 def import_to(
-    source: Path, destination: Path, robot: Robot | None = None, **options: Unpack[ImportOptions]
+    source: Path, destination: Path, robot: Robot | None = None, options: ImportOptions | None = None
 ) -> Demonstrations:
     """`import_demonstrations`, then `write_dataset`; on any error nothing is written to ``destination``.
 
@@ -149,7 +101,7 @@ def import_to(
         UserError: see those two.
     """
     check_vacant(destination)
-    demonstrations = import_demonstrations(source, robot, **options)
+    demonstrations = import_demonstrations(source, robot, options)
     write_dataset(demonstrations, destination)
     return demonstrations
 
@@ -166,7 +118,7 @@ def _without_robot(data: SourceData, actions: ActionChoice, source: Path) -> Dem
 
 
 def _read(source: Path, robot: Robot | None, options: ImportOptions) -> SourceData:
-    rate_hz = options.get("rate_hz")
+    rate_hz = options.rate_hz
     if rate_hz is not None and not 0 < rate_hz < float("inf"):
         raise UserError(f"The sampling rate is {rate_hz:g} Hz; it must be a finite number above zero.")
     start, size = _beginning(source)
@@ -179,9 +131,9 @@ def _read(source: Path, robot: Robot | None, options: ImportOptions) -> SourceDa
 
 
 def _read_file(source: Path, start: bytes, robot: Robot | None, options: ImportOptions) -> SourceData:
-    rate_hz, task = options.get("rate_hz"), options.get("task")
+    rate_hz, task = options.rate_hz, options.instruction
     if start.startswith((ROS1, MCAP)) or source.suffix == ".db3":
-        return read_bag([source], options.get("topic"), rate_hz, task)
+        return read_bag([source], options.topic, rate_hz, task)
     for magic, what in FOREIGN.items():
         if start.startswith(magic):
             raise UserError(f"{source} is {what}.")
@@ -190,16 +142,16 @@ def _read_file(source: Path, start: bytes, robot: Robot | None, options: ImportO
     if start.startswith(b"\x89HDF\r\n\x1a\n"):
         if is_aloha(source):
             return read_aloha(source, rate_hz, task)
-        known = options.get("actions", "known") != "joint_velocity"
+        known = options.actions != "joint_velocity"
         return read_robomimic(source, rate_hz, task, "known" if known else "joint_velocity")
     if source.suffix.lower() in {".npz", ".hdf5", ".h5"}:
         raise UserError(f"{source} does not hold what its name says; it is truncated or damaged.")
-    names = () if robot is None or options.get("joints") else robot.joint_names
-    return read_csv(source, names, rate_hz, task, options.get("time_unit"))
+    names = () if robot is None or options.joints else robot.joint_names
+    return read_csv(source, names, rate_hz, task, options.time_unit)
 
 
 def _read_folder(source: Path, robot: Robot | None, options: ImportOptions) -> SourceData:
-    rate_hz, task = options.get("rate_hz"), options.get("task")
+    rate_hz, task = options.rate_hz, options.instruction
     if not is_missing(source / INFO_PATH):
         return _at_rate(read_lerobot(source), rate_hz)
     if runs := harmonic_runs(source):
@@ -208,7 +160,7 @@ def _read_folder(source: Path, robot: Robot | None, options: ImportOptions) -> S
     files = [entry for entry in entries if entry.name.lower().endswith(FILES)]
     if files and not is_missing(source / BAG_INFO):
         with bounded_memory(str(source), sum(file.stat().st_size for file in files)):
-            return read_bag(files, options.get("topic"), rate_hz, task)
+            return read_bag(files, options.topic, rate_hz, task)
     files += [entry for entry in entries if not is_missing(entry / BAG_INFO)]
     if not files:
         return read_lerobot(source)  # which says what is missing

@@ -1,9 +1,9 @@
 """From a file's columns and units to a robot's joints in rad, with a record of what was decided."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
-from typing import Final, Literal, final
+from typing import Final
 
 import numpy as np
 
@@ -16,8 +16,8 @@ from latentarm.demonstrations.gripper import (
     GRIPPER_OPENING,
     GRIPPER_WIDTH,
     OBSERVED,
-    GripperStart,
 )
+from latentarm.demonstrations.import_options import ImportOptions
 from latentarm.demonstrations.robot_names import is_so_arm, may_be
 from latentarm.demonstrations.source import SourceData
 from latentarm.demonstrations.toggles import widths_from_toggles
@@ -34,34 +34,8 @@ _OLD_PREFIX: Final = "main_"
 _EARLIER: Final = "before: "
 """Marks what an earlier import decided, in a dataset of ours that is imported again."""
 
-ActionChoice = Literal["known", "joint_velocity", "joint_position"]
 
-
-@final
-@dataclass(frozen=True)
-class Translation:
-    """What the user says of a file.
-
-    Attributes:
-        units: see `parse_units`.
-        joints: see `find_columns`.
-        gripper: the gripper's column.
-        gripper_starts: how the gripper is when an episode begins, for files that say when it was toggled.
-        recorded_on: the file's word for the robot, to take its robot for the one that is meant.
-        actions: what the file's actions are.
-        clip_rad: positions that lie up to this far outside a joint's limits are moved to the limit, rad.
-    """
-
-    units: Sequence[str] = ()
-    joints: Sequence[str] = ()
-    gripper: str | None = None
-    gripper_starts: GripperStart | None = None
-    recorded_on: str | None = None
-    actions: ActionChoice = "known"
-    clip_rad: float = 0.0
-
-
-def translate(data: SourceData, robot: Robot, told: Translation, source: str) -> Demonstrations:
+def translate(data: SourceData, robot: Robot, told: ImportOptions, source: str) -> Demonstrations:
     """A file's demonstrations as the robot's own.
 
     Args:
@@ -144,7 +118,7 @@ def _check_robot(named: str, robot: Robot, recorded_on: str | None, source: str)
 
 
 def _units(
-    data: SourceData, robot: Robot, told: Translation, columns: Columns, motors: bool, source: str
+    data: SourceData, robot: Robot, told: ImportOptions, columns: Columns, motors: bool, source: str
 ) -> tuple[list[Unit], str]:
     """A unit for each joint, and how they are known."""
     general, single = parse_units(told.units, robot.joint_names)

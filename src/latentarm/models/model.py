@@ -24,13 +24,14 @@ from latentarm.models.decoder import Decoder
 from latentarm.models.kind import Dimensions, ModelKind, TrainedModel, TrainingSummary
 from latentarm.models.networks import Networks
 from latentarm.models.parameters import (
-    MOST_SEEDS,
-    RANGE,
-    Choice,
+    Count,
     Features,
-    Real,
-    Whole,
-    Widths,
+    NotNegative,
+    Positive,
+    Seed,
+    Seeds,
+    Share,
+    Units,
     check_parameters,
     check_rows,
     check_validation,
@@ -107,27 +108,23 @@ class LatentActionModel(BaseEstimator, ABC):
     looks_ahead: ClassVar[bool] = False
     """Whether the loss looks at the context that an action leads to within `AHEAD_S`."""
 
-    latent_dim: int = field(default=2, metadata={RANGE: Whole()})
-    context: str | tuple[str, ...] = field(default=(JOINTS,), metadata={RANGE: Features()})
-    actions: Literal["displacement", "recorded"] = field(
-        default="displacement", metadata={RANGE: Choice(("displacement", "recorded"))}
-    )
-    window: int = field(default=5, metadata={RANGE: Whole()})
-    state_noise_rad: float = field(default=0.0, metadata={RANGE: Real()})
-    validation_fraction: float = field(default=0.2, metadata={RANGE: Real(below=1.0, strictly=True)})
-    data_seed: int = field(default=0, metadata={RANGE: Whole(0)})
-    seeds: int = field(default=1, metadata={RANGE: Whole(1, MOST_SEEDS)})
-    seed: int = field(default=0, metadata={RANGE: Whole(0)})
-    hidden: tuple[int, ...] = field(default=(32, 32), metadata={RANGE: Widths()})
-    learning_rate: float = field(default=1e-2, metadata={RANGE: Real(strictly=True)})
-    epochs: int = field(default=30, metadata={RANGE: Whole()})
-    batch_size: int = field(default=32, metadata={RANGE: Whole()})
-    patience: int = field(default=10, metadata={RANGE: Whole()})
-    device: Literal["cpu", "cuda", "auto"] = field(
-        default="cpu", metadata={RANGE: Choice(("cpu", "cuda", "auto"))}
-    )
-    checkpoint_interval_s: float = field(default=5.0, metadata={RANGE: Real()})
-    way_back_m: float = field(default=0.0, metadata={RANGE: Real()})
+    latent_dim: Count = 2
+    context: Features = (JOINTS,)
+    actions: Literal["displacement", "recorded"] = "displacement"
+    window: Count = 5
+    state_noise_rad: NotNegative = 0.0
+    validation_fraction: Share = 0.2
+    data_seed: Seed = 0
+    seeds: Seeds = 1
+    seed: Seed = 0
+    hidden: Units = (32, 32)
+    learning_rate: Positive = 1e-2
+    epochs: Count = 30
+    batch_size: Count = 32
+    patience: Count = 10
+    device: Literal["cpu", "cuda", "auto"] = "cpu"
+    checkpoint_interval_s: NotNegative = 5.0
+    way_back_m: NotNegative = 0.0
     trained_: TrainedModel = field(init=False)
 
     @abstractmethod

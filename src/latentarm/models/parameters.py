@@ -1,141 +1,57 @@
-"""Ranges of parameters, kept in the fields' metadata, and checks against them."""
+"""Types of parameters with their ranges, and checks against them."""
 
-import math
-from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Final, cast, final
+from dataclasses import fields
+from functools import cache
+from typing import TYPE_CHECKING, Annotated, Any, Final, get_type_hints
 
 import numpy as np
+from pydantic import AfterValidator, Field, TypeAdapter, ValidationError
 
-from latentarm.core.context import FEATURES, JOINTS, Named, feature_names
+from latentarm.core.context import feature_names
 from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
-RANGE: Final = "range"
-"""Key of a parameter's `Range` in the metadata of its field."""
-
-WIDEST: Final = 4096
-"""Units of a hidden layer, at most."""
-MOST_SEEDS: Final = 1000
-"""Models trained side by side, at most: memory grows with them."""
 LARGEST: Final = 2**31 - 1
 """A whole-numbered parameter or a seed, at most."""
 
-
-class Range(ABC):
-    """Allowed values of a parameter. Its ``str()`` completes "it must be ..."."""
-
-    @abstractmethod
-    def __contains__(self, value: object) -> bool: ...
-
-
-@final
-@dataclass(frozen=True)
-class Whole(Range):
-    """A whole number.
-
-    Attributes:
-        least: the smallest.
-        most: the largest.
-    """
-
-    least: int = 1
-    most: int = LARGEST
-
-    def __contains__(self, value: object) -> bool:
-        return type(value) is int and self.least <= value <= self.most
-
-    def __str__(self) -> str:
-        return f"a whole number from {self.least} to {self.most}"
+Count = Annotated[int, Field(ge=1, le=LARGEST)]
+Seed = Annotated[int, Field(ge=0, le=LARGEST)]
+Seeds = Annotated[int, Field(ge=1, le=1000)]
+"""Models trained side by side; memory grows with them."""
+Units = tuple[Annotated[int, Field(ge=1, le=4096)], ...]
+"""Of each hidden layer."""
+NotNegative = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
+Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
+Share = Annotated[float, Field(gt=0.0, lt=1.0)]
+Features = Annotated[str | tuple[str, ...], AfterValidator(feature_names)]
+"""Of a context, by name."""
 
 
-@final
-@dataclass(frozen=True)
-class Real(Range):
-    """A finite number.
-
-    Attributes:
-        least: the smallest.
-        below: exclusive upper bound.
-        strictly: whether ``least`` itself is too small.
-    """
-
-    least: float = 0.0
-    below: float = math.inf
-    strictly: bool = False
-
-    def __contains__(self, value: object) -> bool:
-        if isinstance(value, bool) or not isinstance(value, int | float):
-            return False
-        return (value > self.least if self.strictly else value >= self.least) and value < self.below
-
-    def __str__(self) -> str:
-        if self.below < math.inf:
-            return f"a number between {self.least:g} and {self.below:g}"
-        return f"a finite number {'above' if self.strictly else 'of at least'} {self.least:g}"
-
-
-@final
-@dataclass(frozen=True)
-class Choice(Range):
-    """One of a few strings.
-
-    Attributes:
-        among: the strings.
-    """
-
-    among: tuple[str, ...]
-
-    def __contains__(self, value: object) -> bool:
-        return value in self.among
-
-    def __str__(self) -> str:
-        return f"one of {', '.join(self.among)}"
-
-
-@final
-class Features(Range):
-    """Features of a context by name."""
-
-    def __contains__(self, value: object) -> bool:
-        if not isinstance(value, str | tuple):
-            return False
-        try:
-            feature_names(cast(Named, value))
-        except UserError:
-            return False
-        return True
-
-    def __str__(self) -> str:
-        return f"a tuple of distinct names of {', '.join(FEATURES)}, {JOINTS} first"
-
-
-@final
-class Widths(Range):
-    """Units of each hidden layer."""
-
-    def __contains__(self, value: object) -> bool:
-        return isinstance(value, tuple) and all(units in Whole(1, WIDEST) for units in value)
-
-    def __str__(self) -> str:
-        return f"a tuple of whole numbers from 1 to {WIDEST}"
+@cache
+def _types(model: "type[DataclassInstance]") -> dict[str, TypeAdapter[Any]]:
+    hints = get_type_hints(model, include_extras=True)
+    return {one.name: TypeAdapter(hints[one.name]) for one in fields(model) if one.init}
 
 
 def check_parameters(model: "type[DataclassInstance]", parameters: Mapping[str, object]) -> None:
-    """Check a model's parameters against the ranges in its fields' metadata, also for models of plug-ins.
+    """Check a model's parameters against the types of its fields, also for models of plug-ins.
 
     Raises:
         UserError: a value has the wrong type or lies outside its range.
     """
-    for entry in fields(model):
-        allowed: Range | None = entry.metadata.get(RANGE)
-        if allowed is not None and entry.name in parameters and parameters[entry.name] not in allowed:
-            said = repr(parameters[entry.name])
-            raise UserError(f"The model parameter {entry.name} is {said}; it must be {allowed}.")
+    types = _types(model)
+    for name, value in parameters.items():
+        try:
+            types[name].validate_python(value, strict=True)
+        except ValidationError as error:
+            wanted = error.errors()[0]["msg"].replace("Input should be", "it must be")
+            raise UserError(f"The model parameter {name} is {value!r}; {wanted}.") from error
+        except UserError as error:
+            raise UserError(f"The model parameter {name} is {value!r}: {error}") from error
     first, seeds = parameters.get("seed"), parameters.get("seeds")
     if isinstance(first, int) and isinstance(seeds, int) and first + seeds - 1 > LARGEST:
         raise UserError(f"{seeds} seeds from {first} on end beyond {LARGEST}: choose a smaller first seed.")

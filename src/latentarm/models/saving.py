@@ -28,7 +28,6 @@ from latentarm.demonstrations.contexts import GRIPPER_SOURCES
 from latentarm.models.catalogue import KINDS, MODELS
 from latentarm.models.decoder import Decoder
 from latentarm.models.kind import Dimensions, Shape, TrainedModel, TrainingSummary
-from latentarm.models.parameters import check_parameters
 from latentarm.models.reading import Section
 from latentarm.models.way_back.runtime import pull_shapes
 
@@ -213,6 +212,8 @@ def load_model(folder: StrPath) -> "LatentActionModel":
         UserError: a file is missing, broken, foreign, of another version, or does not agree with the
             other, or the distribution that the model came from is not installed.
     """
+    from latentarm.models.parameters import check_parameters  # with pydantic, which decoders do not need
+
     folder = Path(folder)
     trained = read_model(folder)
     path, kind = folder / CONFIG_NAME, trained.kind.name

@@ -42,8 +42,8 @@ from latentarm.models.saving import load_model
 from latentarm.models.scaling import CollapseWarning
 from latentarm.robots.robot import Robot
 from latentarm.runs.advice import FEW_EPISODES, next_step
-from latentarm.runs.checks import check_seed
 from latentarm.runs.folder import Run, read_run, robot_of, weights_fingerprint
+from latentarm.runs.options import EvaluateOptions
 from latentarm.runs.results_folder import refuse_other_results, write_json
 from latentarm.runs.samples import load_samples
 
@@ -87,16 +87,7 @@ class Evaluation:
         return f"Verdict: {'; '.join(one.said for one in self.found)}."
 
 
-def evaluate_run(
-    folder: Path,
-    out: Path,
-    seed: int,
-    dataset: Path | None = None,
-    *,
-    folds: int | None = None,
-    jobs: int = 1,
-    bars: bool = False,
-) -> Evaluation:
+def evaluate_run(options: EvaluateOptions) -> Evaluation:
     """Measure a run and write ``metrics.json`` and two figures.
 
     With few episodes the split matters more than the seed, so the model is also refitted on folds that hold
@@ -104,29 +95,20 @@ def evaluate_run(
 
     Without the dataset all is measured but the errors of reconstruction, on the samples that the run keeps.
 
-    Args:
-        folder: the run.
-        out: where to write.
-        seed: of the noise on held-out states, and of which episodes go together in a fold.
-        dataset: where the run's dataset lies now, if it was moved.
-        folds: how many, the run's own split included; 0 measures that alone; where None, `FOLDS` for at most
-            `FEW_EPISODES` episodes, else 0.
-        jobs: processes that refit side by side; -1 is one per core.
-        bars: show on standard error how many folds are done.
-
     Raises:
         UserError: the folder is not a run, its dataset is gone or does not fit it, its robot is not
-            available, there are too few episodes for the folds, or ``out`` holds other results.
+            available, there are too few episodes for the folds, or the folder for metrics holds other
+            results.
     """
-    check_seed(seed)
-    check_processes(jobs, "joblib")
+    folder, out, dataset, seed = options.run, options.folder, options.demonstrations, options.seed
+    check_processes(options.jobs, "joblib")
     run = read_run(folder)
     model = load_model(folder)
     robot = robot_of(run)
     samples = load_samples(folder)
     probe = None if samples is None else samples.probe
     missing = ""
-    if probe is not None and dataset is None and is_missing(run.demonstrations) and not folds:
+    if probe is not None and dataset is None and is_missing(run.demonstrations) and not options.folds:
         demonstrations = None
         missing = (
             f"The dataset is not at {run.demonstrations} any more: the errors of reconstruction and the folds"
@@ -143,7 +125,7 @@ def evaluate_run(
             f"{run.demonstrations} has {dof} joints, but robot {robot.name} has {robot.dof}:"
             " train on a dataset of that robot."
         )
-    cells = [] if demonstrations is None else _folds(run, model, demonstrations, folds, seed)
+    cells = [] if demonstrations is None else _folds(run, model, demonstrations, options.folds, seed)
     about: dict[str, object] = {
         "run": str(folder.resolve()),
         "model": weights_fingerprint(folder),
@@ -160,7 +142,13 @@ def evaluate_run(
     judged = rows
     if cells:
         refitted = run_grid(
-            _measure_fold, cells, jobs=jobs, backend="joblib", label=_fold_name, bars=bars, unit="folds"
+            _measure_fold,
+            cells,
+            jobs=options.jobs,
+            backend="joblib",
+            label=_fold_name,
+            bars=options.bars,
+            unit="folds",
         )
         judged = _rows_over_folds(replace(subject, condition=OVER_FOLDS), [measured.figures, *refitted])
         rows = [*rows, *judged]

@@ -79,10 +79,11 @@ def base(folder: Path) -> None:
     """A dataset, a run that was trained on it, and a profile of nobody."""
     child = os.fork()
     if not child:  # torch stays out of the process whose memory is measured
-        from latentarm.runs.training import TrainConfig, train_run
+        from latentarm.runs.options import TrainOptions
+        from latentarm.runs.training import train_run
 
         write_dataset(TableTop().demonstrate(4, np.random.default_rng(0)), folder / "table")
-        train_run(TrainConfig(folder / "table", "pca", folder / "run", seeds=1))
+        train_run(TrainOptions((folder / "table",), "pca", out=folder / "run", seeds=1))
         os._exit(0)
     assert os.waitpid(child, 0)[1] == 0
 

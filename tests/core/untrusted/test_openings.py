@@ -53,7 +53,7 @@ ALLOWED = {
     "web/records/exchange.py": {"archive.open"},  # the same
     "runs/results_folder.py": {"json.loads"},  # what it has just written
     "research/studies/source.py": {"path.read_bytes"},  # part of the packages
-    "web/server/assets.py": {"path.read_bytes"},  # part of the package, or of NiceGUI
+    "web/server/assets.py": {"path.read_bytes"},  # part of the package
     "web/words/catalogue.py": {"file.read_text", "json.loads"},  # part of the package
     "research/people/calibration.py": {
         "(files('latentarm_research.people') / 'calibration.json').read_text",

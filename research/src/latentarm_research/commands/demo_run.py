@@ -30,8 +30,9 @@ from latentarm.evaluation.summary import Subject, headline
 from latentarm.models.catalogue import DEFAULT_MODEL
 from latentarm.models.saving import load_decoder
 from latentarm.runs.evaluating import evaluate_run
+from latentarm.runs.options import EvaluateOptions, TrainOptions
 from latentarm.runs.results_folder import ResultsFolder, vacant_name
-from latentarm.runs.training import TrainConfig, train_run
+from latentarm.runs.training import train_run
 from latentarm.tasks.eating.marshmallows import Marshmallows
 from latentarm.tasks.place import ScenePlace
 from latentarm_research.commands.demo_page import FILM, film, held_in_words, page
@@ -201,8 +202,8 @@ def _learn_all(config: "DemoOptions", sizes: Sizes) -> list[Row]:
 def _learn(call: _Learning) -> list[Row]:
     config = call.config
     run = config.out / "runs" / call.model
-    chosen = TrainConfig(
-        demonstrations=config.out / "demonstrations",
+    chosen = TrainOptions(
+        demonstrations=(config.out / "demonstrations",),
         model=call.model,
         out=run,
         seeds=call.seeds,
@@ -217,7 +218,7 @@ def _learn(call: _Learning) -> list[Row]:
     )
     with threadpool_limits(limits=1):
         train_run(chosen)
-        return evaluate_run(run, run, config.seed, folds=0).rows
+        return evaluate_run(EvaluateOptions(run, folds=0, seed=config.seed)).rows
 
 
 @final

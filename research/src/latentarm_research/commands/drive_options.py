@@ -8,11 +8,11 @@ from typing import Annotated, Final, Literal
 from tyro.conf import Positional, arg
 
 from latentarm.arms.catalogue import check_simulated
-from latentarm.commands.choices import BeliefName, TaskName
 from latentarm.commands.options import Arm, EndEffector, Jobs, Json, LimitsFile, MovedDataset, Seated, Seed
 from latentarm.core.errors import UserError
 from latentarm.core.types import Row
 from latentarm.runs.checks import check_count, check_positive, check_seed
+from latentarm.runs.choices import BeliefName, TaskName
 from latentarm_research.assistance.catalogue import AssistanceName
 from latentarm_research.people.names import OperatorName
 

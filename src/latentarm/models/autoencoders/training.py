@@ -1,7 +1,7 @@
 """Training of AE (equation 6 of the paper), VAE (7), cAE and cVAE (8), and of these two with a penalty."""
 
 from abc import ABC
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import ClassVar, final
 
 import torch
@@ -13,7 +13,7 @@ from latentarm.models.kind import ModelKind
 from latentarm.models.networks import Networks, mlp, mlp_along
 from latentarm.models.neural import NeuralModel
 from latentarm.models.objectives import kl_divergence, reconstruction_error, sample_latent
-from latentarm.models.parameters import RANGE, Real
+from latentarm.models.parameters import NotNegative
 
 
 class _Autoencoder(NeuralModel, ABC):
@@ -42,7 +42,7 @@ class _Deterministic(_Autoencoder, ABC):
 class _Variational(_Autoencoder, ABC):
     """``‖a - phi(z, c)‖^2 + lambda KL[N(mu, sigma) ‖ N(0, 1)]``, z drawn from N(mu, sigma) of the encoder."""
 
-    kl_weight: float = field(default=0.01, metadata={RANGE: Real()})
+    kl_weight: NotNegative = 0.01
 
     def _drawn(self, networks: Networks, batch: Batch) -> tuple[Tensor, Tensor]:
         """Latent actions (S, B, d) drawn from the encoder, and what their distribution costs, (S,)."""
@@ -93,7 +93,7 @@ class CAEZero(_Deterministic):
     """
 
     kind: ClassVar[ModelKind] = runtime.CAE_ZERO
-    zero_weight: float = field(default=1.0, metadata={RANGE: Real()})
+    zero_weight: NotNegative = 1.0
 
     def _loss(self, networks: Networks, batch: Batch) -> Tensor:
         latent = batch.action.new_zeros(*batch.action.shape[:2], self.latent_dim)
@@ -147,7 +147,7 @@ class CAEReversal(_Deterministic):
     """
 
     kind: ClassVar[ModelKind] = runtime.CAE_REVERSAL
-    reversal_weight: float = field(default=1.0, metadata={RANGE: Real()})
+    reversal_weight: NotNegative = 1.0
 
     def _loss(self, networks: Networks, batch: Batch) -> Tensor:
         latent = self._latent(networks, batch.context, batch.action)
@@ -192,7 +192,7 @@ class CAEJacobian(_Deterministic):
     """
 
     kind: ClassVar[ModelKind] = runtime.CAE_JACOBIAN
-    jacobian_weight: float = field(default=0.1, metadata={RANGE: Real()})
+    jacobian_weight: NotNegative = 0.1
 
     def _loss(self, networks: Networks, batch: Batch) -> Tensor:
         latent = self._latent(networks, batch.context, batch.action)
@@ -210,7 +210,7 @@ class CVAEJacobian(_Variational):
     """
 
     kind: ClassVar[ModelKind] = runtime.CVAE_JACOBIAN
-    jacobian_weight: float = field(default=0.1, metadata={RANGE: Real()})
+    jacobian_weight: NotNegative = 0.1
 
     def _loss(self, networks: Networks, batch: Batch) -> Tensor:
         latent, divergence = self._drawn(networks, batch)

@@ -1,6 +1,6 @@
 """A decoder that is homogeneous: half the push moves half as fast, and the opposite push goes back."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import ClassVar, Final, NamedTuple, final
 
 import numpy as np
@@ -16,7 +16,7 @@ from latentarm.models.networks import Networks, mlp
 from latentarm.models.neural import NeuralModel
 from latentarm.models.numpy_networks import NORM_FLOOR
 from latentarm.models.objectives import reconstruction_error
-from latentarm.models.parameters import RANGE, Real
+from latentarm.models.parameters import NotNegative
 from latentarm.models.tool_contexts import PLACE, ToolSizes
 
 STRAIGHT_START: Final = 8.0
@@ -73,7 +73,7 @@ class Homogeneous(NeuralModel):
     kind: ClassVar[ModelKind] = HOMOGENEOUS
     looks_ahead: ClassVar[bool] = True
     start = staticmethod(principal_start)
-    smoothness_weight: float = field(default=2.0, metadata={RANGE: Real()})
+    smoothness_weight: NotNegative = 2.0
 
     def _loss(self, networks: Networks, batch: Batch) -> Tensor:
         here = _geometry(networks, batch.context, batch.action.shape[-1])

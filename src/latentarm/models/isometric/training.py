@@ -1,6 +1,6 @@
 """A decoder that is an isometry: the tools move as far as the input is pushed, everywhere."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import ClassVar, Final, NamedTuple, final
 
 import numpy as np
@@ -15,7 +15,7 @@ from latentarm.models.networks import Networks, mlp
 from latentarm.models.neural import NeuralModel
 from latentarm.models.numpy_networks import NORM_FLOOR
 from latentarm.models.objectives import reconstruction_error
-from latentarm.models.parameters import RANGE, Real
+from latentarm.models.parameters import NotNegative
 from latentarm.models.tool_contexts import PLACE, TWIST, ToolSizes
 from latentarm.models.torch_tool_contexts import applied, inner
 
@@ -87,7 +87,7 @@ class Isometric(NeuralModel):
 
     kind: ClassVar[ModelKind] = ISOMETRIC
     start = staticmethod(principal_start)
-    bend_weight: float = field(default=1e-3, metadata={RANGE: Real()})
+    bend_weight: NotNegative = 1e-3
 
     def _loss(self, networks: Networks, batch: Batch) -> Tensor:
         gain = _gain(networks)

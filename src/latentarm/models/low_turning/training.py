@@ -1,6 +1,6 @@
 """Training of homogeneous latent actions with a price on turning."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import combinations
 from typing import ClassVar, Final, NamedTuple, final
 
@@ -17,7 +17,7 @@ from latentarm.models.networks import Networks, mlp
 from latentarm.models.neural import NeuralModel
 from latentarm.models.numpy_networks import NORM_FLOOR
 from latentarm.models.objectives import reconstruction_error
-from latentarm.models.parameters import RANGE, Real, Whole
+from latentarm.models.parameters import Count, NotNegative
 from latentarm.models.tool_contexts import PLACE, TWIST, ToolSizes
 
 HALF_TURN: Final = 18
@@ -68,11 +68,11 @@ class LowTurning(NeuralModel):
     looks_ahead: ClassVar[bool] = True
     jitters: ClassVar[bool] = True
     start = staticmethod(principal_start)
-    epochs: int = field(default=15, metadata={RANGE: Whole()})
-    smoothness_weight: float = field(default=2.0, metadata={RANGE: Real()})
-    turning_weight: float = field(default=0.05, metadata={RANGE: Real()})
-    spread_weight: float = field(default=0.01, metadata={RANGE: Real()})
-    context_noise: float = field(default=0.4, metadata={RANGE: Real()})
+    epochs: Count = 15
+    smoothness_weight: NotNegative = 2.0
+    turning_weight: NotNegative = 0.05
+    spread_weight: NotNegative = 0.01
+    context_noise: NotNegative = 0.4
 
     def _loss(self, networks: Networks, batch: Batch) -> Tensor:
         joints, pairs = batch.action.shape[-1], batch.action.shape[1]

@@ -1,6 +1,6 @@
 """A conditioned autoencoder whose decoder is odd: rest is rest, and the opposite push goes back."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import ClassVar, final
 
 import torch
@@ -12,7 +12,7 @@ from latentarm.models.networks import Networks, mlp
 from latentarm.models.neural import NeuralModel
 from latentarm.models.objectives import reconstruction_error
 from latentarm.models.odd_cae.runtime import ODD_CAE
-from latentarm.models.parameters import RANGE, Real
+from latentarm.models.parameters import NotNegative
 
 
 @final
@@ -41,7 +41,7 @@ class OddCAE(NeuralModel):
 
     kind: ClassVar[ModelKind] = ODD_CAE
     looks_ahead: ClassVar[bool] = True
-    smoothness_weight: float = field(default=2.0, metadata={RANGE: Real()})
+    smoothness_weight: NotNegative = 2.0
 
     def _loss(self, networks: Networks, batch: Batch) -> Tensor:
         latent = self._latent(networks, batch.context, batch.action)

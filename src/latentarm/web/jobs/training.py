@@ -217,10 +217,11 @@ def _train(wire: Wire, plan: TrainingPlan, demonstrations: Demonstrations) -> li
 
     write_dataset(demonstrations, plan.dataset)
     from latentarm.models.scaling import CollapseWarning
-    from latentarm.runs.training import TrainConfig, train_run
+    from latentarm.runs.options import TrainOptions
+    from latentarm.runs.training import train_run
 
-    config = TrainConfig(
-        demonstrations=plan.dataset,
+    options = TrainOptions(
+        demonstrations=(plan.dataset,),
         model=plan.model,
         out=plan.run,
         latent_dim=plan.latent_dim,
@@ -230,7 +231,7 @@ def _train(wire: Wire, plan: TrainingPlan, demonstrations: Demonstrations) -> li
     )
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", UserWarning)
-        train_run(config, _report_to(wire))
+        train_run(options, _report_to(wire))
     # The lesson says which direction does little.
     return [
         sentence(str(one.message))

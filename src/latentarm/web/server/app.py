@@ -10,12 +10,14 @@ from contextlib import asynccontextmanager, contextmanager
 from dataclasses import replace
 from functools import partial
 from types import FrameType
-from typing import Any, Final, final
+from typing import Any, Final, cast, final
 
 import uvicorn
-from fastapi import FastAPI
+from starlette.applications import Starlette
+from starlette.exceptions import HTTPException
 from starlette.requests import Request
 from starlette.responses import JSONResponse, Response
+from starlette.routing import Route, WebSocketRoute
 from starlette.types import ASGIApp
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
@@ -153,8 +155,8 @@ def _serve_alone(
                     " train` makes one, and `latentarm teleop RUN` drives it."
                 )
             # Every input passes through here.
-            with short_collections(), asyncio.Runner(loop_factory=server.config.get_loop_factory()) as runner:
-                runner.run(serve_on(listening, server, limits_here()))
+            with short_collections():
+                asyncio.run(serve_on(listening, server, limits_here()))
         say("The page is closed.")
     finally:
         control.end()
@@ -242,7 +244,7 @@ def build_app(
     config: TeleopConfig,
     calendar: Calendar,
     cameras: CameraProcess | None = None,
-) -> FastAPI:
+) -> Starlette:
     """The application: the pages and what they load, the scene, and the socket that drives.
 
     Args:
@@ -282,7 +284,7 @@ def build_app(
     camera_routes = None if cameras is None else CameraRoutes(cameras, sessions)
 
     @asynccontextmanager
-    async def lifespan(_: FastAPI) -> AsyncGenerator[None]:
+    async def lifespan(_: Starlette) -> AsyncGenerator[None]:
         follow = [states.follow, learning.follow, history.follow, partial(tell_end, control, history)]
         if camera_routes is not None:
             follow.append(camera_routes.follow)
@@ -296,8 +298,6 @@ def build_app(
             await history.close()
             await learning.close()
 
-    app = FastAPI(lifespan=lifespan, docs_url=None, redoc_url=None, openapi_url=None)
-
     async def describe(_: Request) -> Response:
         return JSONResponse(states.loaded.scene.description)
 
@@ -309,17 +309,23 @@ def build_app(
             return JSONResponse({"detail": "There is no such mesh."}, 404)
         return Response(content, media_type="application/octet-stream")
 
-    app.add_api_websocket_route(DRIVE, drive)
-    app.add_route("/scene.json", describe)
-    app.add_route("/mesh/{number}", mesh)
-    PeopleRoutes(records, history, busy, let_go, pins).add_to(app)
-    RecordRoutes(records, history, pins).add_to(app)
-    if camera_routes is not None:
-        camera_routes.add_to(app)
-    for page in PAGES:
-        app.add_route(page.path, pages.answer)
-    app.add_route("/static/{version}/{name:path}", assets.answer)
-    return app
+    routes = [
+        WebSocketRoute(DRIVE, drive.answer),
+        Route("/scene.json", describe),
+        Route("/mesh/{number}", mesh),
+        *PeopleRoutes(records, history, busy, let_go, pins).routes(),
+        *RecordRoutes(records, history, pins).routes(),
+        *([] if camera_routes is None else camera_routes.routes()),
+        *(Route(page.path, pages.answer) for page in PAGES),
+        Route("/static/{version}/{name:path}", assets.answer),
+    ]
+    return Starlette(routes=routes, lifespan=lifespan, exception_handlers={HTTPException: _in_json})
+
+
+async def _in_json(_: Request, error: Exception) -> Response:
+    """A refusal of the router: nothing is at this address, or not with this method."""
+    refused = cast(HTTPException, error)
+    return JSONResponse({"detail": refused.detail}, refused.status_code, refused.headers)
 
 
 def gated(

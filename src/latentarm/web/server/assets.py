@@ -5,7 +5,6 @@ import hashlib
 import posixpath
 import re
 from dataclasses import dataclass
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Final, final
 
@@ -15,8 +14,10 @@ from starlette.responses import Response
 from latentarm.core.errors import UserError
 
 FOLDER: Final = Path(__file__).parent.parent / "pages"
-THREE: Final = "three/index.js"
+THREE: Final = "three/three.module.min.js"
 """Where three.js is among the assets."""
+_THREE: Final = FOLDER.parent / "three"
+"""Filled when the package is built: see hatch_build.py."""
 
 _TYPES: Final = {
     ".js": "text/javascript",
@@ -48,12 +49,19 @@ class Assets:
     """
 
     def __init__(self) -> None:
+        """Read them.
+
+        Raises:
+            UserError: three.js is missing.
+        """
         found = {
             path.relative_to(FOLDER).as_posix(): path
             for path in sorted(FOLDER.rglob("*"))
             if path.suffix in _TYPES
         }
-        found[THREE] = three_js()
+        found |= {f"three/{path.name}": path for path in sorted(_THREE.glob("*.js"))}
+        if THREE not in found:
+            raise UserError("three.js is missing: install latentarm again, which fetches it from npm.")
         self._assets = {name: _read(path) for name, path in found.items()}
         digest = hashlib.sha256()
         for name, asset in self._assets.items():
@@ -101,20 +109,6 @@ class Assets:
             content = asset.compressed
             headers["content-encoding"] = "gzip"
         return Response(content, headers=headers, media_type=asset.media_type)
-
-
-def three_js() -> Path:
-    """The bundle of three.js that NiceGUI ships; NiceGUI itself is never imported.
-
-    Raises:
-        UserError: it is not installed, or is of a version that ships no such file.
-    """
-    package = find_spec("nicegui")
-    if package is not None and package.origin is not None:
-        bundle = Path(package.origin).parent / "elements" / "scene" / "dist" / "index.js"
-        if bundle.is_file():
-            return bundle
-    raise UserError("three.js is not installed: install nicegui 3.10 or a later 3.x, which ships it.")
 
 
 def _read(path: Path) -> _Asset:

@@ -3,10 +3,10 @@
 import asyncio
 from typing import Annotated, Final, final
 
-from fastapi import FastAPI
 from pydantic import Field
 from starlette.requests import Request
 from starlette.responses import Response
+from starlette.routing import Route
 
 from latentarm.web.cameras.process import CameraProcess
 from latentarm.web.protocol.notice import Message, NoticeError
@@ -39,9 +39,9 @@ class CameraRoutes:
         self._sessions = sessions
         self._looking: set[str] = set()
 
-    def add_to(self, app: FastAPI) -> None:
-        """Serve everything here."""
-        app.add_route(CAMERAS, guarded(self._offer), methods=["POST"])
+    def routes(self) -> list[Route]:
+        """Where everything here is served."""
+        return [Route(CAMERAS, guarded(self._offer), methods=["POST"])]
 
     async def follow(self) -> None:
         """Take the pictures from pages that have gone, until cancelled."""

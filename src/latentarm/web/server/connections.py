@@ -280,7 +280,6 @@ class _Sliced(asyncio.Protocol):
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         """See the base class."""
-        # uvloop's transports are of no class of asyncio's.
         self._transport = cast(asyncio.Transport, transport)
         self.inner.connection_made(self._transport)
 

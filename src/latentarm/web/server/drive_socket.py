@@ -126,7 +126,7 @@ class DriveSocket:
         self._open = 0
         self._asked: AskedGripper | None = None
 
-    async def __call__(self, socket: WebSocket) -> None:
+    async def answer(self, socket: WebSocket) -> None:
         """Serve one page until it goes."""
         if self._open >= MOST + _BEING_REFUSED:
             await socket.close(_FULL)

@@ -10,11 +10,11 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Annotated, Final, final
 
-from fastapi import FastAPI
 from pydantic import Field, TypeAdapter, ValidationError
 from starlette.background import BackgroundTask
 from starlette.requests import Request
 from starlette.responses import FileResponse, Response
+from starlette.routing import Route
 
 from latentarm.web.protocol.notice import Message, NoticeError
 from latentarm.web.records.documents import new_id
@@ -74,20 +74,23 @@ class PeopleRoutes:
         self._let_go = let_go
         self._pins = pins
 
-    def add_to(self, app: FastAPI) -> None:
-        """Serve everything here."""
-        for path, methods in (
-            ("/records/people", {"GET": self._people, "POST": self._add}),
-            ("/records/people/{person}", {"GET": self._person, "PUT": self._rename, "DELETE": self._erase}),
-            ("/records/people/{person}/settings", {"PUT": self._keep_settings}),
-            ("/records/people/{person}/pin", {"PUT": self._keep_pin}),
-            ("/records/people/{person}/unlock", {"POST": self._unlock}),
-            ("/records/people/{person}/lock", {"POST": self._lock}),
-            ("/records/people/{person}/export", {"GET": self._export}),
-            (IMPORT, {"POST": self._import}),
-        ):
-            for method, answer in methods.items():
-                app.add_route(path, guarded(answer), methods=[method])
+    def routes(self) -> list[Route]:
+        """Where everything here is served."""
+        answers = {
+            "/records/people": {"GET": self._people, "POST": self._add},
+            "/records/people/{person}": {"GET": self._person, "PUT": self._rename, "DELETE": self._erase},
+            "/records/people/{person}/settings": {"PUT": self._keep_settings},
+            "/records/people/{person}/pin": {"PUT": self._keep_pin},
+            "/records/people/{person}/unlock": {"POST": self._unlock},
+            "/records/people/{person}/lock": {"POST": self._lock},
+            "/records/people/{person}/export": {"GET": self._export},
+            IMPORT: {"POST": self._import},
+        }
+        return [
+            Route(path, guarded(answer), methods=[method])
+            for path, methods in answers.items()
+            for method, answer in methods.items()
+        ]
 
     async def _people(self, _: Request) -> Response:
         await self._history.settled()

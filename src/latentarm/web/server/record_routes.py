@@ -9,10 +9,10 @@ import csv
 import io
 from typing import Annotated, Final, final
 
-from fastapi import FastAPI
 from pydantic import Field
 from starlette.requests import Request
 from starlette.responses import Response
+from starlette.routing import Route
 
 from latentarm.web.protocol.notice import Message, NoticeError
 from latentarm.web.records.drive_record import DriveRecord
@@ -71,25 +71,25 @@ class RecordRoutes:
         self._history = history
         self._pins = pins
 
-    def add_to(self, app: FastAPI) -> None:
-        """Serve everything here."""
-        for path, methods in (
-            ("/records/drives", {"GET": self._drives}),
-            ("/records/drives.csv", {"GET": self._csv}),
-            ("/records/drives/{drive}", {"PUT": self._entitle, "DELETE": self._delete}),
-            ("/records/drives/{drive}/restore", {"POST": self._restore}),
-            ("/records/drives/{drive}/trace", {"GET": self._trace}),
-            ("/records/scenes/{scene}/scene.json", {"GET": self._scene}),
-            ("/records/scenes/{scene}/mesh/{number}", {"GET": self._mesh}),
-            ("/records/recordings", {"GET": self._recordings}),
-            (
-                "/records/recordings/{name}",
-                {"PUT": self._entitle_recording, "DELETE": self._delete_recording},
-            ),
-            ("/records/recordings/{name}/restore", {"POST": self._restore_recording}),
-        ):
-            for method, answer in methods.items():
-                app.add_route(path, guarded(answer), methods=[method])
+    def routes(self) -> list[Route]:
+        """Where everything here is served."""
+        answers = {
+            "/records/drives": {"GET": self._drives},
+            "/records/drives.csv": {"GET": self._csv},
+            "/records/drives/{drive}": {"PUT": self._entitle, "DELETE": self._delete},
+            "/records/drives/{drive}/restore": {"POST": self._restore},
+            "/records/drives/{drive}/trace": {"GET": self._trace},
+            "/records/scenes/{scene}/scene.json": {"GET": self._scene},
+            "/records/scenes/{scene}/mesh/{number}": {"GET": self._mesh},
+            "/records/recordings": {"GET": self._recordings},
+            "/records/recordings/{name}": {"PUT": self._entitle_recording, "DELETE": self._delete_recording},
+            "/records/recordings/{name}/restore": {"POST": self._restore_recording},
+        }
+        return [
+            Route(path, guarded(answer), methods=[method])
+            for path, methods in answers.items()
+            for method, answer in methods.items()
+        ]
 
     async def _drives(self, request: Request) -> Response:
         await self._history.settled()

@@ -8,7 +8,6 @@ from latentarm.core.untrusted.documents import read_object
 from latentarm_research.user_studies.catalogue import NAMES, load_definition
 from latentarm_research.user_studies.definition import Definition
 from latentarm_research.user_studies.own.checks import check_definition
-from latentarm_research.user_studies.own.records import read_record
 
 SUFFIX: Final = ".json"
 
@@ -38,6 +37,10 @@ def read_definition(path: Path) -> Definition:
     Raises:
         UserError: the file cannot be read, or a field is wrong: a sentence that names it.
     """
+    from latentarm_research.user_studies.own.records import (
+        read_record,  # with pydantic, which help does not need
+    )
+
     document = read_object(path)
     digest = document.pop("digest", None)
     definition = read_record(Definition, document, str(path))

@@ -1,6 +1,6 @@
 /** Dashed lines in three dimensions: thick enough to be seen from everywhere, and one call to draw all of them. */
 
-import { THREE } from "../three/index.js";
+import * as THREE from "../three/three.module.min.js";
 
 /** From the middle of a dash to its three edges. */
 const THICK_M = 0.0021;

@@ -1,6 +1,6 @@
 /** All that is drawn in three dimensions: the arm in two views, with goals, ghosts, ring, trail and labels. */
 
-import { THREE } from "../three/index.js";
+import * as THREE from "../three/three.module.min.js";
 import { thingWords, zoneWords } from "../layout/thing_words.js";
 import { say, sayNumber, sayPercent } from "../layout/words.js";
 import { Ghosts } from "./ghosts.js";

@@ -1,6 +1,6 @@
 /** What each direction will do: paths of the tool over the next second, drawn in both views. */
 
-import { THREE } from "../three/index.js";
+import * as THREE from "../three/three.module.min.js";
 import { colour } from "./colours.js";
 import { DIRECTION_NAMES } from "../inputs/deflection.js";
 import { ROUND } from "./fineness.js";

@@ -3,7 +3,7 @@
  * over it is where the tool is to come to. Each goal has a shape and a colour of its own.
  */
 
-import { THREE } from "../three/index.js";
+import * as THREE from "../three/three.module.min.js";
 import { colour } from "./colours.js";
 import { Dashes } from "./dashes.js";
 import { ballOf } from "./shapes.js";

@@ -1,6 +1,6 @@
 /** Several shapes as one, each in its place and colour: one call draws them all. */
 
-import { THREE } from "../three/index.js";
+import * as THREE from "../three/three.module.min.js";
 
 /** @typedef {{geometry: THREE.BufferGeometry, at: THREE.Matrix4, colour: THREE.Color}} Part an indexed geometry with normals, and where it is */
 

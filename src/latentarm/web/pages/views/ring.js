@@ -1,6 +1,6 @@
 /** Where every direction of the stick leads: a ring through where the tool would be, drawn in both views. */
 
-import { THREE } from "../three/index.js";
+import * as THREE from "../three/three.module.min.js";
 import { directionPaint } from "./colours.js";
 import { merged } from "./merged.js";
 

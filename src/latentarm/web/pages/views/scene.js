@@ -1,6 +1,6 @@
 /** The arm, what stands about it, its goals, the tool and the trail as one three.js scene; poses glide from one state to the next. */
 
-import { THREE } from "../three/index.js";
+import * as THREE from "../three/three.module.min.js";
 import { colour } from "./colours.js";
 import { GoalMarkers } from "./goal_markers.js";
 import { groupOf, meshGeometry, place } from "./shapes.js";

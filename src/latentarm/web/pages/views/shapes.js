@@ -1,6 +1,6 @@
 /** From the geoms of a MuJoCo model to three.js meshes. */
 
-import { THREE } from "../three/index.js";
+import * as THREE from "../three/three.module.min.js";
 import { coarser } from "./coarser.js";
 import { ROUND, SOFTWARE } from "./fineness.js";
 import { merged } from "./merged.js";

@@ -1,6 +1,6 @@
 /** The table with its grid of 10 cm, and what else the arm must keep clear of. */
 
-import { THREE } from "../three/index.js";
+import * as THREE from "../three/three.module.min.js";
 import { colour } from "./colours.js";
 import { sheetOf, solidOf } from "./shapes.js";
 

@@ -1,6 +1,6 @@
 /** What stands about the arm: things, which glide from one state to the next, and grains. */
 
-import { THREE } from "../three/index.js";
+import * as THREE from "../three/three.module.min.js";
 import { ROUND } from "./fineness.js";
 import { groupOf, materialOf, place, standing } from "./shapes.js";
 

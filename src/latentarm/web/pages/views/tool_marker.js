@@ -1,6 +1,6 @@
 /** The tool as a dot, with a plumb line down to the table or to what stands under it. */
 
-import { THREE } from "../three/index.js";
+import * as THREE from "../three/three.module.min.js";
 import { colour } from "./colours.js";
 import { ballOf } from "./shapes.js";
 

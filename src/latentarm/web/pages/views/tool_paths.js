@@ -1,6 +1,6 @@
 /** The paths of the tools along a motion, each an arrow in both views. */
 
-import { THREE } from "../three/index.js";
+import * as THREE from "../three/three.module.min.js";
 import { colour } from "./colours.js";
 import { ballOf } from "./shapes.js";
 

@@ -1,6 +1,6 @@
 /** Where the tool has been: dots along its path, the oldest replaced first. */
 
-import { THREE } from "../three/index.js";
+import * as THREE from "../three/three.module.min.js";
 import { colour } from "./colours.js";
 
 const MOST = 600;

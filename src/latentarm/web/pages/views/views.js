@@ -1,6 +1,6 @@
 /** Two cameras on one scene: front and side, drawn on one canvas, only when something has changed. */
 
-import { THREE } from "../three/index.js";
+import * as THREE from "../three/three.module.min.js";
 import { SOFTWARE } from "./fineness.js";
 
 const FOV_DEG = 32;

@@ -1,6 +1,6 @@
 /** Where the arm is slow: solids that can be seen through, with their outlines; a plane is a sheet. */
 
-import { THREE } from "../three/index.js";
+import * as THREE from "../three/three.module.min.js";
 import { colour } from "./colours.js";
 import { sheetOf, solidOf } from "./shapes.js";
 

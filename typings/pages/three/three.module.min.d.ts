@@ -1,0 +1,2 @@
+/** What the minified three.js exports. */
+export * from "three";
