@@ -6,7 +6,7 @@ from typing import final
 
 import numpy as np
 
-from latentarm.core.types import FloatArray, Goal
+from latentarm.core.types import FloatArray, Goal, GripperAsk
 from latentarm.robots.kinematics.obstacles import Obstacle
 from latentarm.robots.robot import Robot
 from latentarm.robots.scene.scene import Scene
@@ -34,6 +34,9 @@ class Beginning:
     goals: tuple[Goal, ...]
     objects: tuple[str, ...]  # names of the relevant things, in the order of the context feature ``objects``
     text: str  # the task in words
+    # asked of the gripper all along: at the start, and once each step is done; () where only waypoints ask
+    asks: tuple[GripperAsk, ...] = ()
+    patient: bool = False  # whether the run goes on where the tool comes no nearer
 
 
 class SceneTask(ABC):

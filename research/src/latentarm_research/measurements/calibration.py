@@ -15,8 +15,8 @@ import numpy as np
 from latentarm.assistance.controllers.end_effector import EndEffectorController
 from latentarm.robots.catalogue import load_robot
 from latentarm.tasks.catalogue import SCENE_TASKS
+from latentarm_research.drives.drive import Setup, drive
 from latentarm_research.drives.pointing import FittsLaw, OneMode, Pointing, point
-from latentarm_research.drives.task_drive import TaskSetup, drive_task
 from latentarm_research.measurements.measurement import Outcome, Work, line
 from latentarm_research.measurements.options import Calibrating
 from latentarm_research.metrics.mode_switching import switching
@@ -108,9 +108,9 @@ def switches(
     person, name = cell
     traits = draw_people(options.people, seed, calibration)[person]
     task = SCENE_TASKS[name]()
-    setup = TaskSetup(task, EndEffectorController(task.robot), traits.person(0, PRACTICE_S))
+    setup = Setup(task, EndEffectorController(task.robot), traits.person(0, PRACTICE_S))
     rng = np.random.default_rng([seed, DRIVES, options.tasks.index(name), traits.number])
-    trace = drive_task(setup, traits.number % len(task.choices), rng)
+    trace = drive(setup, traits.number % len(task.choices), rng)
     spent = switching(trace.mode, np.linalg.norm(trace.input, axis=1) > PUSHED)
     took_s = float(trace.time_s[-1])
     return float(spent.mean()) * took_s, took_s, trace.figures.mode_switches, trace.figures.success

@@ -17,11 +17,12 @@ from latentarm.models.catalogue import MODELS
 from latentarm.models.decoder import Decoder
 from latentarm.robots.kinematics.obstacles import Obstacle
 from latentarm.robots.robot import Robot
+from latentarm.tasks.goal_task import GoalTask
 from latentarm.tasks.table_top import TableTop
 from latentarm.tasks.task import Task
 from latentarm.web.arm_process.help import LEVELS
-from latentarm_research.drives.drive import Setup, Trace, simulate
-from latentarm_research.drives.drives import drive_plan
+from latentarm_research.drives.drive import Setup
+from latentarm_research.drives.drives import Planned, drive_all, plan_drives
 from latentarm_research.measurements.measurement import Outcome, Work, line
 from latentarm_research.measurements.options import Help
 from latentarm_research.people.catalogue import PEOPLE
@@ -41,14 +42,15 @@ def measure(options: Help, work: Work) -> Outcome:
     for level, arbitration in LEVELS.items():
         way = None if level == "off" else blending(arbitration)
         for place, hidden in (("known", [None]), ("not known", range(len(TABLE.goals)))):
-            calls = [
-                (Setup(Hover(item), controller, way, PEOPLE["unsteady"], options.limit_s), *call)
-                for item in hidden
-                for call in drive_plan(Hover(item), options.drives, work.seed + (item or 0))
+            planned = list[Planned]()
+            for item in hidden:
+                task = GoalTask(Hover(item), "hover", options.limit_s)
+                setup = Setup(task, controller, PEOPLE["unsteady"], way)
+                plan = plan_drives([[setup]], options.drives, work.seed + (item or 0))
                 # A hidden item is the aim whichever goal is named: those of one goal are enough.
-                if item is None or call[0] == 0
-            ]
-            drives = [trace.figures for trace in work.each(driven, calls)]
+                planned += plan if item is None else plan[: options.drives]
+            (traces,) = drive_all([planned], work.jobs, bars=work.bars)
+            drives = [trace.figures for trace in traces]
             times = [one.time_s for one in drives]
             figures = {
                 "reached": sum(one.success for one in drives),
@@ -57,11 +59,6 @@ def measure(options: Help, work: Work) -> Outcome:
             }
             rows += line("help", level, len(drives), figures, f"item {place}")
     return Outcome(rows)
-
-
-def driven(call: tuple[Setup, int, str, np.random.Generator]) -> Trace:
-    """One drive."""
-    return simulate(*call)
 
 
 @final

@@ -13,8 +13,8 @@ import numpy as np
 from latentarm.assistance.controllers.end_effector import EndEffectorController
 from latentarm.core.errors import UserError
 from latentarm_research.assistance.catalogue import AssistanceName, published_assistance, published_belief
-from latentarm_research.drives.task_drive import TaskSetup
-from latentarm_research.drives.task_drives import Series, drive_series
+from latentarm_research.drives.drive import Setup
+from latentarm_research.drives.drives import drive_all, plan_drives
 from latentarm_research.measurements.measurement import Outcome, Work, line
 from latentarm_research.measurements.options import PublishedHelp
 from latentarm_research.people.catalogue import PEOPLE
@@ -36,9 +36,9 @@ def measure(options: PublishedHelp, work: Work) -> Outcome:
     if unknown := set(ways) - set(WAYS):
         raise UserError(f"There is no help {min(unknown)!r}: choose from {', '.join(WAYS)}.")
     cells = [(beta, way) for beta in options.beta for way in ways]
-    series = [Series([setup(way, noisy(beta))], options.drives) for beta, way in cells]
+    plans = [plan_drives([[setup(way, noisy(beta))]], options.drives, work.seed) for beta, way in cells]
     rows = []
-    found = drive_series(series, work.seed, work.jobs, bars=work.bars)
+    found = drive_all(plans, work.jobs, bars=work.bars)
     for (beta, way), traces in zip(cells, found, strict=True):
         arrived = {trace.choice: 0 for trace in traces}
         for trace in traces:
@@ -64,10 +64,10 @@ def noisy(beta: float) -> Person:
     return replace(unsteady, decides=replace(unsteady.decides, beta=beta))
 
 
-def setup(way: str, person: Person) -> TaskSetup:
+def setup(way: str, person: Person) -> Setup:
     """Everything that a condition is driven with."""
     task = OverMarshmallow()
-    return TaskSetup(
+    return Setup(
         task,
         EndEffectorController(task.robot, SPEED_M_S, TURN_RAD_S),
         person,

@@ -9,12 +9,12 @@ import numpy as np
 
 from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray
-from latentarm_research.metrics.task_drives import StepAlignment
+from latentarm_research.metrics.preference_alignment import StepAlignment
 from latentarm_research.user_studies.definition import StudyTask
 from latentarm_research.user_studies.own.records import read_record
 
 if TYPE_CHECKING:
-    from latentarm_research.drives.task_drive import TaskTrace
+    from latentarm_research.drives import trace as drives
 
 POINTS: Final = 60
 """Of a way and of a course over time, at most."""
@@ -62,7 +62,7 @@ class Trace:
         return asdict(self)
 
 
-def trace_of(person: int, condition: str, task: StudyTask, trial: int, driven: "TaskTrace") -> Trace:
+def trace_of(person: int, condition: str, task: StudyTask, trial: int, driven: "drives.Trace") -> Trace:
     """What is kept of a drive.
 
     Args:
@@ -112,7 +112,7 @@ def read_traces(document: Mapping[str, object], path: Path) -> tuple[Trace, ...]
     return tuple(read_record(Trace, entry, f"{path}, trace {index}") for index, entry in listed)
 
 
-def _stick(driven: "TaskTrace") -> FloatArray:
+def _stick(driven: "drives.Trace") -> FloatArray:
     pushed = driven.input[driven.input.any(axis=-1)][:, :2]
     edges = np.linspace(-1.0, 1.0, BINS + 1)
     counts = np.histogram2d(pushed[:, 0], pushed[:, 1], bins=(edges, edges))[0]

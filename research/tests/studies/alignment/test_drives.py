@@ -16,10 +16,12 @@ from latentarm.core.context import ContextLayout
 from latentarm.core.style import save_figure
 from latentarm.core.types import Goal, Pose
 from latentarm.robots.catalogue import load_robot
+from latentarm.tasks.goal_task import GoalTask
 from latentarm.tasks.inverse_kinematics import solve
 from latentarm.tasks.table_top import TableTop
 from latentarm.tasks.task import Task, within
 from latentarm_research.drives.drive import Setup
+from latentarm_research.drives.drives import Planned
 from latentarm_research.people.expectation import Expectation
 from latentarm_research.people.person import Person
 from latentarm_research.studies.alignment.drives import (
@@ -114,8 +116,8 @@ def perfect(u, context):
 
 def driven(alignment, person=TURNED):
     controller = LatentController(TwoDirections(), alignment)
-    setup = Setup(OneGoal(), controller, None, Person(imagines=person), 6.0)
-    return drive(setup, 0, 0, "come", np.random.default_rng(0))
+    setup = Setup(GoalTask(OneGoal(), "come", 6.0), controller, Person(imagines=person))
+    return drive(OneGoal(), Planned(setup, choice=0, repeat=0, seed=0), 0)
 
 
 def test_with_a_perfect_alignment_of_a_linear_decoder_the_goal_is_reached_nearly_straight():

@@ -21,9 +21,10 @@ from latentarm.demonstrations.split import select_episodes
 from latentarm.evaluation.summary import Subject, summarise
 from latentarm.models.decoder import Decoder
 from latentarm.robots.catalogue import load_recorded_robot
+from latentarm.tasks.goal_task import GoalTask
 from latentarm.tasks.replay import Replay, routes_of
-from latentarm_research.drives.drive import Setup, simulate
-from latentarm_research.metrics.drives import GoalDrive, goal_drive_rows
+from latentarm_research.drives.drive import Setup, drive
+from latentarm_research.metrics.drives import Drive, drive_rows
 from latentarm_research.metrics.ending import Ending
 from latentarm_research.metrics.undone import undone_share
 from latentarm_research.people.catalogue import PEOPLE, usual_operator
@@ -79,7 +80,7 @@ class DriveResult:
     dataset: str
     controller: str
     episode: int
-    figures: GoalDrive
+    figures: Drive
     progress: float
     ending: Ending
     undone: float
@@ -134,21 +135,19 @@ def measure_drive_cell(cell: ModelDriveCell) -> DriveResult:
             EndEffectorController(robot) if cell.decoder is None else LatentController(cell.decoder)
         )
         setup = Setup(
-            task,
+            GoalTask(task, task.manners[0], cell.limit_s),
             controller,
-            assistance=None,
-            person=PEOPLE[usual_operator(task.name)],
-            time_limit_s=cell.limit_s,
+            PEOPLE[usual_operator(task.name)],
         )
         streams = sequence(cell.seed, cell.dataset.name, Stream.DRIVES, cell.episode)
-        trace = simulate(setup, 0, task.manners[0], np.random.default_rng(streams))
+        trace = drive(setup, 0, np.random.default_rng(streams))
         shown = robot.chain.forward(cell.dataset.demonstrations.episodes[cell.episode].state)
     return DriveResult(
         dataset=cell.dataset.name,
         controller=cell.controller,
         episode=cell.episode,
-        figures=trace.measured,
-        progress=trace.progress,
+        figures=trace.figures,
+        progress=trace.figures.steps_done,
         ending=trace.ending,
         undone=undone_share(trace.position),
         demonstrated_undone=undone_share(shown.position),
@@ -167,7 +166,7 @@ def rows_of_drives(study: str, condition: str, results: Sequence[DriveResult]) -
     for dataset, controller in dict.fromkeys((one.dataset, one.controller) for one in results):
         here = [one for one in results if (one.dataset, one.controller) == (dataset, controller)]
         subject = Subject(study, task=dataset, model=controller, condition=condition)
-        rows += goal_drive_rows(subject, [one.figures for one in here])
+        rows += drive_rows(subject, [one.figures for one in here])
         rows += [
             summarise(subject, "progress", [one.progress for one in here]),
             summarise(subject, "undone_share", [one.undone for one in here]),

@@ -11,8 +11,8 @@ from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations, Episode
 from latentarm.demonstrations.validation import validate
 from latentarm.models.kind import TrainedModel
+from latentarm_research.drives import drive as drives
 from latentarm_research.drives.demonstrate import dataset_of, demonstrate_once
-from latentarm_research.drives.task_drive import TaskSetup, drive_task
 from latentarm_research.people.catalogue import PEOPLE
 from latentarm_research.people.names import OperatorName
 from latentarm_research.studies.fitting import fit_model, validation_episodes
@@ -200,10 +200,10 @@ def drive(cell: TaskRunCell) -> TaskRunResult:
     task = task_of(cell.task, Stream.RUNS)
     with threadpool_limits(limits=1):
         began = perf_counter()
-        setup = TaskSetup(task, cell.driver.controller(task.robot, cell.number), PEOPLE[cell.person])
+        setup = drives.Setup(task, cell.driver.controller(task.robot, cell.number), PEOPLE[cell.person])
         # The same number gives the same scene and start to the demonstrator and in every condition.
         rng = generator(cell.seed, cell.task, Stream.RUNS, cell.number)
-        trace = drive_task(setup, choice_of(task, cell.number), rng)
+        trace = drives.drive(setup, choice_of(task, cell.number), rng)
         run = driven_run(task, cell.number, trace)
         return TaskRunResult(cell.task, cell.condition, run, perf_counter() - began)
 

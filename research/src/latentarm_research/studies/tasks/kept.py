@@ -21,7 +21,6 @@ from latentarm.models.saving import CONFIG_LIMIT, CONFIG_NAME, read_model, read_
 from latentarm.runs.results_folder import write_json
 from latentarm_research.baselines.learned_orientation import OrientationMap
 from latentarm_research.metrics.drives import Drive
-from latentarm_research.metrics.task_drives import TaskDrive
 from latentarm_research.studies.study import Keep
 from latentarm_research.studies.tasks.cell import (
     DemonstratedRun,
@@ -91,8 +90,7 @@ def _read_drive(out: Path, cell: TaskRunCell) -> TaskRunResult | None:
     if not path.exists():
         return None
     section = Section.of_file(path, LIMIT)
-    drive = Drive(**_values(section, Drive))
-    figures = TaskDrive(drive, **_values(section, TaskDrive))
+    figures = Drive(**_values(section, Drive))
     return TaskRunResult(
         cell.task, cell.condition, _run(section, cell.number, figures), section.number("drive_s")
     )
@@ -179,7 +177,7 @@ def _values(section: Section, record: type) -> dict[str, Any]:
     }
 
 
-def _run(section: Section, number: int, figures: TaskDrive | None = None) -> Run:
+def _run(section: Section, number: int, figures: Drive | None = None) -> Run:
     run = Run(**_values(section, Run), figures=figures)
     if run.number != number or run.done > len(run.steps):
         raise UserError(f"{section.where} is no run {number} of this study: remove it, and it is run again.")
