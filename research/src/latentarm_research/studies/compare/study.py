@@ -301,7 +301,7 @@ def _timings(results: Sequence[FoldResult], drives: Sequence[DriveResult]) -> di
                 "dataset": one.dataset,
                 "controller": one.controller,
                 "episode": one.episode,
-                "simulated_s": one.figures.drive.time_s,
+                "simulated_s": one.figures.time_s,
                 "took_s": one.took_s,
             }
             for one in drives
