@@ -4,7 +4,7 @@ import math
 from typing import Final, Literal, final
 
 from latentarm.arms.contract import Arm, ArmStatus
-from latentarm.arms.guiding import GuidableArm
+from latentarm.arms.real import GuidableArm
 from latentarm.control.arm_stops import stop_of
 from latentarm.control.loop import ENABLING_S
 from latentarm.control.step import Step

@@ -16,9 +16,10 @@ LEVELS: Final[dict[HelpLevel, Arbitration]] = {
     "high": ConfidenceAlpha(0.3),
 }
 """Help grows with the robot's confidence, and stays at zero until the robot can tell what the person wants.
-Measured in simulation: ``medium`` halves the mean time to goals that the robot knows, and lets as many reach
-something else as without help (14 of 15 simulated drives); ``high`` takes a little less time, and keeps most
-people from anything else."""
+
+Measured by ``latentarm measure help``: ``medium`` halves the mean time to goals that the robot knows, and
+lets as many reach something else as without help (14 of 15 simulated drives); ``high`` takes a little less
+time, and keeps most people from anything else."""
 
 
 @final
