@@ -13,15 +13,10 @@ from latentarm.models.model import LatentActionModel
 @final
 @dataclass(frozen=True, eq=False)
 class AffineAlignment:
-    """``z = A u + b``, the same in every context.
+    """``z = A u + b``, the same in every context."""
 
-    Attributes:
-        matrix: (d, d), A.
-        offset: (d,), b.
-    """
-
-    matrix: FloatArray
-    offset: FloatArray
+    matrix: FloatArray  # (d, d), A
+    offset: FloatArray  # (d,), b
 
     def __call__(self, u: FloatArray, context: FloatArray) -> FloatArray:
         """Latent actions (..., d) of inputs (..., d); the context does not count."""

@@ -69,16 +69,12 @@ class Motions:
 class Answers:
     """A person's answers: the input ``u`` with which they would ask for each of N motions.
 
-    Attributes:
-        motions: N motions.
-        u: (N, d), each entry in [-1, 1].
-
     Raises:
         UserError: sizes do not match, or an input is invalid.
     """
 
     motions: Motions
-    u: FloatArray
+    u: FloatArray  # (N, d), each entry in [-1, 1]
 
     def __post_init__(self) -> None:
         if self.u.ndim != 2 or len(self.u) != len(self.motions) or self.u.shape[1] == 0:

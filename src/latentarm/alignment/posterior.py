@@ -55,17 +55,10 @@ UNEVEN: Final = 0.1
 @final
 @dataclass(frozen=True)
 class Setting:
-    """Hyper-parameters.
+    """Hyper-parameters."""
 
-    Attributes:
-        turn_rad: SD of how far the stick turns from place to place, rad; 0 for a stick that does not.
-        length_m: over which distance that changes, m.
-        variation: coefficient of variation of the answers.
-        weight: of this setting before any answer.
-    """
-
-    turn_rad: float
-    length_m: float
+    turn_rad: float  # SD of how far the stick turns from place to place, rad; 0 for a stick that does not
+    length_m: float  # over which distance that changes, m
     variation: float
     weight: float
 
@@ -89,7 +82,6 @@ class Posterior:
 
     Attributes:
         meaning: the most probable one, under the most probable setting.
-        setting: that setting.
         share: root mean square SD of the input for a motion that might be asked about, as a share of the root
             mean square input: what is still unknown.
     """

@@ -31,18 +31,13 @@ class ToolAxes:
 
     They consider where the tool goes and ignore how it turns.
 
-    Attributes:
-        chain: the arm; its first tool is looked at.
-        axes: d, of the stick, 1 to 3.
-        speed_m_s: of the tool along an axis, for which they would push all the way, m/s.
-
     Raises:
         UserError: there are more axes than directions, or the speed is not positive.
     """
 
-    chain: Chain
-    axes: int
-    speed_m_s: float
+    chain: Chain  # the arm; its first tool is looked at
+    axes: int  # d, of the stick, 1 to 3
+    speed_m_s: float  # of the tool along an axis, for which they would push all the way, m/s
 
     def __post_init__(self) -> None:
         if not 1 <= self.axes <= len(AXES):
@@ -65,18 +60,13 @@ class HeightAndTilt:
 
     They ignore all other motion of the tool.
 
-    Attributes:
-        chain: the arm; its first tool is looked at.
-        speed_m_s: up, for which they would push all the way, m/s.
-        turn_rad_s: the same of the tilt, rad/s.
-
     Raises:
         UserError: a speed is not positive.
     """
 
-    chain: Chain
-    speed_m_s: float
-    turn_rad_s: float
+    chain: Chain  # the arm; its first tool is looked at
+    speed_m_s: float  # up, for which they would push all the way, m/s
+    turn_rad_s: float  # the same of the tilt, rad/s
 
     def __post_init__(self) -> None:
         _check_speed(self.speed_m_s, "m/s")
@@ -92,19 +82,12 @@ class HeightAndTilt:
 @final
 @dataclass(frozen=True, eq=False)
 class ByPlace:
-    """A simulated person whose preference depends on the place.
+    """A simulated person whose preference depends on the place."""
 
-    Attributes:
-        chain: the arm; its first tool is looked at.
-        is_there: whether places (N, 3), m, are the place, (N,).
-        there: what they mean where a motion begins there.
-        elsewhere: what they mean where it does not.
-    """
-
-    chain: Chain
-    is_there: Callable[[FloatArray], BoolArray]
-    there: Preference
-    elsewhere: Preference
+    chain: Chain  # the arm; its first tool is looked at
+    is_there: Callable[[FloatArray], BoolArray]  # whether places (N, 3), m, are the place, (N,)
+    there: Preference  # what they mean where a motion begins there
+    elsewhere: Preference  # what they mean where it does not
 
     def inputs(self, motions: Motions) -> FloatArray:
         """The inputs (N, d) by which they would ask for N motions."""
@@ -117,18 +100,13 @@ class ByPlace:
 class Imprecise:
     """A simulated person whose deflection of each axis varies randomly.
 
-    Attributes:
-        preference: what they mean.
-        variation: coefficient of variation, the SD of an answer as a share of it.
-        rng: source of the chances; each call draws anew.
-
     Raises:
         UserError: the variation is negative or not finite.
     """
 
     preference: Preference
-    variation: float
-    rng: np.random.Generator
+    variation: float  # coefficient of variation, the SD of an answer as a share of it
+    rng: np.random.Generator  # source of the chances; each call draws anew
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.variation) and self.variation >= 0):

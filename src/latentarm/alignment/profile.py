@@ -68,17 +68,11 @@ TRIAL: Final = ".trial"
 @final
 @dataclass(frozen=True, eq=False)
 class Profile:
-    """What one person means by their input, under one seed of one model.
+    """What one person means by their input, under one seed of one model."""
 
-    Attributes:
-        known: what is known of the person; of an older profile the network f.
-        fingerprint: of the model and the seed, see `model_fingerprint`.
-        seed_index: which of the model's seeds decodes.
-    """
-
-    known: ToolSpace | LearnedAlignment
-    fingerprint: str
-    seed_index: int
+    known: ToolSpace | LearnedAlignment  # what is known of the person; of an older profile the network f
+    fingerprint: str  # of the model and the seed, see `model_fingerprint`
+    seed_index: int  # which of the model's seeds decodes
 
     def alignment(self, decoder: Decoder, chain: Chain) -> Alignment:
         """``z = f(u, c)`` with the model's decoder and the arm.

@@ -32,7 +32,6 @@ class Design:
     """How much each motion would teach.
 
     Args:
-        chain: the arm.
         motions: N, that may be asked about.
     """
 
@@ -46,9 +45,6 @@ class Design:
         """By how much an answer about each motion lowers the mean variance over all.
 
         Active learning by expected variance (Cohn 1996).
-
-        Args:
-            asked: rows of those that were asked about.
 
         Returns:
             (N,), as a share of the mean variance before the first answer.

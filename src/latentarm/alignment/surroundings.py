@@ -21,19 +21,12 @@ FASTEST: Final = 0.99
 @final
 @dataclass(frozen=True, eq=False)
 class Surroundings:
-    """Directions of demonstrated motions by place.
+    """Directions of demonstrated motions by place."""
 
-    Attributes:
-        place: (K, 12 k), the middles of regions, as `pose_vectors` has them, m.
-        outside: (K, 6 k, 6 k), symmetric; takes out of a twist what was demonstrated there.
-        width_m: how far a region reaches.
-        fast_m_s: the speed that hardly any demonstrated motion exceeds, m/s.
-    """
-
-    place: FloatArray
-    outside: FloatArray
+    place: FloatArray  # (K, 12 k), the middles of regions, as `pose_vectors` has them, m
+    outside: FloatArray  # (K, 6 k, 6 k), symmetric; takes out of a twist what was demonstrated there
     width_m: float
-    fast_m_s: float
+    fast_m_s: float  # the speed that hardly any demonstrated motion exceeds, m/s
 
     @classmethod
     def of_motions(cls, motions: Motions, chain: Chain, latent: int) -> Self:

@@ -36,24 +36,14 @@ REACH: Final = 0.5
 @final
 @dataclass(frozen=True, eq=False)
 class ToolSpace:
-    """What is known of a person, without the decoder and the arm that it is used with.
-
-    Attributes:
-        meaning: Q.
-        surroundings: of the demonstrations that the person was asked about.
-        duration_s: of the motions that they were asked about, s.
-    """
+    """What is known of a person, without the decoder and the arm that it is used with."""
 
     meaning: Meaning
-    surroundings: Surroundings
-    duration_s: float
+    surroundings: Surroundings  # of the demonstrations that the person was asked about
+    duration_s: float  # of the motions that they were asked about, s
 
     def with_arm(self, decoder: Decoder, chain: Chain) -> "ToolSpaceAlignment":
         """The person's alignment.
-
-        Args:
-            decoder: phi.
-            chain: the arm.
 
         Raises:
             UserError: they were asked about another arm or another number of inputs.
@@ -79,8 +69,6 @@ class ToolSpaceAlignment:
 
     Args:
         known: Q, N and the length of a motion.
-        decoder: phi.
-        chain: the arm.
     """
 
     def __init__(self, known: ToolSpace, decoder: Decoder, chain: Chain) -> None:

@@ -12,18 +12,13 @@ from latentarm.core.types import FloatArray
 class Contribution:
     """The robot's part of the motion at one moment: ``a = (1 - alpha) a_h + (alpha + added) a_r``.
 
-    Attributes:
-        action: (n,), the assistive action ``a_r``, rad/s.
-        alpha: how much of it takes the place of the person's action, in [0, 1]: the alpha of equation 2.
-        added: how much of it is added to the person's action, in [0, 1].
-
     Raises:
         ValueError: a share is not in [0, 1].
     """
 
-    action: FloatArray
-    alpha: float
-    added: float = 0.0
+    action: FloatArray  # (n,), the assistive action ``a_r``, rad/s
+    alpha: float  # how much of it takes the place of the person's action, in [0, 1]: the alpha of equation 2
+    added: float = 0.0  # how much of it is added to the person's action, in [0, 1]
 
     def __post_init__(self) -> None:
         for share in (self.alpha, self.added):

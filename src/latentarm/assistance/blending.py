@@ -126,11 +126,7 @@ class ConfidenceAlpha(Arbitration):
 @final
 @dataclass(frozen=True)
 class Unprompted(Arbitration):
-    """Help even without an input, for people who ask for it: the arm then moves by itself.
-
-    Attributes:
-        inner: says how much, as at full input.
-    """
+    """Help even without an input, for people who ask for it: the arm then moves by itself."""
 
     inner: Arbitration
 

@@ -17,7 +17,6 @@ class GoalBlending(Assistance):
 
     Args:
         goals: (G, n), configurations, rad.
-        arbitration: how much the robot helps.
     """
 
     def __init__(self, goals: FloatArray, arbitration: Arbitration) -> None:

@@ -50,10 +50,6 @@ class AlignOptions:
 def align_run(config: AlignOptions, say: Say) -> list[Row]:
     """Ask, learn, and write the profile to ``profiles/<name>`` of the run. Nothing is written before the end.
 
-    Args:
-        config: what is asked for.
-        say: shows text to the person.
-
     Returns:
         The error on the answers themselves: with the profile, with an affine map, and with z = u.
 

@@ -65,7 +65,6 @@ class Accuracy:
 
     Attributes:
         figures: measure -> (S,); NaN through an encoder network where the model has none.
-        decoders: of the S seeds.
         z: (S, L, d), the nearest inputs without noise, for the pairs that were searched for.
         context: (L, c), their contexts.
         action: (L, m), the actions there, rad/s.

@@ -29,55 +29,33 @@ PROGRESS_M = 1e-4  # a drive that comes nearer by less than this has stalled
 
 @dataclass(frozen=True)
 class SolverConfig:
-    """Settings of the greedy operator.
+    """Settings of the greedy operator."""
 
-    Attributes:
-        time_s: time limit; the closest moment counts, s.
-        joint_weight_m: w, what one radian of joint error weighs beside tool error, m/rad.
-        refinements: Gauss-Newton steps at every choice.
-        hold: steps for which a choice is held; it is chosen as if one step were this long.
-        per_axis: values of each latent axis in the fixed set of choices, up to d = 2.
-        stall_s: a drive ends after this long without progress of `PROGRESS_M`, s.
-    """
-
-    time_s: float = 6.0
-    joint_weight_m: float = 0.05
+    time_s: float = 6.0  # time limit; the closest moment counts, s
+    joint_weight_m: float = 0.05  # w, what one radian of joint error weighs beside tool error, m/rad
     refinements: int = 2
-    hold: int = 1
-    per_axis: int = 5
-    stall_s: float = math.inf
+    hold: int = 1  # steps for which a choice is held; it is chosen as if one step were this long
+    per_axis: int = 5  # values of each latent axis in the fixed set of choices, up to d = 2
+    stall_s: float = math.inf  # a drive ends after this long without progress of `PROGRESS_M`, s
 
 
 @dataclass(frozen=True)
 class Target:
-    """The targets of P drives.
+    """The targets of P drives."""
 
-    Attributes:
-        places: (P, T, 3), of the T tools, m.
-        state: (P, n), the posture wanted there, rad, or None where none is.
-    """
-
-    places: FloatArray
-    state: FloatArray | None = None
+    places: FloatArray  # (P, T, 3), of the T tools, m
+    state: FloatArray | None = None  # (P, n), the posture wanted there, rad, or None where none is
 
 
 @dataclass(frozen=True)
 class Approach:
-    """P drives up to the moment of closest approach to the target, for each of S seeds.
+    """P drives up to the moment of closest approach to the target, for each of S seeds."""
 
-    Attributes:
-        distance_m: (S, P), of the tools from their places at that moment, mean over tools, m.
-        context: (S, P, c), at that moment.
-        path_m: (S, P), path length of the tools until then, mean over tools, m.
-        straight_m: (S, P), the straight-line distance, m.
-        latent: (S, P, T, d), what was chosen at each of the T steps; 0 after a drive has stalled.
-    """
-
-    distance_m: FloatArray
-    context: FloatArray
-    path_m: FloatArray
-    straight_m: FloatArray
-    latent: FloatArray
+    distance_m: FloatArray  # (S, P), of the tools from their places at that moment, mean over tools, m
+    context: FloatArray  # (S, P, c), at that moment
+    path_m: FloatArray  # (S, P), path length of the tools until then, mean over tools, m
+    straight_m: FloatArray  # (S, P), the straight-line distance, m
+    latent: FloatArray  # (S, P, T, d), what was chosen at each of the T steps; 0 after a drive has stalled
 
 
 def approach(

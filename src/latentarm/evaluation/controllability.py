@@ -18,17 +18,11 @@ from latentarm.evaluation.samples import StartGoalPairs
 
 @dataclass(frozen=True)
 class ReachConfig:
-    """The controllability test for the greedy operator.
+    """The controllability test for the greedy operator."""
 
-    Attributes:
-        pairs: number of start-goal pairs.
-        separation_s: time between start and goal in the demonstration, s.
-        solver: what it may do.
-    """
-
-    pairs: int = 200
-    separation_s: float = 3.0
-    solver: SolverConfig = field(default_factory=SolverConfig)
+    pairs: int = 200  # number of start-goal pairs
+    separation_s: float = 3.0  # time between start and goal in the demonstration, s
+    solver: SolverConfig = field(default_factory=SolverConfig)  # what it may do
 
 
 @dataclass(frozen=True)

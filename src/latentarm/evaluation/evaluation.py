@@ -99,15 +99,10 @@ class EvaluationConfig:
 
 @dataclass(frozen=True)
 class Figures:
-    """The measures of a model for each seed, before averaging.
+    """The measures of a model for each seed, before averaging."""
 
-    Attributes:
-        per_seed: measure -> (S,).
-        start_distance_m: (P,), of the tools from the goals before any drive, m.
-    """
-
-    per_seed: Mapping[str, FloatArray]
-    start_distance_m: FloatArray
+    per_seed: Mapping[str, FloatArray]  # measure -> (S,)
+    start_distance_m: FloatArray  # (P,), of the tools from the goals before any drive, m
 
     def rows(self, subject: Subject) -> list[Row]:
         """Mean and SD over seeds, one row per measure."""
@@ -149,21 +144,13 @@ def measure(
 @final
 @dataclass(frozen=True, eq=False)
 class Probe:
-    """Held-out samples on which a model's behaviour is measured.
-
-    Attributes:
-        pairs: starts and goals for controllability.
-        states: (K, c), contexts for consistency, disentanglement and turning.
-        context: (L, c), contexts for drift, reversal and change in state.
-        action: (L, m), the actions there, rad/s.
-        step_s: dt of the transition, s.
-    """
+    """Held-out samples on which a model's behaviour is measured."""
 
     pairs: StartGoalPairs
-    states: FloatArray
-    context: FloatArray
-    action: FloatArray
-    step_s: float
+    states: FloatArray  # (K, c), contexts for consistency, disentanglement and turning
+    context: FloatArray  # (L, c), contexts for drift, reversal and change in state
+    action: FloatArray  # (L, m), the actions there, rad/s
+    step_s: float  # dt of the transition, s
 
 
 def take_probe(model: TrainedModel, demonstrations: Demonstrations, held_out: Sequence[int]) -> Probe:

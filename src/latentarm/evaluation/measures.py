@@ -11,21 +11,13 @@ ARROWS: Final[dict[Better | None, str]] = {"higher": "↑", "lower": "↓", None
 
 @dataclass(frozen=True)
 class Measure:
-    """What a figure means.
+    """What a figure means."""
 
-    Attributes:
-        unit: "1" is a plain number or ratio.
-        label: as tables call it, without the unit.
-        better: which way is better; None where neither is by itself.
-        definition: one sentence, without a capital or a full stop.
-        group: heading that it stands under where measures are grouped, or "".
-    """
-
-    unit: str
-    label: str
-    better: Better | None
-    definition: str
-    group: str = ""
+    unit: str  # "1" is a plain number or ratio
+    label: str  # as tables call it, without the unit
+    better: Better | None  # which way is better; None where neither is by itself
+    definition: str  # one sentence, without a capital or a full stop
+    group: str = ""  # heading that it stands under where measures are grouped, or ""
 
 
 EXPRESSED: Final = "what the decoder can express"

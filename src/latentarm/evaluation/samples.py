@@ -19,15 +19,10 @@ from latentarm.robots.kinematics.stillness import moving_range
 
 @dataclass(frozen=True)
 class StartGoalPairs:
-    """Start-goal pairs ``(s_i, s_j)`` of held-out states.
+    """Start-goal pairs ``(s_i, s_j)`` of held-out states."""
 
-    Attributes:
-        start: (P, c), context at the start; its first n entries are the state, rad.
-        goal: (P, n), state to be reached, rad.
-    """
-
-    start: FloatArray
-    goal: FloatArray
+    start: FloatArray  # (P, c), context at the start; its first n entries are the state, rad
+    goal: FloatArray  # (P, n), state to be reached, rad
 
 
 def evenly_spread(count: int, total: int) -> IntArray:

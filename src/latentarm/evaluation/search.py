@@ -99,15 +99,10 @@ def nearest_latents(
 
 @dataclass(frozen=True)
 class _FixedInputs:
-    """Inputs that are tried in every context.
+    """Inputs that are tried in every context."""
 
-    Attributes:
-        grid: (G, d), over the whole range.
-        rim: (R, d), on its surface, one for each ray from rest.
-    """
-
-    grid: FloatArray
-    rim: FloatArray
+    grid: FloatArray  # (G, d), over the whole range
+    rim: FloatArray  # (R, d), on its surface, one for each ray from rest
 
 
 def _fixed_inputs(latent_dim: int) -> _FixedInputs:

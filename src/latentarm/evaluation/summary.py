@@ -24,19 +24,12 @@ HEADLINE: tuple[str, ...] = (
 
 @dataclass(frozen=True)
 class Subject:
-    """What a row is about.
+    """What a row is about."""
 
-    Attributes:
-        study: the command or simulation that took the figures.
-        task: what was done, or None.
-        model: the model's name, or None.
-        condition: what was varied, or None.
-    """
-
-    study: str
-    task: str | None = None
-    model: str | None = None
-    condition: str | None = None
+    study: str  # the command or simulation that took the figures
+    task: str | None = None  # what was done, or None
+    model: str | None = None  # the model's name, or None
+    condition: str | None = None  # what was varied, or None
 
 
 def headline(rows: Iterable[Row]) -> list[Row]:

@@ -30,15 +30,10 @@ class MovesTool(Protocol):
 
 @dataclass(frozen=True)
 class Turning:
-    """Turn of the motion per turn of the stick, NaN where nothing moves.
+    """Turn of the motion per turn of the stick, NaN where nothing moves."""
 
-    Attributes:
-        joints: (S, N, K), of the joints' velocity.
-        tool: (S, N, K), of the velocity of the tool's place.
-    """
-
-    joints: FloatArray
-    tool: FloatArray
+    joints: FloatArray  # (S, N, K), of the joints' velocity
+    tool: FloatArray  # (S, N, K), of the velocity of the tool's place
 
 
 def turning(

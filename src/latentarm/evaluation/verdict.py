@@ -9,23 +9,14 @@ from latentarm.core.types import Row
 
 @dataclass(frozen=True)
 class Threshold:
-    """A limit on a measure that every useful model should meet.
+    """A limit on a measure that every useful model should meet."""
 
-    Attributes:
-        measure: a name in `latentarm.evaluation.measures.MEASURES`, or of one of its axes.
-        worst: the figure from which on it is missed.
-        least: whether figures below ``worst`` miss it, instead of figures from there on.
-        meaning: what it means to a person.
-        scale: what figures are multiplied by to be shown.
-        unit: that follows.
-    """
-
-    measure: str
-    worst: float
-    least: bool
-    meaning: str
-    scale: float = 1.0
-    unit: str = ""
+    measure: str  # a name in `latentarm.evaluation.measures.MEASURES`, or of one of its axes
+    worst: float  # the figure from which on it is missed
+    least: bool  # whether figures below ``worst`` miss it, instead of figures from there on
+    meaning: str  # what it means to a person
+    scale: float = 1.0  # what figures are multiplied by to be shown
+    unit: str = ""  # that follows
 
     def missed_by(self, figure: float) -> bool:
         """Whether a figure misses it."""
@@ -60,12 +51,7 @@ REACH_SHARE: Final = 0.5
 
 @dataclass(frozen=True)
 class Finding:
-    """A threshold that is missed.
-
-    Attributes:
-        measure: whose figure it is.
-        said: in words, with the figure.
-    """
+    """A threshold that is missed."""
 
     measure: str
     said: str

@@ -95,10 +95,7 @@ class Batches:
     """Shuffled training batches and the validation pairs, on the device.
 
     Attributes:
-        size: B, pairs per step and seed.
-        steps: of an epoch.
         batch: the current training batch; always the same tensors, which `epoch` fills anew.
-        validation: all validation pairs, in parts.
     """
 
     def __init__(

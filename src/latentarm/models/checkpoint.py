@@ -37,8 +37,6 @@ class TrainingState:
         best: (S, P), each seed's weights at its best epoch.
         best_loss: (S,), validation loss there; infinite before the first epoch.
         best_epoch: (S,), counted from 1.
-        epoch: epochs done.
-        steps: optimiser steps done.
         history: validation loss (S,) after each epoch.
     """
 
@@ -89,12 +87,7 @@ class TrainingState:
 
 
 def fingerprint(settings: Mapping[str, object], arrays: Sequence[FloatArray]) -> str:
-    """SHA-256 of everything that determines a training's result; a checkpoint with another one is refused.
-
-    Args:
-        settings: plain values, ready for JSON.
-        arrays: the data.
-    """
+    """SHA-256 of everything that determines a training's result; a checkpoint with another one is refused."""
     digest = hashlib.sha256(json.dumps(settings, sort_keys=True).encode())
     for array in arrays:
         digest.update(repr(array.shape).encode())

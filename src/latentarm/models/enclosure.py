@@ -45,17 +45,11 @@ BEYOND: Final = 0.15
 @final
 @dataclass(frozen=True, eq=False)
 class Enclosure:
-    """A set that holds ``phi(z, c)`` for all z in ``[-1, 1]^d``: a union of K boxes under affine maps.
+    """A set that holds ``phi(z, c)`` for all z in ``[-1, 1]^d``: a union of K boxes under affine maps."""
 
-    Attributes:
-        centre: (..., K, m), rad/s.
-        spread: (..., K, g, m), rad/s.
-        remainder: (..., K, m), zero or more, rad/s.
-    """
-
-    centre: FloatArray
-    spread: FloatArray
-    remainder: FloatArray
+    centre: FloatArray  # (..., K, m), rad/s
+    spread: FloatArray  # (..., K, g, m), rad/s
+    remainder: FloatArray  # (..., K, m), zero or more, rad/s
 
     def largest(self) -> FloatArray:
         """Upper bound of ``‖phi(z, c)‖`` over all z, (...,), rad/s; NaN where the decoder gives NaN."""

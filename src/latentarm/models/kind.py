@@ -162,22 +162,13 @@ class TrainingSummary:
 @final
 @dataclass(frozen=True)
 class TrainedModel:
-    """The result of a fit as plain arrays, which is saved, loaded and run.
-
-    Attributes:
-        kind: which kind of model.
-        parameters: what the model was constructed with, as JSON values.
-        dimensions: its sizes.
-        layout: the features that its contexts consist of.
-        tensors: float64 arrays by name, as `ModelKind.tensor_shapes` lists them.
-        summary: how the training went.
-    """
+    """The result of a fit as plain arrays, which is saved, loaded and run."""
 
     kind: ModelKind
-    parameters: Mapping[str, object]
+    parameters: Mapping[str, object]  # what the model was constructed with, as JSON values
     dimensions: Dimensions
     layout: ContextLayout
-    tensors: Mapping[str, FloatArray]
+    tensors: Mapping[str, FloatArray]  # float64 arrays by name, as `ModelKind.tensor_shapes` lists them
     summary: TrainingSummary
 
     @property

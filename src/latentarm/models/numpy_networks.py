@@ -19,12 +19,7 @@ Layer = tuple[FloatArray, FloatArray]
 
 
 def network_shapes(networks: "Mapping[str, Shape]", seeds: int) -> "dict[str, Shape]":
-    """Shape, with the leading seed axis, of every weight and bias by name (``decoder.0.weight``, ...).
-
-    Args:
-        networks: layer widths, input first, by network.
-        seeds: S.
-    """
+    """Shape, with the leading seed axis, of every weight and bias by name (``decoder.0.weight``, ...)."""
     return {
         f"{network}.{layer}.{part}": (seeds, rows, width)
         for network, sizes in networks.items()

@@ -35,7 +35,6 @@ class FlatAdam:
     Attributes:
         first: running mean of the gradient, shaped like the buffer.
         second: running mean of its square, shaped like the buffer.
-        steps: steps taken.
     """
 
     def __init__(self, values: Tensor) -> None:

@@ -24,49 +24,29 @@ AHEAD_S: Final = 0.1
 @final
 @dataclass(frozen=True)
 class Preparation:
-    """What a model asks of its data.
+    """What a model asks of its data."""
 
-    Attributes:
-        damping_m2: see `ModelKind.damping_m2`.
-        looks_ahead: whether its loss looks at the context that an action leads to within `AHEAD_S`.
-        data_seed: draws the contexts of a term.
-    """
-
-    damping_m2: float | None
-    looks_ahead: bool
+    damping_m2: float | None  # see `ModelKind.damping_m2`
+    looks_ahead: bool  # whether its loss looks at the context that an action leads to within `AHEAD_S`
     data_seed: int
 
 
 @final
 @dataclass(frozen=True)
 class Prepared:
-    """One data set, ready for training.
-
-    Attributes:
-        data: normalised pairs.
-        frame: turns poses in contexts into the tool's frame; None where that is not asked for.
-        contexts: from contexts, after ``frame``, to those of ``data``.
-        layout: the features of a context.
-        actions: from actions in rad/s to those of ``data``.
-        joints: m, joints that an action moves.
-        width: c, entries of a context.
-        pairs: before all this.
-        arm: its kinematics, where something needs them.
-        validation: episodes that decide when training stops.
-        term: the further term of the loss, or None.
-    """
+    """One data set, ready for training."""
 
     data: TrainingData
-    frame: ToolFrame | None
-    contexts: Normaliser | ToolContexts
+    frame: ToolFrame | None  # turns poses in contexts into the tool's frame; None where that is not asked for
+    contexts: Normaliser | ToolContexts  # from contexts, after ``frame``, to those of ``data``
     layout: ContextLayout
-    actions: Normaliser
-    joints: int
+    actions: Normaliser  # from actions in rad/s to those of ``data``
+    joints: int  # m, joints that an action moves
     width: int
     pairs: Pairs
-    arm: Chain | None
+    arm: Chain | None  # its kinematics, where something needs them
     validation: tuple[int, ...]
-    term: ScaledTerm | None
+    term: ScaledTerm | None  # the further term of the loss, or None
 
 
 def prepare(

@@ -15,12 +15,7 @@ from latentarm.core.untrusted.documents import read_object
 @final
 @dataclass(frozen=True)
 class Section:
-    """A JSON object in a file.
-
-    Attributes:
-        where: file and place, for error messages.
-        values: what it holds.
-    """
+    """A JSON object in a file."""
 
     where: str
     values: Mapping[str, Any]

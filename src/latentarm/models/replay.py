@@ -32,25 +32,15 @@ class UnreplayableError(Exception):
 
 
 class _Call(NamedTuple):
-    """One operation as it ran.
-
-    Attributes:
-        operation: of ATen.
-        args: its positional arguments.
-        kwargs: its named arguments.
-        result: what it returned.
-        read: storages of the tensors among its arguments.
-        written: storages that it wrote to; empty for views.
-        in_place: whether it wrote to an argument.
-    """
+    """One operation as it ran."""
 
     operation: Operation
     args: tuple[Any, ...]
     kwargs: Mapping[str, Any]
     result: Any
     read: set[int]
-    written: set[int]
-    in_place: bool
+    written: set[int]  # storages that it wrote to; empty for views
+    in_place: bool  # whether it wrote to an argument
 
     @property
     def fills(self) -> bool:

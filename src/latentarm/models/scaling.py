@@ -17,15 +17,10 @@ turn rounding into signal."""
 @final
 @dataclass(frozen=True)
 class Normaliser:
-    """An affine map of each feature: ``(x - centre) / scale``.
+    """An affine map of each feature: ``(x - centre) / scale``."""
 
-    Attributes:
-        centre: (k,) or (1,).
-        scale: (k,) or (1,), positive.
-    """
-
-    centre: FloatArray
-    scale: FloatArray
+    centre: FloatArray  # (k,) or (1,)
+    scale: FloatArray  # (k,) or (1,), positive
 
     def apply(self, values: FloatArray) -> FloatArray:
         """Normalise values (..., k)."""

@@ -22,7 +22,6 @@ class Situation:
         state: (S, E, n), rad.
         action_of: inputs (K, d), in [-1, 1], to the actions (S, E, K, m) that they would cause, rad/s.
         speed: root mean square of the demonstrated ‖a‖, rad/s.
-        axes: d, of the input.
     """
 
     state: Tensor
@@ -60,21 +59,13 @@ class LossTerm(ABC):
 @final
 @dataclass(frozen=True, eq=False)
 class ScaledTerm:
-    """A term, with the normalisers of one training.
-
-    Attributes:
-        term: the term.
-        contexts: normalises the first c entries of what a network sees.
-        actions: normalises actions.
-        joints: n.
-        speed: root mean square of the demonstrated ‖a‖, rad/s.
-    """
+    """A term, with the normalisers of one training."""
 
     term: LossTerm
-    contexts: Normaliser
+    contexts: Normaliser  # normalises the first c entries of what a network sees
     actions: Normaliser
     joints: int
-    speed: float
+    speed: float  # root mean square of the demonstrated ‖a‖, rad/s
 
     def loss(self, decode: Callable[[Tensor, Tensor], Tensor], context: Tensor, span: "Span") -> Tensor:
         """The term, (S,).
@@ -104,12 +95,7 @@ class ScaledTerm:
 @final
 @dataclass(frozen=True, eq=False)
 class Span:
-    """The latent actions that inputs stand for: z = centre + scale u.
+    """The latent actions that inputs stand for: z = centre + scale u."""
 
-    Attributes:
-        centre: (S, 1, d).
-        scale: (S, 1, d).
-    """
-
-    centre: Tensor
-    scale: Tensor
+    centre: Tensor  # (S, 1, d)
+    scale: Tensor  # (S, 1, d)

@@ -38,17 +38,11 @@ def tool_shapes(tools: int) -> dict[str, tuple[int, ...]]:
 @final
 @dataclass(frozen=True)
 class ToolSizes:
-    """Where the parts of an observation lie along its last axis.
+    """Where the parts of an observation lie along its last axis."""
 
-    Attributes:
-        context: c.
-        joints: n.
-        tools: k.
-    """
-
-    context: int
-    joints: int
-    tools: int
+    context: int  # c
+    joints: int  # n
+    tools: int  # k
 
     @property
     def seen(self) -> int:
@@ -79,20 +73,13 @@ class ToolContexts:
     The metric of the task is ``G(s) = J_w^T J_w + damping 1`` with ``J_w = W^(1/2) J / sqrt(k)`` over all k
     tools: ``a^T G a`` is the squared speed of the tools, m^2/s^2, where a turn of 1 rad/s counts as much as
     ``rotation_weight`` m/s, and a little for motion of the joints that no tool shows.
-
-    Attributes:
-        chain: the arm.
-        contexts: normaliser of contexts (..., c), of which the first n entries are the state.
-        places: normaliser of the tools' places (..., 9 k).
-        rotation_weight: m/rad.
-        damping: m^2/rad^2, positive.
     """
 
     chain: Chain
-    contexts: Normaliser
-    places: Normaliser
-    rotation_weight: float
-    damping: float
+    contexts: Normaliser  # normaliser of contexts (..., c), of which the first n entries are the state
+    places: Normaliser  # normaliser of the tools' places (..., 9 k)
+    rotation_weight: float  # m/rad
+    damping: float  # m^2/rad^2, positive
 
     @staticmethod
     def fitted(chain: Chain, context: FloatArray, contexts: Normaliser, damping: float) -> "ToolContexts":
@@ -218,11 +205,7 @@ def places_and_jacobian(chain: Chain, state: FloatArray) -> tuple[FloatArray, Fl
 
 @final
 class ToolGeometry:
-    """`places_and_jacobian` of one arm, computed once for a single state that is asked about repeatedly.
-
-    Args:
-        chain: the arm.
-    """
+    """`places_and_jacobian` of one arm, computed once for a single state that is asked about repeatedly."""
 
     __slots__ = ("_chain", "_last")
 

@@ -17,14 +17,10 @@ class ToolFrame:
 
     A context keeps these poses in the base frame, so that looking ahead changes nothing but the state. What
     a network sees of it goes through here first.
-
-    Attributes:
-        chain: the arm.
-        layout: of the contexts, with the feature `OBJECTS_IN_TOOL`.
     """
 
     chain: Chain
-    layout: ContextLayout
+    layout: ContextLayout  # of the contexts, with the feature `OBJECTS_IN_TOOL`
 
     def apply(self, context: FloatArray) -> FloatArray:
         """Contexts (..., c) with the poses of the feature in the tool's frame, (..., c)."""

@@ -16,12 +16,7 @@ from latentarm.robots.kinematics.torch_chain import TorchChain
 
 @final
 class TorchToolContexts:
-    """The map from contexts to observations ``[c, x, J_w, G^-1 J_w^T]``, as `ToolContexts` computes it.
-
-    Args:
-        contexts: the map in NumPy.
-        dtype: of all tensors.
-    """
+    """The map from contexts to observations ``[c, x, J_w, G^-1 J_w^T]``, as `ToolContexts` computes it."""
 
     def __init__(self, contexts: ToolContexts, dtype: torch.dtype) -> None:
         def tensor(values: FloatArray) -> Tensor:

@@ -54,19 +54,12 @@ class TrainingConfig:
 
 @dataclass(frozen=True)
 class TrainingResult:
-    """The best weights of every seed.
+    """The best weights of every seed."""
 
-    Attributes:
-        weights: float64 arrays (S, in, out) by name.
-        validation_loss: (S,), the loss that those weights have on the validation pairs.
-        best_epoch: (S,), counted from 1.
-        history: (E, S), validation loss after each epoch.
-    """
-
-    weights: dict[str, FloatArray]
-    validation_loss: FloatArray
-    best_epoch: IntArray
-    history: FloatArray
+    weights: dict[str, FloatArray]  # float64 arrays (S, in, out) by name
+    validation_loss: FloatArray  # (S,), the loss that those weights have on the validation pairs
+    best_epoch: IntArray  # (S,), counted from 1
+    history: FloatArray  # (E, S), validation loss after each epoch
 
     def of_seed(self, index: int) -> "TrainingResult":
         """The result of one of the S seeds, by its index."""
@@ -204,11 +197,7 @@ def validation_loss(
 
 @contextmanager
 def threads_for(work: int) -> Generator[None]:
-    """Use one thread for small steps, where a second costs more than it saves.
-
-    Args:
-        work: hidden units computed per layer and step.
-    """
+    """Use one thread for small steps, where a second costs more than it saves."""
     before = torch.get_num_threads()
     torch.set_num_threads(before if work >= THREADED_WORK else 1)
     try:

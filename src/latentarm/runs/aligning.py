@@ -33,17 +33,10 @@ PROFILE: Final = "profile"
 @final
 @dataclass(frozen=True, eq=False)
 class Alignable:
-    """A run that a person can be asked about.
-
-    Attributes:
-        run: what its folder says.
-        fingerprint: of the model and the seed that decodes.
-        scene: what is asked about.
-        seed: of everything random.
-    """
+    """A run that a person can be asked about."""
 
     run: Run
-    fingerprint: str
+    fingerprint: str  # of the model and the seed that decodes
     scene: Scene
     seed: int
 
@@ -54,9 +47,7 @@ class Learned:
     """What was learned of a person.
 
     Attributes:
-        known: what is known of them.
         fingerprint: of the model and the seed that it is for.
-        seed_index: that seed.
         rows: how far the answers themselves are missed: with the profile, with an affine map, and with z = u.
         about: what the profile's file says besides.
     """
@@ -108,14 +99,7 @@ def alignable(folder: Path, seed_index: int = 0, seed: int = 0, dataset: Path | 
 
 
 def learn(known: Alignable, answers: Answers, name: str, kind: Kind) -> Learned:
-    """Learn a person's alignment from their answers.
-
-    Args:
-        known: what they were asked about.
-        answers: theirs.
-        name: of the person.
-        kind: of person.
-    """
+    """Learn a person's alignment from their answers."""
     scene = known.scene
     decoder = scene.model.decoder(scene.seed_index)
     tool_space = scene.learn(answers)

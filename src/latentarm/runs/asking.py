@@ -81,12 +81,7 @@ FASTEST: Final = 0.99
 
 @final
 class SimulatedPerson(Person):
-    """Answers by a stated preference, and says so.
-
-    Args:
-        preference: what they mean.
-        say: shows a line.
-    """
+    """Answers by a stated preference, and says so."""
 
     def __init__(self, preference: Preference, say: Say) -> None:
         self._preference = preference
@@ -113,7 +108,6 @@ class PersonAtTerminal(Person):
     """Is shown each motion as numbers and as a small figure, and answers with a line or the arrow keys.
 
     Args:
-        say: shows text.
         read: the next line, as `parse` takes it.
     """
 

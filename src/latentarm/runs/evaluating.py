@@ -68,7 +68,6 @@ class Evaluation:
         rows: mean and SD over the run's seeds on its own split; where it was refitted on folds, the same with
             the condition `OVER_FOLDS`: mean over folds of the mean over seeds, and SD over folds.
         found: thresholds that it misses, judged over folds where there are some.
-        advice: what to do next.
         missing: one sentence on what could not be measured; "" if nothing is missing.
     """
 
@@ -174,19 +173,12 @@ def findings_row(evaluation: Evaluation) -> Row:
 
 @dataclass(frozen=True, eq=False)
 class _Measured:
-    """A run on its own split, and what is drawn of it.
-
-    Attributes:
-        figures: measured.
-        probe: on what.
-        starts: (N, c), contexts from which the effects of the axes are drawn.
-        path: (T, n), an episode to draw behind them, rad, or None.
-    """
+    """A run on its own split, and what is drawn of it."""
 
     figures: Figures
     probe: Probe
-    starts: FloatArray
-    path: FloatArray | None = None
+    starts: FloatArray  # (N, c), contexts from which the effects of the axes are drawn
+    path: FloatArray | None = None  # (T, n), an episode to draw behind them, rad, or None
 
 
 def _measure_all(
@@ -208,21 +200,12 @@ def _measure_kept(model: LatentActionModel, probe: Probe, robot: Robot) -> _Meas
 
 @dataclass(frozen=True, eq=False)
 class _FoldCell:
-    """The model of a run, to be fitted anew with other episodes held out.
-
-    Attributes:
-        run: whose model it is.
-        model: for its parameters.
-        demonstrations: the run's dataset.
-        index: number of the fold; the run's own split is 0.
-        held_out: episodes that nothing is fitted to.
-        seed: of the noise on held-out states.
-    """
+    """The model of a run, to be fitted anew with other episodes held out."""
 
     run: Run
     model: LatentActionModel
-    demonstrations: Demonstrations
-    index: int
+    demonstrations: Demonstrations  # the run's dataset
+    index: int  # number of the fold; the run's own split is 0
     held_out: tuple[int, ...]
     seed: int
 

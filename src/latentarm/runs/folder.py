@@ -42,9 +42,7 @@ class Run:
     """A trained run, without its weights.
 
     Attributes:
-        folder: the run folder.
         demonstrations: where the dataset was that the model was trained on.
-        held_out: episodes that neither trained nor stopped it.
         model: the model's name.
         context: the features that its decoder sees, in order.
         robot: name or model file of the robot, or "" where it is unknown.
@@ -54,7 +52,6 @@ class Run:
         robot_model: name of the copy of the robot's model file in the folder `ROBOT`; None for a robot of the
             catalogue, and where no copy was kept.
         task: the task that it was trained for; None in older runs, which kept none.
-        goals: of the dataset.
         routes: the ways of the held-out episodes, see `latentarm.tasks.replay.routes_of`; None where the run
             does not keep them.
         open_at: what the gripper does along them, see `latentarm.tasks.replay.GripperRoutes`; empty where the

@@ -21,22 +21,13 @@ Reply = FloatArray | Literal["back"] | None
 @final
 @dataclass(frozen=True, eq=False)
 class Question:
-    """One motion, and what a person sees of it.
+    """One motion, and what a person sees of it."""
 
-    Attributes:
-        number: counted from 1.
-        total: how many there may be.
-        motion: one motion.
-        chain: the arm.
-        reach_m: the longest way of a tool in any motion, m.
-        axes: d, numbers that the answer has.
-    """
-
-    number: int
-    total: int
+    number: int  # counted from 1
+    total: int  # how many there may be
     motion: Motions
     chain: Chain
-    reach_m: float
+    reach_m: float  # the longest way of a tool in any motion, m
     axes: int
 
 

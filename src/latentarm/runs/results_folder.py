@@ -26,19 +26,12 @@ SHORT: Final = 40
 
 @dataclass(frozen=True)
 class ResultsFolder:
-    """The folder of a study, or of a command with results of its own.
+    """The folder of a study, or of a command with results of its own."""
 
-    Attributes:
-        name: as in `CONFIG` and in every row of ``results.json``.
-        made: every file that it may write, beside `CONFIG`.
-        kept: folders of finished parts, which a further run goes on from.
-        grows: keys of what was asked for that may differ in a run that goes on.
-    """
-
-    name: str
-    made: tuple[str, ...]
-    kept: tuple[str, ...] = ()
-    grows: tuple[str, ...] = ()
+    name: str  # as in `CONFIG` and in every row of ``results.json``
+    made: tuple[str, ...]  # every file that it may write, beside `CONFIG`
+    kept: tuple[str, ...] = ()  # folders of finished parts, which a further run goes on from
+    grows: tuple[str, ...] = ()  # keys of what was asked for that may differ in a run that goes on
 
     def claim(self, out: Path, about: Mapping[str, object]) -> None:
         """Make room for a new run: one that asked for the same is replaced, anything else is left alone.

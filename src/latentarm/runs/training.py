@@ -44,25 +44,15 @@ HOLD_OUT_STREAM = 1
 
 @dataclass(frozen=True)
 class Training:
-    """The result of a training.
+    """The result of a training."""
 
-    Attributes:
-        rows: the normalised loss on the validation episodes: mean and SD over seeds.
-        episodes: of the dataset.
-        import_warnings: what importing the dataset warned of.
-    """
-
-    rows: list[Row]
+    rows: list[Row]  # the normalised loss on the validation episodes: mean and SD over seeds
     episodes: int
     import_warnings: list[str]
 
 
 def train_run(options: TrainOptions, report: Report | None = None) -> Training:
     """Train a model on a dataset and write its run folder.
-
-    Args:
-        options: what was asked for.
-        report: called after each epoch.
 
     Raises:
         UserError: the dataset cannot be read or lacks what is asked for, the folder holds a run

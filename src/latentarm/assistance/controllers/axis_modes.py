@@ -18,7 +18,6 @@ class AxisModes:
     """Which axes of the end-effector the person's inputs drive in each mode.
 
     Attributes:
-        names: of the modes.
         axes: for each mode, the row of the twist (x, y, z, roll, pitch, yaw) that each of the d input axes
             drives.
 
@@ -67,7 +66,6 @@ class AxisController(Controller, ABC):
     """Turns an input into the twist that its mode asks of the tool; subclasses say how the joints follow.
 
     Args:
-        robot: the arm; its first tool is driven.
         linear_speed: of a full input along an axis, m/s.
         angular_speed: of a full input about an axis, rad/s.
         modes: which axes the inputs drive in each mode.

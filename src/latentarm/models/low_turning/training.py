@@ -98,15 +98,10 @@ class LowTurning(NeuralModel):
 
 
 class _Curves(NamedTuple):
-    """The curve of directions in each of B contexts, which come last: many small matrices are fast only so.
+    """The curve of directions in each of B contexts, which come last: many small matrices are fast only so."""
 
-    Attributes:
-        columns: (S, q, m, B), M_1(c), M_3(c), ... side by side; q = (1 + orders) d.
-        jacobian: (S, 6 k, m, B), from joint velocities to the tools' weighted twists.
-    """
-
-    columns: Tensor
-    jacobian: Tensor
+    columns: Tensor  # (S, q, m, B), M_1(c), M_3(c), ... side by side; q = (1 + orders) d.
+    jacobian: Tensor  # (S, 6 k, m, B), from joint velocities to the tools' weighted twists
 
     def split(self, pairs: int) -> "tuple[_Curves, _Curves]":
         """The first B contexts and the others."""

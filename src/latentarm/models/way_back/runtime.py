@@ -60,10 +60,6 @@ class PullContexts:
 
     Poses of things come twice: (..., K, 9) in the base frame, then positions (..., K, 3) and columns of
     rotations (..., K, 6) in that of the first tool.
-
-    Args:
-        geometry: of the arm.
-        layout: of the contexts.
     """
 
     def __init__(self, geometry: ToolGeometry, layout: ContextLayout) -> None:

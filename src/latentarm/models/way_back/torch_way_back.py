@@ -20,13 +20,7 @@ if TYPE_CHECKING:
 
 @final
 class TorchWayBack:
-    """The way back of one seed, as `WayBack` computes it, in two steps like `TorchDecoder`.
-
-    Args:
-        trained: the model, which has one.
-        seed: index of the seed.
-        dtype: of all tensors.
-    """
+    """The way back of one seed, as `WayBack` computes it, in two steps like `TorchDecoder`."""
 
     def __init__(self, trained: "TrainedModel", seed: int, dtype: torch.dtype) -> None:
         def tensor(values: FloatArray) -> Tensor:

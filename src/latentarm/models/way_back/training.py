@@ -58,17 +58,11 @@ class NoWayBackWarning(UserWarning):
 @final
 @dataclass(frozen=True, eq=False)
 class Displaced:
-    """Displaced states.
+    """Displaced states."""
 
-    Attributes:
-        context: (N, c), there.
-        way: (N, m), from there to where they were, rad.
-        scale: (N, 1), how far they were displaced, as a share of the largest standard deviation.
-    """
-
-    context: FloatArray
-    way: FloatArray
-    scale: FloatArray
+    context: FloatArray  # (N, c), there
+    way: FloatArray  # (N, m), from there to where they were, rad
+    scale: FloatArray  # (N, 1), how far they were displaced, as a share of the largest standard deviation
 
 
 def displaced(
