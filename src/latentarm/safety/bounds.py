@@ -28,17 +28,10 @@ MAY_BEND_M = 1e-6
 
 @final
 class Bounds:
-    """Limits in joint space, and the times that follow from them.
-
-    Args:
-        config: what the person set.
-        robot: whose hardware limits hold.
-        dt_s: the loop's period, s.
+    """Limits in joint space of one robot, and the times that follow from them and the loop's period, s.
 
     Attributes:
-        config: as given.
-        dt_s: as given.
-        dof: number of joints n.
+        dof: n.
         speed: (n,), largest speed of each joint, rad/s; that of links, m/s, where a joint slides.
         slowest: the smallest of these.
         lower: (n,), lowest joint position, margin taken off, rad.

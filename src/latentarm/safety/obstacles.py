@@ -39,11 +39,7 @@ def checked_obstacle(obstacle: object) -> Obstacle:
 
 
 def checked_shape(obstacle: Obstacle, what: str) -> Obstacle:
-    """The shape with float arrays, validated.
-
-    Args:
-        obstacle: any of the shapes, whatever it stands for.
-        what: what messages call it, the subject of a sentence.
+    """The shape with float arrays, validated; ``what`` is the subject of the messages.
 
     Raises:
         UserError: as for `checked_obstacle`.

@@ -29,7 +29,7 @@ class Zone:
     slab over the table's top) and ``self`` (the person's body or wheelchair).
 
     Attributes:
-        shape: the solid, in the base frame, and the zone's name.
+        shape: the solid, in the base frame, with the zone's name.
         speed: the largest speed of any point of a part that reaches into the zone, m/s.
 
     Raises:
@@ -61,14 +61,10 @@ class Zone:
 
 
 def check_name(name: str, what: str) -> None:
-    """Refuse a name that a page could not list.
-
-    Args:
-        name: of a zone.
-        what: what messages call it, the subject of a sentence.
+    """Refuse a name that a page could not list; ``what`` is the subject of the message.
 
     Raises:
-        UserError: it has commas, spaces around it, or what cannot be shown.
+        UserError: it has commas, spaces around it, or characters that cannot be shown.
     """
     if "," in name or clean_name(name) != name:
         raise UserError(f"{what} needs another name: without commas, and without spaces around it.")
@@ -95,18 +91,10 @@ def checked_zones(value: object) -> tuple[Zone, ...]:
 
 
 def zone_filter_name(zone: str) -> str:
-    """What a zone's filter is called among those that limit a command.
-
-    Args:
-        zone: the zone's name.
-    """
+    """The name of a zone's filter among those that limit a command."""
     return f"{_FILTER}{zone}"
 
 
 def zone_of_filter(name: str) -> str | None:
-    """The zone's name, or None where a filter is not a zone's.
-
-    Args:
-        name: of a filter.
-    """
+    """The zone's name, or None where a filter is not a zone's."""
     return name.removeprefix(_FILTER) if name.startswith(_FILTER) else None

@@ -105,7 +105,7 @@ class Isometric(NeuralModel):
 
 
 class _Gain(NamedTuple):
-    """How fast the tools move for a push of r, in normalised units: ``g(r) = tanh(kappa r) / tanh(kappa)``."""
+    """Speed of the tools for a push of r, in normalised units: ``g(r) = tanh(kappa r) / tanh(kappa)``."""
 
     saturation: Tensor  # (S, 1, 1), kappa
 

@@ -98,7 +98,7 @@ class LowTurning(NeuralModel):
 
 
 class _Curves(NamedTuple):
-    """The curve of directions in each of B contexts, which come last: many small matrices are fast only so."""
+    """Curves of directions in B contexts, which come last: many small matrices are fast only so."""
 
     columns: Tensor  # (S, q, m, B), M_1(c), M_3(c), ... side by side; q = (1 + orders) d.
     jacobian: Tensor  # (S, 6 k, m, B), from joint velocities to the tools' weighted twists

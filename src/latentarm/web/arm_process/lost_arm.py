@@ -3,7 +3,7 @@
 from typing import Literal, final
 
 from latentarm.arms.contract import Arm, ArmStatus
-from latentarm.control.arm_stops import stop_of
+from latentarm.control.engagement import stop_of
 from latentarm.core.untrusted.terminal import one_line
 from latentarm.web.protocol.notice import Notice, notice_of_stop
 
