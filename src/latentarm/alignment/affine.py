@@ -24,17 +24,9 @@ class AffineAlignment:
 
 
 def fit_affine(model: LatentActionModel, answers: Answers, seed_index: int = 0) -> AffineAlignment:
-    """The affine map that best fits the answers to the encoded motions.
+    """The affine map that best fits the answers to the encoded motions; the smallest of several.
 
-    If several fit equally well, as with fewer answers than d + 1, the smallest.
-
-    Args:
-        model: a fitted model.
-        answers: motions, and the inputs that were meant for them.
-        seed_index: which of the model's seeds encodes.
-
-    Raises:
-        UserError: the model is not fitted, has no such seed, or the answers do not fit it.
+    Raises UserError where the model is not fitted, has no such seed, or the answers do not fit it.
     """
     model.decoder(seed_index)  # refuses a seed that is not there
     z = model.encode(answers.motions.context, answers.motions.action)[seed_index]

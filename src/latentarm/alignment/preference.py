@@ -1,4 +1,4 @@
-"""What a simulated person means by the axes of the stick."""
+"""Simulated people's meanings of the axes of the stick."""
 
 import math
 from collections.abc import Callable
@@ -73,7 +73,7 @@ class HeightAndTilt:
         _check_speed(self.turn_rad_s, "rad/s")
 
     def inputs(self, motions: Motions) -> FloatArray:
-        """The inputs (N, 2) by which they would ask for N motions."""
+        """The inputs (N, d) by which they would ask for N motions."""
         change = pose_error(self.chain.forward(motions.start), self.chain.forward(motions.end))
         wanted = change[:, [2, 3]] / (np.array([self.speed_m_s, self.turn_rad_s]) * motions.duration_s)
         return np.clip(wanted, -1.0, 1.0)
@@ -86,8 +86,8 @@ class ByPlace:
 
     chain: Chain  # the arm; its first tool is looked at
     is_there: Callable[[FloatArray], BoolArray]  # whether places (N, 3), m, are the place, (N,)
-    there: Preference  # what they mean where a motion begins there
-    elsewhere: Preference  # what they mean where it does not
+    there: Preference  # for motions that begin there
+    elsewhere: Preference
 
     def inputs(self, motions: Motions) -> FloatArray:
         """The inputs (N, d) by which they would ask for N motions."""
@@ -115,17 +115,12 @@ class Imprecise:
             )
 
     def inputs(self, motions: Motions) -> FloatArray:
-        """The inputs (N, d) by which they ask for N motions this time."""
+        """The inputs (N, d) by which they would ask for N motions."""
         meant = self.preference.inputs(motions)
         pushed = meant * (1.0 + self.variation * self.rng.normal(size=meant.shape))
         return np.clip(pushed, -1.0, 1.0)
 
 
 def _check_speed(speed: float, unit: str) -> None:
-    """Check a speed.
-
-    Raises:
-        UserError: it is not positive or not finite.
-    """
     if not (math.isfinite(speed) and speed > 0):
         raise UserError(f"The simulated person's speed must be positive, not {speed:g} {unit}.")

@@ -34,7 +34,7 @@ Where = Literal["demonstrated", "any_belief", "anywhere"]
 
 
 def goal_probabilities(progress: Tensor, sharpness: float = 4.0, least_progress: float = 0.5) -> Tensor:
-    """``p_c(g)``: how much of what a person can do conveys each goal (equation 15).
+    """``p_c(g)``: how much of a person's possible actions conveys each goal (equation 15).
 
     The paper leaves the score open. Here it is::
 
@@ -45,13 +45,8 @@ def goal_probabilities(progress: Tensor, sharpness: float = 4.0, least_progress:
     input makes more progress towards it than rho_0. Without it (rho_0 = -inf; equation 15 to the letter) a
     decoder that hardly moves towards any goal has the highest entropy of all.
 
-    Args:
-        progress: (..., K, G), speed towards each goal for K inputs, in units of the demonstrated speed.
-        sharpness: kappa.
-        least_progress: rho_0, of the demonstrated speed.
-
-    Returns:
-        (..., G), at least 0; with what conveys no goal they sum to one.
+    ``progress`` (..., K, G) is the speed towards each goal for K inputs, and ``least_progress`` is rho_0,
+    both in units of the demonstrated speed; ``sharpness`` is kappa.
     """
     return _log_probabilities(progress, sharpness, least_progress).exp()
 
@@ -64,21 +59,12 @@ def entropy_over_goals(probabilities: Tensor) -> Tensor:
 def goal_progress(
     state: Tensor, actions: Tensor, goals: Tensor, speed: float, chain: TorchChain | None = None
 ) -> Tensor:
-    """Progress towards each goal, in units of the demonstrated speed.
+    """Progress (..., K, G) towards goals (G, n), rad, in units of the demonstrated speed, rad/s.
 
-    That of the joints or, where the arm is known, of joints or tool, whichever is less: people see the
-    tool (equation 24), and a redundant arm can bring its joints nearer to a goal while the tool goes away.
-    The tool's is in units of the speed that it has when the joints go straight to the goal.
-
-    Args:
-        state: (..., n), rad.
-        actions: (..., K, n), rad/s.
-        goals: (G, n), rad.
-        speed: the demonstrated ‖a‖, rad/s.
-        chain: the arm's kinematics.
-
-    Returns:
-        (..., K, G).
+    Actions are (..., K, n), rad/s, in states (..., n), rad. Progress is that of the joints or, where the arm
+    is known, of joints or tool, whichever is less: people see the tool (equation 24), and a redundant arm can
+    bring its joints nearer to a goal while the tool goes away. The tool's is in units of the speed that it
+    has when the joints go straight to the goal.
     """
     towards = _direction(goals - state[..., None, :], NEAR_RAD)
     progress = actions @ towards.mT / speed

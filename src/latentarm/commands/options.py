@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from tyro.conf import arg
 
-from latentarm.alignment.seat import Seat
+from latentarm.alignment.contract import Seat
 from latentarm.arms.catalogue import ARMS
 from latentarm.runs.options import EndEffector as EndEffector
 from latentarm.runs.options import Jobs as Jobs

@@ -67,17 +67,7 @@ def approach(
     config: SolverConfig,
     tools: Sequence[int] = (0,),
 ) -> Approach:
-    """Drive from every start towards its target with every decoder; see the module's text.
-
-    Args:
-        decoders: S decoders.
-        start: (P, c), contexts; their first entries are the state, rad.
-        target: where each drive leads.
-        chain: the robot's forward kinematics.
-        step_s: dt of the transition, s.
-        config: the solver's settings.
-        tools: the T end-effectors.
-    """
+    """Drive from every start (P, c) towards its target with every decoder; see the module's text."""
     drives = [_drive(_Problem(decoder, target, chain, tools, step_s, config), start) for decoder in decoders]
     distance, context, path, straight, latent = (np.stack(part) for part in zip(*drives, strict=True))
     return Approach(distance_m=distance, context=context, path_m=path, straight_m=straight, latent=latent)
@@ -126,7 +116,7 @@ class _Problem:
 
 
 def _drive(problem: _Problem, start: FloatArray) -> tuple[FloatArray, ...]:
-    """What `Approach` says of one seed: distance, context, path, straight way and choices of P drives."""
+    """The arrays of `Approach` for one seed: distance, context, path, straight way and choices."""
     config, target, dof = problem.config, problem.target.places, _dof(problem.decoder, start)
     first = tool_places(problem.chain, start[:, :dof], problem.tools)
     distance, nearest = mean_distance(first, target), start.copy()

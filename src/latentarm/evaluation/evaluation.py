@@ -154,15 +154,9 @@ class Probe:
 
 
 def take_probe(model: TrainedModel, demonstrations: Demonstrations, held_out: Sequence[int]) -> Probe:
-    """The samples that `measure` takes by default, so that a run can keep them.
+    """The samples that `measure` takes by default, for a run to keep.
 
-    Args:
-        model: says how pairs of contexts and actions are made.
-        demonstrations: the dataset.
-        held_out: indices of the episodes that the model has not seen.
-
-    Raises:
-        UserError: no episode is held out, nothing moves in them, or the contexts lack a feature.
+    Raises UserError as `measure` does, and where nothing moves in the held-out episodes.
     """
     config = EvaluationConfig()
     episodes = moving_episodes(demonstrations, held_out)
@@ -182,12 +176,7 @@ def measure_behaviour(
 ) -> Figures:
     """All measures of `measure` but the errors of reconstruction, which need the demonstrations.
 
-    Args:
-        decoders: S decoders.
-        z: (S, L, d), the inputs whose actions are nearest to the probe's, see `nearest_latents`.
-        probe: what is measured on.
-        robot: the arm.
-        config: how the measures are taken.
+    ``z`` (S, L, d) are the inputs whose actions are nearest to the probe's, see `nearest_latents`.
     """
     config = config or EvaluationConfig()
     figures: dict[str, FloatArray] = {}
@@ -241,7 +230,7 @@ def _measure_accuracy(
     rng: np.random.Generator,
     config: EvaluationConfig,
 ) -> Accuracy:
-    """Reconstruction errors with and without state noise, relative to PCA fitted to what is not held out."""
+    """Reconstruction errors with and without state noise, relative to PCA on the other episodes."""
     noise = model.state_noise_rad if config.state_noise_rad is None else config.state_noise_rad
     trained_on = [index for index in range(len(demonstrations.episodes)) if index not in set(held_out)]
     if not trained_on:

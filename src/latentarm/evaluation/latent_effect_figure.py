@@ -18,10 +18,10 @@ AXIS_COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7")
 HOLD_S = 1.0
 BASE_AXES = "xyz"
 AWAY_M = 0.04
-"""How far from the starts the way back is drawn, m."""
+"""The way back is drawn from this far off the starts, m."""
 
 AROUND = 6
-"""In how many directions."""
+"""Directions in which the way back is drawn."""
 
 
 class LeadsBack(Protocol):
@@ -55,7 +55,7 @@ def latent_effect_figure(
         model: name of the model, for the title.
         demonstrated: (T, 3), places of the tool in a demonstration to draw behind, m, or None.
         tool: which end-effector, where there are several.
-        way_back: where it leads from around the starts is drawn with arrows, None for none.
+        way_back: drawn as arrows around the starts, or None.
     """
     dim = decoder.latent_dim
     ends = np.concatenate([np.eye(dim), -np.eye(dim)])

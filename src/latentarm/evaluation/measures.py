@@ -11,7 +11,7 @@ ARROWS: Final[dict[Better | None, str]] = {"higher": "↑", "lower": "↓", None
 
 @dataclass(frozen=True)
 class Measure:
-    """What a figure means."""
+    """A measure's meaning."""
 
     unit: str  # "1" is a plain number or ratio
     label: str  # as tables call it, without the unit

@@ -14,9 +14,9 @@ class Threshold:
     measure: str  # a name in `latentarm.evaluation.measures.MEASURES`, or of one of its axes
     worst: float  # the figure from which on it is missed
     least: bool  # whether figures below ``worst`` miss it, instead of figures from there on
-    meaning: str  # what it means to a person
-    scale: float = 1.0  # what figures are multiplied by to be shown
-    unit: str = ""  # that follows
+    meaning: str  # in a person's words
+    scale: float = 1.0  # factor for showing figures
+    unit: str = ""  # after a shown figure
 
     def missed_by(self, figure: float) -> bool:
         """Whether a figure misses it."""
@@ -58,11 +58,7 @@ class Finding:
 
 
 def findings(rows: Sequence[Row]) -> list[Finding]:
-    """The thresholds that a model misses, worst kinds first.
-
-    Args:
-        rows: of one model, one per measure; figures that are absent miss nothing.
-    """
+    """The thresholds that the rows of one model miss, worst kinds first; absent figures miss nothing."""
     found = {row.measure: row for row in rows if row.mean is not None}
     missed: list[Finding] = []
     for threshold in THRESHOLDS:
