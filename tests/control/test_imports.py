@@ -2,16 +2,17 @@ import subprocess
 import sys
 from pathlib import Path
 
-import latentarm.control
+import latentarm
 
 HEAVY = ("torch", "mujoco", "mink", "pyarrow", "h5py", "matplotlib", "sklearn", "scipy")
 
 
 def test_the_online_side_loads_neither_torch_nor_a_physics_engine():
-    root = Path(latentarm.control.__file__).parent
+    root = Path(latentarm.__file__).parent
     names = [
-        ".".join(["latentarm.control", *path.relative_to(root).with_suffix("").parts])
-        for path in root.rglob("*.py")
+        ".".join(["latentarm", *path.relative_to(root).with_suffix("").parts])
+        for package in ("control", "safety")
+        for path in (root / package).rglob("*.py")
         if path.name != "__init__.py"
     ]
     assert len(names) > 20

@@ -63,14 +63,7 @@ Backend = Annotated[
 
 @dataclass(frozen=True)
 class StudyOptions:
-    """What every study is asked for; the command line says the same of each field.
-
-    Attributes:
-        seed: of everything random.
-        jobs: processes side by side.
-        backend: where they run.
-        json: print one JSON document.
-    """
+    """Options of every study."""
 
     seed: Seed = 0
     jobs: Jobs = -1

@@ -8,7 +8,6 @@ from typing import Literal, final
 
 from latentarm.core.context import ContextLayout
 from latentarm.core.errors import UserError
-from latentarm.core.style import Look
 from latentarm.core.types import BoolArray, FloatArray, IntArray
 from latentarm.models.enclosure import Enclosure
 from latentarm.models.numpy_networks import network_shapes
@@ -56,10 +55,10 @@ class Runtime(ABC):
         """Joint velocities (..., m), rad/s, of inputs (..., d) in contexts (..., c), which broadcast."""
 
     def enclose(self, context: FloatArray, fineness: int = 1) -> Enclosure | None:
-        """A proven enclosure of what all inputs in [-1, 1]^d together can do in contexts (..., c).
+        """A proven enclosure of the actions of all inputs in [-1, 1]^d in contexts (..., c).
 
-        None where none is proven, as here: then nothing is claimed about how far help constrains the arm.
-        A finer one is tighter and takes longer; ``fineness`` is 1 for a control loop.
+        None where none is proven, as here: then nothing is claimed about how far help constrains the arm. A
+        finer one is tighter and takes longer; ``fineness`` is 1 for a control loop.
         """
         return None
 
@@ -71,7 +70,7 @@ class ModelKind:
 
     Attributes:
         name: on disk, on the command line and in results.
-        look: how figures draw it, and its name there.
+        label: its name in figures and tables.
         estimator: the class that trains it, a `LatentActionModel`, as ``package.module:Class``. It is
             imported when a model is trained, so that running one needs no torch.
         runtime: the decoder in NumPy.
@@ -92,7 +91,7 @@ class ModelKind:
     """
 
     name: str
-    look: Look
+    label: str
     estimator: str
     runtime: type[Runtime]
     decoder: Callable[[Dimensions], Mapping[str, Shape]]
@@ -165,38 +164,34 @@ class TrainedModel:
     """The result of a fit as plain arrays, which is saved, loaded and run."""
 
     kind: ModelKind
-    parameters: Mapping[str, object]  # what the model was constructed with, as JSON values
+    parameters: Mapping[str, object]  # constructor's arguments, as JSON values
     dimensions: Dimensions
     layout: ContextLayout
-    tensors: Mapping[str, FloatArray]  # float64 arrays by name, as `ModelKind.tensor_shapes` lists them
+    tensors: Mapping[str, FloatArray]  # float64 arrays by name, see `ModelKind.tensor_shapes`
     summary: TrainingSummary
 
     @property
     def frame(self) -> ToolFrame | None:
-        """What turns poses in contexts into the frame of the arm's tool; None where that is not asked for."""
+        """Turns poses in contexts into the frame of the arm's tool; None where no feature asks for it."""
         return ToolFrame(chain_of_tensors(self.tensors), self.layout) if self.layout.sees_tool_frame else None
 
     @property
     def contexts(self) -> Normaliser | ToolContexts:
-        """The map from contexts (..., c), after `frame` if there is one, to what the networks see."""
+        """The map from contexts (..., c), after `frame` if there is one, to the networks' inputs."""
         if self.kind.sees_tools:
             return self.tool_contexts
         return Normaliser(self.tensors["context.centre"], self.tensors["context.scale"])
 
     @cached_property
     def geometry(self) -> ToolGeometry:
-        """The geometry of the arm, which all that decodes shares."""
+        """The geometry of the arm, shared by all parts of a decoder."""
         if self.kind.sees_tools:
             return self.tool_contexts.geometry
         return ToolGeometry(chain_of_tensors(self.tensors))
 
     @cached_property
     def tool_contexts(self) -> ToolContexts:
-        """`contexts` of a model that looks at the tools.
-
-        Raises:
-            UserError: it does not.
-        """
+        """`contexts` of a model that looks at the tools; UserError where it does not."""
         if self.kind.damping_m2 is None:
             raise UserError(f"A {self.kind.name} model does not look at the arm's tools.")
         return ToolContexts.of_tensors(self.tensors, self.kind.damping_m2)
@@ -213,11 +208,7 @@ class TrainedModel:
         return Normaliser(self.tensors["latent.centre"][:, None], self.tensors["latent.scale"][:, None])
 
     def check_seed_index(self, seed: int) -> None:
-        """Check that the model has this seed index.
-
-        Raises:
-            UserError: ``seed`` is not within 0..S-1.
-        """
+        """Raise a UserError unless ``seed`` is within 0..S-1."""
         if not 0 <= seed < self.dimensions.seeds:
             raise UserError(
                 f"This model has no seed index {seed}: it was trained with {self.dimensions.seeds} "

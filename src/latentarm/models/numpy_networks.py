@@ -1,4 +1,4 @@
-"""Small networks as the control loop runs them: one seed, NumPy only, with scalings folded in."""
+"""Small networks in the control loop: one seed, NumPy only, with scalings folded in."""
 
 from collections.abc import Mapping, Sequence
 from itertools import pairwise

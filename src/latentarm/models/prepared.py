@@ -18,13 +18,13 @@ from latentarm.models.tool_frame import ToolFrame
 from latentarm.robots.kinematics.chain import Chain
 
 AHEAD_S: Final = 0.1
-"""How far ahead models look (those that do), s: as long as a short press of the stick."""
+"""Models that look ahead look this far, s: as long as a short press of the stick."""
 
 
 @final
 @dataclass(frozen=True)
 class Preparation:
-    """What a model asks of its data."""
+    """A model's demands on its data."""
 
     damping_m2: float | None  # see `ModelKind.damping_m2`
     looks_ahead: bool  # whether its loss looks at the context that an action leads to within `AHEAD_S`
@@ -37,7 +37,7 @@ class Prepared:
     """One data set, ready for training."""
 
     data: TrainingData
-    frame: ToolFrame | None  # turns poses in contexts into the tool's frame; None where that is not asked for
+    frame: ToolFrame | None  # turns poses in contexts into the tool's frame, where a feature asks for it
     contexts: Normaliser | ToolContexts  # from contexts, after ``frame``, to those of ``data``
     layout: ContextLayout
     actions: Normaliser  # from actions in rad/s to those of ``data``
@@ -59,16 +59,7 @@ def prepare(
 ) -> Prepared:
     """Split pairs by episode and normalise them by the training episodes alone.
 
-    Args:
-        asked: what the model asks of its data.
-        pairs: of all episodes.
-        layout: of their contexts.
-        validation: indices of the episodes that decide when training stops.
-        arm: the arm's kinematics, for models or contexts that look at the tools.
-        term: is minimised together with the model's own loss.
-
-    Raises:
-        UserError: on one side of the split nothing moves, or every action is zero.
+    Raises UserError where nothing moves on one side of the split, or every action is zero.
     """
     outside = np.isin(pairs.episode, validation)
     if outside.all() or not outside.any():

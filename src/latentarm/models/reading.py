@@ -22,15 +22,7 @@ class Section:
 
     @staticmethod
     def of_file(path: Path, limit: int) -> "Section":
-        """The object that a file consists of.
-
-        Args:
-            path: a JSON file.
-            limit: bytes that it may have at most.
-
-        Raises:
-            UserError: see `read_object`.
-        """
+        """The object of a JSON file of at most ``limit`` bytes; UserError as in `read_object`."""
         return Section(str(path), read_object(path, limit))
 
     def section(self, key: str) -> "Section":

@@ -32,7 +32,7 @@ class UnreplayableError(Exception):
 
 
 class _Call(NamedTuple):
-    """One operation as it ran."""
+    """One operation of torch, with its arguments and result."""
 
     operation: Operation
     args: tuple[Any, ...]
@@ -50,7 +50,7 @@ class _Call(NamedTuple):
 
 @final
 class _Recorder(TorchDispatchMode):
-    """Runs operations and takes them down."""
+    """Runs operations and records them."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -214,8 +214,7 @@ def _placed(
 ) -> list[tuple[Operation, tuple[Any, ...], Mapping[str, Any], Any]]:
     """The calls with their intermediate results in memory that later results use again.
 
-    Returns:
-        Operation, arguments, named arguments, and where its result has still to be copied to, if anywhere.
+    Each is an operation, its arguments, and the place that its result must be copied to, if any.
     """
     homes = dict(_homes(calls, device))
 

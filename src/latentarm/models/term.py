@@ -16,18 +16,12 @@ from latentarm.models.scaling import Normaliser
 @final
 @dataclass(frozen=True, eq=False)
 class Situation:
-    """E contexts during training, and the actions of the S decoders for any input there.
+    """E contexts during training, and the actions of the S decoders for any input there."""
 
-    Attributes:
-        state: (S, E, n), rad.
-        action_of: inputs (K, d), in [-1, 1], to the actions (S, E, K, m) that they would cause, rad/s.
-        speed: root mean square of the demonstrated ‖a‖, rad/s.
-    """
-
-    state: Tensor
-    action_of: Callable[[Tensor], Tensor]
-    speed: float
-    axes: int
+    state: Tensor  # (S, E, n), rad
+    action_of: Callable[[Tensor], Tensor]  # inputs (K, d) in [-1, 1] to actions (S, E, K, m), rad/s
+    speed: float  # root mean square of the demonstrated ‖a‖, rad/s
+    axes: int  # d
 
 
 class LossTerm(ABC):
@@ -36,24 +30,18 @@ class LossTerm(ABC):
     @property
     @abstractmethod
     def settings(self) -> Mapping[str, object]:
-        """All that the term depends on, as JSON values: a checkpoint of other settings is refused."""
+        """All parameters of the term, as JSON values: a checkpoint of other settings is refused."""
 
     @abstractmethod
     def contexts(self, demonstrated: FloatArray, joints: int, rng: np.random.Generator) -> FloatArray:
-        """Contexts that training draws from for this term.
+        """Contexts (M, c) that training draws from for this term, from those of the training pairs (N, c).
 
-        Args:
-            demonstrated: (N, c), contexts of the training pairs.
-            joints: n; the first n entries of a context are the state, rad.
-            rng: source of all variation.
-
-        Returns:
-            (M, c), at least one.
+        The first ``joints`` entries of a context are the state, rad.
         """
 
     @abstractmethod
     def __call__(self, situation: Situation) -> Tensor:
-        """What is to be minimised, (S,)."""
+        """The loss (S,)."""
 
 
 @final
@@ -62,18 +50,15 @@ class ScaledTerm:
     """A term, with the normalisers of one training."""
 
     term: LossTerm
-    contexts: Normaliser  # normalises the first c entries of what a network sees
+    contexts: Normaliser  # of the first c entries of a network's input
     actions: Normaliser
     joints: int
     speed: float  # root mean square of the demonstrated ‖a‖, rad/s
 
     def loss(self, decode: Callable[[Tensor, Tensor], Tensor], context: Tensor, span: "Span") -> Tensor:
-        """The term, (S,).
+        """The term (S,) in contexts (S, E, c'), as the networks see them.
 
-        Args:
-            decode: latents (S, B, d) in contexts (S, B, c') to normalised actions (S, B, m).
-            context: (S, E, c'), as the networks see them.
-            span: the latent actions that inputs will stand for.
+        ``decode`` maps latents (S, B, d) in contexts (S, B, c') to normalised actions (S, B, m).
         """
 
         def constant(values: FloatArray) -> Tensor:

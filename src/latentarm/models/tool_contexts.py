@@ -19,7 +19,7 @@ TWIST: Final = 6
 """Entries of a tool's twist: 3 of velocity, 3 of angular velocity."""
 
 PLACE: Final = 9
-"""Numbers that tell a network where a tool is: its position and the first two columns of its rotation."""
+"""Numbers of a tool's place: its position and the first two columns of its rotation."""
 
 ROTATION_WEIGHT_M: Final = 0.05
 """Weight of a tool's turn by 1 rad relative to a motion by 1 m. Low, so that directions of z differ mainly in
@@ -38,7 +38,7 @@ def tool_shapes(tools: int) -> dict[str, tuple[int, ...]]:
 @final
 @dataclass(frozen=True)
 class ToolSizes:
-    """Where the parts of an observation lie along its last axis."""
+    """The places of the parts of an observation along its last axis."""
 
     context: int  # c
     joints: int  # n
@@ -46,7 +46,7 @@ class ToolSizes:
 
     @property
     def seen(self) -> int:
-        """What the network sees: the context and the tools' places."""
+        """Entries of the network's input: the context and the tools' places."""
         return self.context + PLACE * self.tools
 
     @property
@@ -94,11 +94,7 @@ class ToolContexts:
 
     @staticmethod
     def of_tensors(tensors: Mapping[str, FloatArray], damping: float) -> "ToolContexts":
-        """The map that `tensors` gave, in the metric of a damping, m^2/rad^2.
-
-        Raises:
-            UserError: it measures in another metric than this version.
-        """
+        """The map that `tensors` gave; UserError where it measures in another metric than this version."""
         weight, damped = tensors["metric.scale"]
         if (weight, damped) != (ROTATION_WEIGHT_M, damping):
             raise UserError(
@@ -115,7 +111,7 @@ class ToolContexts:
         )
 
     def tensors(self) -> dict[str, FloatArray]:
-        """Everything that the map consists of, as float64 arrays by name."""
+        """The map as float64 arrays by name."""
         return {
             **self.contexts.tensors(),
             "place.centre": self.places.centre,
@@ -130,14 +126,7 @@ class ToolContexts:
         return ToolSizes(len(self.contexts.centre), self.chain.dof, len(self.chain.tools))
 
     def apply(self, context: FloatArray) -> FloatArray:
-        """Observe contexts.
-
-        Args:
-            context: (..., c).
-
-        Returns:
-            (..., c + 9 k + 12 k n), laid out as in `ToolSizes`.
-        """
+        """Observations (..., c + 9 k + 12 k n) of contexts (..., c), laid out as in `ToolSizes`."""
         sizes = self.sizes
         places, jacobian = self.geometry(context[..., : sizes.joints])
         metric = jacobian.mT @ jacobian + self.damping * np.eye(sizes.joints)
@@ -165,9 +154,7 @@ class ToolContexts:
     def action_normaliser(self, context: FloatArray, action: FloatArray) -> Normaliser:
         """One scale for all joints, so that the fastest tools, outliers aside, have the speed 1.
 
-        Args:
-            context: (N, c).
-            action: (N, n), rad/s, not all zero.
+        From contexts (N, c) and actions (N, n), rad/s, not all zero.
         """
         jacobian = self.apply(context)[:, self.sizes.jacobian].reshape(len(context), -1, self.sizes.joints)
         twist = np.matvec(jacobian, action)

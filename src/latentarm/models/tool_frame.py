@@ -15,8 +15,8 @@ from latentarm.robots.kinematics.chain import Chain
 class ToolFrame:
     """Turns the poses of one feature of a context from the base frame into that of the arm's first tool.
 
-    A context keeps these poses in the base frame, so that looking ahead changes nothing but the state. What
-    a network sees of it goes through here first.
+    A context keeps these poses in the base frame, so that looking ahead changes nothing but the state. A
+    network gets them through here.
     """
 
     chain: Chain

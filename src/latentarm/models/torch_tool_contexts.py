@@ -1,6 +1,6 @@
 """`ToolContexts` and the metric of the tools in torch, differentiable with respect to the state.
 
-Joint velocities a come with their weighted twists J_w a, as `latentarm.models.tool_contexts` has them; then
+Joint velocities a come with their weighted twists J_w a of `latentarm.models.tool_contexts`; then
 ``a^T G b = (J_w a)^T (J_w b) + damping a^T b``, and G itself is never needed.
 """
 

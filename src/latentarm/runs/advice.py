@@ -1,4 +1,4 @@
-"""Which model to try next, and why; docs/models.md has the measurements behind it."""
+"""Advice on the next model to try; docs/models.md has the measurements behind it."""
 
 from typing import Final
 
@@ -9,7 +9,7 @@ FEW_EPISODES: Final = 20
 
 
 def model_advice(model: str, episodes: int) -> str:
-    """What to try besides the model that was trained; "" where nothing is known."""
+    """Advice on models besides the trained one; "" where there is none."""
     said = [KINDS[model].advice] if KINDS[model].advice else []
     if episodes <= FEW_EPISODES:
         said.append(f"{episodes} episodes are few: `latentarm evaluate` holds each of them out in turn.")

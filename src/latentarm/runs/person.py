@@ -21,10 +21,10 @@ Reply = FloatArray | Literal["back"] | None
 @final
 @dataclass(frozen=True, eq=False)
 class Question:
-    """One motion, and what a person sees of it."""
+    """One motion for a person to answer."""
 
     number: int  # counted from 1
-    total: int  # how many there may be
+    total: int  # at most
     motion: Motions
     chain: Chain
     reach_m: float  # the longest way of a tool in any motion, m
@@ -37,12 +37,8 @@ class Person(ABC):
     @property
     @abstractmethod
     def kind(self) -> Kind:
-        """As the profile keeps it."""
+        """The kind of person, for the profile."""
 
     @abstractmethod
     def answer(self, question: Question) -> Reply:
-        """The input by which they would ask for the motion.
-
-        Raises:
-            UserError: there is nobody to ask any more.
-        """
+        """The input by which they would ask for the motion; UserError where nobody answers any more."""

@@ -9,6 +9,7 @@ from latentarm.core.errors import UserError
 from latentarm.robots.robot import Robot
 from latentarm.safety.brake import Brake
 from latentarm.safety.config import SafetyConfig
+from latentarm.safety.obstacles import is_number
 
 STOPPED_WITHIN_S = 0.15
 """From the last fresh input to a command of zero."""
@@ -59,7 +60,7 @@ class Bounds:
     """
 
     def __init__(self, config: SafetyConfig, robot: Robot, dt_s: float) -> None:
-        if not _is_number(dt_s):
+        if not is_number(dt_s):
             raise UserError(f"The loop's period must be a number of seconds, not {dt_s!r}.")
         if not (math.isfinite(dt_s) and 0.001 <= dt_s <= 0.05):
             raise UserError(
@@ -146,7 +147,3 @@ class Bounds:
         """Phase two is longest with all joints at full speed, phase one at full deceleration."""
         settle = float((self.stop_acceleration / self.stop_jerk).max())
         return settle + self.brake(self.speed, np.zeros(self.dof)).ramp_s
-
-
-def _is_number(value: object) -> bool:
-    return isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)

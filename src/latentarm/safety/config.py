@@ -9,7 +9,7 @@ import numpy as np
 from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray
 from latentarm.robots.kinematics.obstacles import Obstacle
-from latentarm.safety.obstacles import as_array, checked_obstacle
+from latentarm.safety.obstacles import as_array, checked_obstacle, is_number
 from latentarm.safety.zones import Zone, checked_zones
 
 
@@ -158,7 +158,7 @@ _MAY_TOUCH = ("input_grace_s", "dead_zone", "command_periods", "reading_periods"
 def _figure(name: str, value: object) -> float:
     """The figure as a float inside its range, or a `UserError` that names it."""
     lowest, highest, unit = _RANGES[name]
-    if isinstance(value, bool) or not isinstance(value, int | float | np.integer | np.floating):
+    if not is_number(value):
         raise UserError(f"The safety limit {name} must be a number, not {value!r}.")
     try:
         figure = float(value)

@@ -1,7 +1,7 @@
 """Validation of obstacles for the safety filters, and common obstacles by name."""
 
 from dataclasses import replace
-from typing import Any
+from typing import Any, TypeGuard
 
 import numpy as np
 from numpy.typing import NDArray
@@ -74,6 +74,11 @@ def checked_shape(obstacle: Obstacle, what: str) -> Obstacle:
             )
 
 
+def is_number(value: object) -> TypeGuard[float]:
+    """Whether the value is a real number, and no truth value."""
+    return isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)
+
+
 def as_array(value: object) -> NDArray[Any]:
     """The value as an array; of objects where it is ragged."""
     try:
@@ -112,7 +117,7 @@ def _rotation(what: str, value: FloatArray) -> FloatArray:
 
 
 def _size(what: str, field: str, value: object) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float | np.integer | np.floating):
+    if not is_number(value):
         raise UserError(f"{what} needs a number as its {field}.")
     if not 0.0 < value <= _FAR_M:
         raise UserError(f"{what} has {field} {value}: it must be above 0 and at most {_FAR_M:g} m.")

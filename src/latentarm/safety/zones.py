@@ -4,12 +4,10 @@ import math
 from dataclasses import dataclass
 from typing import Final, cast, final
 
-import numpy as np
-
 from latentarm.core.errors import UserError
 from latentarm.core.untrusted.names import clean_name, same_name
 from latentarm.robots.kinematics.obstacles import Obstacle
-from latentarm.safety.obstacles import checked_shape
+from latentarm.safety.obstacles import checked_shape, is_number
 
 MOST_ZONES: Final = 8
 
@@ -45,7 +43,7 @@ class Zone:
         what, speed = f"The zone {self.shape.name!r}", cast("object", self.speed)
         check_name(self.shape.name, what)
         object.__setattr__(self, "shape", checked_shape(self.shape, what))
-        if isinstance(speed, bool) or not isinstance(speed, int | float | np.integer | np.floating):
+        if not is_number(speed):
             raise UserError(f"{what} needs a number of m/s as its speed, not {speed!r}.")
         if not (math.isfinite(speed) and SLOWEST_M_PER_S <= speed <= _FASTEST_M_PER_S):
             raise UserError(

@@ -168,14 +168,11 @@ def _nearest(curves: _Curves, action: Tensor) -> Tensor:
 class Around(NamedTuple):
     """The motions of a full push that is led half around the stick, in some of a batch's contexts.
 
-    Attributes:
-        joints: (S, m, C, K + 1, B), the joints' velocities, of any length; C planes of two of the d axes, and
-            K + 1 directions from one to its opposite.
-        tools: (S, 6 k, C, K + 1, B), the tools' weighted twists, as shares of the speed of a full push.
+    C planes of two of the d axes have K + 1 directions each, from one to its opposite.
     """
 
-    joints: Tensor
-    tools: Tensor
+    joints: Tensor  # (S, m, C, K + 1, B), the joints' velocities, of any length
+    tools: Tensor  # (S, 6 k, C, K + 1, B), the tools' weighted twists, as shares of a full push's speed
 
 
 def turning(around: Around) -> Tensor:

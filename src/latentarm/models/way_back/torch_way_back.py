@@ -58,13 +58,7 @@ class TorchWayBack:
         return torch.cat([way, jacobian.flatten(-2)], dim=-1)
 
     def __call__(self, action: Tensor, z: Tensor, observed: Tensor) -> Tensor:
-        """phi, rad/s.
-
-        Args:
-            action: (..., m), what the decoder alone gives, rad/s.
-            z: (..., d), in input units.
-            observed: (..., width), from `observe`.
-        """
+        """The action (..., m), rad/s, from the decoder's own one, z (..., d) and an observation."""
         way, jacobian = observed[..., : self._joints], observed[..., self._joints :]
         jacobian = jacobian.unflatten(-1, (-1, self._joints))
         fastest = self._speed * torch.linalg.vector_norm(z, dim=-1, keepdim=True)
