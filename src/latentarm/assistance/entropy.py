@@ -86,27 +86,18 @@ class GoalEntropy(LossTerm):
     Contexts are those in which a person may want to turn back, not only the demonstrated ones:
     between any two demonstrated states, with any demonstrated belief. The term needs no actions there.
 
-    Attributes:
-        goals: (G, n), the goals' configurations, rad.
-        weight: lambda_2.
-        sharpness: kappa of `goal_probabilities`.
-        least_progress: rho_0 of `goal_probabilities`, of the demonstrated speed.
-        per_axis: evenly spaced inputs in [-1, 1] on each axis, over which z is summed.
-        where: contexts: ``demonstrated`` ones, demonstrated states with ``any_belief``, or ``anywhere``
-            between demonstrated states as well.
-        chain: the arm's kinematics, for progress as people see it; without it the joints alone count.
-
     Raises:
         UserError: a parameter is out of its range.
     """
 
-    goals: FloatArray
-    weight: float = 2.0
-    sharpness: float = 4.0
-    least_progress: float = 0.5
-    per_axis: int = 7
+    goals: FloatArray  # (G, n), configurations, rad
+    weight: float = 2.0  # lambda_2
+    sharpness: float = 4.0  # kappa of `goal_probabilities`
+    least_progress: float = 0.5  # rho_0 of `goal_probabilities`, of the demonstrated speed
+    per_axis: int = 7  # evenly spaced inputs in [-1, 1] on each axis, over which z is summed
     where: Where = "anywhere"
-    chain: Chain | None = None
+    """``demonstrated`` contexts, their states with ``any_belief``, or ``anywhere`` between these states."""
+    chain: Chain | None = None  # for progress of the tool; without it the joints alone count
 
     def __post_init__(self) -> None:
         if self.goals.ndim != 2 or len(self.goals) < 2 or not np.isfinite(self.goals).all():

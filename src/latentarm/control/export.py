@@ -115,11 +115,8 @@ def _with_added(kept: Sequence[JournalEpisode], episodes: tuple[Episode, ...]) -
 def export_journal(journal: Path, dataset: Path) -> int:
     """Write a journal's complete episodes to a new dataset, which appears whole or not at all.
 
-    Returns:
-        The number of episodes left out because they were cut short.
-
-    Raises:
-        UserError: see `read_journal`, `demonstrations_of` and `write_dataset`.
+    Returns the number of episodes left out because they were cut short. Raises UserError as `read_journal`,
+    `demonstrations_of` and `write_dataset` do.
     """
     # pyarrow is slow to load, and driving does not need it.
     from latentarm.demonstrations.dataset import write_dataset

@@ -60,36 +60,21 @@ _COLUMNS = {
 @final
 @dataclass(frozen=True)
 class EpisodeHeader:
-    """The data that all samples of an episode share.
+    """The data that all samples of an episode share."""
 
-    Attributes:
-        robot: name or model path.
-        joint_names: n names.
-        rate_hz: nominal rate of the loop.
-        task: in words.
-        goals: the discrete goals ``G``.
-        modes: names of the controller's modes.
-        provenance: who and what records it.
-        end_effector: site, body or link of the robot's model file, or None.
-        limits: the limits that a person stated, or None.
-        joint_limits: samples outside them are impossible; None if unknown.
-        things: names of the K things whose poses every sample has.
-        objects: those of them that matter for the task, in the order of the context feature ``objects``;
-            all where this is empty.
-    """
-
-    robot: str
+    robot: str  # name or model path
     joint_names: tuple[str, ...]
-    rate_hz: float
-    task: str = ""
+    rate_hz: float  # nominal rate of the loop
+    task: str = ""  # in words
     goals: tuple[Goal, ...] = ()
     modes: tuple[str, ...] = ("",)
     provenance: Provenance = field(default_factory=Provenance)
-    end_effector: str | None = None
-    limits: StatedLimits | None = None
-    joint_limits: JointLimits | None = None
-    things: tuple[str, ...] = ()
+    end_effector: str | None = None  # site, body or link of the robot's model file
+    limits: StatedLimits | None = None  # stated by a person
+    joint_limits: JointLimits | None = None  # samples outside them are impossible; None if unknown
+    things: tuple[str, ...] = ()  # names of the K things whose poses every sample has
     objects: tuple[str, ...] = ()
+    """Those that matter for the task, in the order of the feature ``objects``; all where empty."""
 
 
 @final

@@ -61,13 +61,7 @@ _BOUND_PERIOD_S = 0.05
 class SharedAutonomy:
     """The robot's belief and help over one episode.
 
-    Args:
-        dof: n.
-        controller: turns inputs into actions.
-        goals: the discrete goals ``G``.
-        belief: how inputs change the belief over goals; None keeps the belief uniform.
-        assistance: how the robot helps; None never helps.
-        dt_s: the loop's period, s.
+    Without a belief rule the belief stays uniform over the goals ``G``; without assistance nothing helps.
 
     Raises:
         UserError: assistance lacks goals, or the belief is over others.

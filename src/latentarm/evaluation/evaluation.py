@@ -36,7 +36,7 @@ HOLDS_S: Final = {"reversal_0_5_s": 0.5, "reversal_2_s": 2.0}
 
 
 class TrainedModel(EncodesActions, Protocol):
-    """A fitted model together with how its training pairs were made."""
+    """A fitted model together with the parameters of its training pairs."""
 
     @property
     def latent_dim(self) -> int:
@@ -71,30 +71,16 @@ class TrainedModel(EncodesActions, Protocol):
 
 @dataclass(frozen=True)
 class EvaluationConfig:
-    """Settings of the measures; the same for all models that are compared.
+    """Settings of the measures; the same for all models that are compared."""
 
-    Attributes:
-        state_noise_rad: SD of the noise on held-out states for the noisy error, rad;
-            None for the noise that the model was trained with.
-        step_s: dt of the transition s' = s + a dt, and how long z and -z are each held for `reversal`, s;
-            None for one sample of the demonstrations.
-        states: states for consistency, disentanglement and turning.
-        grid: values of z in [-1, 1] on each axis, at each of these states.
-        latents: held-out pairs whose nearest inputs are searched for: for what the decoder can express, for
-            drift, reversal and change in state.
-        held_latents: of these, for reversal after longer holds.
-        reach: what is asked for controllability.
-        tool: which end-effector, where there are several.
-    """
-
-    state_noise_rad: float | None = None
-    step_s: float | None = None
-    states: int = 25
-    grid: int = 21
-    latents: int = 2000
-    held_latents: int = 300
+    state_noise_rad: float | None = None  # SD of the noise on held-out states; the training's where None
+    step_s: float | None = None  # dt of s' = s + a dt, and of `reversal`'s holds; one sample where None
+    states: int = 25  # for consistency, disentanglement and turning
+    grid: int = 21  # values of z in [-1, 1] on each axis, at each of these states
+    latents: int = 2000  # held-out pairs whose nearest inputs are searched for
+    held_latents: int = 300  # of these, for reversal after longer holds
     reach: ReachConfig = field(default_factory=ReachConfig)
-    tool: int = 0
+    tool: int = 0  # which end-effector, where there are several
 
 
 @dataclass(frozen=True)
@@ -119,19 +105,12 @@ def measure(
     rng: np.random.Generator,
     config: EvaluationConfig | None = None,
 ) -> Figures:
-    """Measure every seed of a model on held-out episodes.
+    """Measure every seed of a fitted model on held-out episodes of the dataset that it was trained on.
 
-    Args:
-        model: a fitted model of S seeds.
-        demonstrations: the dataset that it was trained on; PCA is fitted to all of it that is not held out,
-            so also to validation episodes.
-        held_out: indices of the episodes that it has not seen.
-        robot: the arm that it moves.
-        rng: for the noise on held-out states.
-        config: how the measures are taken.
+    PCA is fitted to all episodes that are not held out, so also to validation episodes. ``rng`` draws the
+    noise on held-out states.
 
-    Raises:
-        UserError: no episode is held out, none is left for PCA, or the contexts lack a feature.
+    Raises UserError where no episode is held out, none is left for PCA, or the contexts lack a feature.
     """
     config = config or EvaluationConfig()
     episodes = moving_episodes(demonstrations, held_out)

@@ -42,20 +42,11 @@ def latent_effect_figure(
     tool: int = 0,
     way_back: LeadsBack | None = None,
 ) -> "Figure":
-    """Paths of the tool over one second of ±1 on each latent axis, from each of a few states.
+    """Paths of the tool over one second of ±1 on each latent axis, from each of a few contexts (N, c).
 
-    A path ends in a filled marker for +1 and in an open one for -1. The view is along the base axis in
-    which the drawn paths differ least.
-
-    Args:
-        decoder: one seed's decoder.
-        context: (N, c), the states to start from, three or so.
-        chain: the robot's forward kinematics.
-        step_s: dt of the transition, s.
-        model: name of the model, for the title.
-        demonstrated: (T, 3), places of the tool in a demonstration to draw behind, m, or None.
-        tool: which end-effector, where there are several.
-        way_back: drawn as arrows around the starts, or None.
+    A path ends in a filled marker for +1 and in an open one for -1. The view is along the base axis in which
+    the drawn paths differ least. A demonstration's places (T, 3), m, are drawn behind, and the way back as
+    arrows around the starts. ``model`` names the model in the title.
     """
     dim = decoder.latent_dim
     ends = np.concatenate([np.eye(dim), -np.eye(dim)])

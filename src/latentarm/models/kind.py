@@ -22,25 +22,15 @@ Shape = tuple[int, ...]
 
 @dataclass(frozen=True)
 class Dimensions:
-    """The sizes that fix every tensor's shape.
+    """The sizes that fix every tensor's shape."""
 
-    Attributes:
-        seeds: S, models trained side by side.
-        latent: d.
-        context: c.
-        action: m.
-        hidden: units of each hidden layer, the same in encoder and decoder.
-        tools: k, end-effectors of the arm; 0 where nothing of the model looks at them.
-        way_back: units of each hidden layer of the way back's network; none where there is no way back.
-    """
-
-    seeds: int
-    latent: int
-    context: int
-    action: int
-    hidden: tuple[int, ...]
-    tools: int = 0
-    way_back: tuple[int, ...] = ()
+    seeds: int  # S, models trained side by side
+    latent: int  # d
+    context: int  # c
+    action: int  # m
+    hidden: tuple[int, ...]  # units of each hidden layer, the same in encoder and decoder
+    tools: int = 0  # k, end-effectors of the arm; 0 where nothing of the model looks at them
+    way_back: tuple[int, ...] = ()  # units of each hidden layer of the way back's network, if there is one
 
 
 class Runtime(ABC):
@@ -78,7 +68,6 @@ class ModelKind:
         encoder: ``projection`` onto the columns of the decoder or the ``nearest`` action that it can
             decode (neither has weights), or a network of (c, a) whose output is z
             (``deterministic``) or (mu, log sigma^2) (``gaussian``).
-        sees_context: whether the decoder sees the context.
         rests_at_zero: whether z = 0 means rest, phi(0, c) = 0, by the model's definition, so that it must
             stay u = 0. Where it does not, u = 0 is the mean latent action of the demonstrations.
         reverses: whether it rests, and the opposite input goes back, by construction.
@@ -139,23 +128,14 @@ class ModelKind:
 @final
 @dataclass(frozen=True)
 class TrainingSummary:
-    """Summary of a training.
-
-    Attributes:
-        seeds: the S seeds.
-        validation_episodes: indices of the episodes that decided when training stopped.
-        validation_loss: (S,), loss on their pairs, in normalised units.
-        best_epoch: (S,), the epoch whose weights were kept, counted from 1.
-        history: (E, S), validation loss after each epoch, possibly NaN; E = 0 for models without epochs.
-        collapsed: (S, d), latent dimensions that move nothing.
-    """
+    """Summary of a training."""
 
     seeds: tuple[int, ...]
-    validation_episodes: tuple[int, ...]
-    validation_loss: FloatArray
-    best_epoch: IntArray
-    history: FloatArray
-    collapsed: BoolArray
+    validation_episodes: tuple[int, ...]  # indices of the episodes that decided when training stopped
+    validation_loss: FloatArray  # (S,), loss on their pairs, in normalised units
+    best_epoch: IntArray  # (S,), the epoch whose weights were kept, counted from 1
+    history: FloatArray  # (E, S), validation loss after each epoch, possibly NaN; E = 0 without epochs
+    collapsed: BoolArray  # (S, d), latent dimensions that move nothing
 
 
 @final

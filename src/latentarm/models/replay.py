@@ -95,16 +95,13 @@ class Replay:
     """Repeats a computation that writes its results in place into tensors outside it."""
 
     def __init__(self, compute: Callable[[], None], inputs: Sequence[Tensor], device: torch.device) -> None:
-        """Run a computation once, and record it.
+        """Run a computation once on a device, and record it.
 
-        Args:
-            compute: reads and writes tensors; the same operations whatever the values of the inputs.
-            inputs: all the tensors that it reads and whose values change from one call to the next. Any
-                other tensor counts as constant.
-            device: where all of that happens.
+        ``compute`` reads and writes tensors by the same operations whatever the values of ``inputs``, which
+        are all the tensors whose values change from one call to the next. Any other tensor counts as
+        constant.
 
-        Raises:
-            UnreplayableError: the operations depend on values.
+        Raises UnreplayableError where the operations depend on values.
         """
         with _Recorder() as recorder:
             compute()

@@ -88,14 +88,10 @@ def make_task(
     limits: StatedLimits | None = None,
     usual: Callable[[], Robot] | None = None,
 ) -> Task:
-    """A task of the catalogue.
+    """A task of the catalogue, by its name in `TASKS`.
 
-    Args:
-        name: a name in `TASKS`.
-        robot: a robot's name or model file; the task's own where None, else ``usual``.
-        end_effector: site, body or link of a model file.
-        limits: what is stated of the robot's limits.
-        usual: the robot of a task for any robot where none is named; a Panda where None.
+    ``robot`` is a robot's name or model file; where None, the task's own or, for tasks of any robot,
+    ``usual`` or a Panda. ``end_effector`` is a site, body or link of a model file.
 
     Raises:
         UserError: there is no such task, it does not load, the robot cannot be loaded, or the task is for

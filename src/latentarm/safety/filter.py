@@ -37,11 +37,9 @@ class Situation:
     """One tick as the filters see it; expensive quantities are computed once, on first use.
 
     Args:
-        surroundings: the arm and everything about it.
         state: (n,), measured joint positions, rad, finite.
         velocity: (n,), the last command, rad/s.
         acceleration: (n,), the acceleration that the last command was reached with, rad/s².
-        input_age_s: age of the newest input, s.
 
     Attributes:
         room: (2, n), distance to the lowest position (zero or below inside) and to the highest, rad.

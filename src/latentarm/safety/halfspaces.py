@@ -84,18 +84,11 @@ def _nearest(
 def unbent(
     velocity: FloatArray, rows: FloatArray, room: FloatArray, bend: FloatArray, time_s: float
 ) -> float:
-    """The share of a velocity that is slow enough to treat paths as straight.
+    """The share in [0, 1] of a velocity that is slow enough to treat paths as straight.
 
-    Over ``time_s`` at share s of the velocity a distance changes by at least ``s g t - s² c t² / 2`` with
-    its rate g and its bend c. That must not use up more than the room left. The largest such share
-    has a closed form.
-
-    Args:
-        velocity: (n,), rad/s.
-        rows: (C, n), as in `slide`.
-        room: (C,), distance that may still be lost, above zero, m.
-        bend: (C,), second derivative of each distance at full velocity, zero or more, m/s².
-        time_s: s.
+    Over ``time_s`` at share s of the velocity a distance changes by at least ``s g t - s² c t² / 2`` with its
+    rate g (from ``rows``, see `slide`) and its bend c at full velocity, m/s², ≥ 0. That must not use up more
+    than the ``room`` left (C,), m, > 0. The largest such share has a closed form.
     """
     rate = rows @ velocity
     root = np.sqrt(rate * rate + 2.0 * bend * room)

@@ -50,14 +50,11 @@ class Proximity:
     close are measured anew.
 
     Args:
-        body: the arm.
-        obstacles: validated already.
         link_speed: the fastest that any point of the arm may move, m/s.
         nearest_m: distance to be kept, m.
         horizon_s: for how long the arm may go on towards something, s.
 
     Attributes:
-        names: a person's words for each pair.
         lever: (pairs, n), bound of how fast a joint changes the pair's distance, m.
         curvature: (pairs, n, n), bound of the heights' second derivative, see `Body`.
     """

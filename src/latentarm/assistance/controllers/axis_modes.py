@@ -15,18 +15,15 @@ from latentarm.robots.robot import Robot
 @final
 @dataclass(frozen=True)
 class AxisModes:
-    """Which axes of the end-effector the person's inputs drive in each mode.
+    """The axes of the end-effector that the person's inputs drive in each mode.
 
-    Attributes:
-        axes: for each mode, the row of the twist (x, y, z, roll, pitch, yaw) that each of the d input axes
-            drives.
-
-    Raises:
-        UserError: there is no mode, modes have different numbers of axes, or a row is not one of the six.
+    Raises UserError where there is no mode, modes have different numbers of axes, or a row is not one of the
+    six.
     """
 
     names: tuple[str, ...]
     axes: tuple[tuple[int, ...], ...]
+    """By mode, the row of the twist (x, y, z, roll, pitch, yaw) that each of the d input axes drives."""
 
     def __post_init__(self) -> None:
         if not self.axes or len(self.names) != len(self.axes) or len({len(one) for one in self.axes}) != 1:
