@@ -35,7 +35,7 @@ class ToolAxes:
         UserError: there are more axes than directions, or the speed is not positive.
     """
 
-    chain: Chain  # the arm; its first tool is looked at
+    chain: Chain  # the arm, of which the first tool counts
     axes: int  # d, of the stick, 1 to 3
     speed_m_s: float  # of the tool along an axis, for which they would push all the way, m/s
 
@@ -64,7 +64,7 @@ class HeightAndTilt:
         UserError: a speed is not positive.
     """
 
-    chain: Chain  # the arm; its first tool is looked at
+    chain: Chain  # the arm, of which the first tool counts
     speed_m_s: float  # up, for which they would push all the way, m/s
     turn_rad_s: float  # the same of the tilt, rad/s
 
@@ -84,7 +84,7 @@ class HeightAndTilt:
 class ByPlace:
     """A simulated person whose preference depends on the place."""
 
-    chain: Chain  # the arm; its first tool is looked at
+    chain: Chain  # the arm, of which the first tool counts
     is_there: Callable[[FloatArray], BoolArray]  # whether places (N, 3), m, are the place, (N,)
     there: Preference  # for motions that begin there
     elsewhere: Preference

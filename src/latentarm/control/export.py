@@ -195,7 +195,7 @@ def _poses(recorded: JournalEpisode, objects: Sequence[str]) -> FloatArray:
 
 
 def _action(recorded: JournalEpisode) -> FloatArray:
-    """What moved the arm, (T, n), rad/s: its commands, or a person's hand."""
+    """The joint velocities that moved the arm, (T, n), rad/s: its commands, or a person's hand."""
     records = recorded.records
     if recorded.header.provenance.controller != BY_HAND:
         return np.stack([record.command.velocity for record in records])

@@ -105,8 +105,8 @@ def _opened(path: Path) -> Generator[sqlite3.Connection]:
     for file in beside:
         if not is_missing(file):
             check_file(file, _MOST_BYTES)
-    # A journal that is being written has a log beside it. Without one SQLite is told that nobody writes, or
-    # it would leave a log of its own beside a damaged file.
+    # A journal that is being written has a log beside it. Without one, SQLite must know that
+    # nobody writes, or it would leave a log of its own beside a damaged file.
     mode = "mode=ro&immutable=1" if is_missing(beside[0]) else "mode=ro"
     try:
         with (

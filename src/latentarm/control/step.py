@@ -50,7 +50,7 @@ _MISSHAPEN = Stop(
 )
 
 _FALTERING = (Freshness.name,)
-"""What limits an arm whose inputs are missing for a moment."""
+"""The limit of an arm whose inputs are missing for a moment."""
 
 
 @final

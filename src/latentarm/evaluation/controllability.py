@@ -22,7 +22,7 @@ class ReachConfig:
 
     pairs: int = 200  # number of start-goal pairs
     separation_s: float = 3.0  # time between start and goal in the demonstration, s
-    solver: SolverConfig = field(default_factory=SolverConfig)  # what it may do
+    solver: SolverConfig = field(default_factory=SolverConfig)
 
 
 @dataclass(frozen=True)

@@ -131,7 +131,7 @@ MEASURES: Final[dict[str, Measure]] = {
         "R², mean of axes",
         "higher",
         "R² of one line, over 25 held-out states and 21 values in [−1, 1] of one axis, of the tool's signed"
-        " way in a sample against z, with one forward for all states, as the paper has it",
+        " way in a sample against z, with one forward for all states, as in the paper",
         PROPERTIES,
     ),
     "r2_local": Measure(
@@ -152,7 +152,7 @@ MEASURES: Final[dict[str, Measure]] = {
         "1",
         "drift, of motion",
         "lower",
-        "how fast the arm is told to move with the stick at rest, ‖φ(0, s)‖, relative to how fast the"
+        "how fast the arm moves with the stick at rest, ‖φ(0, s)‖, relative to how fast the"
         " person moved it, ‖φ(z, s)‖; both means over held-out pairs; here and below z is the nearest input",
         AT_REST,
     ),
@@ -342,7 +342,7 @@ def unit_of(name: str) -> str:
 
 
 def label_of(name: str) -> str:
-    """What tables call a measure, without its unit; the name itself for one that is not in the table."""
+    """A measure's name in tables, without its unit; the name itself for one that is not in the table."""
     base, _, axis = name.rpartition("_axis_")
     if base in AXIS_LABELS and axis.isdigit():
         return f"{AXIS_LABELS[base]}, axis {int(axis) + 1}"

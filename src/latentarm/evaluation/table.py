@@ -13,7 +13,7 @@ from latentarm.evaluation.measures import label_of
 
 BORDER = 3  # characters between two columns
 ABSENT = "–"
-ROUNDING = 1e-12  # what is smaller is the rounding of a zero
+ROUNDING = 1e-12  # smaller figures are the rounding of a zero
 
 
 def format_figure(mean: float | None, sd: float | None) -> str:

@@ -35,7 +35,7 @@ _WIDTHS: Final = {
     "motions.start": "action",
     "motions.end": "action",
     "motions.rest": "rest",
-    "motions.belief": "rest",  # what earlier versions call it
+    "motions.belief": "rest",  # its name in earlier versions
     "probe.start": "context",
     "probe.goal": "action",
     "probe.states": "context",

@@ -70,7 +70,7 @@ def _read_terminal(axes: int) -> str:
 
     descriptor = sys.stdin.fileno()
     before = termios.tcgetattr(descriptor)
-    tty.setcbreak(descriptor, termios.TCSAFLUSH)  # what was typed before the question does not answer it
+    tty.setcbreak(descriptor, termios.TCSAFLUSH)  # keys typed before the question do not answer it
     try:
         return _read_keys(lambda: os.read(descriptor, 1).decode("latin-1"), _show, axes)
     finally:

@@ -17,7 +17,7 @@ LARGEST_RAD: Final = 0.05
 _SMALLEST_RAD: Final = 0.003
 
 _NEARER_M: Final = 1e-3
-"""What is too near already may not come nearer than this much, m."""
+"""Things that are too near already may come nearer by this much at most, m."""
 
 
 @final

@@ -54,7 +54,7 @@ class Zone:
 
     @property
     def name(self) -> str:
-        """What a person would call it."""
+        """The zone's name for people."""
         return self.shape.name
 
 
