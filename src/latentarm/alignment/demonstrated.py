@@ -52,12 +52,7 @@ def noticeable(motions: Motions, chain: Chain) -> BoolArray:
     return length >= 0.5 * np.median(length)
 
 
-def shown(
-    demonstrations: Demonstrations,
-    context: Named,
-    chain: Chain,
-    rng: np.random.Generator,
-) -> Motions:
+def shown(demonstrations: Demonstrations, context: Named, chain: Chain, rng: np.random.Generator) -> Motions:
     """Motions that a person can tell from standing still; the first `CANDIDATES` may be asked about.
 
     They come from the demonstrations that trained the model, so that others can still judge it.

@@ -34,8 +34,7 @@ RobotName = Annotated[
     str, arg(help="A robot's name (see `latentarm robots`) or the path of an MJCF or URDF file.")
 ]
 JointSpeed = Annotated[
-    float | None,
-    arg(metavar="RAD_PER_S", help="Fastest that a joint may turn: 0.5 at most, and by default."),
+    float | None, arg(metavar="RAD_PER_S", help="Fastest that a joint may turn: 0.5 at most, and by default.")
 ]
 LinkSpeed = Annotated[
     float | None,

@@ -57,12 +57,7 @@ class Accuracy:
 
 
 def accuracy(
-    model: EncodesActions,
-    train_action: FloatArray,
-    pairs: Pairs,
-    *,
-    learns_encoder: bool,
-    searched: int,
+    model: EncodesActions, train_action: FloatArray, pairs: Pairs, *, learns_encoder: bool, searched: int
 ) -> Accuracy:
     """Errors with both ways of encoding, with noise on the states and without.
 

@@ -36,11 +36,7 @@ MEASURES: Final[dict[str, Measure]] = {
         EXPRESSED,
     ),
     "search_noise_free_error": Measure(
-        "rad^2/s^2",
-        "noise-free error, nearest input",
-        "lower",
-        "the same on clean states",
-        EXPRESSED,
+        "rad^2/s^2", "noise-free error, nearest input", "lower", "the same on clean states", EXPRESSED
     ),
     "search_error_percent_of_pca": Measure(
         "%",

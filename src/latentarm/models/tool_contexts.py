@@ -28,11 +28,7 @@ where they move the tools; not zero, so that turning a tool in place counts too.
 
 def tool_shapes(tools: int) -> dict[str, tuple[int, ...]]:
     """Shapes of a saved model's arrays for an arm with k tools, by name, without its kinematics."""
-    return {
-        "place.centre": (PLACE * tools,),
-        "place.scale": (PLACE * tools,),
-        "metric.scale": (2,),
-    }
+    return {"place.centre": (PLACE * tools,), "place.scale": (PLACE * tools,), "metric.scale": (2,)}
 
 
 @final

@@ -68,10 +68,7 @@ class ResultsFolder:
 
 def package_versions() -> dict[str, str]:
     """Versions of `PACKAGES` and of Python."""
-    return {
-        "python": platform.python_version(),
-        **{package: version(package) for package in PACKAGES},
-    }
+    return {"python": platform.python_version(), **{package: version(package) for package in PACKAGES}}
 
 
 def refuse_other_results(

@@ -79,11 +79,7 @@ def save_samples(folder: Path, samples: Samples) -> Mapping[str, object]:
     tensors: dict[str, FloatArray] = {}
     motions, probe = samples.motions, samples.probe
     if motions is not None:
-        tensors |= {
-            "motions.start": motions.start,
-            "motions.end": motions.end,
-            "motions.rest": motions.rest,
-        }
+        tensors |= {"motions.start": motions.start, "motions.end": motions.end, "motions.rest": motions.rest}
     if probe is not None:
         tensors |= {
             "probe.start": probe.pairs.start,

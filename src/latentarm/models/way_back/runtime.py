@@ -105,10 +105,7 @@ def pull_shapes(dimensions: "Dimensions", layout: ContextLayout) -> "dict[str, S
     if not dimensions.way_back:
         return {}
     sizes = (pull_width(layout, dimensions.tools), *dimensions.way_back, dimensions.action)
-    return {
-        **network_shapes({NETWORK: sizes}, dimensions.seeds),
-        f"{NETWORK}.scale": (2,),
-    }
+    return {**network_shapes({NETWORK: sizes}, dimensions.seeds), f"{NETWORK}.scale": (2,)}
 
 
 @final
