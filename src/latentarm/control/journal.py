@@ -110,7 +110,10 @@ def _opened(path: Path) -> Generator[sqlite3.Connection]:
     mode = "mode=ro&immutable=1" if is_missing(beside[0]) else "mode=ro"
     try:
         with (
-            bounded_memory(f"The journal {path}", path.stat().st_size + _size(beside[0])),
+            bounded_memory(
+                f"The journal {path}",
+                sum(one.stat().st_size for one in (path, beside[0]) if not is_missing(one)),
+            ),
             closing(sqlite3.connect(f"file:{_quoted(path)}?{mode}", uri=True)) as database,
         ):
             database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, _MOST_CELL_BYTES)
@@ -135,10 +138,6 @@ def _duration_s(database: sqlite3.Connection, path: Path, number: int) -> float:
         return _record(*ends[-1]).time_s - _record(*ends[0]).time_s
     except (ValueError, TypeError, AttributeError, OverflowError) as error:
         raise _damaged(path, number, error) from error
-
-
-def _size(path: Path) -> int:
-    return 0 if is_missing(path) else path.stat().st_size
 
 
 def _quoted(path: Path) -> str:

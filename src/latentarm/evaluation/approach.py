@@ -117,7 +117,8 @@ class _Problem:
 
 def _drive(problem: _Problem, start: FloatArray) -> tuple[FloatArray, ...]:
     """The arrays of `Approach` for one seed: distance, context, path, straight way and choices."""
-    config, target, dof = problem.config, problem.target.places, _dof(problem.decoder, start)
+    config, target, z = problem.config, problem.target.places, zero_latent(problem.decoder, start)
+    dof = problem.decoder.decode(z, start).shape[-1]
     first = tool_places(problem.chain, start[:, :dof], problem.tools)
     distance, nearest = mean_distance(first, target), start.copy()
     path, straight = np.zeros((2, len(start)))
@@ -127,7 +128,6 @@ def _drive(problem: _Problem, start: FloatArray) -> tuple[FloatArray, ...]:
     # The drives still running: their indices and their progress.
     running, waited, way = np.arange(len(start)), np.zeros(len(start)), np.zeros(len(start))
     mark, context, places = distance.copy(), start, first
-    z = zero_latent(problem.decoder, start)
     for step in range(steps):
         if step % config.hold == 0:
             z = _choose(problem.of(running), context, z)
@@ -149,11 +149,6 @@ def _drive(problem: _Problem, start: FloatArray) -> tuple[FloatArray, ...]:
         if not len(running):
             break
     return distance, nearest, path, straight, latent
-
-
-def _dof(decoder: DecodesActions, context: FloatArray) -> int:
-    """Number of joints that the decoder moves, in contexts (P, c)."""
-    return decoder.decode(zero_latent(decoder, context), context).shape[-1]
 
 
 def _choose(problem: _Problem, context: FloatArray, previous: FloatArray) -> FloatArray:

@@ -69,8 +69,9 @@ class Section:
     ) -> list[int]:
         """The list of whole numbers under a key, of the given length or at most the given one."""
         entries = self.entries(key)
+        of_length = "" if length is None else f", {length} of them"
         if not all(_is_integer(entry, least) for entry in entries) or length not in (None, len(entries)):
-            raise self._wrong(key, f"a list of whole numbers of at least {least}" + _of_length(length))
+            raise self._wrong(key, f"a list of whole numbers of at least {least}{of_length}")
         if longest is not None and len(entries) > longest:
             raise self._wrong(key, f"a list of at most {longest} whole numbers")
         return entries
@@ -125,7 +126,3 @@ class Section:
 
 def _is_integer(value: object, least: int) -> bool:
     return isinstance(value, int) and not isinstance(value, bool) and least <= value < 2**31
-
-
-def _of_length(length: int | None) -> str:
-    return "" if length is None else f", {length} of them"

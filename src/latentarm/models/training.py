@@ -107,7 +107,7 @@ def train(
 
     batches = Batches(data, seeds, config.batch_size, noise_dim, device)
     written = monotonic()
-    report = report or _unheard
+    report = report or (lambda epoch, epochs, loss: None)
     report(state.epoch, config.epochs, math.inf)
     with threads_for(len(seeds) * batches.size * max(shape[-1] for shape in shapes.values())):
         fill_gradient = _gradient(objective, networks, batches, device, state, config)
@@ -200,10 +200,6 @@ def choose_device(name: str) -> torch.device:
     if name == "cuda" and not present:
         raise UserError("The device is cuda, but torch finds no CUDA on this machine: use cpu, or auto.")
     return torch.device("cuda" if present and name in ("cuda", "auto") else "cpu")
-
-
-def _unheard(epoch: int, epochs: int, loss: float) -> None:
-    pass
 
 
 @contextmanager

@@ -124,7 +124,8 @@ class SafetyConfig:
                 "The safety limit stop_fraction must be at least acceleration_fraction, jerk_fraction and"
                 " release_fraction: a stop may not be softer than ordinary motion."
             )
-        _check_workspace(self.workspace)
+        if self.workspace is not None and not isinstance(self.workspace, Workspace):  # pyright: ignore[reportUnnecessaryIsInstance]
+            raise UserError("The safety limit workspace must be a Workspace, or None for anywhere.")
         object.__setattr__(self, "obstacles", _checked_obstacles(self.obstacles))
         object.__setattr__(self, "zones", checked_zones(self.zones))
 
@@ -169,11 +170,6 @@ def _figure(name: str, value: object) -> float:
         bounds = f"{'at least' if name in _MAY_TOUCH else 'above'} {lowest:g} and at most {highest:g} {unit}"
         raise UserError(f"The safety limit {name} is {figure:g}: it must be {bounds}.")
     return figure
-
-
-def _check_workspace(value: object) -> None:
-    if value is not None and not isinstance(value, Workspace):
-        raise UserError("The safety limit workspace must be a Workspace, or None for anywhere.")
 
 
 def _checked_obstacles(value: object) -> tuple[Obstacle, ...]:

@@ -156,7 +156,9 @@ class Proximity:
                     contacts, pair=contacts.pair[near], height=contacts.height[near], row=contacts.row[near]
                 )
         else:
-            contacts = self._nothing(len(q))
+            still = np.zeros(len(q))
+            none = np.zeros((0, 2)), np.zeros((0, 2, len(q)))
+            contacts = Contacts(np.zeros(0, dtype=np.int64), *none, since=still, fresh=True)
         self._held, self._held_at, self._held_speed = contacts, q, speed
         self._spare = known - enough
         self._spare[contacts.pair] = np.inf
@@ -172,16 +174,6 @@ class Proximity:
         size = np.abs(way)
         bend = self.curvature[contacts.pair] @ size @ size
         return contacts.height + contacts.row @ way - 0.5 * bend[:, None]
-
-    @staticmethod
-    def _nothing(dof: int) -> Contacts:
-        return Contacts(
-            pair=np.zeros(0, dtype=np.int64),
-            height=np.zeros((0, 2)),
-            row=np.zeros((0, 2, dof)),
-            since=np.zeros(dof),
-            fresh=True,
-        )
 
     def _planes_between(self, points: FloatArray, pair: IntArray) -> tuple[FloatArray, FloatArray]:
         """For each pair the plane's unit normal, out of A, and how far along it A reaches, m."""
