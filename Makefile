@@ -71,8 +71,8 @@ test-all: check ## The slow tests too: kill tests, real lerobot, hundreds of app
 
 test-thorough: $(VENV)/installed-dev ## Random examples, 10,000 for motion and geometry, 2,000 drives (hours; nightly).
 	$(PYTEST) --hypothesis-profile=random -m "not slow and not clock" $(PARALLEL)
-	$(BIN)/python -m pytest --hypothesis-profile=thorough tests/control tests/kinematics tests/robots
-	$(BIN)/python scripts/clearance_drives.py
+	$(BIN)/python -m pytest --hypothesis-profile=thorough tests/control tests/safety tests/robots
+	$(BIN)/latentarm measure clearance
 
 arms: $(VENV)/installed-dev ## Fetch some 25 arms of other packages (420 MB), load each, and write docs/arms.md.
 	$(BIN)/python scripts/fetch_arms.py

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from canary import Canary
 from figure_faults import faults
 
-pytest_plugins = ("aligned_arms", "command_line")
+pytest_plugins = ("command_line",)
 
 # On a busy machine a single example, or making one, may take long without anything being wrong. Fifty
 # examples hit the laws well. `make test` draws the same ones everywhere: Hypothesis seeds each test with a
@@ -25,7 +25,7 @@ settings.register_profile(
 settings.register_profile("thorough", settings.get_profile("random"), max_examples=10_000)
 settings.load_profile("latentarm")
 
-LONGEST_FIRST = ("plugins", "studies", "models", "core", "cli", "docs", "drives", "control")
+LONGEST_FIRST = ("plugins", "studies", "models", "core", "cli", "docs", "drives", "control", "safety")
 """Folders whose files take longest: a worker that begins one last would keep the others waiting."""
 
 REAL_TIME = ("arms", "web")

@@ -19,11 +19,11 @@ from latentarm.evaluation.looks import look_of
 from latentarm.models.saving import read_model
 from latentarm.runs.results_folder import CONFIG
 from latentarm.tasks.catalogue import SCENE_TASKS, make_scene_task
+from latentarm_research.drives.drive import Setup, drive
 from latentarm_research.drives.film import Camera, Film, strip
-from latentarm_research.drives.task_drive import TaskSetup, drive_task
 from latentarm_research.people.catalogue import PEOPLE
 from latentarm_research.studies.streams import generator
-from latentarm_research.studies.tasks.cell import ShownCell, TrainingCell, show, train, training_set
+from latentarm_research.studies.tasks.cell import ModelCell, ShownCell, show, train, training_set
 from latentarm_research.studies.tasks.condition import Condition
 from latentarm_research.studies.tasks.kept import MODELS
 from latentarm_research.studies.tasks.preset import PRESETS, Preset, Stream
@@ -44,7 +44,7 @@ def learned(task: str, model: str, preset: Preset, seed: int, jobs: int) -> Driv
     cells = [ShownCell(task, Stream.DEMONSTRATIONS, number, seed) for number in range(preset.demonstrations)]
     shown = run_grid(show, cells, jobs=jobs, backend="joblib", label=lambda cell: task, bars=True)
     condition = Condition(preset.context, model, way_back=True)
-    return train(TrainingCell(task, condition, training_set(task, shown), preset, seed)).driver
+    return train(ModelCell(task, condition, training_set(task, shown), preset, seed)).driver
 
 
 def sizes_of(study: Path) -> tuple[Preset, int]:
@@ -75,10 +75,12 @@ def film(task: str, model: str, driver: Driver, preset: Preset, seed: int) -> No
     made = make_scene_task(task)
     for number in range(preset.runs):
         watched = Film()
-        setup = TaskSetup(made, driver.controller(made.robot, number), PEOPLE[preset.people[0]])
+        setup = Setup(made, driver.controller(made.robot, number), PEOPLE[preset.people[0]])
         rng = generator(seed, task, Stream.RUNS, number)
-        trace = drive_task(setup, choice_of(made, number), rng, watched.sees)
-        print(f"{task}, run {number}: {trace.why} after {trace.figures.time_s:.1f} s {trace.ended_in}")
+        trace = drive(setup, choice_of(made, number), rng, watched.sees)
+        print(
+            f"{task}, run {number}: {trace.ending.detail} after {trace.figures.time_s:.1f} s {trace.ended_in}"
+        )
         if trace.figures.success:
             times, pictures = watched.frames(CAMERAS.get(task, Camera()))
             heading = (

@@ -15,7 +15,8 @@ from latentarm.tasks.predicates import Holding, Poured, Pressed, Spilled, Stabbe
 from latentarm.tasks.serving.cup_steps import LIFTED_M as TAKEN_M
 from latentarm.tasks.steps import FINE_M, FINE_RAD, PATIENCE_S
 from latentarm_research.drives.demonstrate import GRASP_N
-from latentarm_research.drives.task_drive import REARM_S, STUCK_S
+from latentarm_research.drives.drive import REARM_S
+from latentarm_research.metrics.ending import STUCK_S
 
 PAGE = (ROOT / "docs/tasks.md").read_text()
 FIGURE = re.compile(r"(\d+(?:\.\d+)?) ?(cm|mm|N|%|°|rad|s)(?!\w)")

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from latentarm.core.types import Command, Pose, StepRecord, Stop
-from latentarm_research.metrics.ending import STUCK_S, why_it_ended
+from latentarm_research.metrics.ending import STUCK_S, why_it_timed_out
 
 TARGET = Pose(position=np.array([1.0, 0.0, 0.0]), rotation=np.eye(3))
 TIMES_S = np.arange(0.0, 60.0, 0.5)
@@ -28,11 +28,7 @@ def records(x, u=1.0, velocity=0.1, stop=None, limited_by=()):
 
 
 def reason(gantry, drive, since_s=0.0):
-    return why_it_ended(drive, gantry, TARGET, since_s).reason
-
-
-def test_all_waypoints_reached(gantry):
-    assert why_it_ended(records(1.0), gantry, None, 0.0).reason == "reached"
+    return why_it_timed_out(drive, gantry, TARGET, since_s).reason
 
 
 def test_a_drive_that_comes_nearer_ran_out_of_time(gantry):
@@ -56,13 +52,13 @@ def test_coming_back_to_where_it_was_is_no_progress(gantry):
 
 
 def test_inputs_that_the_filters_do_not_let_through_hold_the_arm_back(gantry):
-    ending = why_it_ended(records(0.5, velocity=0.0, limited_by=("joint position",)), gantry, TARGET, 0.0)
+    ending = why_it_timed_out(records(0.5, velocity=0.0, limited_by=("joint position",)), gantry, TARGET, 0.0)
     assert ending.reason == "held_back"
     assert "joint position" in ending.detail
 
 
 def test_a_stop_by_safety_is_said_with_its_reason(gantry):
-    ending = why_it_ended(records(0.5, stop=Stop("The stick is gone.")), gantry, TARGET, 0.0)
+    ending = why_it_timed_out(records(0.5, stop=Stop("The stick is gone.")), gantry, TARGET, 0.0)
     assert ending.reason == "safety_stop"
     assert "The stick is gone" in ending.detail
 
@@ -77,5 +73,5 @@ def test_a_turn_towards_the_waypoint_is_progress(gantry, since_s):
             return Pose(np.zeros((*angle.shape, 3)), rotation.reshape(*angle.shape, 3, 3))
 
     upright = Pose(np.zeros(3), np.eye(3))
-    ending = why_it_ended(records(1.0 - TIMES_S / 100), Turning(), upright, since_s)
+    ending = why_it_timed_out(records(1.0 - TIMES_S / 100), Turning(), upright, since_s)
     assert ending.reason == "time_limit"

@@ -12,8 +12,7 @@ import numpy as np
 
 from latentarm.arms.address import ArmAddress
 from latentarm.arms.contract import ArmSpec, ArmStatus
-from latentarm.arms.guiding import GuidableArm
-from latentarm.arms.real import Fact, Findings, FoundLimits
+from latentarm.arms.real import Fact, Findings, FoundLimits, GuidableArm
 from latentarm.core.errors import UserError
 from latentarm.core.types import Command, GripperCommand, GripperReading, Reading
 from latentarm.robots.robot import Robot

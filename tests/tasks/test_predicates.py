@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from latentarm.robots.scene.interior import Interior
 from latentarm.robots.scene.scene import TABLE, TOOL
+from latentarm.robots.scene.thing import Interior
 from latentarm.tasks import predicates as p
 from latentarm.tasks.mishap import Mishap
 from scene_states import at, standing

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from latentarm.core.errors import UserError
-from latentarm_research.commands.drive_at_goals import drive_run
 from latentarm_research.commands.drive_options import ControllerName, DriveOptions
+from latentarm_research.commands.drive_run import drive_run
 from latentarm_research.drives.drive_table import COLUMNS, endings_in_words
 from latentarm_research.people.catalogue import PEOPLE, OperatorName, usual_operator
 

@@ -11,6 +11,7 @@ from latentarm.assistance.catalogue import BELIEFS
 from latentarm.cli import main
 from latentarm.commands.catalogue import all_commands
 from latentarm.core.parallel.backends import BACKENDS
+from latentarm_research.measurements.catalogue import MEASUREMENTS
 from latentarm_research.studies.alignment import preset as alignment_preset
 from latentarm_research.studies.alignment import study as alignment
 from latentarm_research.studies.catalogue import load_study
@@ -36,6 +37,7 @@ COMMANDS = [
     "compare",
     "drive",
     "reproduce",
+    "measure",
     "study",
     "bench",
 ]
@@ -50,8 +52,9 @@ Run = Callable[..., tuple[int, str, str]]
 
 @pytest.mark.parametrize(
     "command",
-    [name for name in COMMANDS if name not in ("reproduce", "study", "arms")]
+    [name for name in COMMANDS if name not in ("reproduce", "measure", "study", "arms")]
     + [f"reproduce {study}" for study in STUDIES]
+    + [f"measure {name}" for name in MEASUREMENTS]
     + [f"study {verb}" for verb in VERBS]
     + ["arms list", "arms check"],
 )

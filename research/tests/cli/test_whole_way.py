@@ -114,12 +114,12 @@ def test_demo_writes_a_page_with_figures(workplace: Path, monkeypatch: pytest.Mo
     from latentarm_research.commands import demo_run
     from latentarm_research.commands.demo import DemoOptions
     from latentarm_research.commands.demo_run import Sizes, run_demo
-    from latentarm_research.commands.drive_at_goals import drive_run
     from latentarm_research.commands.drive_options import DriveOptions
-    from latentarm_research.drives import task_drive
+    from latentarm_research.commands.drive_run import drive_run
+    from latentarm_research.drives import following
 
     # Models of one epoch get nowhere; a demonstration takes 5 to 6 s.
-    monkeypatch.setattr(task_drive, "STUCK_S", 0.05)
+    monkeypatch.setattr(following, "STUCK_S", 0.05)
     monkeypatch.setattr(Marshmallows, "time_limit_s", 6.5)
     monkeypatch.setattr(demo_run, "HIDDEN", (8, 8))
     monkeypatch.setattr(demo_run, "DRIVERS", drivers := ("greedy", "unsteady"))

@@ -5,10 +5,10 @@ import pytest
 from matplotlib.figure import Figure
 
 from latentarm.tasks.table_top import TableTop
-from latentarm_research.drives.drive import Trace
 from latentarm_research.drives.drive_figures import draw_drives, draw_inputs, marks_of_goals, median_drive
-from latentarm_research.metrics.drives import Drive, GoalDrive
+from latentarm_research.drives.trace import Trace
 from latentarm_research.metrics.ending import Ending
+from made_drives import drive_of
 
 
 def trace(duration_s: float = 2.0, success: bool = True, modes: int = 1) -> Trace:
@@ -16,15 +16,20 @@ def trace(duration_s: float = 2.0, success: bool = True, modes: int = 1) -> Trac
     steps = len(time_s)
     position = np.stack([0.3 + 0.1 * time_s, -0.1 * time_s, 0.5 - 0.1 * time_s], axis=-1)
     return Trace(
-        measured=GoalDrive(Drive(success, duration_s, 0.2, 1.0, 0.1, modes - 1, 0.5), 0.4, 0.2, 0.01, 5.0),
-        goal=0,
-        progress=1.0,
-        ending=Ending("reached", "reached the goal"),
+        figures=drive_of(success, time_s=duration_s),
+        choice=0,
+        text="stab carrot",
+        steps=(),
+        done_s=(),
+        target=np.zeros(3),
+        ending=Ending("done", "done"),
         time_s=time_s,
         position=position,
         input=np.sin(time_s[:, None] + np.arange(2)),
         mode=np.arange(steps) * modes // steps,
         belief=np.full((steps, 3), 1 / 3),
+        aligned=(),
+        states=(),
     )
 
 

@@ -14,27 +14,29 @@ from latentarm.core.types import Context, FloatArray, Input, StepRecord
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.planar import planar
 from latentarm.safety.config import SafetyConfig
+from latentarm.tasks.goal_task import GoalTask
 from latentarm.tasks.reach import Reach
 from latentarm.tasks.table_top import TableTop
 from latentarm.tasks.task import Task
-from latentarm_research.drives.drive import Setup, simulate
-from latentarm_research.drives.drives import drive_all
+from latentarm_research.drives.drive import Setup, drive
+from latentarm_research.drives.drives import drive_all, plan_drives
 from latentarm_research.people.person import Person, SimulatedPerson
 
 
 def setup(
     task: Task,
+    manner: str,
     arbitration: Arbitration | None = None,
     time_limit_s: float = 60.0,
     rule: Rule = BoltzmannBelief,
 ) -> Setup:
     controller = EndEffectorController(task.robot)
     help_by = None if arbitration is None else blending(arbitration)
-    return Setup(task, controller, help_by, Person(), time_limit_s, rule)
+    return Setup(GoalTask(task, manner, time_limit_s), controller, Person(), help_by, rule=rule)
 
 
 def test_mode_switching_reaches_and_stabs() -> None:
-    trace = simulate(setup(TableTop()), 1, "stab", np.random.default_rng(0))
+    trace = drive(setup(TableTop(), "stab"), 1, np.random.default_rng(0))
     assert trace.figures.success
     assert trace.figures.mode_switches > 0
     # The end of a stab is well below where it began, above the item.
@@ -42,7 +44,7 @@ def test_mode_switching_reaches_and_stabs() -> None:
 
 
 def test_time_runs_out() -> None:
-    trace = simulate(setup(TableTop(), time_limit_s=1.0), 0, "stab", np.random.default_rng(0))
+    trace = drive(setup(TableTop(), "stab", time_limit_s=1.0), 0, np.random.default_rng(0))
     assert not trace.figures.success
     assert trace.figures.time_s == pytest.approx(1.0)
 
@@ -50,7 +52,9 @@ def test_time_runs_out() -> None:
 def test_every_command_keeps_the_limits_and_help_believes_in_the_goal_to_the_end() -> None:
     records: list[StepRecord] = []
     task = TableTop()
-    trace = simulate(setup(task, FixedAlpha()), 2, "scoop", np.random.default_rng(3), records.append)
+    trace = drive(
+        setup(task, "scoop", FixedAlpha()), 2, np.random.default_rng(3), record=lambda _: records.append
+    )
     assert trace.belief[-1].argmax() == 2
     velocity = np.stack([record.command.velocity for record in records])
     acceleration = np.diff(velocity, axis=0) * 100.0
@@ -69,7 +73,7 @@ def test_every_command_keeps_the_limits_and_help_believes_in_the_goal_to_the_end
 def test_every_rule_is_sure_of_the_goal_on_the_way(rule: Rule, arbitration: Arbitration) -> None:
     # All but the distance alone are sure within 8 s.
     limit_s = 20.0 if rule is BELIEFS["distance"] else 8.0
-    trace = simulate(setup(TableTop(), arbitration, limit_s, rule), 2, "stab", np.random.default_rng(0))
+    trace = drive(setup(TableTop(), "stab", arbitration, limit_s, rule), 2, np.random.default_rng(0))
     assert trace.belief[0] == pytest.approx(1 / 3)
     assert trace.belief[:, 2].max() > max(0.5, *trace.belief[:, :2].max(axis=0))
     assert trace.belief.sum(axis=1) == pytest.approx(1.0)
@@ -77,14 +81,16 @@ def test_every_rule_is_sure_of_the_goal_on_the_way(rule: Rule, arbitration: Arbi
 
 def test_processes_change_nothing() -> None:
     task = Reach(load_robot("planar"))
-    alone, beside = (drive_all([setup(task, time_limit_s=2.0)], 2, seed=7, jobs=jobs) for jobs in (1, 2))
+    planned = plan_drives([[setup(task, "reach", time_limit_s=2.0)]], 2, seed=7)
+    (alone,), (beside,) = (drive_all([planned], jobs) for jobs in (1, 2))
     for one, other in zip(alone, beside, strict=True):
         np.testing.assert_array_equal(one.position, other.position)
 
 
 def test_another_seed_is_another_drive() -> None:
     task = Reach(load_robot("planar"))
-    one, other = (drive_all([setup(task, time_limit_s=0.1)], 1, seed=seed, jobs=1)[0] for seed in (0, 1))
+    setups = [[setup(task, "reach", time_limit_s=0.1)]]
+    one, other = (plan_drives(setups, 1, seed)[0].drive() for seed in (0, 1))
     assert not np.array_equal(one.position[0], other.position[0])
 
 
@@ -116,7 +122,8 @@ def test_nobody_gives_a_push_that_the_loop_takes_for_rest(monkeypatch: pytest.Mo
         return meant
 
     monkeypatch.setattr(SimulatedPerson, "act", watched)
-    drive_all([Setup(Reach(planar(2)), TooFast(), None, Person(), 15.0)], 1, seed=0, jobs=1)
+    way = Setup(GoalTask(Reach(planar(2)), "reach", 15.0), TooFast(), Person())
+    drive_all([plan_drives([[way]], 1, seed=0)], 1)
     lengths = np.array(given)
     assert (lengths > 0).any()
     assert lengths[lengths > 0].min() > SafetyConfig().dead_zone

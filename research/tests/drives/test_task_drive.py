@@ -9,7 +9,7 @@ from latentarm.tasks.catalogue import make_scene_task
 from latentarm.tasks.eating.table import fork
 from latentarm.tasks.scene_task import SceneTask
 from latentarm.tasks.steps import TaskStep, Waypoint
-from latentarm_research.drives.task_drive import REARM_S, TaskSetup, drive_task
+from latentarm_research.drives.drive import REARM_S, Setup, drive
 from latentarm_research.people.catalogue import PEOPLE
 
 
@@ -34,11 +34,11 @@ class ThroughThePlate(SceneTask):
 
 def test_an_arm_that_meets_a_dish_stops_and_the_person_enables_it_again():
     task = ThroughThePlate()
-    setup = TaskSetup(task, EndEffectorController(task.robot), PEOPLE["greedy"])
-    trace = drive_task(setup, 0, np.random.default_rng(3))
-    drive = trace.measured
-    assert drive.table_force_n > 50.0
+    setup = Setup(task, EndEffectorController(task.robot), PEOPLE["greedy"])
+    trace = drive(setup, 0, np.random.default_rng(3))
+    figures = trace.figures
+    assert figures.table_force_n > 50.0
     # At rest from each stop on, and then tried again: more than once, and no more often than that allows.
-    assert 2 <= drive.stops <= drive.drive.time_s / REARM_S
-    assert not drive.drive.success
+    assert 2 <= figures.stops <= figures.time_s / REARM_S
+    assert not figures.success
     assert trace.ended_in == "below the plate"

@@ -11,8 +11,26 @@ from latentarm.core.parallel.grid import CellError
 from latentarm.core.style import new_figure
 from latentarm.core.types import Row
 from latentarm.runs.results_folder import CONFIG
+from latentarm_research.studies import printing
+from latentarm_research.studies.page import plain
+from latentarm_research.studies.printing import HTML, PDF, print_page
 from latentarm_research.studies.study import ALWAYS_MADE, Report, Request, Study, again, run_study
 from result_rows import rows_in
+
+PAGE = (
+    """# Tides & moons
+
+Heights:
+
+| sea | lake |
+| --- | ---: |
+| 1 | """
+    + plain("<script> | a_b")
+    + """ |
+
+![tides, simulated](tides.png)
+"""
+)
 
 
 @dataclass(frozen=True)
@@ -35,7 +53,7 @@ def refused(height):
 
 def report(request, squares):
     rows = [Row("tides", "error", "1", value, None, 1, task=request.tasks[0]) for value in squares]
-    return Report(rows, "# Tides\n", {"tides": new_figure(40.0)}, documents={"seeds.json": squares})
+    return Report(rows, PAGE, {"tides": new_figure(40.0)}, documents={"seeds.json": squares})
 
 
 def study_of(function=square):
@@ -64,10 +82,15 @@ def request(out: Path, **changes) -> Request:
 def test_everything_is_written_and_says_what_it_depends_on(tmp_path):
     out = tmp_path / "new"
     done = run_study(STUDY, request(out))
-    assert {path.name for path in out.iterdir()} == {CONFIG, *ALWAYS_MADE, "seeds.json", "tides.png"}
+    assert {path.name for path in out.iterdir()} == {CONFIG, *ALWAYS_MADE, "seeds.json", "tides.png"} - {PDF}
     assert rows_in(out / "results.json") == done.rows
     assert [row.mean for row in done.rows] == [1.0, 4.0]
-    assert (out / "results.md").read_text() == "# Tides\n"
+    assert (out / "results.md").read_text() == PAGE
+    page = (out / HTML).read_text()
+    assert "<title>Tides &amp; moons</title>" in page
+    assert "<caption>Heights:</caption>" in page
+    assert "<figcaption>tides, simulated</figcaption>" in page
+    assert "<script" not in page
     about = json.loads((out / "results.json").read_text())["about"]
     assert about == {
         "study": "tides",
@@ -77,6 +100,20 @@ def test_everything_is_written_and_says_what_it_depends_on(tmp_path):
         "moons": "simulated",
     }
     assert {"backend", "jobs", "grid_s"} <= json.loads((out / "timings.json").read_text()).keys()
+
+
+def test_a_page_is_printed_by_a_browser_or_says_why_not(tmp_path, monkeypatch):
+    assert "no Chromium" in print_page(tmp_path / HTML, tmp_path / PDF)
+    browser = tmp_path / "browser"
+    browser.write_text(
+        '#!/bin/sh\nfor one in "$@"; do case $one in --print-to-pdf=*) echo PDF > "${one#*=}";; esac; done\n'
+    )
+    browser.chmod(0o755)
+    monkeypatch.setattr(printing, "find_browser", lambda: str(browser))
+    assert print_page(tmp_path / HTML, tmp_path / PDF) == ""
+    assert (tmp_path / PDF).read_text() == "PDF\n"
+    browser.write_text("#!/bin/sh\nexit 1\n")
+    assert "could not print" in print_page(tmp_path / HTML, tmp_path / PDF)
 
 
 def test_the_command_does_the_same_again(tmp_path):

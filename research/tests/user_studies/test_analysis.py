@@ -10,19 +10,14 @@ from scipy.stats import t as student
 
 from drawn_trials import drawn_trials
 from latentarm.core.types import FloatArray
+from latentarm_research.studies.means_test import MeansTest, one_sample_test, small_sample_correction
 from latentarm_research.user_studies.analysis.analysis import analyse
 from latentarm_research.user_studies.analysis.anova import repeated_measures
 from latentarm_research.user_studies.analysis.as_printed import as_printed
 from latentarm_research.user_studies.analysis.claims import claims_tested, sides_of, verdicts
-from latentarm_research.user_studies.analysis.equivalence import equivalence
 from latentarm_research.user_studies.analysis.long_table import long_table
 from latentarm_research.user_studies.analysis.means import sides
 from latentarm_research.user_studies.analysis.mixed import mixed_model
-from latentarm_research.user_studies.analysis.paired import (
-    effect_interval,
-    paired_test,
-    small_sample_correction,
-)
 from latentarm_research.user_studies.analysis.randomisation import randomisation_p
 from latentarm_research.user_studies.catalogue import load_definition
 from latentarm_research.user_studies.hypothesis import Claim
@@ -49,13 +44,13 @@ def two_sided(subject: FloatArray, against: FloatArray) -> list[Trial]:
 
 
 def test_the_paired_test_of_student() -> None:
-    test = paired_test(SLEEP)
+    test = one_sample_test(SLEEP)
     assert test is not None
     assert (test.n, test.dof) == (10, 9)
     assert test.t == pytest.approx(4.0621, abs=5e-5)
     assert test.p == pytest.approx(0.002833, abs=5e-7)
-    assert (test.low, test.high) == pytest.approx((0.7001142, 2.4598858), abs=5e-7)
-    assert test.dz == pytest.approx(test.t / np.sqrt(10))
+    assert test.interval == pytest.approx((0.7001142, 2.4598858), abs=5e-7)
+    assert test.d == pytest.approx(test.t / np.sqrt(10))
 
 
 def test_the_correction_of_hedges() -> None:
@@ -68,33 +63,36 @@ def test_the_correction_of_hedges() -> None:
 @settings(max_examples=30)
 @given(st.floats(0.01, 3), st.integers(2, 40))
 def test_an_interval_of_dz_ends_where_the_observed_one_is_as_rare_as_it_says(dz: float, n: int) -> None:
-    low, high = effect_interval(dz, n)
+    low, high = MeansTest(n, 0, dz, 1.0, n - 1, dz).effect_interval
     t = dz * np.sqrt(n)
     assert low < high
     assert nct.cdf(t, n - 1, low * np.sqrt(n)) == pytest.approx(0.975, abs=1e-4)
     assert nct.cdf(t, n - 1, high * np.sqrt(n)) == pytest.approx(0.025, abs=1e-4)
-    assert (-high, -low) == pytest.approx(effect_interval(-dz, n), abs=1e-4)
+    assert (-high, -low) == pytest.approx(MeansTest(n, 0, -dz, 1.0, n - 1, -dz).effect_interval, abs=1e-4)
 
 
 @settings(max_examples=40)
 @given(DIFFERENCES)
 def test_swapping_the_sides_turns_the_sign_and_nothing_else(differences: FloatArray) -> None:
-    test, swapped = paired_test(differences), paired_test(-differences)
+    test, swapped = one_sample_test(differences), one_sample_test(-differences)
     if test is None or swapped is None:
         assert test is swapped
         return
-    assert (swapped.t, swapped.dz, swapped.low) == pytest.approx((-test.t, -test.dz, -test.high))
+    assert (swapped.t, swapped.d, swapped.interval[0]) == pytest.approx((-test.t, -test.d, -test.interval[1]))
     assert swapped.p == pytest.approx(test.p)
-    assert test.low <= test.difference <= test.high
-    assert (test.low > 0 or test.high < 0) == (test.p < 0.05)
+    low, high = test.interval
+    assert low <= test.difference <= high
+    assert (low > 0 or high < 0) == (test.p < 0.05)
 
 
 def test_equivalence_is_the_worse_of_two_one_sided_tests() -> None:
     se = SLEEP.std(ddof=1) / np.sqrt(10)
     worse = student.cdf((SLEEP.mean() - 3.0) / se, 9)
-    assert equivalence(SLEEP, 3.0) == pytest.approx(worse)
+    test = one_sample_test(SLEEP)
+    assert test is not None
+    assert test.p_of_equality(3.0) == pytest.approx(worse)
     assert worse == pytest.approx(0.00266, abs=5e-5)
-    assert (equivalence(SLEEP, 1.0) or 0.0) > 0.5
+    assert test.p_of_equality(1.0) > 0.5
 
 
 @pytest.mark.parametrize("people", range(2, 10))
@@ -140,7 +138,9 @@ def test_a_factor_of_two_levels_is_the_square_of_its_paired_t() -> None:
     ]
     assert {(effect.dof, effect.dof_error) for effect in effects} == {(1, 8)}
     for effect, factor in zip(effects, EATING.factors, strict=False):
-        test = paired_test(sides(trials, Claim("time_s", factor.high[1], factor.low[1], "less")).differences)
+        test = one_sample_test(
+            sides(trials, Claim("time_s", factor.high[1], factor.low[1], "less")).differences
+        )
         assert test is not None
         assert effect.f == pytest.approx(test.t**2)
         assert effect.p == pytest.approx(test.p)
@@ -176,7 +176,9 @@ def test_a_study_is_analysed_to_json_without_opinions(name: str) -> None:
     definition = load_definition(name)
     analysis = analyse(definition, drawn_trials(definition, 6, np.random.default_rng(1)))
     json.dumps(analysis.as_json(), allow_nan=False)
-    rated = {one.hypothesis for one in analysis.tested if one.claim.measure in definition.scales}
+    rated = {
+        one.tested.hypothesis for one in analysis.claims if one.tested.claim.measure in definition.scales
+    }
     for verdict in analysis.verdicts:
         if verdict.hypothesis.name in rated or not verdict.hypothesis.claims:
             assert verdict.says == "could not be tested"

@@ -20,7 +20,6 @@ from latentarm_research.user_studies.answers.reading import read_answers
 from latentarm_research.user_studies.answers.scales import cronbach_alpha, rate
 from latentarm_research.user_studies.catalogue import load_definition
 from latentarm_research.user_studies.recorded import read_recorded
-from latentarm_research.user_studies.report import report
 
 PIE = load_definition("apple_pie")
 PEOPLE = 4
@@ -161,14 +160,11 @@ def test_a_wrong_answer_is_refused_with_its_line(
         read_answers(path, PIE, MET)
 
 
-def test_real_people_are_analysed_with_their_answers(
-    real: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(report, "find_browser", lambda: None)
+def test_real_people_are_analysed_with_their_answers(real: Path, tmp_path: Path) -> None:
     answers, out = filled(tmp_path / "answers.csv"), tmp_path / "out"
     assert main(["study", "analyse", str(real), "--answers", str(answers), "--out", str(out)]) == 0
-    analysis = json.loads((out / "analysis.json").read_text())
-    rated = [one for one in analysis["claims"] if one["claim"]["measure"] in PIE.scales]
+    claims = json.loads((out / "hypotheses.json").read_text())
+    rated = [one for one in claims if one["claim"]["measure"] in PIE.scales]
     assert rated
     assert all(one["n"] == PEOPLE and one["mean"] == 6.5 for one in rated)
     page = (out / "report.html").read_text(encoding="utf-8")
@@ -185,7 +181,9 @@ def test_simulated_people_have_no_answers(
 ) -> None:
     for name in ("config.json", "trials.json"):
         document = json.loads((real / name).read_text())
-        (real / name).write_text(json.dumps({**document, "people_are": "simulated", "seed": 0}))
+        (real / name).write_text(
+            json.dumps({**document, "people_are": "simulated", "simulated": PEOPLE, "seed": 0})
+        )
         if name == "config.json":
             with pytest.raises(UserError, match="people_are must be 'simulated'"):
                 read_recorded(real)

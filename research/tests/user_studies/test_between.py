@@ -15,21 +15,16 @@ from statsmodels.stats.weightstats import ttost_ind
 from drawn_trials import drawn_trials
 from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray
+from latentarm_research.studies.means_test import welch_test
 from latentarm_research.user_studies.analysis.analysis import analyse
 from latentarm_research.user_studies.analysis.anova import between_people
 from latentarm_research.user_studies.analysis.permutation import permutation_p
-from latentarm_research.user_studies.analysis.welch import (
-    group_effect_interval,
-    standardised,
-    welch_equivalence,
-    welch_test,
-)
 from latentarm_research.user_studies.catalogue import load_definition
-from latentarm_research.user_studies.folder import rows_of
 from latentarm_research.user_studies.order import assigned
 from latentarm_research.user_studies.power import NUMBERS, power_of
-from latentarm_research.user_studies.report.page import Content, report_page
-from latentarm_research.user_studies.report.whose import REAL, SIMULATED
+from latentarm_research.user_studies.record import Trial
+from latentarm_research.user_studies.recorded import PeopleAre, Recorded
+from latentarm_research.user_studies.report.report import report_of
 from latentarm_research.user_studies.sizes import PRESETS
 
 PIE = replace(load_definition("apple_pie"), name="pie_apart", design="between", printed=())
@@ -60,15 +55,14 @@ def test_every_block_of_people_has_each_condition_once(count: int, people: int, 
 def test_welch_agrees_with_scipy_and_statsmodels(subject: FloatArray, against: FloatArray) -> None:
     test = welch_test(subject, against)
     if test is None:
-        assert welch_equivalence(subject, against, 1.0) is None
         return
     expected = ttest_ind(subject, against, equal_var=False)
     low, high = expected.confidence_interval()
     assert (test.t, test.dof, test.p) == pytest.approx((expected.statistic, expected.df, expected.pvalue))
-    assert (test.low, test.high) == pytest.approx((low, high), rel=1e-6, abs=1e-6)
+    assert test.interval == pytest.approx((low, high), rel=1e-6, abs=1e-6)
     margin = 1.5 * subject.std() + 1.0
     p = ttost_ind(subject, against, -margin, margin, usevar="unequal")[0]
-    assert welch_equivalence(subject, against, margin) == pytest.approx(p, abs=1e-9)
+    assert test.p_of_equality(margin) == pytest.approx(p, abs=1e-9)
 
 
 @given(GROUP, GROUP, st.integers(-300, 300))
@@ -85,9 +79,11 @@ def test_welch_is_the_same_in_any_unit(subject: FloatArray, against: FloatArray,
 def test_an_interval_ends_where_the_observed_effect_is_as_rare_as_it_says(d: float, n: int, m: int) -> None:
     subject, against = (np.resize([-1.0, 1.0], count) for count in (n, m))
     subject = subject + d
-    low, high = group_effect_interval(subject, against)
+    test = welch_test(subject, against)
+    assert test is not None
+    low, high = test.effect_interval
     root = np.sqrt(n * m / (n + m))
-    t = standardised(subject, against) * root
+    t = test.d * root
     assert nct.cdf(t, n + m - 2, low * root) == pytest.approx(0.975, abs=1e-4)
     assert nct.cdf(t, n + m - 2, high * root) == pytest.approx(0.025, abs=1e-4)
 
@@ -105,32 +101,25 @@ def test_each_person_counts_on_one_side() -> None:
     trials = drawn_trials(PIE, 12, np.random.default_rng(3), {"cVAE": -8.0})
     analysis = analyse(PIE, trials)
     json.dumps(analysis.as_json(), allow_nan=False)
-    timed = next(one for one in analysis.tested if one.claim.measure == "time_s")
+    json.dumps([one.as_json() for one in analysis.claims], allow_nan=False)
+    timed = next(one.tested for one in analysis.claims if one.tested.claim.measure == "time_s")
     assert (timed.n, timed.says) == (12, "held")
-    said = timed.as_json(analysis.design.test_key)
-    assert (said["welch"]["n"], said["welch"]["n_against"]) == (6, 6)
     assert timed.test is not None
+    assert (timed.test.n, timed.test.n_against) == (6, 6)
     assert timed.test.g == pytest.approx(timed.test.d * 0.9228, rel=1e-3)
-    rated = next(one for one in analysis.tested if one.claim.measure == "ease")
+    rated = next(one.tested for one in analysis.claims if one.tested.claim.measure == "ease")
     assert rated.why_not == "nobody has a figure for it"
     # A single trial of a person does not tell the person from chance.
-    assert next(iter(analysis.modelled)).mixed is None
+    assert analysis.claims[0].modelled.mixed is None
+
+
+def recorded(trials: list[Trial], people_are: PeopleAre, preset: str) -> Recorded:
+    return Recorded(PIE, people_are, tuple(trials), (), (), PRESETS[preset])
 
 
 def test_a_report_says_who_met_what() -> None:
     trials = drawn_trials(PIE, 8, np.random.default_rng(5), {"cVAE": -2.0})
-    content = Content(
-        PIE,
-        PRESETS["paper"],
-        analyse(PIE, trials),
-        rows_of(PIE, trials),
-        (),
-        (),
-        "8 people",
-        REAL,
-        "latentarm study",
-    )
-    page = report_page(content)
+    page = report_of(recorded(trials, "real", "paper"), "latentarm study").page
     assert "one condition (between subjects)" in page
     assert "4 + 4" in page
     assert "Welch" in page
@@ -184,16 +173,14 @@ def test_orders_make_no_sense_where_people_meet_one_condition() -> None:
 
 def test_a_smoke_run_says_so_tells_what_was_run_and_judges_nothing() -> None:
     trials = drawn_trials(PIE, 8, np.random.default_rng(5), {"cVAE": -2.0})
-    smoke = PRESETS["smoke"]
-    analysis = analyse(PIE, trials, not_judged=smoke.not_judged)
-    assert {one.says for one in analysis.verdicts} == {"could not be tested"}
-    who = smoke.people(8)
-    rows = rows_of(PIE, trials)
-    page = report_page(Content(PIE, smoke, analysis, rows, (), (), who, SIMULATED, "latentarm study"))
-    assert f"<title>{PIE.title}: 8 simulated people (preset smoke)</title>" in page
-    assert "(preset smoke)</h1>" in page
-    assert all("(preset smoke)" in line for line in page.splitlines() if "<caption>What became" in line)
+    report = report_of(recorded(trials, "simulated", "smoke"), "latentarm study")
+    analysis = report.documents["analysis.json"]
+    assert isinstance(analysis, dict)
+    assert {one["says"] for one in analysis["hypotheses"]} == {"could not be tested"}
+    page = report.page
+    assert page.startswith(f"# {PIE.title} (preset smoke)\n")
+    assert all("(preset smoke)" in line for line in page.splitlines() if line.startswith("What became"))
     assert "for 1 s per part" in page
     assert "240 s" not in page
-    assert "<td>held</td>" not in page
-    assert "<td>not held</td>" not in page
+    assert "| held |" not in page
+    assert "| not held |" not in page

@@ -1,24 +1,30 @@
 """Simulated people go through a study: a tiny one from end to end in physics, and all five at smoke sizes."""
 
 import json
+import re
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 from latentarm.core.errors import UserError
+from latentarm.core.untrusted.documents import read_object
+from latentarm_research.studies.printing import HTML, PDF
+from latentarm_research.studies.study import ALWAYS_MADE, Request, run_study
+from latentarm_research.user_studies import session
 from latentarm_research.user_studies.catalogue import NAMES, load_definition
 from latentarm_research.user_studies.definition import Definition
-from latentarm_research.user_studies.folder import DOCUMENTS, claim, read_trials, write_documents
-from latentarm_research.user_studies.report import report
-from latentarm_research.user_studies.report.figures import figure_names
-from latentarm_research.user_studies.report.report import PAGE, PDF, report_files, write_report
-from latentarm_research.user_studies.run import Request, send_people
+from latentarm_research.user_studies.kept import SESSIONS
+from latentarm_research.user_studies.record import read_trials
+from latentarm_research.user_studies.recorded import read_recorded
+from latentarm_research.user_studies.run import study_of
 from latentarm_research.user_studies.session import choices_of, in_the_end, together
-from latentarm_research.user_studies.sizes import PRESETS, Sizes
+from latentarm_research.user_studies.sizes import Sizes, sizes_of
+from latentarm_research.user_studies.trace import read_traces
 
-TINY = Sizes("tiny", trial_s=0.1, most_trials=1)
+TINY = Sizes("tiny", simulated=2, trial_s=0.1, most_trials=1)
 HARMONIC = load_definition("harmonic")
 ASSISTED = ("No Assist", "High Assist")
 
@@ -29,40 +35,63 @@ def without_models(definition: Definition) -> Definition:
     return replace(definition, conditions=kept, hypotheses=(), printed=())
 
 
-def test_simulated_people_go_through_a_study_and_a_report_says_that_they_are(
+def request(out: Path, sizes: Sizes, definition: Definition, **changes: Any) -> Request[Sizes]:
+    tasks = tuple(task.name for task in definition.tasks)
+    return Request(out, sizes, tasks, **{"jobs": 1, "quiet": True, **changes})
+
+
+def test_simulated_people_go_through_a_study_and_a_report_says_that_they_are(tmp_path: Path) -> None:
+    definition, out = without_models(HARMONIC), tmp_path / "study"
+    study = study_of(definition)
+    run_study(study, request(out, TINY, definition))
+    trials = read_trials(read_object(out / "trials.json"), out)
+    assert [(one.person, one.order) for one in trials] == [(0, 0), (0, 1), (1, 0), (1, 1)]
+    assert {one.condition for one in trials if one.person == 0} == set(ASSISTED)
+    # The same person meets the same scene in every condition.
+    traces = read_traces(read_object(out / "traces.json"), out)
+    starts = {one.condition: one.position[0] for one in traces if one.person == 0}
+    assert starts["No Assist"] == starts["High Assist"]
+    made = {*study.documents, *ALWAYS_MADE, "measures.png", SESSIONS}
+    assert {one.name for one in out.iterdir()} >= made - {PDF}
+    page = (out / HTML).read_text(encoding="utf-8")
+    captions = re.findall(r"<(?:fig)?caption>(.*?)</(?:fig)?caption>", page)
+    assert len(captions) > 6
+    assert all("simulated people" in caption for caption in captions)
+    assert definition.digest in page
+    config = json.loads((out / "config.json").read_text())
+    assert (config["definition"], config["people_are"]) == (definition.digest, "simulated")
+
+
+def test_a_stopped_study_goes_on_with_the_sessions_that_it_has(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(report, "find_browser", lambda: None)
-    definition, out = without_models(HARMONIC), tmp_path / "study"
-    request = Request(definition, TINY, 2, out, jobs=1, quiet=True)
-    claim(request, report_files(definition))
-    ran = send_people(request)
-    assert [(one.person, one.order) for one in ran.trials] == [(0, 0), (0, 1), (1, 0), (1, 1)]
-    assert {one.condition for one in ran.trials if one.person == 0} == set(ASSISTED)
-    # The same person meets the same scene in every condition.
-    starts = {one.condition: one.position[0] for one in ran.traces if one.person == 0}
-    assert starts["No Assist"] == starts["High Assist"]
-    rows = write_documents(request, ran)
-    assert "Chromium" in write_report(out, ran, rows, "latentarm study run harmonic")
-    assert {one.name for one in out.iterdir()} >= {*DOCUMENTS, PAGE}
-    assert not (out / PDF).exists()
-    page = (out / PAGE).read_text(encoding="utf-8")
-    captions = [line for line in page.splitlines() if "<caption>" in line or "<figcaption>" in line]
-    assert len(captions) > 6
-    assert all("simulated people" in line for line in captions)
-    assert definition.digest in page
-    analysis = json.loads((out / "analysis.json").read_text())
-    assert (analysis["definition"], analysis["people_are"]) == (definition.digest, "simulated")
+    definition = without_models(HARMONIC)
+    study, asked = study_of(definition), request(tmp_path, TINY, definition)
+    run_study(study, asked)
+    made = (*study.documents, "results.json", "measures.png")
+    before = {name: (tmp_path / name).read_bytes() for name in made}
+    sessions = sorted((tmp_path / SESSIONS).iterdir())
+    assert len(sessions) == 4
+    sessions[2].unlink()
+    gone_through: list[int] = []
+    measured = session.in_the_end
+    monkeypatch.setattr(session, "in_the_end", lambda one: gone_through.append(1) or measured(one))
+    run_study(study, asked)
+    assert gone_through == [1]
+    assert {name: (tmp_path / name).read_bytes() for name in made} == before
+    sessions[0].write_bytes(sessions[2].read_bytes())
+    with pytest.raises(UserError, match="holds another session"):
+        run_study(study, asked)
 
 
 def test_a_request_for_too_few_people_or_another_folder_is_refused(tmp_path: Path) -> None:
     with pytest.raises(UserError, match="2 people or more"):
-        Request(HARMONIC, TINY, 1, tmp_path)
+        sizes_of("paper", 1)
     (tmp_path / "mine.txt").write_text("keep")
     with pytest.raises(UserError, match="choose another folder"):
-        claim(Request(HARMONIC, TINY, 2, tmp_path), ())
+        run_study(study_of(HARMONIC), request(tmp_path, TINY, HARMONIC))
     with pytest.raises(UserError, match=r"config\.json"):
-        read_trials(tmp_path)
+        read_recorded(tmp_path)
 
 
 def test_people_begin_with_different_choices_and_a_whole_takes_all() -> None:
@@ -99,37 +128,24 @@ def test_figures_of_attempts_are_what_was_reached_in_the_end_and_what_it_took() 
     }
 
 
-def test_names_of_figures_are_files_that_a_run_may_replace() -> None:
-    for name in NAMES:
-        definition = load_definition(name)
-        assert {f"{one}.png" for one in figure_names(definition)} < set(report_files(definition))
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_every_study_runs_at_smoke_sizes(name: str, tmp_path: Path) -> None:
     definition = load_definition(name)
-    request = Request(definition, PRESETS["smoke"], 2, tmp_path / name, jobs=1, quiet=True)
-    claim(request, report_files(definition))
-    ran = send_people(request)
-    write_report(request.out, ran, write_documents(request, ran), f"latentarm study run {name}")
-    assert {one.condition for one in ran.trials} == {one.name for one in definition.conditions}
-    assert all(np.isfinite(list(one.measures.values())).all() for one in ran.trials)
-    found, trials = read_trials(request.out)
-    assert found == definition
-    assert trials == list(ran.trials)
+    run_study(study_of(definition), request(tmp_path / name, sizes_of("smoke", 2), definition))
+    recorded = read_recorded(tmp_path / name)
+    assert recorded.definition == definition
+    assert {one.condition for one in recorded.trials} == {one.name for one in definition.conditions}
+    assert all(np.isfinite(list(one.measures.values())).all() for one in recorded.trials)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("backend", ["ray", "dask"])
 def test_every_backend_writes_the_same_bytes(backend: str, tmp_path: Path) -> None:
-    definition = load_definition("harmonic")
     written: list[dict[str, bytes]] = []
+    study = study_of(HARMONIC)
     for place in ("joblib", backend):
-        request = Request(
-            definition, PRESETS["smoke"], 2, tmp_path / place, jobs=2, backend=place, quiet=True
-        )
-        claim(request, ())
-        write_documents(request, send_people(request))
-        written.append({name: (request.out / name).read_bytes() for name in DOCUMENTS})
+        asked = request(tmp_path / place, sizes_of("smoke", 2), HARMONIC, jobs=2, backend=place)
+        run_study(study, asked)
+        written.append({name: (asked.out / name).read_bytes() for name in study.documents})
     assert written[0] == written[1]

@@ -1,1 +1,1 @@
-"""What moves: the contract between the control loop and an arm, and the arms behind it."""
+"""The contract between the control loop and an arm, and the arms."""

@@ -1,4 +1,4 @@
-"""Where a real arm is: ``SCHEME://HOST[:PORT][?option=value&...]``."""
+"""Addresses of real arms: ``SCHEME://HOST[:PORT][?option=value&...]``."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -7,36 +7,21 @@ from urllib.parse import parse_qsl, urlsplit
 
 from latentarm.core.errors import UserError
 
-MARK: Final = "://"
-"""What tells the address of a real arm from the name of a simulated one."""
+MARK: Final = "://"  # marks the address of a real arm
 
 
 @final
 @dataclass(frozen=True)
 class ArmAddress:
-    """The address of a real arm.
+    """The address of a real arm."""
 
-    Attributes:
-        scheme: the driver, a name of `latentarm.arms.real_catalogue.REAL_ARMS`.
-        host: a host name, an IP address, or a path where the driver wants one.
-        port: None for the driver's usual one.
-        options: of the driver, by name.
-    """
-
-    scheme: str
-    host: str
-    port: int | None
-    options: Mapping[str, str]
+    scheme: str  # a driver's name in `latentarm.arms.real_catalogue.REAL_ARMS`
+    host: str  # a host name, an IP address, or a path for some drivers
+    port: int | None  # None for the driver's default
+    options: Mapping[str, str]  # of the driver
 
     def only(self, *names: str) -> Mapping[str, str]:
-        """The options, none of which is unknown.
-
-        Args:
-            names: that the driver knows.
-
-        Raises:
-            UserError: there is another one.
-        """
+        """The options, if the driver knows all of them by these names."""
         unknown = sorted(set(self.options) - set(names))
         if unknown:
             known = ", ".join(names) or "no options"
@@ -50,11 +35,7 @@ def is_address(name: str) -> bool:
 
 
 def parse_address(text: str) -> ArmAddress:
-    """Read an address.
-
-    Raises:
-        UserError: it is not one.
-    """
+    """Parse an address."""
     try:
         parts = urlsplit(text)
         host, port = parts.hostname or parts.path, parts.port

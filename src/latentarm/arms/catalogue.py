@@ -1,4 +1,4 @@
-"""The arms by name: ours, and those that other distributions register."""
+"""Arms by name: ours, and those that other distributions register."""
 
 import inspect
 from collections.abc import Callable
@@ -15,31 +15,24 @@ from latentarm.robots.scene.scene import Scene
 
 
 class ArmFactory(Protocol):
-    """What makes an arm; the class of an arm does."""
+    """Makes an arm; its class is such a factory."""
 
     def __call__(self, robot: Robot, state: FloatArray, now_s: Callable[[], float]) -> Arm:
         """An arm that is not connected.
 
         Args:
-            robot: whose joints these are.
-            state: (n,), where a simulated arm starts, rad; a real arm is where it is.
-            now_s: the clock that readings are timed by, s; never goes back.
+            robot: the robot with these joints.
+            state: (n,), start of a simulated arm, rad; a real arm ignores it.
+            now_s: the clock of readings, s; never goes back.
         """
         ...
 
 
 class SceneArmFactory(Protocol):
-    """What makes an arm that can have things about it."""
+    """Makes an arm that can have things about it."""
 
     def __call__(self, robot: Robot, state: FloatArray, now_s: Callable[[], float], *, scene: Scene) -> Arm:
-        """An arm that is not connected; see `ArmFactory`.
-
-        Args:
-            robot: whose joints these are.
-            state: (n,), where the arm starts, rad.
-            now_s: the clock that readings are timed by, s; never goes back.
-            scene: what stands about it.
-        """
+        """An arm that is not connected, in a scene; see `ArmFactory`."""
         ...
 
 
@@ -61,18 +54,17 @@ ARMS: Final = Catalogue(
 
 DEFAULT_ARM: Final = "kinematic"
 
-PHYSICAL_ARM: Final = "mujoco"
-"""The arm that can touch and hold things."""
+PHYSICAL_ARM: Final = "mujoco"  # can touch and hold things
 
 
 def make_arm(name: str, robot: Robot, state: FloatArray, now_s: Callable[[], float]) -> Arm:
-    """An arm of the catalogue; it is not connected yet.
+    """An arm of the catalogue, not connected yet.
 
     Args:
         name: a name in `ARMS`, or the address of a real arm.
-        robot: whose joints these are.
-        state: (n,), where a simulated arm starts, rad; a real arm is where it is.
-        now_s: the clock that readings are timed by, s; never goes back. A simulated arm moves as it goes on.
+        robot: the robot with these joints.
+        state: (n,), start of a simulated arm, rad; a real arm ignores it.
+        now_s: the clock of readings, s; never goes back. A simulated arm moves as it goes on.
 
     Raises:
         UserError: there is no such arm, it does not load, it cannot be made for this robot, or it is not an
@@ -84,14 +76,7 @@ def make_arm(name: str, robot: Robot, state: FloatArray, now_s: Callable[[], flo
 
 
 def check_named(name: str) -> None:
-    """Check what ``--arm`` names, without making it.
-
-    Args:
-        name: a name in `ARMS`, or the address of a real arm.
-
-    Raises:
-        UserError: there is no such arm or driver, or it does not load.
-    """
+    """Check the name or address in ``--arm``, without making the arm."""
     if is_address(name):
         check_address(name)
     else:
@@ -99,22 +84,14 @@ def check_named(name: str) -> None:
 
 
 def check_simulated(name: str) -> None:
-    """Check what ``--arm`` names where time is simulated; see `check_named`.
-
-    Raises:
-        UserError: as `check_named`, and for the address of a real arm.
-    """
+    """Check the name in ``--arm`` where time is simulated; see `check_named`."""
     if is_address(name):
         raise _real(name)
     check_named(name)
 
 
 def make_simulated_arm(name: str, robot: Robot, state: FloatArray, now_s: Callable[[], float]) -> Arm:
-    """An arm for simulated time; see `make_arm`.
-
-    Raises:
-        UserError: as `make_arm`, and where the arm is real: it would not wait for simulated time.
-    """
+    """An arm for simulated time; see `make_arm`."""
     check_simulated(name)
     return _simulated(name, make_arm(name, robot, state, now_s))
 
@@ -122,18 +99,7 @@ def make_simulated_arm(name: str, robot: Robot, state: FloatArray, now_s: Callab
 def make_scene_arm(
     name: str, robot: Robot, state: FloatArray, now_s: Callable[[], float], scene: Scene
 ) -> SceneArm:
-    """A simulated arm with things about it; see `make_arm`.
-
-    Args:
-        name: a name in `ARMS`; only an arm whose factory takes a ``scene`` can have one.
-        robot: whose joints these are.
-        state: (n,), where the arm starts, rad.
-        now_s: the clock that readings are timed by, s; never goes back.
-        scene: what stands about the arm.
-
-    Raises:
-        UserError: as `make_arm`, and where the arm can have no things about it.
-    """
+    """A simulated arm with things about it; only an arm whose factory takes a ``scene`` can have any."""
     check_simulated(name)
     factory = ARMS.find(name, "--arm")
     if "scene" not in inspect.signature(factory).parameters:
@@ -158,7 +124,6 @@ def _real(name: str) -> UserError:
 
 
 def _checked(name: str, arm: object) -> Arm:
-    """A plug-in may break the contract."""
     if not isinstance(arm, Arm):
         raise UserError(f"--arm {name} made {type(arm).__name__}, not a latentarm.arms.contract.Arm.")
     return arm

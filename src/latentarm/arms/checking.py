@@ -1,4 +1,4 @@
-"""Looking at a real arm before it is driven: what its driver finds out, and what all arms must be."""
+"""Inspection of a real arm before driving: the driver's findings, and checks for all arms."""
 
 from pathlib import Path
 from typing import Final
@@ -10,24 +10,11 @@ from latentarm.arms.real import Fact, Findings, FoundLimits, RealArm
 from latentarm.core.errors import UserError
 from latentarm.robots.robot import Robot
 
-_BEYOND: Final = 1e-3
-"""A limit of the robot may lie this far beyond the arm's own, rad or rad/s: such figures are rounded."""
+_BEYOND: Final = 1e-3  # rounding that a limit of the robot may exceed the arm's own by, rad or rad/s
 
 
 def look_at(arm: RealArm, robot: Robot, dt_s: float) -> Findings:
-    """What there is to know of an arm before it is driven; nothing moves.
-
-    Args:
-        arm: its driver, not connected.
-        robot: what it is to be driven as.
-        dt_s: period of the loop that is to drive it, s.
-
-    Returns:
-        What the driver found, with what holds for all arms; refusals without repetition.
-
-    Raises:
-        UserError: there is no arm, or what is there does not answer as one.
-    """
+    """Findings of a driver that is not connected, and checks of all arms; ``dt_s`` is the loop's period."""
     spec, found = arm.spec, arm.look()
     refusals = [*arm_refusals(spec, robot), *found.refusals]
     try:
@@ -52,7 +39,7 @@ def look_at(arm: RealArm, robot: Robot, dt_s: float) -> Findings:
 
 
 def _beyond(own: FoundLimits, robot: Robot) -> list[str]:
-    """Limits of the robot that the arm would not let it use: it would stop there with a fault."""
+    """Limits of the robot beyond the arm's own, where the arm would stop with a fault."""
     shape = (robot.dof,)
     if not own.lower.shape == own.upper.shape == own.velocity.shape == shape:
         return [

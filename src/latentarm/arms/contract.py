@@ -1,4 +1,4 @@
-"""What the control loop needs of an arm, real or simulated."""
+"""The contract of an arm, real or simulated, with the control loop."""
 
 import math
 from abc import ABC, abstractmethod
@@ -6,32 +6,33 @@ from dataclasses import dataclass
 from types import TracebackType
 from typing import Final, Literal, Self, final
 
+import numpy as np
+
 from latentarm.core.errors import UserError
-from latentarm.core.types import Command, GripperCommand, Reading
+from latentarm.core.types import Command, FloatArray, GripperCommand, Reading
 from latentarm.robots.gripper import Gripper
 from latentarm.robots.notices import assumed_limits
 from latentarm.robots.robot import Robot
 from latentarm.robots.scene.scene import SceneState
 
 ArmPhase = Literal["off", "disabled", "guided", "ready", "moving", "fault", "emergency_stop"]
-"""What state an arm is in."""
+"""Phases of an arm, see `ArmStatus`."""
 
-STOPS_AFTER_S: Final = 0.1
-"""An arm that takes longer than this to notice that its commands have ended is refused, s."""
+STOPS_AFTER_S: Final = 0.1  # an arm that takes longer to notice the end of its commands is refused, s
 
 
 @final
 @dataclass(frozen=True)
 class ArmSpec:
-    """What an arm is, as its driver knows it.
+    """An arm's fixed properties, by its driver.
 
     Attributes:
         joint_names: n names, in the order of readings and commands.
-        rate_hz: how many commands it takes per second at most.
+        rate_hz: largest rate of commands, 1/s.
         stops_after_s: when a command's ``duration_s`` has passed without another one, the arm begins to stop
-            by itself within this time, s. None where nobody knows: such an arm is not driven.
-        simulated: whether it is simulated; `check_arm` is stricter with a real one.
-        gripper: its gripper, or None where it has none.
+            by itself within this time, s. None if unknown: such an arm is refused.
+        simulated: `check_arm` is stricter with real arms.
+        gripper: None where it has none.
     """
 
     joint_names: tuple[str, ...]
@@ -47,14 +48,14 @@ class ArmStatus:
     """Whether an arm can move, and if not, why.
 
     Attributes:
-        phase: *off*: not connected. *disabled*: connected, takes no commands. *guided*: disabled, and
-            moved by a person's hand (`latentarm.arms.guiding`). *ready*: enabled, at rest. *moving*: enabled,
-            in motion. *fault*: it has stopped by itself and takes no commands. *emergency_stop*: somebody has
+        phase: *off*: not connected. *disabled*: connected, takes no commands. *guided*: disabled, and moved
+            by a person's hand (`latentarm.arms.real.GuidableArm`). *ready*: enabled, at rest. *moving*:
+            enabled, in motion. *fault*: stopped by itself, takes no commands. *emergency_stop*: somebody has
             pressed the button on the arm.
-        reason: one short sentence for the person; "" where there is nothing to say.
+        reason: one short sentence for the person, or "".
         recoverable: whether `Arm.recover` can end the fault.
-        lost: whether the connection to the arm is lost. A recoverable fault then ends with a new connection;
-            else it takes `Arm.close` and `Arm.connect`.
+        lost: whether the connection is lost. Recovering a recoverable fault then makes a new one; otherwise
+            call `Arm.close` and `Arm.connect`.
     """
 
     phase: ArmPhase
@@ -69,21 +70,20 @@ class ArmStatus:
 
 
 class Arm(ABC):
-    """An arm that is driven by joint velocities of bounded duration.
+    """An arm driven by joint velocities of bounded duration.
 
     Once a command's ``duration_s`` has passed without another one, the arm comes to rest by itself, however
-    the process that drives it may have ended. It moves for no other reason than a command that it was sent
-    while it was enabled (its gripper also by `move_gripper`): connecting, reconnecting, enabling, recovering
-    and closing never move it, and what it was sent before does not count afterwards.
+    the process that drives it ended. Only a command sent while it is enabled moves it (its gripper also
+    `move_gripper`): connecting, reconnecting, enabling, recovering and closing never do, and earlier commands
+    do not count afterwards.
 
-    No method waits for the arm, except `connect` and `close`. As a context manager it is connected, and
-    closed at the end.
+    Only `connect` and `close` wait for the arm. As a context manager it connects, and closes at the end.
     """
 
     @property
     @abstractmethod
     def spec(self) -> ArmSpec:
-        """What it is; known before it is connected."""
+        """The arm's fixed properties, known before it is connected."""
 
     @abstractmethod
     def connect(self) -> None:
@@ -95,11 +95,11 @@ class Arm(ABC):
 
     @abstractmethod
     def close(self) -> None:
-        """Stop the arm and end the connection; closing twice is no error."""
+        """Stop the arm and end the connection; closing twice is harmless."""
 
     @abstractmethod
     def read(self) -> Reading:
-        """The newest reading. Where no new one has come, that is the one before, as old as it is.
+        """The newest reading, however old it is.
 
         Raises:
             RuntimeError: the arm was never connected.
@@ -119,20 +119,24 @@ class Arm(ABC):
 
     @abstractmethod
     def recover(self) -> None:
-        """Ask an arm to end a recoverable fault; afterwards it is disabled."""
+        """Ask an arm to end a recoverable fault; it is then disabled."""
 
     @abstractmethod
     def send(self, command: Command) -> None:
-        """Take a command; it replaces the one before. An arm that is not enabled ignores it."""
+        """Take a command in place of the one before; an arm that is not enabled ignores it.
+
+        Raises:
+            ValueError: a figure has the wrong shape or is not finite; no safety filter sends that.
+        """
 
     @abstractmethod
     def move_gripper(self, command: GripperCommand) -> None:
-        """Move the gripper of an arm that takes no commands, as far as it can be reached then.
+        """Move the gripper of an arm that takes no commands, if it can be reached.
 
-        So it is told to stop, and may be opened, while the arm is disabled, guided by hand, or has a fault.
+        This stops it, and may open it, while the arm is disabled, guided by hand, or has a fault.
 
         Args:
-            command: where to, how fast and how hard; it replaces the one before.
+            command: replaces the one before.
         """
 
     @abstractmethod
@@ -141,18 +145,13 @@ class Arm(ABC):
 
     @final
     def __enter__(self) -> Self:
-        """Connect."""
         self.connect()
         return self
 
     @final
     def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
     ) -> None:
-        """Close."""
         self.close()
 
 
@@ -161,37 +160,29 @@ class SceneArm(Arm, ABC):
 
     @abstractmethod
     def scene_state(self) -> SceneState:
-        """How everything stands by now: the truth, whatever is read.
+        """The true state of everything, independent of readings.
 
-        Asked again in the same moment, it is the same state. Its forces are the largest since the state of an
-        earlier moment, so a single reader that asks at every tick misses none.
+        Repeated calls at one moment give the same state. Forces are the largest since the state of an earlier
+        moment, so a single reader at every tick misses none.
         """
 
 
+def finite_velocity(command: Command, dof: int) -> FloatArray:
+    """A copy of a command's velocity, (n,), rad/s; ValueError unless it has n finite entries."""
+    velocity = np.array(command.velocity, dtype=np.float64)
+    if velocity.shape != (dof,) or not np.isfinite(velocity).all():
+        raise ValueError(f"a command needs {dof} finite joint velocities, rad/s")
+    return velocity
+
+
 def check_arm(spec: ArmSpec, robot: Robot) -> None:
-    """Refuse to drive an arm that cannot be driven safely.
-
-    Args:
-        spec: what the arm's driver knows of it.
-        robot: what is to be driven.
-
-    Raises:
-        UserError: the first of `arm_refusals`.
-    """
+    """Refuse an arm that cannot be driven safely as this robot."""
     for refusal in arm_refusals(spec, robot):
         raise UserError(refusal)
 
 
 def check_rate(spec: ArmSpec, dt_s: float) -> None:
-    """Refuse an arm that takes fewer commands per second than a loop sends.
-
-    Args:
-        spec: what the arm's driver knows of it.
-        dt_s: the loop's period, s.
-
-    Raises:
-        UserError: it does.
-    """
+    """Refuse an arm that takes fewer commands per second than a loop of period ``dt_s`` sends."""
     if spec.rate_hz < (1.0 - 1e-9) / dt_s:
         raise UserError(
             f"The loop runs at {1.0 / dt_s:g} Hz, but the arm takes {spec.rate_hz:g} commands"
@@ -200,14 +191,10 @@ def check_rate(spec: ArmSpec, dt_s: float) -> None:
 
 
 def arm_refusals(spec: ArmSpec, robot: Robot) -> tuple[str, ...]:
-    """Why an arm cannot be driven safely, a sentence each; empty where it can.
+    """Reasons why an arm cannot be driven safely, a sentence each.
 
     Its joints are not the robot's, or the robot's gripper is missing; nobody knows when it stops by itself,
     or it is too late; or the arm is real and one of its limits is assumed.
-
-    Args:
-        spec: what the arm's driver knows of it.
-        robot: what is to be driven.
     """
     found: list[str] = []
     if spec.joint_names != robot.joint_names:

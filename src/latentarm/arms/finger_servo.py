@@ -1,6 +1,6 @@
-"""A gripper in MuJoCo: a position servo for each finger, as slow and as weak as it is told to be.
+"""A gripper in MuJoCo: a position servo for each finger, with bounded speed and force.
 
-What is in m below is a finger's share of the opening, also where its joint turns.
+Values in m are a finger's share of the opening, also where its joint turns.
 """
 
 from collections import deque
@@ -13,41 +13,24 @@ from latentarm.arms.simulated_gripper import SimulatedGripper
 from latentarm.core.types import FloatArray, GripperReading
 from latentarm.robots.gripper import Gripper
 
-FREQUENCY_RAD_S: Final = 300.0
-"""Natural frequency of a finger that only its servo moves, rad/s; it is critically damped."""
-
-_STILL_M_S: Final = 0.002
-"""Fingers slower than this count as stalled, m/s of the opening."""
-
-_STALLED_M: Final = 3e-4
-"""Fingers that stand this far before where their servo pulls them press on something, m each."""
-
-_STALLED_S: Final = 0.05
-"""Fingers that have stalled for so long hold something, s."""
-
-_LEAST_N: Final = 0.2
-"""Fingers that may not press this hard hold nothing, N."""
+FREQUENCY_RAD_S: Final = 300.0  # natural frequency of a free finger, critically damped
+_STILL_M_S: Final = 0.002  # fingers slower than this count as stalled, m/s of the opening
+_STALLED_M: Final = 3e-4  # fingers that stand this far before their servo's target press on something, m each
+_STALLED_S: Final = 0.05  # fingers that have stalled for so long hold something, s
+_LEAST_N: Final = 0.2  # fingers that may not press this hard hold nothing, N
 
 
 @final
 class FingerServo(SimulatedGripper):
-    """Runs the servos that `add_finger_servos` has added.
+    """Runs the servos of `add_finger_servos`.
 
-    The target of the servo goes to the commanded width at the commanded speed. Where the fingers meet
-    something it waits for them, as far ahead of them as presses them together with the commanded force: each
-    finger with that force, and never with more. What is held this way stays held when commands end, when the
-    arm stops, and when it is disabled.
+    The servo's target goes to the commanded width at the commanded speed. Where the fingers meet something it
+    stays so far ahead of them that each finger presses with the commanded force, and never more. Held things
+    stay held when commands end, when the arm stops, and when it is disabled.
 
-    A stalled gripper holds something: one that has stood still before the commanded width for 50 ms, while
-    both servos press. This is what it measures, not what is there. Fingers that meet have nothing between
-    them.
-
-    Args:
-        gripper: what its manufacturer states.
-        model: compiled with the servos.
-        data: what moves.
-        first_actuator: id of the first finger's servo; those of the others follow.
-        delay_s: how old every measurement is, s.
+    A gripper reports that it holds something once it has stood still before the commanded width for 50 ms
+    while both servos press. Fingers that meet have nothing between them. Measurements are ``delay_s`` old.
+    Servos of further fingers follow ``first_actuator``.
     """
 
     def __init__(
@@ -76,7 +59,7 @@ class FingerServo(SimulatedGripper):
         self.note()
 
     def prepare(self) -> bool:
-        """Set the servos for the next time step; whether those after it need to be set anew."""
+        """Set the servos for the next time step; returns whether the step after needs that again."""
         # Plain numbers: NumPy takes several times as long for so few, and this runs in every time step.
         where = self._shares()
         if not self._stalled(where):
@@ -90,18 +73,18 @@ class FingerServo(SimulatedGripper):
         return True
 
     def note(self) -> None:
-        """Keep what is measured now for as long as readings are delayed."""
+        """Store the present measurement until its delay has passed."""
         time_s = float(self._data.time)
         self._measured.append((time_s, self._reading()))
         while len(self._measured) > 1 and time_s - self._measured[1][0] >= self._delay_s - 1e-9:
             self._measured.popleft()
 
     def measure(self) -> GripperReading:
-        """See the base class."""
+        """The present opening, and whether it holds something."""
         return self._measured[0][1]
 
     def halt(self) -> None:
-        """See the base class. Fingers that do not hold anything yet press no more."""
+        """Stay at the present opening. Fingers that do not hold anything yet press no more."""
         where = self._shares()
         if self._per_step > 0.0 and not self._holds(where):
             self._target = sum(where) / len(where)
@@ -121,7 +104,7 @@ class FingerServo(SimulatedGripper):
         self._model.actuator_forcerange[self._servos] = -torque, torque
 
     def _shares(self) -> list[float]:
-        """How far each finger is open, m."""
+        """Opening of each finger, m."""
         return ((self._data.qpos[self._positions] - self._closed) / self._per_m).tolist()
 
     def _reading(self) -> GripperReading:
@@ -129,11 +112,11 @@ class FingerServo(SimulatedGripper):
         return GripperReading(sum(where), self._holds(where))
 
     def _holds(self, where: list[float]) -> bool:
-        """True once fingers at these positions, m, have been stalled for long enough."""
+        """Whether fingers at these positions, m, have stalled for long enough."""
         return self._stalled(where) and self._data.time - self._moved_s >= _STALLED_S
 
     def _stalled(self, where: list[float]) -> bool:
-        """Whether the fingers, which are at these positions, m, stand still although their servos press."""
+        """Whether fingers at these positions, m, stand still although their servos press."""
         pulled = min(where) - self._target
         speed = abs(sum(self._data.qvel[self._speeds].tolist()) / self._per_m)
         enough = max(min(_STALLED_M, 0.5 * self._lead), 0.5 * _LEAST_N / self._stiffness)
@@ -141,13 +124,7 @@ class FingerServo(SimulatedGripper):
 
 
 def add_finger_servos(spec: mujoco.MjSpec, gripper: Gripper, moved_kg: FloatArray) -> None:
-    """Add a position servo to each finger.
-
-    Args:
-        spec: gets the servos.
-        gripper: whose fingers these are.
-        moved_kg: what each of its joints moves, kg (kg m² where it turns).
-    """
+    """Add a position servo to each finger; ``moved_kg`` is each joint's load, kg (kg m² where it turns)."""
     for name, mass in zip(gripper.joints, moved_kg, strict=True):
         stiffness = FREQUENCY_RAD_S**2 * mass
         servo = spec.add_actuator(

@@ -1,8 +1,7 @@
-"""A process of its own that runs one module, and messages in JSON to it and from it.
+"""A helper process that runs one module and exchanges JSON messages with this one.
 
-What must go on when this process stalls or is killed runs in such a helper: the other end sees that this one
-is gone, and says so with an `EOFError`. A message is whole or not there, and neither end ever waits for the
-other to read. Linux only (``SOCK_SEQPACKET``).
+A helper goes on when this process stalls or is killed: it gets an `EOFError`. A message arrives whole or not
+at all, and neither end waits for the other to read. Linux only (``SOCK_SEQPACKET``).
 """
 
 import json
@@ -16,17 +15,12 @@ from typing import Any, Final, Self, cast, final
 
 from latentarm.core.errors import UserError
 
-_LARGEST: Final = 1 << 16
-"""Bytes of a message."""
+_LARGEST: Final = 1 << 16  # bytes of a message
 
 
 @final
 class MessagePort:
-    """One end of a pair that messages go between.
-
-    Args:
-        end: a connected socket that keeps messages apart.
-    """
+    """One end of a connected pair of sockets that keep messages apart."""
 
     def __init__(self, end: socket.socket) -> None:
         self._end = end
@@ -38,11 +32,7 @@ class MessagePort:
         return cls(socket.socket(fileno=int(sys.argv[-1])))
 
     def send(self, message: Mapping[str, object]) -> bool:
-        """Send a message, without waiting.
-
-        Returns:
-            Whether it was sent: not where the other end is gone, or does not read.
-        """
+        """Send a message without waiting; False if the other end is gone, or does not read."""
         try:
             self._end.send(json.dumps(message).encode())
         except OSError:
@@ -50,10 +40,7 @@ class MessagePort:
         return True
 
     def receive(self, wait_s: float = 0.0) -> dict[str, Any] | None:
-        """The next message, or None where none has come.
-
-        Args:
-            wait_s: how long to wait for one, s.
+        """The next message within ``wait_s``, or None.
 
         Raises:
             EOFError: the other end is gone.
@@ -75,19 +62,10 @@ class MessagePort:
 
 @final
 class HelperProcess:
-    """A running helper.
+    """A running helper, which takes its end with `MessagePort.of_helper`; ours is ``port``.
 
-    It has a session of its own, so that Ctrl-C in a terminal ends this process only, which then ends the
-    helper in good order.
-
-    Args:
-        module: what it runs, as ``python -m`` does; it takes its end with `MessagePort.of_helper`.
-
-    Attributes:
-        port: this process's end.
-
-    Raises:
-        UserError: this system has no such sockets.
+    It has its own session, so that Ctrl-C in a terminal ends this process only, which then ends the helper in
+    good order.
     """
 
     def __init__(self, module: str) -> None:
@@ -106,7 +84,7 @@ class HelperProcess:
 
     @property
     def pid(self) -> int:
-        """Its process id."""
+        """The helper's process id."""
         return self._process.pid
 
     @property
@@ -115,11 +93,7 @@ class HelperProcess:
         return self._process.poll() is None
 
     def end(self, within_s: float) -> None:
-        """Close this end and wait for the helper to bring things to rest; kill it where it does not.
-
-        Args:
-            within_s: how long to wait, s.
-        """
+        """Close this end, wait for the helper to bring things to rest, and kill it after ``within_s``."""
         self.port.close()
         try:
             self._process.wait(within_s)

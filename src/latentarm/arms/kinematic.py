@@ -1,4 +1,4 @@
-"""An arm without inertia: it does what it is told, and stops by itself when told nothing more."""
+"""An arm without inertia: it follows every command, and stops by itself when commands end."""
 
 import math
 from collections.abc import Callable
@@ -11,19 +11,17 @@ from latentarm.arms.simulated_gripper import KinematicGripper
 from latentarm.core.types import FloatArray
 from latentarm.robots.robot import Robot
 
-RATE_HZ: Final = 1000.0
-"""It takes commands as fast as any loop sends them."""
+RATE_HZ: Final = 1000.0  # as fast as any loop
 
 
 @final
 class KinematicArm(SimulatedArm):
     """Kinematic simulation of the paper's transition, ``s' = s + a dt``.
 
-    A joint that reaches a limit stays there, as at a hard stop. A gripper opens and closes as it is told.
+    A joint that reaches a limit stays there, as at a hard stop. A gripper follows its commands.
 
     Args:
-        robot: whose joints these are.
-        state: (n,), where the arm starts, rad.
+        state: (n,), start, rad.
         now_s: the clock, s; never goes back.
 
     Raises:
@@ -33,13 +31,7 @@ class KinematicArm(SimulatedArm):
     def __init__(self, robot: Robot, state: FloatArray, now_s: Callable[[], float]) -> None:
         self._fingers = None if robot.gripper is None else KinematicGripper(robot.gripper)
         super().__init__(
-            robot,
-            state,
-            now_s,
-            rate_hz=RATE_HZ,
-            stops_after_s=0.0,
-            gripper=self._fingers,
-            settles_s=math.inf,
+            robot, state, now_s, rate_hz=RATE_HZ, stops_after_s=0.0, gripper=self._fingers, settles_s=math.inf
         )
         self._limits = robot.limits
         self._state = np.array(state, dtype=np.float64)

@@ -21,32 +21,23 @@ from latentarm.robots.kinematics.reader import ModelChain, read, reference_posit
 from latentarm.robots.robot import Robot
 from latentarm.robots.scene.scene import Scene, SceneState
 
-STEP_S: Final = 0.001
-"""Time step of the physics and of the servo, s."""
-
-_HARD_STOP: Final = (2.0 * STEP_S, 1.0)
-"""Joints end at stops of metal: as stiff as the time step allows."""
-
-RATE_HZ: Final = 1000.0
-"""How many commands the servo takes per second."""
-
-LOOK_STEPS: Final = 4
-"""Contacts, stabs and cuts are looked at after so many time steps."""
-
-SCENE_SETTLED_S: Final = 10.0
-"""Without a command, things about an arm have come to rest after this time, s."""
+STEP_S: Final = 0.001  # time step of the physics and of the servo, s
+_HARD_STOP: Final = (2.0 * STEP_S, 1.0)  # stops of metal: as stiff as the time step allows
+RATE_HZ: Final = 1000.0  # of the servo
+LOOK_STEPS: Final = 4  # time steps between checks of contacts, stabs and cuts
+SCENE_SETTLED_S: Final = 10.0  # without a command, things about an arm are at rest by then
 
 
 @final
 @dataclass(frozen=True)
 class Imperfections:
-    """What a simulated arm has in common with a real one besides its inertia.
+    """Imperfections of real arms, besides inertia, that a simulated arm can have.
 
     Attributes:
         position_noise_rad: SD of the noise on positions, rad.
         velocity_noise_rad_s: SD of the noise on velocities, rad/s.
-        delay_s: how old every reading is, s.
-        payload_kg: mass at the end-effector that the arm's gravity compensation does not know, kg.
+        delay_s: age of every reading, s.
+        payload_kg: mass at the end-effector that gravity compensation ignores, kg.
         seed: of the noise.
 
     Raises:
@@ -71,16 +62,16 @@ class MujocoArm(SimulatedArm, SceneArm):
 
     Each joint has a velocity servo at 1 kHz: a torque in proportion to the error of the velocity and to that
     of its integral. Gravity is compensated for the robot's own bodies. The servo follows a command no faster
-    than the joint may accelerate, and slows down as fast as that once a command has run out or was taken
-    back. Torques end at the limits of the robot's model. A gripper begins open, and holds by contact alone;
-    see `FingerServo`. What the model does not drive stays where it is.
+    than the joint may accelerate, and slows down equally fast once a command has run out or was taken back.
+    Torques end at the limits of the robot's model. A gripper begins open, and holds by contact alone; see
+    `FingerServo`. Joints that nothing drives stay in place.
 
     Args:
         robot: whose model is simulated.
-        state: (n,), where the arm starts, rad.
+        state: (n,), start, rad.
         now_s: the clock, s; never goes back.
         imperfections: of the arm and its sensors.
-        scene: what stands about the arm, in its base frame; None where there is nothing, not even a table.
+        scene: things about the arm, in its base frame; None for none, not even a table.
 
     Raises:
         UserError: ``state`` has the wrong shape, is not finite, or lies outside the limits; the model
@@ -139,27 +130,24 @@ class MujocoArm(SimulatedArm, SceneArm):
 
     @property
     def model(self) -> mujoco.MjModel:
-        """The compiled model of the arm and its scene, to draw it; not to be changed."""
+        """The compiled model of the arm and its scene, for drawing; do not change it."""
         return self._model
 
     @property
     def data(self) -> mujoco.MjData:
-        """What moves, as it was after the last time step, to draw it; not to be changed."""
+        """The state after the last time step, for drawing; do not change it."""
         return self._data
 
     def truth(self) -> tuple[FloatArray, FloatArray]:
-        """Where the joints are by now, (n,), rad, and how fast they move, (n,), rad/s, whatever is read."""
+        """True positions, (n,), rad, and velocities, (n,), rad/s, of the joints, independent of readings."""
         self._elapse()
         return self._data.qpos[self._positions].copy(), self._data.qvel[self._speeds].copy()
 
     def scene_state(self) -> SceneState:
-        """See the base class.
+        """The true state of the scene.
 
-        Forces are looked at every `LOOK_STEPS` time steps; one that rises and falls in between is missed.
-        Things that have come to rest sleep: the forces between them are left out.
-
-        Raises:
-            RuntimeError: the arm has no scene.
+        Forces are sampled every `LOOK_STEPS` time steps; one that rises and falls in between is missed.
+        Things at rest sleep: the forces between them are omitted.
         """
         if self._watch is None:
             raise RuntimeError("an arm without a scene has no state of it")
@@ -181,7 +169,7 @@ class MujocoArm(SimulatedArm, SceneArm):
             self._note()
 
     def _run(self, steps: int, commanded: FloatArray) -> None:
-        """Let time steps pass: one by one while a servo must be set anew each time."""
+        """Let time steps pass: one by one while a servo needs that."""
         fingers, watch = self._fingers, self._watch
         while steps:
             anew = self._servo.prepare(commanded)
@@ -200,7 +188,7 @@ class MujocoArm(SimulatedArm, SceneArm):
                     self._tines.look()
 
     def _note(self) -> None:
-        """Keep what is measured now for as long as readings are delayed."""
+        """Store the present measurement until its delay has passed."""
         time_s = float(self._data.time)
         q, dq = self._data.qpos[self._positions].copy(), self._data.qvel[self._speeds].copy()
         self._measured.append((time_s, q, dq))
@@ -223,7 +211,7 @@ class MujocoArm(SimulatedArm, SceneArm):
 def _world(
     robot: Robot, state: FloatArray, payload_kg: float, scene: Scene | None
 ) -> tuple[mujoco.MjModel, ModelChain]:
-    """The robot's model with servos and a scene, and where the robot's parts are in it."""
+    """The robot's model with servos and a scene, and the places of the robot's parts in it."""
     spec = mujoco.MjSpec.from_string(robot.mjcf)
     bare = spec.compile()
     found = read(bare, [tool.name for tool in robot.chain.tools])
@@ -252,7 +240,7 @@ def _world(
 
 
 def _inertia(model: mujoco.MjModel, joints: IntArray, arm: IntArray, state: FloatArray) -> FloatArray:
-    """(k,), what each of some joints moves by itself with the arm at its start, kg m²; kg where it slides."""
+    """(k,), inertia that each joint moves alone with the arm at its start, kg m²; kg where it slides."""
     data = mujoco.MjData(model)
     data.qpos[:] = reference_positions(model)
     data.qpos[model.jnt_qposadr[arm]] = state
@@ -263,7 +251,7 @@ def _inertia(model: mujoco.MjModel, joints: IntArray, arm: IntArray, state: Floa
 
 
 def _let_first_links_turn(spec: mujoco.MjSpec, model: mujoco.MjModel, joints: IntArray) -> None:
-    """No contact between a link and the base that it turns on, as between any other link and its parent."""
+    """No contact between a link and the base that it turns on, as between other links and parents."""
     for body in {int(model.jnt_bodyid[joint]) for joint in joints}:
         parent = int(model.body_parentid[body])
         if parent and model.body_weldid[parent] == 0:
@@ -271,7 +259,6 @@ def _let_first_links_turn(spec: mujoco.MjSpec, model: mujoco.MjModel, joints: In
 
 
 def _named(spec: mujoco.MjSpec, body: int) -> str:
-    """The name of a body, which gets one where it has none."""
     found = next(one for one in spec.bodies if one.id == body)
     found.name = found.name or f"body{body}"
     return str(found.name)

@@ -1,4 +1,4 @@
-"""What a real arm can do beyond the contract of all arms: say what it is before anything moves."""
+"""Real arms: their description before anything moves, and guiding by hand."""
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
@@ -11,12 +11,7 @@ from latentarm.core.types import FloatArray
 @final
 @dataclass(frozen=True)
 class Fact:
-    """Something that was found out about an arm.
-
-    Attributes:
-        name: such as ``firmware``.
-        value: in words, with its unit.
-    """
+    """A fact about an arm, such as ``firmware``, and its value in words, with its unit."""
 
     name: str
     value: str
@@ -25,13 +20,7 @@ class Fact:
 @final
 @dataclass(frozen=True, eq=False)
 class FoundLimits:
-    """The limits that an arm keeps by itself, as it tells them.
-
-    Attributes:
-        lower: (n,), lowest positions, rad.
-        upper: (n,), highest positions, rad.
-        velocity: (n,), largest speeds, rad/s.
-    """
+    """Limits that an arm reports and keeps by itself, each (n,), rad and rad/s."""
 
     lower: FloatArray
     upper: FloatArray
@@ -41,29 +30,44 @@ class FoundLimits:
 @final
 @dataclass(frozen=True)
 class Findings:
-    """What a driver finds out about an arm without moving it.
+    """A driver's findings about an arm, without moving it."""
 
-    Attributes:
-        facts: firmware, limits, payload, clock, round trip, stop time, ... as far as the arm tells them.
-        refusals: why it is not driven, each one sentence that says what to do; empty where it can be.
-        limits: its own, where it tells them.
-    """
-
+    # firmware, limits, payload, clock, round trip, stop time, ... as far as the arm reports them.
     facts: tuple[Fact, ...]
-    refusals: tuple[str, ...] = ()
-    limits: FoundLimits | None = None
+    refusals: tuple[str, ...] = ()  # reasons not to drive it, each one sentence that says what to do
+    limits: FoundLimits | None = None  # its own, if it reports them
 
 
 class RealArm(Arm, ABC):
-    """An arm that exists. Its driver does all of `Arm`, over the manufacturer's own interface.
+    """A physical arm. Its driver does all of `Arm`, over the manufacturer's own interface.
 
-    What `look` refuses, `connect` refuses with the same sentence.
+    If `look` refuses, `connect` refuses with the same sentence.
     """
 
     @abstractmethod
     def look(self) -> Findings:
-        """Connect, find out what there is, and disconnect. Nothing moves, and nothing is changed.
+        """Connect, inspect, and disconnect. Nothing moves, and nothing changes.
 
         Raises:
             UserError: there is no arm, or what is there does not answer as one.
+        """
+
+
+class GuidableArm(RealArm, ABC):
+    """A real arm that carries its own weight while a person moves it by hand.
+
+    `guide` asks a disabled arm for that. While `status` says *guided*, the arm goes only where a hand pushes
+    it, though it may sag under an unknown load. `disable` and `close` end it, and so do an emergency stop, a
+    fault and a lost connection: the arm then holds its position, and `status` says *guided* until it does. It
+    ignores `send`.
+    """
+
+    @abstractmethod
+    def guide(self) -> None:
+        """Ask a disabled arm to be moved by hand; `status` says when it can be.
+
+        Nothing happens in any other phase, nor at a second call.
+
+        Raises:
+            UserError: it cannot be asked for from here; the sentence says what to do at the arm.
         """

@@ -1,4 +1,4 @@
-"""The real arms by the scheme of their address: ours, and those that other distributions register."""
+"""Real arms by the scheme of their address: ours, and those that other distributions register."""
 
 from collections.abc import Callable
 from typing import Final, Protocol, cast
@@ -11,15 +11,15 @@ from latentarm.robots.robot import Robot
 
 
 class RealArmFactory(Protocol):
-    """What makes the driver of a real arm; its class does."""
+    """Makes the driver of a real arm; its class is such a factory."""
 
     def __call__(self, robot: Robot, address: ArmAddress, now_s: Callable[[], float]) -> RealArm:
         """A driver that is not connected.
 
         Args:
-            robot: what the arm is.
-            address: where it is.
-            now_s: the clock that readings are timed by, s; never goes back.
+            robot: the arm's model.
+            address: of the arm.
+            now_s: the clock of readings, s; never goes back.
 
         Raises:
             UserError: an option of the address is unknown or out of range, or the manufacturer's library is
@@ -53,36 +53,22 @@ _FORMS: Final = {
 
 
 def address_form(scheme: str) -> str:
-    """How an address with this scheme is written; capitals stand for what it names."""
+    """The form of an address with this scheme; capitals are placeholders."""
     return _FORMS.get(scheme, f"{scheme}://HOST")
 
 
 def check_address(address: str) -> None:
-    """Check that there is a driver for an address.
-
-    Raises:
-        UserError: it is no address, or names no driver, or that does not load.
-    """
+    """Check that there is a driver for an address."""
     REAL_ARMS.find(parse_address(address).scheme, f"--arm {address}")
 
 
 def make_real_arm(address: str, robot: Robot, now_s: Callable[[], float]) -> RealArm:
-    """The driver of a real arm; it is not connected yet.
-
-    Args:
-        address: such as ``franka://172.16.0.2``.
-        robot: what the arm is.
-        now_s: the clock that readings are timed by, s; never goes back.
-
-    Raises:
-        UserError: the address names no driver, or the driver cannot be made.
-    """
+    """The driver of a real arm, such as ``franka://172.16.0.2``; not connected yet."""
     where = parse_address(address)
     return _checked(address, REAL_ARMS.find(where.scheme, f"--arm {address}")(robot, where, now_s))
 
 
 def _checked(address: str, arm: object) -> RealArm:
-    """A plug-in may break the contract."""
     if not isinstance(arm, RealArm):
         raise UserError(f"--arm {address} made {type(arm).__name__}, not a latentarm.arms.real.RealArm.")
     return arm

@@ -12,20 +12,13 @@ from latentarm.robots.parts import add_parts
 from latentarm.robots.scene.scene import TABLE, Scene
 from latentarm.robots.scene.thing import Bond, Grains, Thing
 
-SOLID: Final = 1
-"""Bit of what collides with everything solid."""
-
-TINE: Final = 2
-"""Bit of tines: a thing that lacks it lets them in."""
-
-_GRAIN_DRAG_S: Final = 0.1
-"""A grain that nothing touches loses its speed within this time, s."""
-
-_ROLLING: Final = (0.005, 0.0001)
-"""Friction against turning on the spot and against rolling, m."""
+SOLID: Final = 1  # bit of everything that collides with solids
+TINE: Final = 2  # bit of tines: a thing without it lets them in
+_GRAIN_DRAG_S: Final = 0.1  # a grain that nothing touches loses its speed within this time, s
+_ROLLING: Final = (0.005, 0.0001)  # friction against turning on the spot and against rolling, m
 
 _STIFF: Final = (0.005, 1.0)
-"""What hits something at 1 m/s enters it by 2 mm, less than a wall is thick; with MuJoCo's 0.02 by 7 mm."""
+"""A thing at 1 m/s enters another by 2 mm, less than a wall's thickness; with MuJoCo's 0.02 by 7 mm."""
 
 _TABLE_FRICTION: Final = (0.8, 0.005, 0.0001)
 _TABLE_COLOUR: Final = (0.72, 0.66, 0.58, 1.0)
@@ -34,34 +27,27 @@ _SLEEP_TOLERANCE_M_S: Final = 2e-3
 
 
 def thing_body(name: str) -> str:
-    """The name of a thing's body in the model; its frame is the thing's."""
+    """Name of a thing's body in the model; its frame is the thing's."""
     return f"thing {name}"
 
 
 def grain_body(name: str, index: int) -> str:
-    """The name of a grain's body in the model."""
+    """Name of a grain's body in the model."""
     return f"grain {name} {index}"
 
 
 def bond_name(bond: Bond) -> str:
-    """The name of a bond's constraint in the model."""
+    """Name of a bond's constraint in the model."""
     return f"bond {bond.first} {bond.second}"
 
 
 def stab_name(name: str) -> str:
-    """The name of the constraint that holds a food on tines."""
+    """Name of the constraint that holds a food on tines."""
     return f"stab {name}"
 
 
 def add_scene(spec: mujoco.MjSpec, scene: Scene, attachment: Attachment | None, *, grips: bool) -> None:
-    """Add a scene to a robot's model.
-
-    Args:
-        spec: the robot's.
-        scene: what stands about it.
-        attachment: what the robot carries, or None.
-        grips: whether it has a gripper.
-    """
+    """Add a scene to a robot's model; ``grips`` says whether the robot has a gripper."""
     tined = attachment is not None and attachment.tines is not None
     if tined:
         for geom in spec.body(TINES_BODY).geoms:
@@ -111,7 +97,7 @@ def _add_thing(spec: mujoco.MjSpec, thing: Thing) -> None:
 
 
 def _add_grains(spec: mujoco.MjSpec, grains: Grains) -> None:
-    """Frictionless balls: they never turn, so each slides along three axes and no more."""
+    """Frictionless balls: they never turn, so each slides along three axes only."""
     drag = grains.mass_kg / _GRAIN_DRAG_S
     for index, position in enumerate(grains.positions):
         name = grain_body(grains.name, index)

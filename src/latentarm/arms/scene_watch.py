@@ -1,4 +1,4 @@
-"""What happens in a scene: how things stand, what touches what, and how hard."""
+"""Poses, contacts and forces in a simulated scene."""
 
 import math
 from typing import Final, final
@@ -16,23 +16,10 @@ _UNNAMED: Final = -1
 
 @final
 class SceneWatch:
-    """Reads a scene out of a simulation.
-
-    Args:
-        model: of the robot and the scene.
-        data: what moves.
-        robot: whose tool it is.
-        body_link: (nbody of the robot,), the link that each of its bodies rides on.
-        scene: what stands about it.
-    """
+    """Reads a scene out of a simulation; ``body_link`` (nbody of the robot,) is each body's link."""
 
     def __init__(
-        self,
-        model: mujoco.MjModel,
-        data: mujoco.MjData,
-        robot: Robot,
-        body_link: IntArray,
-        scene: Scene,
+        self, model: mujoco.MjModel, data: mujoco.MjData, robot: Robot, body_link: IntArray, scene: Scene
     ) -> None:
         self._data, self._scene, self._chain = data, scene, robot.chain
         self._names = (TOOL, TABLE, *scene.names)
@@ -55,7 +42,7 @@ class SceneWatch:
         self._peaks = np.zeros((len(self._names), len(self._names)))
 
     def look(self) -> None:
-        """Note how hard things press on each other in this moment."""
+        """Record the present forces between things."""
         pairs = self._touching()
         if pairs is None:
             return
@@ -67,13 +54,7 @@ class SceneWatch:
         np.maximum(self._peaks, forces.reshape(count, count), out=self._peaks)
 
     def state(self, q: FloatArray, stabbed: frozenset[str], bonds: frozenset[tuple[str, str]]) -> SceneState:
-        """How everything stands; forces begin anew.
-
-        Args:
-            q: (n,), positions of the arm's joints, rad.
-            stabbed: what is on the tines.
-            bonds: what has not been cut.
-        """
+        """State of the scene with the arm at q, (n,), rad; forces begin anew."""
         self.look()
         force_n = {
             (min(pair), max(pair)): float(self._peaks[i, j])
@@ -110,7 +91,7 @@ class SceneWatch:
         return Pose(place[:3].copy(), rotation), math.sqrt(velocity @ velocity)
 
     def _touching(self) -> tuple[IntArray, IntArray] | None:
-        """Groups (K, 2) and addresses (K,) of the contacts between two that have names, or None."""
+        """Groups (K, 2) and addresses (K,) of the contacts between two named groups, or None."""
         if not self._data.ncon:
             return None
         contact = self._data.contact
@@ -131,13 +112,13 @@ class SceneWatch:
 
 
 def _fingers(model: mujoco.MjModel, robot: Robot) -> list[BoolArray]:
-    """For each finger of the robot's gripper, which geoms are its own, (ngeom,)."""
+    """For each finger of the robot's gripper, whether each geom is its own, (ngeom,)."""
     joints = () if robot.gripper is None else robot.gripper.joints
     return [model.geom_bodyid == model.jnt_bodyid[model.joint(name).id] for name in joints]
 
 
 def _grain_positions(model: mujoco.MjModel, name: str, count: int) -> tuple[FloatArray, IntArray]:
-    """Where each grain starts, (K, 3), and where its displacement is among the positions, (K, 3)."""
+    """Start of each grain, (K, 3), and addresses of its displacement in the positions, (K, 3)."""
     bodies = [model.body(grain_body(name, index)).id for index in range(count)]
     first = model.jnt_qposadr[model.body_jntadr[bodies]].reshape(-1, 1)
     return model.body_pos[bodies].copy(), first + np.arange(3)

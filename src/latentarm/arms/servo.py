@@ -1,4 +1,4 @@
-"""Velocity servos for the joints of a MuJoCo model, in place of whatever actuators it has."""
+"""Velocity servos for the joints of a MuJoCo model, in place of its actuators."""
 
 from collections.abc import Sequence
 from typing import Final, final
@@ -11,8 +11,7 @@ from latentarm.core.types import FloatArray, IntArray
 from latentarm.robots.kinematics.reader import reference_positions
 from latentarm.robots.robot import Robot
 
-FREQUENCY_RAD_S: Final = 100.0
-"""Natural frequency of a joint that only its servo moves, rad/s; it is critically damped."""
+FREQUENCY_RAD_S: Final = 100.0  # natural frequency of a free joint, critically damped
 
 _JOINT: Final = int(mujoco.mjtTrn.mjTRN_JOINT)
 _NO_BIAS: Final = int(mujoco.mjtBias.mjBIAS_NONE)
@@ -20,13 +19,10 @@ _NO_BIAS: Final = int(mujoco.mjtBias.mjBIAS_NONE)
 
 @final
 class Servo:
-    """Runs the servos that `add_servos` has added.
+    """Runs the servos of `add_servos`.
 
-    Args:
-        model: compiled with the servos: those that hold positions first, then those that hold velocities.
-        data: what moves.
-        joints: (n,), the driven joints of the model.
-        quickening: (n,), the most that a joint's velocity may change in a time step, rad/s.
+    The model has the servos that hold positions first, then those that hold velocities. ``quickening`` (n,)
+    is the largest change of a joint's velocity in a time step, rad/s.
     """
 
     def __init__(
@@ -43,11 +39,7 @@ class Servo:
         self._act[:] = self._qpos[self._positions]
 
     def prepare(self, commanded: FloatArray) -> bool:
-        """Set the servos for the next time step; whether those after it need to be set anew.
-
-        Args:
-            commanded: (n,), velocity to reach and then to keep, rad/s.
-        """
+        """Set the servos to velocities (n,), rad/s; returns whether the step after needs that again."""
         changes = bool((self._velocity != commanded).any())
         if changes:
             change = np.clip(commanded - self._velocity, -self._quickening, self._quickening)
@@ -58,25 +50,14 @@ class Servo:
         return changes
 
     def unwind(self) -> None:
-        """After a time step: a joint that is held must not wind its servo up, or it would leap once free."""
+        """After a time step: a blocked joint must not wind its servo up, or it would leap once free."""
         q = self._qpos[self._positions]
         np.maximum(self._act, q - self._farthest, out=self._act)
         np.minimum(self._act, q + self._farthest, out=self._act)
 
 
 def torque_limits(model: mujoco.MjModel, joints: IntArray, robot: Robot) -> FloatArray:
-    """(n,), the largest torque of each joint as its model states it, N m; N where it slides.
-
-    That of the joint itself counts before that of its actuators.
-
-    Args:
-        model: the robot's own.
-        joints: (n,), ids of its joints.
-        robot: for what is said where a limit is missing.
-
-    Raises:
-        UserError: neither a joint nor an actuator of it has a limit.
-    """
+    """(n,), largest torque of each joint, N m (N where it slides): its own, or else its actuators'."""
     limits = np.zeros(len(joints))
     for index, joint in enumerate(joints):
         if model.jnt_actfrclimited[joint]:
@@ -107,7 +88,7 @@ def _strength(model: mujoco.MjModel, actuator: int) -> float:
 
 
 def drop_actuators(spec: mujoco.MjSpec) -> None:
-    """Remove the model's own actuators, and what may refer to them."""
+    """Remove the model's actuators, and references to them."""
     for part in (*spec.sensors, *spec.keys, *spec.actuators):
         spec.delete(part)
 
@@ -115,14 +96,7 @@ def drop_actuators(spec: mujoco.MjSpec) -> None:
 def hold_still_joints(
     spec: mujoco.MjSpec, model: mujoco.MjModel, joints: IntArray, fingers: Sequence[str]
 ) -> None:
-    """Hold every hinge and slide that is not driven where the model starts.
-
-    Args:
-        spec: gets the constraints.
-        model: compiled from it.
-        joints: (n,), ids of the joints that are driven.
-        fingers: names of further joints that are driven.
-    """
+    """Hold every hinge and slide that nothing drives at the model's start."""
     held = reference_positions(model)
     driven = {int(joint) for joint in joints}
     following = {int(model.eq_obj1id[i]) for i in range(model.neq) if model.eq_active0[i]}
@@ -144,14 +118,10 @@ def hold_still_joints(
 def add_servos(
     spec: mujoco.MjSpec, model: mujoco.MjModel, joints: IntArray, torque: FloatArray, inertia: FloatArray
 ) -> None:
-    """Add a velocity servo to each joint: for the velocity's integral, and for the velocity itself.
+    """Add two servos to each joint: for the velocity's integral, and for the velocity itself.
 
-    Args:
-        spec: gets the servos; it has no actuators.
-        model: compiled from it.
-        joints: (n,), ids of the joints.
-        torque: (n,), largest torque of both together and of gravity compensation, N m.
-        inertia: (n,), what each joint moves, kg m².
+    ``torque`` (n,), N m, bounds both together and gravity compensation; ``inertia`` (n,) is each joint's
+    load, kg m².
     """
     of = {joint.id: joint for joint in spec.joints}
     stiffness = FREQUENCY_RAD_S**2 * inertia

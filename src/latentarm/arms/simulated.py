@@ -1,4 +1,4 @@
-"""What all simulated arms have in common: when they take commands, and how their time passes."""
+"""The base of simulated arms: when they take commands, and how their time passes."""
 
 import math
 from abc import abstractmethod
@@ -7,18 +7,15 @@ from typing import Final, final
 
 import numpy as np
 
-from latentarm.arms.contract import Arm, ArmPhase, ArmSpec, ArmStatus
+from latentarm.arms.contract import Arm, ArmPhase, ArmSpec, ArmStatus, finite_velocity
 from latentarm.arms.simulated_gripper import SimulatedGripper
 from latentarm.core.errors import UserError
 from latentarm.core.types import Command, FloatArray, GripperCommand, Reading
 from latentarm.robots.kinematics.stillness import STILL_RAD_S
 from latentarm.robots.robot import Robot
 
-_CLOCK_DIGITS: Final = 9
-"""Time passes in whole nanoseconds, so that equal periods of a clock are equally long for the arm."""
-
-SETTLED_S: Final = 1.0
-"""An arm without a command is at rest after this time, s: no more of it is simulated."""
+_CLOCK_DIGITS: Final = 9  # whole nanoseconds, so that equal periods are equally long
+SETTLED_S: Final = 1.0  # an arm without a command is at rest by then
 
 _REASONS: Final[dict[ArmPhase, str]] = {
     "off": "The arm is not connected.",
@@ -27,19 +24,18 @@ _REASONS: Final[dict[ArmPhase, str]] = {
 
 
 class SimulatedArm(Arm):
-    """A simulated arm. It moves as its clock goes on, whether anybody asks or not.
+    """A simulated arm. It moves as its clock goes on, even if nobody reads it.
 
     With a real clock it lives in real time; with a simulated one, time passes when that does. Either way it
     stops by itself once a command has run out, as a real arm must.
 
     Args:
-        robot: whose joints these are.
-        state: (n,), where the arm starts, rad.
+        robot: the robot with these joints.
+        state: (n,), start, rad.
         now_s: the clock, s; never goes back.
-        rate_hz: how many commands it takes per second.
-        stops_after_s: how soon it notices that a command has run out, s.
-        gripper: its gripper, if it has one.
-        settles_s: how long anything can move after the last command, s: no more of it is simulated.
+        rate_hz: largest rate of commands, 1/s.
+        stops_after_s: delay until it notices that a command has run out, s.
+        settles_s: how long anything can move after the last command, s; the simulation stops then.
 
     Raises:
         UserError: ``state`` has the wrong shape, is not finite, or lies outside the limits.
@@ -77,30 +73,25 @@ class SimulatedArm(Arm):
 
     @abstractmethod
     def _pass(self, span_s: float, commanded: FloatArray) -> None:
-        """Let time pass.
-
-        Args:
-            span_s: how long, s; above zero.
-            commanded: (n,), the velocity that is commanded throughout, rad/s.
-        """
+        """Let time pass, ``span_s`` > 0, at a constant commanded velocity (n,), rad/s."""
 
     @abstractmethod
     def _measure(self) -> tuple[FloatArray, FloatArray, float]:
-        """Positions (n,), rad, velocities (n,), rad/s, and how old they are, s; the caller's own arrays."""
+        """Positions (n,), rad, velocities (n,), rad/s, and their age, s; the caller owns the arrays."""
 
     @abstractmethod
     def _halt(self) -> None:
-        """The command was taken back: stop as fast as the arm can."""
+        """Stop as fast as the arm can, after the command was taken back."""
 
     @property
     @final
     def spec(self) -> ArmSpec:
-        """See the base class."""
+        """The arm's fixed properties."""
         return self._spec
 
     @final
     def connect(self) -> None:
-        """See the base class."""
+        """Connect; the arm is then disabled."""
         self._elapse()
         if self._phase == "off":
             self._phase = "disabled"
@@ -108,13 +99,13 @@ class SimulatedArm(Arm):
 
     @final
     def close(self) -> None:
-        """See the base class."""
+        """Stop the arm and disconnect."""
         self.disable()
         self._phase = "off"
 
     @final
     def read(self) -> Reading:
-        """See the base class."""
+        """The newest reading."""
         if self._newest is None:
             raise RuntimeError("an arm has no reading before it is connected")
         self._elapse()
@@ -124,7 +115,7 @@ class SimulatedArm(Arm):
 
     @final
     def status(self) -> ArmStatus:
-        """See the base class."""
+        """Whether the arm can move, and if not, why."""
         self._elapse()
         phase = self._phase
         if phase == "ready" and self._newest is not None and np.abs(self._newest.dq).max() > STILL_RAD_S:
@@ -133,13 +124,13 @@ class SimulatedArm(Arm):
 
     @final
     def enable(self) -> None:
-        """See the base class."""
+        """Ask to take commands."""
         if self._phase == "disabled":
             self._phase = "ready"
 
     @final
     def disable(self) -> None:
-        """See the base class."""
+        """Stop, and take no commands."""
         self.stop()
         if self._phase == "ready":
             self._phase = "disabled"
@@ -150,15 +141,8 @@ class SimulatedArm(Arm):
 
     @final
     def send(self, command: Command) -> None:
-        """See the base class.
-
-        Raises:
-            ValueError: the velocity has the wrong shape or is not finite, or there is a command for a gripper
-                that the arm does not have: no safety filter sends that.
-        """
-        velocity = np.array(command.velocity, dtype=np.float64)
-        if velocity.shape != self._rest.shape or not np.isfinite(velocity).all():
-            raise ValueError(f"a command needs {len(self._rest)} finite joint velocities")
+        """Take a command; ignored unless enabled."""
+        velocity = finite_velocity(command, len(self._rest))
         if command.gripper is not None and self._gripper is None:
             raise ValueError("this arm has no gripper to command")
         self._elapse()
@@ -170,14 +154,14 @@ class SimulatedArm(Arm):
 
     @final
     def move_gripper(self, command: GripperCommand) -> None:
-        """See the base class."""
+        """Move the gripper of an arm that takes no commands."""
         self._elapse()
         if self._gripper is not None and self._phase == "disabled":
             self._gripper.send(command)
 
     @final
     def stop(self) -> None:
-        """See the base class."""
+        """Stop now, and stay enabled."""
         self._elapse()
         self._commanded, self._left_s = self._rest, 0.0
         self._halt()
@@ -186,7 +170,7 @@ class SimulatedArm(Arm):
         self._read_at_s = math.nan  # what was read in this moment no longer holds
 
     def _elapse(self) -> None:
-        """Let the time pass that has passed."""
+        """Simulate up to the present."""
         now_s = self._now_s()
         span_s = round(now_s - self._at_s, _CLOCK_DIGITS)
         if span_s == 0.0:
@@ -213,15 +197,7 @@ class SimulatedArm(Arm):
 
 
 def check_start(robot: Robot, state: FloatArray) -> None:
-    """Refuse to start an arm where it cannot be.
-
-    Args:
-        robot: whose joints these are.
-        state: (n,), where the arm is to start, rad.
-
-    Raises:
-        UserError: ``state`` has the wrong shape, is not finite, or lies outside the limits.
-    """
+    """Refuse a start (n,), rad, outside the limits."""
     start = np.array(state, dtype=np.float64)
     if start.shape != (robot.dof,) or not np.isfinite(start).all():
         raise UserError(

@@ -1,4 +1,4 @@
-"""What the grippers of simulated arms have in common, and one without inertia."""
+"""The base of simulated grippers, and one without inertia."""
 
 from abc import ABC, abstractmethod
 from typing import final
@@ -10,18 +10,14 @@ from latentarm.robots.gripper import Gripper
 
 
 class SimulatedGripper(ABC):
-    """A gripper of a simulated arm. It begins open.
-
-    Args:
-        gripper: what its manufacturer states.
-    """
+    """A gripper of a simulated arm. It begins open."""
 
     def __init__(self, gripper: Gripper) -> None:
         self.gripper = gripper
 
     @final
     def send(self, command: GripperCommand) -> None:
-        """Take a command, cut to what the gripper can do.
+        """Take a command, cut to the gripper's limits.
 
         Raises:
             ValueError: a figure is not finite: no safety filter sends that.
@@ -37,20 +33,20 @@ class SimulatedGripper(ABC):
 
     @abstractmethod
     def _aim(self, width_m: float, speed_m_s: float, force_n: float) -> None:
-        """Go to a width, m, no faster than this, m/s, and press no harder than this, N."""
+        """Go to a width, m, with at most this speed, m/s, and this force, N."""
 
     @abstractmethod
     def halt(self) -> None:
-        """Stay at the present opening; what is held is still held."""
+        """Stay at the present opening, and keep holding."""
 
     @abstractmethod
     def measure(self) -> GripperReading:
-        """How far it is open, and whether it holds something."""
+        """The opening, and whether it holds something."""
 
 
 @final
 class KinematicGripper(SimulatedGripper):
-    """It opens and closes as it is told, and there is nothing that it could hold."""
+    """A gripper that follows its commands, and never holds anything."""
 
     def __init__(self, gripper: Gripper) -> None:
         super().__init__(gripper)
@@ -66,9 +62,9 @@ class KinematicGripper(SimulatedGripper):
         self._target_m, self._speed_m_s = width_m, speed_m_s
 
     def halt(self) -> None:
-        """See the base class."""
+        """Stay at the present opening."""
         self._target_m = self._width_m
 
     def measure(self) -> GripperReading:
-        """See the base class."""
+        """The present opening, and whether it holds something."""
         return GripperReading(self._width_m)

@@ -1,4 +1,4 @@
-"""Stabbing and cutting: what tines enter, what stays on them, and what their edge parts."""
+"""Stabbing and cutting food with tines, and their edge."""
 
 from typing import Final, Literal, final
 
@@ -14,11 +14,8 @@ from latentarm.robots.scene.thing import Bond, Food, Part, Thing
 CUT_WITHIN_M: Final = 0.01
 """An edge cuts a bond whose plane it is this near to, m; over the top and past the sides of it as well."""
 
-_SPACING_M: Final = 0.001
-"""Tines are looked at by points this far apart, m."""
-
-_CLEAR_M: Final = 0.003
-"""Food collides with tines again once they are this far out of it, m: more than they are thick."""
+_SPACING_M: Final = 0.001  # of the sampled points on tines
+_CLEAR_M: Final = 0.003  # food collides with tines again this far out of it: more than they are thick
 
 _EQUALITY: Final = int(mujoco.mjtConstraint.mjCNSTR_EQUALITY)
 
@@ -35,26 +32,21 @@ _Way = Literal["whole", "entered", "held", "loose", "parting"]
 
 @final
 class TinesInFood:
-    """Decides what tines do to the food of a scene. It looks every few time steps; these are the rules.
+    """Applies the rules of tines and food to a scene, every few time steps.
 
     *Stab.* Food collides with tines until their contact presses along them with `Food.pierce_n`: then they go
     in, and no longer collide with it. Once one is `Food.depth_m` deep in it, counted along the tine, a weld
-    holds it as it is then. The weld breaks when something pulls it off along the tines with more than
-    `Food.grip_n`: its own weight and inertia, a rim that it is scraped on. Pressed on with more than
-    `Food.pierce_n`, the tines go deeper, and it is held all the while. Food that was pulled off is not
-    held again before all tines have left it; whatever they have left collides with them again. With
-    everything else food collides all the time.
+    holds it in place. The weld breaks when something pulls it off along the tines with more than
+    `Food.grip_n`: its own weight and inertia, or a rim. Pressed on with more than `Food.pierce_n`, the tines
+    go deeper, and still hold it. Food that was pulled off cannot be held again before all tines have left it,
+    and then collides with them again. With everything else food collides all the time.
 
     *Cut.* An edge goes through two bonded foods without collision while it lies in the plane of their bond:
     turned out of it by no more than `Bond.angle_rad`, and its middle within `CUT_WITHIN_M` of the cut. The
     bond ends when an end of the edge is `Bond.depth_m` below the top of the first food, along its own
-    vertical. An edge that lies otherwise collides, and may stab.
+    vertical. An edge in any other position collides, and may stab.
 
-    Args:
-        model: of the robot and the scene; which bits its food has is changed.
-        data: what moves; which welds are active is changed.
-        tines: of the robot's attachment.
-        scene: what stands about it.
+    This changes the collision bits of food in the model, and the active welds in the data.
     """
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, tines: Tines, scene: Scene) -> None:
@@ -78,16 +70,16 @@ class TinesInFood:
 
     @property
     def stabbed(self) -> frozenset[str]:
-        """Names of what is on the tines."""
+        """Names of the food on the tines."""
         return frozenset(food.thing.name for food in self._foods if food.way == "held")
 
     @property
     def bonds(self) -> frozenset[tuple[str, str]]:
-        """Pairs of names that have not been cut apart."""
+        """Pairs of names that nothing has cut apart."""
         return frozenset((one.bond.first, one.bond.second) for one in self._bonds if not one.cut)
 
     def look(self) -> None:
-        """Let the rules act."""
+        """Apply the rules."""
         data = self._data
         place, turn = data.xpos[self._body].copy(), data.xmat[self._body].reshape(3, 3).copy()
         for joined in self._bonds:
@@ -101,7 +93,6 @@ class TinesInFood:
                 self._inside(food, place, turn)
 
     def _inside(self, food: "_Served", place: FloatArray, turn: FloatArray) -> None:
-        """Rules for food that tines may be in."""
         if food.way == "held":
             pull = self._pull(food, turn[:, 2])
             if pull > food.food.grip_n:
@@ -142,7 +133,7 @@ class TinesInFood:
         food.way = way
 
     def _hold(self, food: "_Served", place: FloatArray, turn: FloatArray) -> None:
-        """Weld food to the tines as it is now."""
+        """Weld food to the tines in its present pose."""
         data, weld = self._data, food.weld
         quaternion = np.empty(4)
         relative = turn.T @ data.xmat[food.body].reshape(3, 3)
@@ -155,7 +146,7 @@ class TinesInFood:
         food.way = "held"
 
     def _pressed(self, food: "_Served", along: FloatArray) -> float:
-        """How hard tines press on a food, along themselves, N."""
+        """Force of tines on a food, along themselves, N."""
         if not self._data.ncon:
             return 0.0
         contact = self._data.contact
@@ -166,7 +157,7 @@ class TinesInFood:
         return float(self._data.efc_force[address[mine]] @ np.abs(contact.frame[mine, :3] @ along))
 
     def _pull(self, food: "_Served", along: FloatArray) -> float:
-        """How hard a held food is pulled off along the tines, N."""
+        """Force that pulls a held food off along the tines, N."""
         rows = np.flatnonzero((self._data.efc_type == _EQUALITY) & (self._data.efc_id == food.weld))
         # The first three rows are the force that the food exerts on the tines, in the base frame.
         return float(self._data.efc_force[rows[:3]] @ along) if len(rows) else 0.0
@@ -174,8 +165,6 @@ class TinesInFood:
 
 @final
 class _Served:
-    """A food of the scene, and how it is with the tines."""
-
     def __init__(self, model: mujoco.MjModel, thing: Thing, food: Food) -> None:
         self.thing, self.food = thing, food
         self.body = model.body(thing_body(thing.name)).id
@@ -194,8 +183,6 @@ class _Served:
 
 @final
 class _Joined:
-    """A bond of the scene."""
-
     def __init__(self, bond: Bond, scene: Scene, model: mujoco.MjModel, foods: dict[str, _Served]) -> None:
         self.bond, self.foods = bond, foods
         self.weld = model.equality(bond_name(bond)).id
@@ -208,7 +195,6 @@ class _Joined:
         self._sine = float(np.sin(bond.angle_rad))
 
     def aligned(self, data: mujoco.MjData, middle: FloatArray, across: FloatArray) -> bool:
-        """Whether an edge lies in the cut."""
         frame = data.xmat[self._body].reshape(3, 3)
         local = frame.T @ (middle - data.xpos[self._body])
         return bool(
@@ -219,7 +205,7 @@ class _Joined:
         )
 
     def depth(self, data: mujoco.MjData, middle: FloatArray, half: FloatArray) -> float:
-        """How far below the top the lower end of an edge is, m."""
+        """Depth of an edge's lower end below the top, m."""
         up = data.xmat[self._body].reshape(3, 3)[:, 2]
         lowest = up @ (middle - data.xpos[self._body]) - abs(up @ half)
         return self._top - float(lowest)
@@ -241,7 +227,7 @@ def _within(part: Part, points: FloatArray, margin_m: float) -> BoolArray:
 
 
 def _corners(part: Part) -> FloatArray:
-    """(8, 3), of the box around a part, in the thing's frame, m."""
+    """(8, 3), corners of the box around a part, in the thing's frame, m."""
     size = part.size
     if part.shape == "box":
         half = np.array(size)

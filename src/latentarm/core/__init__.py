@@ -1,1 +1,1 @@
-"""What every other package stands on: types, errors, catalogues, and bounded reading of files."""
+"""The foundation of every package: types, errors, catalogues, and bounded reading of files."""

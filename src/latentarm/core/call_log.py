@@ -1,4 +1,4 @@
-"""Every call of a `Step` in an incident file: what it was given, and what it answered."""
+"""Records every call of a `Step` in an incident file: arguments and answer."""
 
 import hashlib
 import json
@@ -17,8 +17,7 @@ from latentarm.core.types import Command, FloatArray, StepRecord, Stop
 from latentarm.core.untrusted.documents import parse_object
 from latentarm.core.untrusted.opening import opened
 
-MOST_FILE_BYTES: Final = 256 << 20
-"""Length from which a file takes no more calls."""
+MOST_FILE_BYTES: Final = 256 << 20  # a longer file takes no more calls
 
 _GZIP: Final = 31
 _FLUSHED: Final = b"\0\0\xff\xff"
@@ -33,16 +32,8 @@ _R = TypeVar("_R")
 class CallLog:
     """Writes calls to a file in a thread of its own, so that the loop never waits for the disk.
 
-    The file is gzip of one JSON document a line, each after a digest of all lines so far. At any time it can
-    be read up to the last flush. When it cannot be written any more, that is said once on standard error.
-
-    Args:
-        path: a new file.
-        limits: how much room it may take.
-        head: the first lines.
-
-    Attributes:
-        large: whether it is time for another file.
+    The file is gzip of one JSON document a line, each after a digest of all lines so far. It can be read up
+    to the last flush at any time. When it cannot be written any more, the log says so once on standard error.
     """
 
     def __init__(self, path: Path, limits: JournalLimits, head: Sequence[dict[str, Any]]) -> None:
@@ -59,7 +50,7 @@ class CallLog:
         self.flush()
 
     def watched(self, surroundings: Callable[[], FloatArray] | None) -> Callable[[], FloatArray] | None:
-        """The surroundings of a `Step`, recorded with the call that looks at them."""
+        """Wrap the surroundings of a `Step`, so that a call records the poses that it reads."""
         if surroundings is None:
             return None
 
@@ -71,7 +62,7 @@ class CallLog:
         return look
 
     def call(self, name: str, given: Sequence[object], made: Callable[[], _R]) -> _R:
-        """Make a call and record it; a call within another one is part of that."""
+        """Make a call and record it; a call within another one belongs to the outer one."""
         if self._inside:
             return made()
         self._inside, self._seen = True, []
@@ -87,7 +78,7 @@ class CallLog:
             self._lines.append(line)
 
     def flush(self) -> None:
-        """Have the calls so far written; returns at once."""
+        """Queue the calls so far for writing, without waiting."""
         lines, self._lines = self._lines, []
         if self._asked - self._written > _MOST_WAITING:
             self._lose("the disk is too slow")
@@ -96,7 +87,7 @@ class CallLog:
             self._writer.submit(self._write, lines)
 
     def close(self) -> None:
-        """Write what is left, and that the file is complete."""
+        """Write the remaining calls and a mark that the file is complete."""
         self._lines.append({"complete": True})
         self.flush()
         self._writer.shutdown()
@@ -131,7 +122,7 @@ _S = TypeVar("_S", bound=_Logged)
 
 
 def logged(method: Callable[Concatenate[_S, _P], _R]) -> Callable[Concatenate[_S, _P], _R]:
-    """A method whose calls are recorded in its object's ``calls``."""
+    """Decorate a method so that its object's ``calls`` records each call."""
 
     @wraps(method)
     def recorded(self: _S, *args: _P.args, **kwargs: _P.kwargs) -> _R:
@@ -144,7 +135,7 @@ def logged(method: Callable[Concatenate[_S, _P], _R]) -> Callable[Concatenate[_S
 
 
 def answer_of(result: object) -> Any:
-    """The decision of a call: a command with the code of its stop, or the reason why the arm may not move."""
+    """The decision of a call: a command with its stop's code, or the reason why the arm may not move."""
     if isinstance(result, StepRecord):
         return answer_of(result.command)
     if isinstance(result, Command):
@@ -160,11 +151,7 @@ def _noted(value: object) -> Any:
 
 
 def read_calls(path: Path) -> Generator[dict[str, Any]]:
-    """The lines of an incident file, without a last one that was cut off.
-
-    Raises:
-        UserError: it is none, or is damaged.
-    """
+    """The lines of an incident file; a last one that was cut off is left out."""
     unpacking, part, rest, digest, number, vain = zlib.decompressobj(_GZIP), b"", b"", "", 0, 0
     with opened(path, 2 * MOST_FILE_BYTES) as file:
         while chunk := file.read(1 << 20):

@@ -1,8 +1,4 @@
-"""What a decoder may see, as named features in order, and the vector that it sees.
-
-One function makes the vector, for training pairs and for the control loop: what was trained on is what is
-driven with.
-"""
+"""The features that a decoder may see, and the vector that they make, for training and driving alike."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -38,14 +34,7 @@ Named = str | Sequence[str]
 
 
 def feature_names(context: Named) -> tuple[str, ...]:
-    """The features that a context names, in order.
-
-    Args:
-        context: names among `FEATURES`, or one of `EARLIER_NAMES`.
-
-    Raises:
-        UserError: a name is unknown or comes twice, or the joints do not come first.
-    """
+    """Features by name, in order; takes names among `FEATURES` or one of `EARLIER_NAMES`."""
     given = (context,) if isinstance(context, str) else tuple(context)
     names = EARLIER_NAMES.get(given[0], given) if len(given) == 1 else given
     for name in names:
@@ -60,15 +49,11 @@ def feature_names(context: Named) -> tuple[str, ...]:
 
 
 def context_vector(context: Context, features: Sequence[str]) -> FloatArray:
-    """What a decoder sees of a context, (..., c): the features one after the other, in their order.
+    """The vector (..., c) that a decoder sees: the features one after the other.
 
-    The poses for `OBJECTS_IN_TOOL` are those in the base frame here too: a decoder that was trained with this
-    feature turns them into the tool's frame itself, at whatever state it is asked about. So a vector can be
-    moved to another state by its first n entries alone.
-
-    Args:
-        context: its state may have leading axes, which the other features share or broadcast to.
-        features: as `feature_names` gives them.
+    The state may have leading axes, which the other features share or broadcast to. The poses for
+    `OBJECTS_IN_TOOL` are those in the base frame: a decoder with this feature turns them into the tool's
+    frame at the state that it is asked about. So the first n entries alone move a vector to another state.
     """
     state = context.state
     if len(features) == 1:
@@ -96,21 +81,14 @@ _REST: Final[Mapping[str, Callable[[Context], FloatArray]]] = {
 @final
 @dataclass(frozen=True)
 class ContextLayout:
-    """Where the features lie in the vector of a context.
-
-    Attributes:
-        features: their names, in order.
-        joints: n.
-        goals: G, entries of the belief; 0 where it is not seen.
-        objects: names of the things whose poses are seen, in order.
-        gripper: the feature of the dataset that told the gripper's opening: ``action.gripper`` is the one
-            that it was told to go to, ``observation.gripper_width`` the measured one; "" if it is not seen.
-    """
+    """The layout of the features in the vector of a context."""
 
     features: tuple[str, ...]
-    joints: int
-    goals: int = 0
-    objects: tuple[str, ...] = ()
+    joints: int  # n
+    goals: int = 0  # G, entries of the belief; 0 if the decoder does not see it
+    objects: tuple[str, ...] = ()  # names of the things whose poses the decoder sees, in order
+    # the feature of the dataset that holds the opening: the commanded one, ``action.gripper``, or the
+    # measured one, ``observation.gripper_width``; "" if the decoder sees none
     gripper: str = ""
 
     @property
@@ -120,11 +98,11 @@ class ContextLayout:
 
     @property
     def sees_tool_frame(self) -> bool:
-        """Whether it needs the arm's kinematics."""
+        """Whether the decoder needs the arm's kinematics."""
         return OBJECTS_IN_TOOL in self.features
 
     def columns(self, feature: str) -> slice:
-        """Where a feature that is seen lies in the vector."""
+        """The slice of a feature in the vector."""
         start = sum(map(self._width, self.features[: self.features.index(feature)]))
         return slice(start, start + self._width(feature))
 

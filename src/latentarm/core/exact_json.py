@@ -11,10 +11,7 @@ import numpy as np
 
 
 def to_json(value: object) -> Any:
-    """A value as JSON can hold it; None where no loop can use it.
-
-    Arrays become hexadecimal bytes; records and mappings, their fields and their type's name.
-    """
+    """A value as JSON: arrays as hexadecimal bytes, records with their type's name, unusable ones as None."""
     match value:
         case bool() | None:
             return value
@@ -47,11 +44,9 @@ def _names(kind: type[Any]) -> tuple[str, ...]:
 
 
 def of_json(document: Any, *kinds: type) -> Any:
-    """What `to_json` was given; lists are tuples, and paths text.
+    """The inverse of `to_json` for an untrusted document; lists become tuples, and paths text.
 
-    Args:
-        document: untrusted.
-        kinds: the records that may be in it.
+    Only the given kinds of records may be in it.
 
     Raises:
         TypeError, ValueError, UserError: a record is damaged or of another kind, or an array is damaged.

@@ -11,10 +11,7 @@ from latentarm.core.errors import UserError
 
 
 def sync_folder(folder: Path) -> None:
-    """Flush a folder's entries to disk, so that a rename in it survives a power cut.
-
-    Windows cannot open a folder as a file, and journals its entries itself.
-    """
+    """Flush a folder's entries to disk, so that a rename in it survives a power cut."""
     if sys.platform == "win32":
         return
     descriptor = os.open(folder, os.O_RDONLY)
@@ -26,13 +23,7 @@ def sync_folder(folder: Path) -> None:
 
 @contextmanager
 def written_whole(path: Path) -> Generator[Path]:
-    """Yield a temporary path in the folder of ``path``; on success flush it and rename it into place.
-
-    On any error nothing is left behind and an older ``path`` is untouched.
-
-    Raises:
-        UserError: the disk is full or the folder cannot be written.
-    """
+    """Yield a temporary path beside ``path``, then flush it and rename it there, or leave no trace."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)
@@ -54,10 +45,6 @@ def written_whole(path: Path) -> Generator[Path]:
 
 
 def write_text(path: Path, text: str) -> None:
-    """Write ``text`` to ``path`` in UTF-8, whole or not at all.
-
-    Raises:
-        UserError: see `written_whole`.
-    """
+    """Write ``text`` to ``path`` in UTF-8, whole or not at all."""
     with written_whole(path) as part:
         part.write_text(text, encoding="utf-8")

@@ -8,8 +8,7 @@ from typing import final
 
 from latentarm.core.errors import UserError
 
-_ATTACHED = ("", "-wal")
-"""Endings of the files that belong to a journal while it is written."""
+_ATTACHED = ("", "-wal")  # endings of the files that belong to a journal while it is written
 
 
 @final
@@ -17,8 +16,8 @@ class JournalFullError(UserError):
     """The journal may not grow further.
 
     Attributes:
-        disk: whether it is the disk that has no room left.
-        ended_episode: whether an episode was under way, which has been ended and is complete.
+        disk: whether the disk has no room left
+        ended_episode: whether this ended an episode, which is then complete
     """
 
     def __init__(self, message: str, *, disk: bool) -> None:
@@ -29,24 +28,16 @@ class JournalFullError(UserError):
 
 @final
 class JournalLostError(UserError):
-    """The journal's file was deleted or replaced: what was recorded in it is lost."""
+    """The journal's file was deleted or replaced, with all that it recorded."""
 
 
 @final
 @dataclass(frozen=True)
 class JournalLimits:
-    """How much room a journal may take.
-
-    Attributes:
-        most_bytes: the largest that a journal may grow, bytes.
-        least_free_bytes: what must stay free on its disk, bytes.
-
-    Raises:
-        UserError: a figure is not a whole number, or negative.
-    """
+    """The room that a journal may take; both figures are whole numbers of bytes."""
 
     most_bytes: int = 4_000_000_000
-    least_free_bytes: int = 500_000_000
+    least_free_bytes: int = 500_000_000  # of the disk
 
     def __post_init__(self) -> None:
         for field in fields(self):
@@ -58,11 +49,7 @@ class JournalLimits:
 
     @staticmethod
     def of_gigabytes(most: float, least_free: float) -> "JournalLimits":
-        """The same in GB.
-
-        Raises:
-            UserError: a figure is not a number, or negative.
-        """
+        """Limits from figures in GB."""
         for name, value in (("most-gb", most), ("keep-free-gb", least_free)):
             if not (math.isfinite(value) and value >= 0.0):
                 raise UserError(f"--{name} is {value:g}: give a number of GB that is not negative.")
@@ -71,12 +58,7 @@ class JournalLimits:
 
 @final
 class JournalWatch:
-    """Watches a journal's files while they are written.
-
-    Args:
-        path: the journal, which exists.
-        limits: how much room it may take.
-    """
+    """Watches the files of an existing journal while they are written."""
 
     def __init__(self, path: Path, limits: JournalLimits) -> None:
         self._path = path

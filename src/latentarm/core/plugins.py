@@ -5,8 +5,8 @@ A distribution adds a model, an arm, a task or a belief with a few lines in its 
     [project.entry-points."latentarm.models"]
     theirs = "their_package.module:Theirs"
 
-Nothing of it is imported before it is looked up by name. A name read from a file is only ever compared
-with registered names, so a file cannot make us import a module.
+Nothing is imported before its name is looked up. A name from a file is only compared with registered names,
+so a file cannot make us import a module.
 """
 
 import re
@@ -21,11 +21,10 @@ from warnings import warn
 from latentarm.core.errors import UserError
 
 NAME: Final = re.compile(r"[a-z][a-z0-9_]{0,39}")
-"""What a plug-in may be called: it becomes a command line choice, a file's entry and a figure's label."""
+"""A plug-in's name becomes a command line choice, a file's entry and a figure's label."""
 
 
 DISTRIBUTION: Final = re.compile(r"[A-Za-z0-9]([A-Za-z0-9._-]{0,98}[A-Za-z0-9])?")
-"""What a distribution may be called."""
 
 T = TypeVar("T")
 R = TypeVar("R")
@@ -38,12 +37,7 @@ class PluginWarning(UserWarning):
 @final
 @dataclass(frozen=True)
 class Origin:
-    """The distribution that something comes from.
-
-    Attributes:
-        distribution: its name, as ``pip install`` takes it.
-        version: installed version.
-    """
+    """The distribution that registered a plug-in."""
 
     distribution: str
     version: str
@@ -60,10 +54,10 @@ class Catalogue(Mapping[str, T], Generic[T]):
 
     Args:
         group: of entry points, such as ``latentarm.models``.
-        noun: what one of them is called in messages, such as ``model``.
-        own: what this project has, each as ``package.module:attribute``.
-        check: makes the family's object of what was imported; raises TypeError or ValueError, with a reason,
-            for anything else.
+        noun: the word for one of them in messages, such as ``model``
+        own: this project's, each as ``package.module:attribute``
+        check: makes the family's object of an import; raises TypeError or ValueError, with a reason, for
+            anything else
     """
 
     def __init__(
@@ -96,13 +90,8 @@ class Catalogue(Mapping[str, T], Generic[T]):
     def find(self, name: str, where: str, origin: str | None = None) -> T:
         """The thing that a file or a person names.
 
-        Args:
-            name: as it is written there.
-            where: the file and field, or the option, for the message.
-            origin: the distribution that it came from when the file was written, if that is known.
-
-        Raises:
-            UserError: nobody registered that name, or it does not load.
+        ``where`` is the file and field, or the option. ``origin`` is the distribution that it came from when
+        the file was written, if known.
         """
         if name in self:
             return self[name]
@@ -114,11 +103,7 @@ class Catalogue(Mapping[str, T], Generic[T]):
         raise UserError(f"{where} names the {self._noun} '{name}', which is not one of {', '.join(self)}.")
 
     def usable(self) -> dict[str, T]:
-        """Everything that loads, by name. Warns of each plug-in that does not.
-
-        Warns:
-            PluginWarning: once for each plug-in left out.
-        """
+        """Everything that loads, by name, with a `PluginWarning` for each plug-in that does not."""
         found: dict[str, T] = {}
         for name in self:
             try:
@@ -134,15 +119,7 @@ class Catalogue(Mapping[str, T], Generic[T]):
         return _origin(self._plugins[name][0]) if name in self._plugins else None
 
     def running(self, name: str, act: Callable[[], R]) -> R:
-        """Run code of a registered thing; if it fails, name its distribution.
-
-        Args:
-            name: of the thing.
-            act: runs the code.
-
-        Raises:
-            UserError: the code is a plug-in's and failed.
-        """
+        """Run code of a registered thing; if a plug-in's code fails, name its distribution."""
         if name in self._own:
             return act()
         try:

@@ -1,4 +1,4 @@
-"""What a process needs that must answer within milliseconds, whatever else goes on in it and next to it."""
+"""Scheduling and garbage collection for processes that must answer within milliseconds."""
 
 import gc
 import os
@@ -6,22 +6,21 @@ from collections.abc import Generator
 from contextlib import contextmanager, suppress
 from typing import Final
 
-_PRIORITY: Final = 10
-"""Lowest real-time priority."""
+_PRIORITY: Final = 10  # lowest real-time priority
 
 
 def ask_for_priority() -> None:
-    """Run before ordinary processes, if the system allows it: a busy computer makes us late."""
+    """Run before ordinary processes, if the system allows it."""
     with suppress(OSError, AttributeError):  # not allowed, or not supported by the system
         os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(_PRIORITY))
 
 
 @contextmanager
 def short_collections() -> Generator[None]:
-    """Keep the garbage collector away from what is loaded by now, as long as the block lasts.
+    """Keep the garbage collector away from everything loaded so far while the block runs.
 
-    A full collection looks at every object of every library, which takes 0.1 s and more, and nothing else in
-    the process runs meanwhile: inputs come late, and the arm stops. What is loaded is never garbage.
+    A full collection looks at every object of every library and takes 0.1 s and more, in which nothing else
+    in the process runs: inputs come late, and the arm stops.
     """
     gc.collect()
     gc.freeze()

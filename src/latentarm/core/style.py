@@ -1,4 +1,4 @@
-"""One look for every figure, legible without colour."""
+"""The look of every figure, legible without colour."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -16,18 +16,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Look:
-    """How one model or condition is drawn everywhere.
-
-    Attributes:
-        label: its name as people read it.
-        colour: hex colour of the Okabe-Ito palette (distinct for colour-blind readers).
-        marker: matplotlib marker, so that series differ in grey too.
-        dash: matplotlib line style, by name or as (offset, lengths of ink and gap in line widths).
-    """
+    """The look of one model or condition in every figure."""
 
     label: str
-    colour: str
-    marker: str
+    colour: str  # hex, of the Okabe-Ito palette, distinct for colour-blind readers
+    marker: str  # of matplotlib, so that series differ in grey too
+    # matplotlib line style, by name or as (offset, lengths of ink and gap in line widths)
     dash: str | tuple[float, tuple[float, ...]]
 
 
@@ -37,8 +31,7 @@ TWO_COLUMNS_MM = 175.0
 FONT_SIZE = 8.0
 SMALL_FONT_SIZE = 7.0
 MM_PER_INCH = 25.4
-LEGEND_MARGIN_MM = 4.0
-"""Width kept free around a legend, both sides together."""
+LEGEND_MARGIN_MM = 4.0  # width kept free around a legend, both sides together
 
 
 def tidy(axes: "Axes") -> None:
@@ -53,12 +46,11 @@ def tidy(axes: "Axes") -> None:
     axes.yaxis.label.set_fontsize(FONT_SIZE)
 
 
-MOST_CHARACTERS: Final = 40
-"""Longest name in a figure; longer ones are cut."""
+MOST_CHARACTERS: Final = 40  # longest name in a figure; longer ones are cut
 
 
 def literal(text: str) -> str:
-    """Text from outside, for a figure: shortened, with dollar signs escaped."""
+    """Shorten text from outside for a figure and escape its dollar signs."""
     shown = visible(text)
     if len(shown) > MOST_CHARACTERS:
         shown = f"{shown[: MOST_CHARACTERS - 1]}…"
@@ -66,15 +58,7 @@ def literal(text: str) -> str:
 
 
 def shade(colour: str, depth: float) -> str:
-    """A model's colour from pale to dark, to grade one series without another colour.
-
-    Args:
-        colour: hex colour.
-        depth: from -1, mostly white, to 1, a little darker than the colour itself.
-
-    Returns:
-        Hex colour.
-    """
+    """Grade a hex colour by depth, from -1 (mostly white) to 1 (a little darker than the colour)."""
     from matplotlib.colors import to_hex, to_rgb
 
     white = 0.4 - (0.4 if depth > 0 else 0.35) * depth
@@ -84,10 +68,7 @@ def shade(colour: str, depth: float) -> str:
 
 
 def new_figure(height_mm: float, width_mm: float = COLUMN_MM) -> "Figure":
-    """An empty figure of a print column's width that lays out its panels so that nothing is cut off.
-
-    It belongs to no global state, so figures can be drawn anywhere, in threads too.
-    """
+    """An empty figure of a print column's width, laid out so that nothing is cut off; thread-safe."""
     from matplotlib.figure import Figure
 
     return Figure(figsize=(width_mm / MM_PER_INCH, height_mm / MM_PER_INCH), layout="constrained")
@@ -101,15 +82,7 @@ def legend_below(
     heading: str | None = None,
     handle_length: float = 2.0,
 ) -> None:
-    """A legend under all panels, in as many columns as fit the figure's width, so that none is cut off.
-
-    Args:
-        figure: its size is set.
-        handles: what is named.
-        labels: of each.
-        heading: over the legend.
-        handle_length: of the samples of lines, in font sizes.
-    """
+    """A legend under all panels, in as many columns as fit the figure's width."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
     renderer = FigureCanvasAgg(figure).get_renderer()
@@ -133,11 +106,7 @@ def legend_below(
 
 
 def save_figure(figure: "Figure", path: Path) -> None:
-    """Write a figure as PNG, whole or not at all.
-
-    Raises:
-        UserError: the file cannot be written.
-    """
+    """Write a figure as PNG, whole or not at all."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
     with written_whole(path) as part:

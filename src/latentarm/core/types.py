@@ -1,9 +1,4 @@
-"""The vocabulary shared by every package: small frozen records of NumPy arrays.
-
-Symbols follow Losey et al., "Learning Latent Actions to Control Assistive Robots":
-state ``s`` (rad), action ``a`` (rad/s), latent action ``z``, input ``u``, context ``c``,
-belief ``b``, goal ``g``, end-effector pose ``x``.
-"""
+"""The vocabulary of every package: small frozen records of NumPy arrays, with the symbols of Losey et al."""
 
 import math
 from collections.abc import Mapping
@@ -14,21 +9,15 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-StrPath = str | PathLike[str]
-"""A file or folder, as the public functions take it."""
+StrPath = str | PathLike[str]  # a file or folder, as the public functions take it
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
-NO_GRIPPER: FloatArray = np.zeros(0)
-"""`Context.gripper` and `Context.gripper_target` where they are not known."""
-
-NO_OBJECTS: FloatArray = np.zeros((0, 9))
-"""`Context.objects` where they are not known."""
-
-NO_THINGS: FloatArray = np.zeros((0, 7))
-"""`StepRecord.things` where nobody looks."""
+NO_GRIPPER: FloatArray = np.zeros(0)  # `Context.gripper` and `Context.gripper_target` where unknown
+NO_OBJECTS: FloatArray = np.zeros((0, 9))  # `Context.objects` where unknown
+NO_THINGS: FloatArray = np.zeros((0, 7))  # `StepRecord.things` where nobody looks
 
 NO_GRIPPER.flags.writeable = NO_OBJECTS.flags.writeable = NO_THINGS.flags.writeable = False
 
@@ -51,9 +40,8 @@ class Goal:
     """A goal ``g`` that the person may want.
 
     Attributes:
-        name: what a person would call it.
         configuration: (n,), rad.
-        pose: the end-effector pose at ``configuration``.
+        pose: end-effector pose at ``configuration``.
     """
 
     name: str
@@ -63,29 +51,17 @@ class Goal:
 
 @dataclass(frozen=True)
 class Provenance:
-    """Who and what recorded an episode; "" where that is unknown.
+    """Who and what recorded an episode; "" where unknown."""
 
-    Attributes:
-        person: who drove.
-        run: name of the trained run that they drove with.
-        run_fingerprint: of its model's file.
-        profile: the person whose alignment was used.
-        device: kind of input device, such as ``keyboard``; ``simulated`` for a simulated person.
-        controller: what turned inputs into motion when the episode began.
-        version: of this package.
-        started_utc: when the episode began, ISO 8601 in UTC.
-        complete: whether the recording was ended, rather than cut short.
-    """
-
-    person: str = ""
-    run: str = ""
-    run_fingerprint: str = ""
-    profile: str = ""
-    device: str = ""
-    controller: str = ""
-    version: str = ""
-    started_utc: str = ""
-    complete: bool = True
+    person: str = ""  # the driver
+    run: str = ""  # the trained run that they drove with
+    run_fingerprint: str = ""  # of its model's file
+    profile: str = ""  # the person whose alignment was used
+    device: str = ""  # kind of input device, such as ``keyboard``; ``simulated`` for a simulated person
+    controller: str = ""  # when the episode began
+    version: str = ""  # of this package
+    started_utc: str = ""  # when the episode began, ISO 8601 in UTC
+    complete: bool = True  # whether the recording was ended, rather than cut short
 
 
 @dataclass(frozen=True)
@@ -96,9 +72,9 @@ class Episode:
         state: (T, n), joint positions, rad.
         timestamp: (T,), s from the episode's start.
         action: (T, m), joint velocities, rad/s, or None where none were recorded.
-        task: what was done, in words.
+        task: in words.
         extras: further features of the dataset by name (``belief``, ``input.u``, ...), each (T, k).
-        provenance: who and what recorded it, or None where nothing is known of that.
+        provenance: None where unknown.
     """
 
     state: FloatArray
@@ -111,52 +87,32 @@ class Episode:
 
 @dataclass(frozen=True)
 class StatedJointLimits:
-    """What somebody states of one joint; None where they do not. A sliding joint has m instead of rad.
+    """Limits that somebody states of one joint; None where unstated. A sliding joint has m instead of rad."""
 
-    Attributes:
-        position: lowest and highest, rad.
-        velocity: rad/s.
-        acceleration: rad/s².
-        jerk: rad/s³.
-        sliding: whether the figures are those of a sliding joint; None where there are no figures.
-    """
-
-    position: tuple[float, float] | None = None
-    velocity: float | None = None
-    acceleration: float | None = None
-    jerk: float | None = None
-    sliding: bool | None = None
+    position: tuple[float, float] | None = None  # lowest and highest, rad
+    velocity: float | None = None  # rad/s
+    acceleration: float | None = None  # rad/s²
+    jerk: float | None = None  # rad/s³
+    sliding: bool | None = None  # None where there are no figures
 
 
 @dataclass(frozen=True)
 class StatedGripper:
-    """What somebody states of a gripper; see `latentarm.robots.gripper.Gripper`.
+    """Figures that somebody states of a gripper; see `latentarm.robots.gripper.Gripper`."""
 
-    Attributes:
-        joints: of the robot's model, that move its fingers or its jaw; empty where the model has none.
-        width: the largest opening, m.
-        speed: the fastest change of the opening, m/s.
-        force: the largest force between the fingers, N.
-    """
-
+    # of the robot's model that move the fingers or the jaw; empty where the model has none
     joints: tuple[str, ...]
-    width: float
-    speed: float
-    force: float
+    width: float  # the largest opening, m
+    speed: float  # the fastest change of the opening, m/s
+    force: float  # the largest force between the fingers, N
 
 
 @dataclass(frozen=True)
 class StatedLimits:
-    """What somebody states of a robot's limits, as in a limits file.
+    """Limits that somebody states of a robot, as in a limits file."""
 
-    Attributes:
-        joints: by name; joints that nothing is said of are left out.
-        tool_speed: largest speed of the tool, m/s, or None.
-        gripper: its gripper, or None where nothing is said of one.
-    """
-
-    joints: Mapping[str, StatedJointLimits]
-    tool_speed: float | None = None
+    joints: Mapping[str, StatedJointLimits]  # by name, without unstated ones
+    tool_speed: float | None = None  # m/s
     gripper: StatedGripper | None = None
 
 
@@ -165,16 +121,14 @@ class Demonstrations:
     """The dataset ``D`` as stored on disk: whole episodes of one robot.
 
     Attributes:
-        episodes: the episodes, all with the same n.
+        episodes: all with the same n.
         rate_hz: nominal sampling rate.
-        joint_names: n names.
         robot: name or model path of the robot, or "" where unknown.
         goals: the discrete goals ``G``, empty where none are known.
-        import_record: what importing decided about units, joints and so on, by subject, in words; empty for
+        import_record: decisions of the import about units, joints and so on, by subject, in words; empty for
             demonstrations that were never imported.
-        end_effector: which site, body or link of a model file is the end-effector; None where the robot
-            has but one.
-        limits: what was stated of the robot's limits, or None.
+        end_effector: site, body or link of the model file; None where the robot has but one.
+        limits: as stated, or None.
         objects: names of the K things whose poses the feature ``observation.environment_state`` (T, 7 K)
             holds: position, m, and quaternion (w, x, y, z), in the base frame; empty where it holds none.
     """
@@ -196,7 +150,7 @@ class Demonstrations:
 
     @property
     def warnings(self) -> list[str]:
-        """What importing warned of, now or before."""
+        """Warnings of this import and earlier ones."""
         return [said for subject, said in self.import_record.items() if subject.endswith("warning")]
 
 
@@ -204,38 +158,30 @@ class Demonstrations:
 class Pairs:
     """Context-action pairs ``(c, a)`` drawn from demonstrations.
 
-    The action is always taken from the states as they were demonstrated. State noise, where
-    asked for, is added to ``context`` afterwards, so that it can never be reconstructed from
-    the action: ``clean_context`` is the same context without it.
-
-    Attributes:
-        context: (N, c), what the decoder sees; its first n entries are the state, rad.
-        clean_context: (N, c), ``context`` before state noise.
-        action: (N, m), noise-free joint velocity, rad/s.
-        episode: (N,), index of the episode that each pair comes from.
-        held: (N, K), which of the things in the context move with the arm's tool; none where the arm is not
-            known.
+    The action always comes from the states as they were demonstrated. State noise is added to ``context``
+    only, so that nobody can reconstruct it from the action.
     """
 
-    context: FloatArray
-    clean_context: FloatArray
-    action: FloatArray
-    episode: IntArray
+    context: FloatArray  # (N, c); its first n entries are the state, rad
+    clean_context: FloatArray  # (N, c), ``context`` before state noise
+    action: FloatArray  # (N, m), noise-free joint velocity, rad/s
+    episode: IntArray  # (N,), index of each pair's episode
+    # (N, K), whether each thing in the context moves with the tool; K = 0 where the arm is unknown
     held: BoolArray
 
 
 @dataclass(frozen=True)
 class Context:
-    """What the robot knows when it decodes an input; a decoder sees some of it (`latentarm.core.context`).
+    """Everything that a decoder may see at one moment; `latentarm.core.context` picks its features.
 
     Attributes:
         state: (n,), joint positions ``s``, rad.
         belief: (G,), probability over goals ``b``; empty where there are no goals.
-        gripper: (1,), opening of the gripper, m; empty where it is not known.
+        gripper: (1,), opening of the gripper, m; empty where unknown.
         objects: (K, 9), poses in the base frame of the things that matter: position, m, and the first two
             columns of the rotation matrix (`latentarm.robots.kinematics.pose_rows`); empty where unknown.
-        gripper_target: (1,), opening that the gripper was told to go to, m; until it was told anything, its
-            own, and 0 where it holds something. Empty where that is not known.
+        gripper_target: (1,), commanded opening, m: its own before the first command, and 0 where it holds
+            something; empty where unknown.
     """
 
     state: FloatArray
@@ -245,22 +191,20 @@ class Context:
     gripper_target: FloatArray = field(default_factory=lambda: NO_GRIPPER)
 
 
-GripperAsk = Literal["open", "close", "toggle"]
-"""What a person asks of a gripper."""
+GripperAsk = Literal["open", "close", "toggle"]  # a person's request to a gripper
 
 
 @dataclass(frozen=True)
 class Input:
-    """What the person does with their interface at one moment.
+    """A person's input at one moment.
 
     Attributes:
         u: (d,), each entry in [-1, 1].
         switch_mode: the person asks for the controller's next mode.
-        gripper: what the person asks of the gripper; None asks nothing. Like a mode switch it counts once,
-            however long it is held.
+        gripper: request to the gripper, or None. Like a mode switch it counts once, however long it is held.
         pace: share of the speed, in [0, 1], that a second person leaves the first. It counts after all
             limits, for everything that moves: what the robot adds, a way back, the gripper.
-        opens: whether the person holds down what opens the gripper of an arm that is not enabled.
+        opens: whether the person holds down the button that opens the gripper of a disabled arm.
     """
 
     u: FloatArray
@@ -272,27 +216,22 @@ class Input:
 
 @dataclass(frozen=True)
 class GripperReading:
-    """What a gripper measured at one moment.
+    """A gripper's measurements at one moment."""
 
-    Attributes:
-        width_m: opening between the fingers, m.
-        holding: whether something is held between them.
-    """
-
-    width_m: float
-    holding: bool = False
+    width_m: float  # opening between the fingers, m
+    holding: bool = False  # whether it holds something
 
 
 @dataclass(frozen=True)
 class Reading:
-    """What an arm measured at one moment.
+    """An arm's measurements at one moment.
 
     Attributes:
         q: (n,), joint positions, rad.
         dq: (n,), joint velocities, rad/s.
-        time_s: when they were measured, on the control loop's clock, s.
+        time_s: of the measurement, on the control loop's clock, s.
         sequence: grows with every new reading, across reconnections too.
-        gripper: of its gripper, or None where it has none.
+        gripper: None where the arm has none.
     """
 
     q: FloatArray
@@ -333,108 +272,70 @@ StopCode = Literal[
 
 @dataclass(frozen=True)
 class Stop:
-    """A safety filter's refusal.
+    """A safety filter's refusal."""
 
-    Attributes:
-        reason: one short sentence for the person, in English.
-        untrusted: the readings of the joints cannot be true; a recording ends before them.
-        code: what kind of stop it is, for interfaces in other languages; None where somebody else than this
-            package says why.
-        parameters: what such a sentence names; a name of a number ends in its unit.
-    """
-
-    reason: str
-    untrusted: bool = False
+    reason: str  # one short sentence for the person, in English
+    untrusted: bool = False  # the readings of the joints cannot be true; a recording ends before them
+    # kind of stop, for interfaces in other languages; None for a stop from outside this package
     code: StopCode | None = field(default=None, compare=False)
+    # values in that sentence, by name; a number's name ends in its unit
     parameters: Mapping[str, str | int] = field(default_factory=dict, compare=False)
 
 
 @dataclass(frozen=True)
 class GripperCommand:
-    """Where a gripper is to go, and how hard it may press.
+    """A gripper's target, and the force that it may press with."""
 
-    Attributes:
-        width_m: opening to reach, m.
-        speed_m_s: how fast the opening may change, m/s. At 0 the fingers stay where they are, whatever the
-            width says, and hold what they hold as hard as they do now, and no harder.
-        force_n: how hard the fingers may press together, N; a gripper that holds something keeps this force.
-    """
-
-    width_m: float
+    width_m: float  # target opening, m
+    # limit on the opening's rate, m/s. At 0 the fingers stay where they are, whatever the width says, and
+    # neither loosen nor tighten their hold.
     speed_m_s: float
-    force_n: float
+    force_n: float  # limit on the force between the fingers, N; a gripper that holds something keeps it
 
 
 @dataclass(frozen=True)
 class Command:
-    """What leaves the safety filter for the robot.
+    """The safety filters' output, for the robot."""
 
-    Attributes:
-        velocity: (n,), rad/s, finite and within limits.
-        duration_s: the robot must stop by itself if no new command arrives within this time.
-        stop: why the arm is being stopped, or None.
-        limited_by: names of the filters that changed what was asked for.
-        gripper: where the gripper is to go, or None where it is to stay as it is. Unlike a velocity it does
-            not run out: what is held must not fall when commands end.
-    """
-
-    velocity: FloatArray
-    duration_s: float
-    stop: Stop | None = None
-    limited_by: tuple[str, ...] = ()
+    velocity: FloatArray  # (n,), rad/s, finite and within limits
+    duration_s: float  # the robot stops by itself if no new command arrives within this time
+    stop: Stop | None = None  # why the arm stops, or None
+    limited_by: tuple[str, ...] = ()  # names of the filters that changed it
+    # target of the gripper, or None to leave it as it is. Unlike a velocity it does not run out, so that
+    # nothing falls when commands end.
     gripper: GripperCommand | None = None
 
 
 @dataclass(frozen=True)
 class StepRecord:
-    """Everything that one pass through Algorithm 1 read and decided.
+    """Every value that one pass through Algorithm 1 read and decided."""
 
-    Attributes:
-        time_s: the loop's monotonic clock.
-        state: (n,), ``s``, rad; NaN where the arm's reading could not be used.
-        input: (d,), ``u`` as it was used (zero where it was stale or refused).
-        latent: (d,), ``z``.
-        action_human: (m,), ``a_h``, rad/s.
-        action_assist: (m,), ``a_r``, rad/s.
-        alpha: arbitration in [0, 1] (equation 2).
-        belief: (G,), belief that this step used.
-        mode: index of the controller's mode.
-        command: what was sent.
-        bound_rad: radius ``delta / b(g)`` of the ball about the likeliest goal that help towards the
-            goals constrains the arm to (equation 14), rad; NaN without goals or help, and for help that
-            the equation is not about.
-        gripper: what the gripper measured, or None without one.
-        things: (K, 7), where the things about the arm stand, in the order of the episode's header: position,
-            m, and quaternion (w, x, y, z), in the base frame; empty where nobody looks. `Step` does not.
-        pace: share of the speed that a second person left, see `Input.pace`.
-        added: how much of the assistive action was added to the person's: what the filters were asked for is
-            ``(1 - alpha) a_h + (alpha + added) a_r``. 0 where help takes the place of the person's
-            action, as in equation 2.
-    """
-
-    time_s: float
-    state: FloatArray
-    input: FloatArray
-    latent: FloatArray
-    action_human: FloatArray
-    action_assist: FloatArray
-    alpha: float
-    belief: FloatArray
-    mode: int
-    command: Command
+    time_s: float  # the loop's monotonic clock
+    state: FloatArray  # (n,), ``s``, rad; NaN where the arm's reading was unusable
+    input: FloatArray  # (d,), ``u`` as used (zero where it was stale or refused)
+    latent: FloatArray  # (d,), ``z``
+    action_human: FloatArray  # (m,), ``a_h``, rad/s
+    action_assist: FloatArray  # (m,), ``a_r``, rad/s
+    alpha: float  # arbitration in [0, 1] (equation 2)
+    belief: FloatArray  # (G,)
+    mode: int  # index in the controller
+    command: Command  # as sent
+    # radius ``delta / b(g)`` of the ball about the likeliest goal that help constrains the arm to (equation
+    # 14), rad; NaN without goals or help, and for help that the equation does not cover
     bound_rad: float = math.nan
-    gripper: GripperReading | None = None
+    gripper: GripperReading | None = None  # as measured, or None without one
+    # (K, 7), poses of the things about the arm in the order of the episode's header: position, m, and
+    # quaternion (w, x, y, z), in the base frame. `Step` leaves it empty.
     things: FloatArray = field(default_factory=lambda: NO_THINGS)
-    pace: float = 1.0
+    pace: float = 1.0  # see `Input.pace`
+    # weight of the assistive action on top of the blend: the filters get ``(1 - alpha) a_h + (alpha + added)
+    # a_r``. 0 where help replaces the person's action, as in equation 2.
     added: float = 0.0
 
 
 @dataclass(frozen=True)
 class Row:
-    """One figure of any study, in the one format that every command prints as JSON.
-
-    Absent fields are None. ``measure`` names are snake_case, ``n`` is the number of runs.
-    """
+    """One figure of any study in JSON: ``measure`` is snake_case, ``n`` the number of runs."""
 
     study: str
     measure: str
@@ -449,5 +350,5 @@ class Row:
     paper_sd: float | None = None
 
     def as_json(self) -> dict[str, object]:
-        """Plain mapping, ready for ``json.dumps``."""
+        """The fields by name, ready for ``json.dumps``."""
         return asdict(self)

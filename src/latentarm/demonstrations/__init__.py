@@ -1,1 +1,1 @@
-"""Demonstrations: the dataset on disk, importers, validation, context-action pairs, and summaries."""
+"""The dataset on disk, importers, validation, context-action pairs, and summaries."""

@@ -1,7 +1,7 @@
-"""Importing HDF5 files as ALOHA and ACT record them: one file is one episode of two arms of six joints.
+"""Importing HDF5 files of ALOHA and ACT: one file is one episode of two arms of six joints.
 
-``observations/qpos`` has each arm's joints, rad, and its gripper, and ``action`` where they are to go. The
-files do not say the sampling rate; ALOHA records at 50 Hz.
+``observations/qpos`` has each arm's joints, rad, and its gripper; ``action`` has their targets. The files
+lack the sampling rate; ALOHA records at 50 Hz.
 """
 
 import math
@@ -20,31 +20,18 @@ from latentarm.demonstrations.source import SourceData
 
 _ARM: Final = ("waist", "shoulder", "elbow", "forearm_roll", "wrist_angle", "wrist_rotate", "gripper")
 COLUMNS: Final = tuple(f"{side}_{joint}" for side in ("left", "right") for joint in _ARM)
-"""What ALOHA's own ``qpos`` holds."""
+"""Columns of ALOHA's own ``qpos``."""
 
 
 def is_aloha(source: Path) -> bool:
-    """Whether an HDF5 file is in this layout.
-
-    Raises:
-        UserError: it cannot be read.
-    """
+    """Whether an HDF5 file is in this layout."""
     with opened_hdf5(source) as file:
         observations = member(file, "observations")
         return isinstance(observations, h5py.Group) and "qpos" in observations
 
 
 def read_aloha(source: Path, rate_hz: float | None = None, task: str | None = None) -> SourceData:
-    """Read one episode.
-
-    Args:
-        source: the file.
-        rate_hz: sampling rate.
-        task: what was done; the folder's name by default.
-
-    Raises:
-        UserError: no rate is given, or the file is damaged.
-    """
+    """Read one episode; ``task`` is the folder's name by default."""
     if rate_hz is None:
         raise UserError(f"{source} is of ALOHA and does not say its rate: pass --rate-hz 50, ALOHA's own.")
     with opened_hdf5(source) as file:

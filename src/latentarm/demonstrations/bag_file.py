@@ -1,8 +1,7 @@
 """Importing ROS 1 bags, ROS 2 bags (SQLite and MCAP) and MCAP files: each is one episode.
 
-Only topics of ``sensor_msgs/JointState`` are read, by the definition of that message that comes with
-`rosbags`: definitions in the file would be made into code. Only the file itself is opened: what a bag's
-``metadata.yaml`` names is not looked at.
+Only topics of ``sensor_msgs/JointState`` are read, by the message definition of `rosbags`: definitions in the
+file would become code. Only the file itself is opened, none that a bag's ``metadata.yaml`` names.
 """
 
 import struct
@@ -21,31 +20,23 @@ from latentarm.demonstrations.source import SourceData
 from latentarm.demonstrations.timing import typical_rate_hz
 
 ROS1: Final = b"#ROSBAG V"
-MCAP: Final = b"\x89MCAP"
-"""How these files begin."""
+MCAP: Final = b"\x89MCAP"  # first bytes of these files
 
 JOINT_STATE: Final = "sensor_msgs/msg/JointState"
 
 _DAMAGE: Final = (ArithmeticError, AssertionError, EOFError, LookupError, OSError, RuntimeError, struct.error)
-"""What reading damaged files raises, besides `TypeError`, `ValueError` and the errors of the libraries."""
+"""Raised by damaged files, besides `TypeError`, `ValueError` and the errors of the libraries."""
 
 
 def read_bag(
     files: Sequence[Path], topic: str | None = None, rate_hz: float | None = None, task: str | None = None
 ) -> SourceData:
-    """Read the joints' positions of one recording.
+    """Read the joints' positions from the files of one recording, in order.
 
-    A topic may tell of some joints in some messages and of others in others, as where arm and gripper have
-    drivers of their own. Every message of the largest kind is a sample, with what was said last of the rest.
-
-    Args:
-        files: of the recording, in their order.
-        topic: where the joints are told, if there are several such topics.
-        rate_hz: nominal sampling rate; by default that of the timestamps.
-        task: what was done; the file's name by default.
-
-    Raises:
-        UserError: `rosbags` is not installed, the topic must be named, or a file is damaged.
+    A topic may report some joints in some messages and others in others, as where arm and gripper have their
+    own drivers. Every message of the largest kind is a sample, completed with the latest values of the other
+    joints. ``topic`` is needed if several report joints; ``rate_hz`` is the timestamps' and ``task`` the
+    file's name by default.
     """
     source = files[0]
     messages = [message for file in files for message in _messages(file, topic)]
@@ -103,7 +94,6 @@ def _messages(source: Path, topic: str | None) -> list[tuple[float, dict[str, fl
 
 
 def _connections(connections: Sequence[Any], topic: str | None, source: Path) -> list[Any]:
-    """Those of the one topic of joint states that is meant."""
     topics = sorted({one.topic for one in connections if one.msgtype == JOINT_STATE})
     if (topic is not None and topic not in topics) or (len(topics) != 1 and topic is None):
         told = f"has these topics of {JOINT_STATE}: {', '.join(topics) or 'none'}"

@@ -1,9 +1,8 @@
-"""Which column of a file is which joint of the robot.
+"""Matches the columns of a file to the joints of the robot.
 
-Columns are matched by name: exactly, or else by their words, without case, separators, ``pos``, ``joint`` and
-what all of them begin with (``panda_joint1`` is ``Joint 1``, ``main_elbow_flex`` is ``elbow_flex.pos``).
-Columns that are merely numbered are taken from the base to the tool if there are as many as joints.
-Anything else must be stated by the user.
+Columns match by name: exactly, or else by their words, without case, separators, ``pos``, ``joint`` and a
+common prefix (``panda_joint1`` is ``Joint 1``, ``main_elbow_flex`` is ``elbow_flex.pos``). As many numbered
+columns as joints are taken from the base to the tool. The user must state anything else.
 """
 
 import re
@@ -21,19 +20,12 @@ _FILLERS: Final = frozenset({"pos", "position", "joint", "joints", "deg", "degre
 @final
 @dataclass(frozen=True)
 class Columns:
-    """Which columns of the states are used, counted from zero.
+    """The used columns of the states, counted from zero."""
 
-    Attributes:
-        joints: n columns, in the order of the robot's joints.
-        gripper: the gripper's column, or None.
-        dropped: the columns that are not used.
-        how: how the joints were found, for people.
-    """
-
-    joints: tuple[int, ...]
+    joints: tuple[int, ...]  # n columns, in the order of the robot's joints
     gripper: int | None
-    dropped: tuple[int, ...]
-    how: str
+    dropped: tuple[int, ...]  # unused columns
+    how: str  # how the joints were found, for people
 
 
 def is_gripper(name: str) -> bool:
@@ -42,29 +34,17 @@ def is_gripper(name: str) -> bool:
 
 
 def is_width(name: str) -> bool:
-    """Whether a gripper's name says that it is an opening, in m."""
+    """Whether a gripper's name says that its column is an opening, m."""
     return "width" in _words(name)
 
 
 def find_columns(
-    names: Sequence[str],
-    joints: Sequence[str],
-    told: Sequence[str],
-    gripper: str | None,
-    source: str,
+    names: Sequence[str], joints: Sequence[str], told: Sequence[str], gripper: str | None, source: str
 ) -> Columns:
-    """Find the column of each joint.
+    """Find the column of each joint, by name where ``told`` is empty.
 
-    Args:
-        names: of the columns, distinct.
-        joints: the robot's joint names.
-        told: what the user states: ``JOINT=COLUMN`` for every joint, or one column for every joint in the
-            robot's order; a column is a name or a number, counted from zero. Empty to find them by name.
-        gripper: the gripper's column, or None to find it by name.
-        source: the file, for the message.
-
-    Raises:
-        UserError: a joint's column cannot be determined, or what the user said does not fit.
+    ``told`` is ``JOINT=COLUMN`` for every joint, or one column for every joint in the robot's order; a column
+    is a name or a number, counted from zero. ``gripper`` is the gripper's column, or None to find it by name.
     """
     for joint in joints:
         if is_gripper(joint):
@@ -105,9 +85,8 @@ def _as_told(names: Sequence[str], joints: Sequence[str], told: Sequence[str], s
         columns = list(told)
     else:
         raise UserError(
-            f"--joints must name {len(joints)} columns, for {', '.join(joints)} in this order, or be"
-            f" pairs such as"
-            f" {joints[0]}=COLUMN."
+            f"--joints must name {len(joints)} columns, for {', '.join(joints)} in this order, or be pairs"
+            f" such as {joints[0]}=COLUMN."
         )
     found = [_column(column, names, source) for column in columns]
     for index in found:
@@ -149,10 +128,8 @@ def _by_name(
     suggestion = " ".join(names[index] for index in candidates[: len(joints)])
     raise UserError(
         f"{source}: the columns {', '.join(names)} cannot be matched to the robot's joints"
-        f" {', '.join(joints)}."
-        f" Choose the robot that was recorded with --robot, or name the column of each joint in the"
-        f" robot's order,"
-        f" as in --joints {suggestion}."
+        f" {', '.join(joints)}. Choose the robot that was recorded with --robot, or name the column of each"
+        f" joint in the robot's order, as in --joints {suggestion}."
     )
 
 
@@ -169,7 +146,7 @@ def _words(name: str) -> list[str]:
 
 
 def _keys(names: Sequence[str]) -> list[tuple[str, ...]]:
-    """What is left of names without fillers and without the words that all of them begin with."""
+    """Words of each name, without fillers and the common prefix."""
     words = [[word for word in _words(name) if word not in _FILLERS] for name in names]
     while len(words) > 1 and all(len(one) > 1 for one in words) and len({one[0] for one in words}) == 1:
         words = [one[1:] for one in words]

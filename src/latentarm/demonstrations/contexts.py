@@ -1,4 +1,4 @@
-"""Contexts of demonstrated samples: what a decoder would have seen at each."""
+"""Contexts of demonstrated samples, as a decoder would have seen them."""
 
 from typing import Final
 
@@ -25,16 +25,7 @@ GRIPPER_SOURCES: Final = (ACTION_GRIPPER, GRIPPER_WIDTH, GRIPPER_TOGGLED)
 
 
 def episode_contexts(episode: Episode, context: Named, index: int | None = None) -> FloatArray:
-    """What a decoder sees at every sample of an episode, (T, c).
-
-    Args:
-        episode: with T samples.
-        context: the features that it sees, see `feature_names`.
-        index: number of the episode, for messages.
-
-    Raises:
-        UserError: a feature is unknown, or the episode does not hold it.
-    """
+    """The context vector at every sample of an episode, (T, c); ``index`` is for messages."""
     names = feature_names(context)
     where = "An episode" if index is None else f"Episode {index}"
     belief, gripper, objects = np.zeros(0), NO_GRIPPER, NO_OBJECTS
@@ -52,12 +43,7 @@ def episode_contexts(episode: Episode, context: Named, index: int | None = None)
 
 
 def context_layout(demonstrations: Demonstrations, context: Named) -> ContextLayout:
-    """Where the features lie in the contexts of demonstrations.
-
-    Raises:
-        UserError: a feature is unknown, or the demonstrations do not hold it or do not say which things'
-            poses they hold.
-    """
+    """The layout of the contexts of demonstrations."""
     names, first = feature_names(context), demonstrations.episodes[0]
     width = episode_contexts(first, names, 0).shape[1]
     sees_objects = OBJECTS in names or OBJECTS_IN_TOOL in names
@@ -76,7 +62,6 @@ def context_layout(demonstrations: Demonstrations, context: Named) -> ContextLay
 
 
 def _taken(episode: Episode, source: str, where: str, feature: str, remedy: str) -> FloatArray:
-    """A feature of the dataset that a feature of the context needs."""
     if source in episode.extras:
         return episode.extras[source]
     there = ", ".join(sorted(episode.extras)) or "nothing besides the joints"

@@ -1,12 +1,12 @@
 """Importing tables in plain text (CSV), one line per sample.
 
 The first line names the columns: ``timestamp`` (s, growing within an episode, from any origin), one column
-per joint with its position in rad, and where wanted ``episode`` (any label; its lines lie together),
+per joint with its position in rad, and optionally ``episode`` (any label; its lines lie together),
 ``action.JOINT`` for every joint with its commanded velocity in rad/s, ``task``, and ``robot``, the name of
-the robot that was recorded. Without ``episode`` the file is one episode. With a robot whose joint names are
-all among the columns, those are read, and a gripper's; otherwise every column that is not named above.
+the robot. Without ``episode`` the file is one episode. If the robot's joint names are all among the columns,
+only those and a gripper's are read; otherwise every column that is not named above.
 
-What ``rostopic echo -p`` prints of a topic of ``sensor_msgs/JointState`` can be read too.
+Output of ``rostopic echo -p`` for a topic of ``sensor_msgs/JointState`` works too.
 """
 
 from array import array
@@ -35,8 +35,7 @@ SECONDS: Final[dict[str, float]] = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9
 _LEAST_STEP: Final[dict[str, float]] = {"ns": 1e6, "us": 1e3, "ms": 5.0}
 """No recording has so few samples a second that its timestamps would advance by this in any longer unit."""
 
-_ROSTOPIC: Final = "%time"
-"""First column of what ``rostopic echo -p`` prints."""
+_ROSTOPIC: Final = "%time"  # first column of what ``rostopic echo -p`` prints
 
 _ROS_NAME: Final = "field.name"
 _ROS_POSITION: Final = "field.position"
@@ -45,7 +44,7 @@ _ROS_POSITION: Final = "field.position"
 @final
 @dataclass
 class _Run:
-    """Lines of one episode while they are being read, as flat rows of numbers."""
+    """Lines of one episode, as flat rows of numbers."""
 
     label: str
     task: str
@@ -64,13 +63,10 @@ def read_csv(
 
     Args:
         source: the file.
-        joint_names: the robot's joints, where a robot is known.
-        rate_hz: nominal sampling rate; by default that of the timestamps.
-        task: what was done, where the file has no such column; the file's name by default.
-        time_unit: of the timestamps; by default s, or a shorter one where steps are too long for s.
-
-    Raises:
-        UserError: naming the file and the line that cannot be understood.
+        joint_names: the robot's joints, where the robot is known.
+        rate_hz: nominal sampling rate; by default the timestamps' rate.
+        task: for files without such a column; the file's name by default.
+        time_unit: of the timestamps; by default s, or a shorter unit where steps are too long for s.
     """
     table = CsvTable(source)
     header, rows = table.header, table.rows()
@@ -116,7 +112,7 @@ def read_csv(
 def _joint_states(
     header: list[str], rows: Iterator[tuple[int, list[str]]], source: Path
 ) -> tuple[list[str], Iterator[tuple[int, list[str]]]]:
-    """The positions in what ``rostopic echo -p`` printed, under the joints' names."""
+    """The positions in output of ``rostopic echo -p``, under the joints' names."""
     positions = [name for name in header if name.startswith(_ROS_POSITION)]
     labels = [name.replace(_ROS_POSITION, _ROS_NAME) for name in positions]
     if not positions or not set(labels) <= set(header):
@@ -157,11 +153,7 @@ def _joints(header: list[str], joint_names: Sequence[str], source: Path) -> tupl
 
 
 def _runs(
-    table: CsvTable,
-    header: list[str],
-    rows: Iterator[tuple[int, list[str]]],
-    columns: list[str],
-    task: str,
+    table: CsvTable, header: list[str], rows: Iterator[tuple[int, list[str]]], columns: list[str], task: str
 ) -> list[_Run]:
     place = {name: index for index, name in enumerate(header)}
     wanted = [place[name] for name in columns]

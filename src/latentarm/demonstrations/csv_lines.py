@@ -1,7 +1,7 @@
-"""The records of CSV files that others wrote, within bounds.
+"""The records of CSV files by any writer, within bounds.
 
-The first line decides what separates fields: commas, semicolons or tabs, whichever it has most of. A comma
-within a number is a decimal comma. Files may be packed with gzip.
+The first line decides the separator: comma, semicolon or tab, whichever is most frequent. A comma within a
+number is a decimal comma. Files may be packed with gzip.
 """
 
 import csv
@@ -17,19 +17,12 @@ from latentarm.core.errors import UserError
 from latentarm.core.untrusted.opening import opened
 from latentarm.demonstrations.bounds import MAX_LINE, MAX_TEXT_BYTES
 
-GZIP: Final = b"\x1f\x8b"
-"""Begins every file that gzip packed."""
-
-MAX_RECORD_LINES: Final = 100
-"""Lines that one record may have, where its texts hold line breaks."""
+GZIP: Final = b"\x1f\x8b"  # first bytes of a packed file
+MAX_RECORD_LINES: Final = 100  # of one record, whose texts may hold line breaks
 
 
 def read_lines(source: Path) -> Iterator[tuple[int, list[str]]]:
-    """Line numbers, from one, and fields of every record that is not empty.
-
-    Raises:
-        UserError: the file cannot be read, is too large, or is no CSV file in UTF-8.
-    """
+    """Line numbers, from one, and fields of every non-empty record."""
     with opened(source, MAX_TEXT_BYTES) as stream:
         packed = stream.read(len(GZIP)) == GZIP
         stream.seek(0)
@@ -51,17 +44,7 @@ def read_lines(source: Path) -> Iterator[tuple[int, list[str]]]:
 
 @final
 class CsvTable:
-    """A table whose first line names its columns.
-
-    Args:
-        source: the file.
-
-    Attributes:
-        header: names of the columns.
-
-    Raises:
-        UserError: see `read_lines`.
-    """
+    """A table whose first line names its columns, in ``header``."""
 
     def __init__(self, source: Path) -> None:
         self.source = source
@@ -69,11 +52,7 @@ class CsvTable:
         self.header = [name.strip() for name in next(self._lines, (0, []))[1]]
 
     def rows(self) -> Iterator[tuple[int, list[str]]]:
-        """Line numbers and fields of all further records.
-
-        Raises:
-            UserError: there is none, or one has more or fewer fields than the header.
-        """
+        """Line numbers and fields of all further records."""
         number = 0
         for number, fields in self._lines:
             if len(fields) != len(self.header):
@@ -86,11 +65,7 @@ class CsvTable:
             raise UserError(f"{self.source} has no line after its header.")
 
     def number(self, text: str, line: int, column: str) -> float:
-        """A field's number.
-
-        Raises:
-            UserError: it is none.
-        """
+        """A field's number."""
         try:
             return float(text if "." in text else text.replace(",", ".", 1))
         except ValueError as error:
@@ -101,16 +76,7 @@ class CsvTable:
 
 @final
 class _Lines:
-    """Lines of bounded length: the parser takes as much as it is given.
-
-    Args:
-        stream: the file.
-        source: its path.
-
-    Attributes:
-        number: lines so far.
-        in_record: lines since this was last set to zero; a text in quotation marks may go over several.
-    """
+    """Lines of bounded length. ``in_record`` counts those since a reader set it to zero."""
 
     def __init__(self, stream: TextIO, source: Path) -> None:
         self._stream = stream

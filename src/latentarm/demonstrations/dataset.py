@@ -1,9 +1,8 @@
 """The native dataset: LeRobotDataset v3.0 on disk, whole episodes only.
 
-``meta/info.json`` is the commit point. An append first puts the episode's samples, its row and its
-statistics in place, each file whole, and replaces ``info.json`` last; rows beyond its totals do not
-exist, for this reader and for LeRobot's alike. Killing the process at any moment therefore loses at most the
-episode being appended, and the next append overwrites its remains.
+``meta/info.json`` is the commit point. An append first puts the episode's samples, its row and its statistics
+in place, each file whole, and replaces ``info.json`` last; every reader ignores rows beyond its totals. A
+kill at any moment therefore loses at most the new episode, and the next append overwrites its remains.
 """
 
 from dataclasses import replace
@@ -43,8 +42,7 @@ from latentarm.demonstrations.tables import (
 )
 from latentarm.demonstrations.validation import check_same_features, validate, validate_episode
 
-LOCK_FILE: Final = ".lock"
-"""In a dataset's folder while an episode is appended."""
+LOCK_FILE: Final = ".lock"  # exists during an append
 
 
 def write_dataset(demonstrations: Demonstrations, path: StrPath) -> None:
@@ -53,7 +51,7 @@ def write_dataset(demonstrations: Demonstrations, path: StrPath) -> None:
     Values are stored in single precision, as the layout has them; goals exactly.
 
     Args:
-        demonstrations: what to write.
+        demonstrations: valid ones, see `validate`.
         path: a folder that does not exist yet, or is empty.
 
     Raises:
@@ -105,7 +103,7 @@ def append_episode(path: StrPath, episode: Episode) -> None:
     then a new one begins.
 
     Args:
-        path: a dataset that `write_dataset` wrote.
+        path: a dataset of `write_dataset`.
         episode: same joints and features as the others.
 
     Raises:
@@ -147,13 +145,12 @@ def append_episode(path: StrPath, episode: Episode) -> None:
 
 
 def read_dataset(path: StrPath) -> Demonstrations:
-    """Read a dataset that `write_dataset` wrote, with every episode that was completed.
+    """Read a dataset of `write_dataset`, with every complete episode.
+
+    Values are in single precision.
 
     Args:
         path: the dataset's folder.
-
-    Returns:
-        The demonstrations, in single precision.
 
     Raises:
         UserError: ``path`` is not a dataset, was written by another program (import it first), or is damaged.
@@ -183,7 +180,6 @@ def _native_info(path: Path) -> Info:
 
 
 def _check_features(path: Path, info: Info, episode: Episode) -> None:
-    """Check that a new episode has the same features as the others."""
     empty = episode.state[:0]
     width = {feature.name: feature.width for feature in info.features}
     others = Episode(
@@ -208,14 +204,14 @@ def _data_places(rows: Table) -> list[tuple[int, int]]:
 
 
 def _remove_uncommitted(path: Path, rows: Table) -> None:
-    """Delete what a killed writer left: temporary files, and data files that no episode lies in."""
+    """Delete leftovers of a killed writer: temporary files, and data files without episodes."""
     remove_parts(path)
     committed = {path / _place(DATA_PATTERN, place) for place in _data_places(rows)}
     remove_files(set((path / "data").glob("*/*.parquet")) - committed)
 
 
 def _data_to_extend(path: Path, info: Info, rows: Table, added: Table) -> tuple[tuple[int, int], list[Table]]:
-    """Which data file takes the next episode, and the episodes that it already holds."""
+    """The data file for the next episode, and the episodes that it already holds."""
     places = _data_places(rows)
     chunk, file = places[-1]
     newest = path / _place(DATA_PATTERN, places[-1])
@@ -235,10 +231,7 @@ def _data_to_extend(path: Path, info: Info, rows: Table, added: Table) -> tuple[
 def _write_tables(path: Path, tables: list[Table]) -> None:
     """Write tables of one schema to one Parquet file, each as its own row group."""
     schema = tables[0].schema
-    with (
-        written_whole(path) as part,
-        pq.ParquetWriter(part, schema, write_page_checksum=True) as writer,
-    ):
+    with written_whole(path) as part, pq.ParquetWriter(part, schema, write_page_checksum=True) as writer:
         for table in tables:
             writer.write_table(table)
 

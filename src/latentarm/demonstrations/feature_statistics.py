@@ -1,4 +1,4 @@
-"""Statistics of every feature, per episode and over the dataset, as ``meta/stats.json`` holds them."""
+"""Statistics of every feature, per episode and over the dataset, in the form of ``meta/stats.json``."""
 
 from collections.abc import Mapping
 from typing import Final
@@ -12,14 +12,7 @@ MEASURES: Final = ("min", "max", "mean", "std", "count", *QUANTILES)
 
 
 def episode_statistics(columns: Mapping[str, FloatArray]) -> dict[str, dict[str, FloatArray]]:
-    """Statistics of one episode.
-
-    Args:
-        columns: every feature by name, (T, k).
-
-    Returns:
-        For each feature and each of `MEASURES` an array (k,); ``count`` is (1,).
-    """
+    """For each feature, (T, k), and each of `MEASURES` an array (k,); ``count`` is (1,)."""
     return {
         name: {
             "min": values.min(axis=0),
@@ -34,16 +27,10 @@ def episode_statistics(columns: Mapping[str, FloatArray]) -> dict[str, dict[str,
 
 
 def pooled(measures: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
-    """Pool the episodes' statistics of one feature, without their samples.
+    """Pool the episodes' measures (E, k) of one feature into (k,), without their samples.
 
-    Minimum, maximum, mean and deviation are exact; quantiles are means of the episodes' quantiles
-    weighted by samples, as other writers of the layout pool them.
-
-    Args:
-        measures: for each of `MEASURES` an array (E, k).
-
-    Returns:
-        For each of `MEASURES` an array (k,).
+    Minimum, maximum, mean and deviation are exact; quantiles are means of the episodes' quantiles weighted by
+    samples, as by other writers of the layout.
     """
     count = measures["count"]
     weight = count / count.sum()

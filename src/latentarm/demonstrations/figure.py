@@ -1,4 +1,4 @@
-"""The figure that ``inspect`` draws: every joint of every episode over time, between its limits."""
+"""The figure of ``inspect``: every joint of every episode over time, between its limits."""
 
 import math
 from pathlib import Path
@@ -26,16 +26,7 @@ COLUMNS: Final = 2
 
 
 def draw_trajectories(demonstrations: Demonstrations, path: Path, limits: JointLimits | None = None) -> None:
-    """Draw the joints' positions over time to a PNG file.
-
-    Args:
-        demonstrations: whole, validated episodes; one thin line each.
-        path: where to write the picture.
-        limits: the robot's joint limits, drawn as the edges of a shaded region out of reach.
-
-    Raises:
-        UserError: the picture cannot be written.
-    """
+    """Draw the joints' positions over time to a PNG file, and shade the region beyond the limits."""
     dof = demonstrations.dof
     rows = math.ceil(dof / COLUMNS)
     with mpl.rc_context({"font.size": 9, "axes.titlesize": 9}):

@@ -1,4 +1,4 @@
-"""Folders that are written atomically, by one program at a time."""
+"""Folders that one program at a time writes atomically."""
 
 import os
 import shutil
@@ -14,16 +14,7 @@ from latentarm.core.files import sync_folder
 
 @contextmanager
 def locked(folder: Path, lock_file: Path, remedy: str = "wait for it") -> Generator[None]:
-    """Keep other writers out of ``folder``. The lock is released when the process ends, however it ends.
-
-    Args:
-        folder: what is written.
-        lock_file: what all its writers lock; made here and removed afterwards.
-        remedy: what to do about another one, for the message.
-
-    Raises:
-        UserError: another program is writing there, or the lock file cannot be made.
-    """
+    """Keep other writers out of ``folder`` until the block or the process ends."""
     if not lock_file.parent.is_dir():
         raise UserError(f"{folder} cannot be opened: there is no such folder.")
     lock = FileLock(lock_file, blocking=False)
@@ -42,11 +33,7 @@ def locked(folder: Path, lock_file: Path, remedy: str = "wait for it") -> Genera
 
 
 def check_vacant(destination: Path) -> None:
-    """Refuse a destination that holds anything already.
-
-    Raises:
-        UserError: it is a file, or a folder with something in it.
-    """
+    """Refuse a destination that is not empty."""
     try:
         if destination.is_dir():
             if any(destination.iterdir()):
@@ -61,12 +48,8 @@ def check_vacant(destination: Path) -> None:
 def staged_folder(destination: Path) -> Generator[Path]:
     """Yield a folder beside ``destination``; on success rename it there.
 
-    On any error nothing is left behind. After a kill the staging folder ``.NAME.part`` and the lock
-    file ``.NAME.lock`` remain. Nothing reads them, and the next attempt at the same destination removes
-    them.
-
-    Raises:
-        UserError: the destination is taken, or cannot be written.
+    On any error nothing remains. After a kill the staging folder ``.NAME.part`` and the lock file
+    ``.NAME.lock`` remain, until the next attempt at the same destination removes them.
     """
     destination = destination.resolve()
     check_vacant(destination)
@@ -90,20 +73,12 @@ def staged_folder(destination: Path) -> Generator[Path]:
 
 
 def remove_parts(folder: Path) -> None:
-    """Delete what killed writers left in ``folder``: temporary files that were never renamed.
-
-    Raises:
-        UserError: one of them cannot be deleted.
-    """
+    """Delete temporary files of killed writers in ``folder``."""
     remove_files(folder.rglob(".*.part"))
 
 
 def remove_files(paths: Iterable[Path]) -> None:
-    """Delete files.
-
-    Raises:
-        UserError: one of them cannot be deleted.
-    """
+    """Delete files, or say which one cannot be deleted."""
     for path in paths:
         try:
             path.unlink(missing_ok=True)

@@ -1,4 +1,4 @@
-"""What a dataset says of a gripper: its features, what is checked of them, and how they are counted."""
+"""A dataset's features of a gripper, their checks, and their statistics."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -14,8 +14,7 @@ GRIPPER_WIDTH: Final = "observation.gripper_width"
 """Opening between the fingers, m: as measured, or as commanded where only that is known; the record of the
 import then says so."""
 
-GRIPPER_HOLDING: Final = "observation.gripper_holding"
-"""Whether something is held between them: 0 or 1."""
+GRIPPER_HOLDING: Final = "observation.gripper_holding"  # whether something is held between them: 0 or 1
 
 GRIPPER_TOGGLED: Final = "observation.gripper_toggled"
 """Whether the gripper is other than when the episode began: 0 or 1."""
@@ -23,20 +22,16 @@ GRIPPER_TOGGLED: Final = "observation.gripper_toggled"
 GRIPPER_OPENING: Final = "observation.gripper_opening"
 """Share of the gripper's opening, from 0 (closed) to 1 (open)."""
 
-GRIPPER: Final = "observation.gripper"
-"""The gripper as it was recorded, where its unit is unknown."""
+GRIPPER: Final = "observation.gripper"  # as recorded, where its unit is unknown
 
 ACTION_GRIPPER: Final = "action.gripper"
-"""Where the gripper is to go, in the unit of what was observed of it: m with `GRIPPER_WIDTH`."""
+"""Target of the gripper, in the unit of its observation: m with `GRIPPER_WIDTH`."""
 
 OBSERVED: Final = (GRIPPER_WIDTH, GRIPPER_HOLDING, GRIPPER_TOGGLED, GRIPPER_OPENING, GRIPPER)
-"""What a gripper is at a moment, rather than what is done with it then."""
+"""States of a gripper, rather than commands."""
 
-GripperStart = Literal["open", "closed"]
-"""How a gripper is when an episode begins."""
-
-_WIDEST_M: Final = 1.0
-"""No gripper opens further: a width beyond it is in another unit, m."""
+GripperStart = Literal["open", "closed"]  # state of a gripper when an episode begins
+_WIDEST_M: Final = 1.0  # a larger width is not in m
 
 _YES_OR_NO: Final = (GRIPPER_HOLDING, GRIPPER_TOGGLED)
 
@@ -44,32 +39,20 @@ _YES_OR_NO: Final = (GRIPPER_HOLDING, GRIPPER_TOGGLED)
 @final
 @dataclass(frozen=True)
 class GripperUse:
-    """What a gripper did in an episode.
+    """A gripper's use in an episode; None where unknown."""
 
-    Attributes:
-        changes: how often it was opened or closed.
-        closed_fraction: share of the time in which it was closed or closing, or None where that is not known.
-        toggled_fraction: share of the time in which it was other than at the beginning, where no more than
-            that is known, or else None.
-    """
-
-    changes: int
-    closed_fraction: float | None = None
+    changes: int  # number of openings and closings
+    closed_fraction: float | None = None  # share of the time closed or closing
+    # share of the time in another state than at the beginning, where only toggles are known
     toggled_fraction: float | None = None
 
 
 def gripper_uses(demonstrations: Demonstrations, gripper: Gripper | None = None) -> tuple[GripperUse, ...]:
-    """What the gripper did in each episode.
+    """The use of the gripper in each episode; none where no feature of one gripper has a known unit.
 
-    It counts as closed where it holds something, or is to go (or, where that is not recorded, is) at most
-    half of its largest opening.
-
-    Args:
-        demonstrations: whole, validated episodes.
-        gripper: what it is; without it the largest opening is the one in the demonstrations.
-
-    Returns:
-        As many as episodes; none where no feature of a known unit and of one gripper is recorded.
+    The gripper counts as closed where it holds something, or where its target (or, if not recorded, its
+    opening) is at most half of its largest opening. Without ``gripper`` the largest opening is that of the
+    demonstrations.
     """
     extras = [episode.extras for episode in demonstrations.episodes]
     observed = next(
@@ -118,15 +101,7 @@ def _share(state: BoolArray, time_s: FloatArray) -> float:
 
 
 def check_gripper(episode: Episode, where: str) -> None:
-    """Check an episode's features of a gripper, whose shapes are known to be right.
-
-    Args:
-        episode: what to check.
-        where: the file and the episode, for the message.
-
-    Raises:
-        UserError: an opening in m is below zero or absurdly large, or what is yes or no is neither 0 nor 1.
-    """
+    """Check the values of an episode's features of a gripper: openings in m, yes or no."""
     for name in (GRIPPER_WIDTH, ACTION_GRIPPER) if GRIPPER_WIDTH in episode.extras else ():
         if name in episode.extras:
             values = episode.extras[name]
@@ -139,18 +114,11 @@ def check_gripper(episode: Episode, where: str) -> None:
 
 
 def going_to(commanded: FloatArray, width_m: FloatArray, holding: BoolArray) -> FloatArray:
-    """Where a gripper is going at each sample: a command counts until the next one.
+    """The target of a gripper at each sample, (T,), m: a command counts until the next one.
 
-    Until the first one, it stays where it is; where it holds something it goes on pressing, as if told to
-    close. This is what `Context.gripper_target` is in a drive.
-
-    Args:
-        commanded: (T,), m; NaN where nothing new is commanded.
-        width_m: (T,), as measured, m; not below zero.
-        holding: (T,), whether something is held.
-
-    Returns:
-        (T,), m.
+    Commands (T,), m, are NaN where there is no new one. Before the first command a gripper stays where it is,
+    or keeps pressing if it holds something, as if commanded to close. A drive's `Context.gripper_target` is
+    the same.
     """
     samples = np.arange(len(commanded))
     newest = np.maximum.accumulate(np.where(np.isnan(commanded), -1, samples))
@@ -158,10 +126,10 @@ def going_to(commanded: FloatArray, width_m: FloatArray, holding: BoolArray) -> 
 
 
 def opening_source(extras: Mapping[str, FloatArray]) -> str:
-    """The feature that tells a decoder the gripper's opening: the best of those that are there, or "".
+    """The best feature for a decoder's gripper opening among those present, or "".
 
-    Where it was told to go is better than where it measures to be: that is one number for every thing that
-    is held, wide or narrow, and the only one that toggles tell.
+    The commanded opening is better than the measured one: it is one number for every held thing, wide or
+    narrow, and the only one that toggles give.
     """
     if GRIPPER_WIDTH in extras:
         told = extras.get(ACTION_GRIPPER)
@@ -170,12 +138,7 @@ def opening_source(extras: Mapping[str, FloatArray]) -> str:
 
 
 def told_by(demonstrations: Demonstrations, source: str) -> Demonstrations:
-    """Demonstrations whose gripper is told by a feature, for a model that was trained when it was.
-
-    Args:
-        demonstrations: with all their features.
-        source: what `opening_source` shall find; "" changes nothing.
-    """
+    """Demonstrations for a model that was trained on a feature, see `opening_source`."""
     if source != GRIPPER_WIDTH:
         return demonstrations
     episodes = (

@@ -1,17 +1,15 @@
 """Importing runs of the HARMONIC dataset: people who bring a fork over marshmallows with a Kinova Mico.
 
 Newman, Aronson, Srinivasa, Kitani and Admoni, "HARMONIC: A multimodal dataset of assistive human-robot
-collaboration", 2022. A run is a folder with
+collaboration", 2022. Each run is a folder. ``text_data/joint_positions.csv`` has ``timestamp``, s, and
+``mico_joint_1_pos`` to ``mico_joint_6_pos``, rad, optionally with ``_vel``, rad/s, and ``_eff``, N m.
+``text_data/assistance_info.csv`` has ``timestamp`` and the robot's belief ``p_goal_0`` to ``p_goal_2``.
+``text_data/ada_joy.csv`` has ``timestamp`` and the stick, ``axes_x`` and ``axes_y``.
+``text_data/morsel.yaml`` has ``morsel0`` to ``morsel2``, each a matrix (4, 4) in the base frame, m, or null
+where unseen; the number ``stated_goal``; ``goal_success`` and ``any_success``. ``stats/run_info.yaml`` has
+pairs of a name and a value, including ``start_time`` and ``end_time``.
 
-- ``text_data/joint_positions.csv``: ``timestamp``, s, and ``mico_joint_1_pos`` to ``mico_joint_6_pos``, rad,
-  with ``_vel``, rad/s, and ``_eff``, N m, where they are recorded;
-- ``text_data/assistance_info.csv``: ``timestamp`` and ``p_goal_0`` to ``p_goal_2``, the robot's belief;
-- ``text_data/ada_joy.csv``: ``timestamp``, ``axes_x`` and ``axes_y``, the stick;
-- ``text_data/morsel.yaml``: ``morsel0`` to ``morsel2``, each a matrix (4, 4) in the base frame, m, or null
-  where it was not seen; ``stated_goal``, its number; ``goal_success`` and ``any_success``;
-- ``stats/run_info.yaml``: pairs of a name and a value, ``start_time`` and ``end_time`` among them.
-
-The layout is that of the dataset's published readers; it has been tested on files made in this layout only.
+The layout follows the dataset's published readers; it has been tested on files made in this layout only.
 """
 
 import os
@@ -40,20 +38,14 @@ MEASURED: Final = {"observation.velocity": "_vel", "observation.effort": "_eff"}
 SUCCESS: Final = {"next.success": "goal_success", "next.any_success": "any_success"}
 
 _POSITIONS: Final = Path("text_data/joint_positions.csv")
-_DEEPEST: Final = 4
-"""Levels of folders between the folder that is named and a run."""
+_DEEPEST: Final = 4  # levels of folders above a run
 
 _MOST_YAML_BYTES: Final = 1 << 16
-_RIGID: Final = 1e-3
-"""A pose's rotation may differ from a true one by this."""
+_RIGID: Final = 1e-3  # tolerance of a pose's rotation
 
 
 def harmonic_runs(source: Path) -> tuple[Path, ...]:
-    """The runs in a folder, or the folder itself where it is one, in the order of their names.
-
-    Raises:
-        UserError: there are too many.
-    """
+    """The runs in a folder, or the folder itself if it is one, by name."""
     runs: list[Path] = []
     for folder, inner, _ in os.walk(source):
         here = Path(folder)
@@ -69,20 +61,12 @@ def harmonic_runs(source: Path) -> tuple[Path, ...]:
 
 
 def read_harmonic(runs: Sequence[Path], rate_hz: float | None = None, task: str | None = None) -> SourceData:
-    """Read runs of HARMONIC, each as an episode of six joints.
+    """Read runs of HARMONIC, each as an episode of six joints; ``task`` is the stated goal by default.
 
     Further features are the belief, the stick as ``input.u``, the poses of the morsels, which are the goals,
-    and at an episode's last sample whether it succeeded: ``next.success`` at the stated goal,
-    ``next.any_success`` at any. What was said last before a sample counts at it. Fingers, gaze, muscles and
-    the positions of links are left out. A run in which a morsel was not seen is left out too.
-
-    Args:
-        runs: folders, see `harmonic_runs`.
-        rate_hz: nominal sampling rate; by default that of the timestamps.
-        task: what was done; the stated goal by default.
-
-    Raises:
-        UserError: naming the file that is missing or cannot be understood; or no run has all morsels.
+    and success at an episode's last sample: ``next.success`` at the stated goal, ``next.any_success`` at any.
+    Each sample takes the latest values before it. Fingers, gaze, muscles and positions of links are omitted,
+    and so are runs with an unseen morsel.
     """
     episodes: list[Episode] = []
     unseen = count = 0
@@ -144,15 +128,6 @@ def _episode(run: Path, morsels: Mapping[str, object], task: str | None) -> Epis
 
 
 class _Table:
-    """The columns of a CSV file.
-
-    Args:
-        path: the file.
-
-    Raises:
-        UserError: it is missing, damaged, or has no line after its header.
-    """
-
     def __init__(self, path: Path) -> None:
         self.path = path
         self._csv = CsvTable(path)
@@ -163,11 +138,7 @@ class _Table:
         return name in self._csv.header
 
     def columns(self, names: Sequence[str]) -> FloatArray:
-        """Columns by name, (T, k).
-
-        Raises:
-            UserError: there is no such column, or it holds something else than numbers.
-        """
+        """Columns by name, (T, k)."""
         for name in names:
             if self._csv.header.count(name) != 1:
                 raise UserError(f"{self.path} must have one column {name!r}, as runs of HARMONIC have.")
@@ -181,7 +152,7 @@ class _Table:
 
 
 def _held(path: Path, names: Sequence[str], time_s: FloatArray) -> FloatArray:
-    """Columns as they were last said before each time, (T, k); before the first, as it was said first."""
+    """Columns (T, k) with the latest values before each time; before the first, the first values."""
     table = _Table(path)
     said_s = table.columns(("timestamp",))[:, 0]
     if not (np.diff(said_s) >= 0).all():
@@ -191,7 +162,7 @@ def _held(path: Path, names: Sequence[str], time_s: FloatArray) -> FloatArray:
 
 
 def _within(path: Path, time_s: FloatArray) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
-    """Which times are within the run, as far as its file says when it began and ended."""
+    """Whether each time lies within the run, by its file."""
     listed = read_yaml(path, _MOST_YAML_BYTES, "the YAML file of a run")
     pairs = cast(list[object], listed) if isinstance(listed, list) else None
     if pairs is None or not all(isinstance(one, list) and len(cast(list[object], one)) == 2 for one in pairs):
@@ -215,7 +186,6 @@ def _mapping(path: Path) -> Mapping[str, object]:
 
 
 def _pose(matrix: object, name: str, path: Path) -> FloatArray:
-    """A pose as datasets store it, (7,)."""
     try:
         rigid = np.asarray(matrix, dtype=np.float64)
     except (TypeError, ValueError, OverflowError):

@@ -1,7 +1,7 @@
-"""Tables in HDF5 files that others wrote: plain ones of this file, within bounds.
+"""Tables in HDF5 files by any writer: plain ones of this file, within bounds.
 
-The HDF5 library is not hardened: a file that was damaged on purpose may end the whole process. Even then the
-destination of an import stays empty, because it is written only after everything was read.
+The HDF5 library is not hardened: a maliciously damaged file may end the whole process. Even then the
+destination of an import stays empty, because it is written only after all reading.
 """
 
 import math
@@ -18,17 +18,12 @@ from latentarm.core.types import FloatArray
 from latentarm.core.untrusted.opening import check_file
 from latentarm.demonstrations.bounds import MAX_FILE_BYTES
 
-MAX_CHUNKS: Final = 100_000
-"""Of one table; each is looked up by itself."""
+MAX_CHUNKS: Final = 100_000  # of one table; each needs a look-up
 
 
 @contextmanager
 def opened_hdf5(source: Path) -> Generator[h5py.File]:
-    """Open a file.
-
-    Raises:
-        UserError: it is missing, too large or damaged; also for what the library raises within.
-    """
+    """Open a file, and turn any damage into a `UserError`."""
     check_file(source, MAX_FILE_BYTES)
     try:
         with h5py.File(source, "r") as file:
@@ -38,11 +33,7 @@ def opened_hdf5(source: Path) -> Generator[h5py.File]:
 
 
 def group(parent: h5py.Group, name: str, source: Path) -> h5py.Group:
-    """A group of this file.
-
-    Raises:
-        UserError: there is none of that name.
-    """
+    """The group of that name in this file."""
     found = member(parent, name)
     if not isinstance(found, h5py.Group):
         raise UserError(f"{source} has no group {path_in(parent, name)}.")
@@ -55,16 +46,12 @@ def member(parent: h5py.Group, name: str) -> object:
 
 
 def path_in(parent: h5py.Group, name: str) -> str:
-    """Where a member lies, for messages."""
+    """Path of a member, for messages."""
     return f"{parent.name}/{name}".lstrip("/")
 
 
 def table(parent: h5py.Group, name: str, source: Path) -> FloatArray | None:
-    """A plain dataset of numbers (T, k), or None where there is none.
-
-    Raises:
-        UserError: it is no plain table, or in too many pieces.
-    """
+    """A plain dataset of numbers (T, k), or None where there is none."""
     found = member(parent, name)
     if not isinstance(found, h5py.Dataset):
         return None

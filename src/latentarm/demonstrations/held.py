@@ -1,4 +1,4 @@
-"""Which things of a demonstration move with the arm's tool: what its fork or its gripper holds."""
+"""Things of a demonstration that the arm holds, by fork or gripper: they move with its tool."""
 
 from typing import Final
 
@@ -9,26 +9,15 @@ from latentarm.core.types import BoolArray, FloatArray, Pose
 from latentarm.robots.kinematics.chain import Chain
 from latentarm.robots.kinematics.pose_rows import moved_along
 
-MOVES_M: Final = 0.001
-"""Between two samples less motion than this tells nothing, m."""
-
-ASTRAY: Final = 0.3
-"""A thing is held where it ends up within this share of its way from where the tool would have taken it."""
+MOVES_M: Final = 0.001  # smaller motion between two samples tells nothing
+ASTRAY: Final = 0.3  # a held thing ends within this share of its way from where the tool takes it
 
 
 def held_things(chain: Chain | None, layout: ContextLayout, context: FloatArray) -> BoolArray:
-    """Which things are held at each sample of an episode.
+    """Whether each thing is held at each sample of an episode, (T, K), from its contexts (T, c).
 
-    Where neither the thing nor the tool at it moves, what was known before holds on; at first nothing is
-    held.
-
-    Args:
-        chain: the arm, whose first tool holds things; None where it is not known: then nothing is held.
-        layout: of the contexts.
-        context: (T, c), of successive samples.
-
-    Returns:
-        (T, K), for the things that the context has.
+    Where neither a thing nor the tool moves, the state before holds on; at first nothing is held. Without a
+    chain nothing ever is. The chain's first tool holds things.
     """
     held = np.zeros((len(context), len(layout.objects)), dtype=np.bool_)
     if chain is None or len(context) < 2 or not layout.objects:
@@ -51,18 +40,7 @@ def held_things(chain: Chain | None, layout: ContextLayout, context: FloatArray)
 def moved_to(
     chain: Chain | None, layout: ContextLayout, context: FloatArray, held: BoolArray, state: FloatArray
 ) -> FloatArray:
-    """Contexts once the arm is elsewhere, and with it what it holds.
-
-    Args:
-        chain: the arm; None where it is not known: then nothing is held.
-        layout: of the contexts.
-        context: (N, c).
-        held: (N, K), of `held_things`.
-        state: (N, n), where the arm is then, rad.
-
-    Returns:
-        (N, c).
-    """
+    """Contexts (N, c) after the arm moves to ``state`` (N, n), rad, with the things that it holds (N, K)."""
     moved = context.copy()
     moved[:, : layout.joints] = state
     carries = held.any(axis=1)
@@ -82,6 +60,5 @@ _LATER: Final = slice(1, None)
 
 
 def _rows(layout: ContextLayout, context: FloatArray) -> FloatArray:
-    """Where the things are, (N, K, 9)."""
     feature = next(one for one in layout.features if one in _THINGS)
     return context[:, layout.columns(feature)].reshape(len(context), -1, OBJECT)

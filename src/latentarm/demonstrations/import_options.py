@@ -1,4 +1,4 @@
-"""What somebody who imports demonstrations states about them."""
+"""The user's statements about demonstrations to import."""
 
 from dataclasses import dataclass
 from typing import Annotated, Literal, final
@@ -15,7 +15,7 @@ ActionChoice = Literal["known", "joint_velocity", "joint_position"]
 @final
 @dataclass(frozen=True)
 class ImportOptions:
-    """What the user states about a file; everything is optional. `latentarm import --help` lists the same.
+    """The user's statements about a file; all are optional. `latentarm import --help` lists the same.
 
     Episodes are named as in a CSV file, ``demo_0`` and so on in HDF5 files, by the file's name in a folder of
     files, else by their number from 0.

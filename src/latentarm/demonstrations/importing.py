@@ -40,8 +40,7 @@ FOREIGN: Final = {
 FILES: Final = (".csv", ".csv.gz", ".npz", ".hdf5", ".h5", ".bag", ".mcap", ".db3")
 """Ends of the names of the files that are read in a folder."""
 
-BAG_INFO: Final = "metadata.yaml"
-"""In the folder of a bag of ROS 2."""
+BAG_INFO: Final = "metadata.yaml"  # in the folder of a bag of ROS 2
 
 
 def import_demonstrations(
@@ -51,12 +50,12 @@ def import_demonstrations(
 
     The format is recognised by content: a folder with a LeRobot layout (v2.0, v2.1, v3.0) or with runs of
     HARMONIC, a NumPy archive, an HDF5 file in robomimic's or ALOHA's layout, a bag of ROS 1 or ROS 2, an MCAP
-    or a CSV file, or a folder of such files. What was decided is in the result's ``import_record``.
+    or a CSV file, or a folder of such files. The result's ``import_record`` lists all decisions.
 
     Args:
         source: the file or folder.
-        robot: the arm that was recorded: its joints are found among the columns, and its limits are checked.
-            Without one, every column is taken for a joint in rad.
+        robot: the recorded arm: its joints are found among the columns, and its limits are checked. Without
+            one, every column counts as a joint in rad.
         options: see `ImportOptions`.
 
     Raises:
@@ -95,11 +94,7 @@ def import_demonstrations(
 def import_to(
     source: Path, destination: Path, robot: Robot | None = None, options: ImportOptions | None = None
 ) -> Demonstrations:
-    """`import_demonstrations`, then `write_dataset`; on any error nothing is written to ``destination``.
-
-    Raises:
-        UserError: see those two.
-    """
+    """`import_demonstrations`, then `write_dataset`; on any error nothing is written to ``destination``."""
     check_vacant(destination)
     demonstrations = import_demonstrations(source, robot, options)
     write_dataset(demonstrations, destination)
@@ -168,14 +163,13 @@ def _read_folder(source: Path, robot: Robot | None, options: ImportOptions) -> S
 
 
 def _at_rate(data: SourceData, rate_hz: float | None) -> SourceData:
-    """The same with a rate that the user states."""
     if rate_hz is None:
         return data
     return replace(data, demonstrations=replace(data.demonstrations, rate_hz=rate_hz))
 
 
 def _beginning(source: Path) -> tuple[bytes | None, int]:
-    """The first bytes of a file, by which it is known, and its size; None for a folder."""
+    """The first bytes of a file and its size; None for a folder."""
     try:
         if source.is_dir():
             return None, 0

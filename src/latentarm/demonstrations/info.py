@@ -1,7 +1,6 @@
 """``meta/info.json`` of the LeRobotDataset v3.0 layout, typed.
 
-What the layout has no place for (the goals, and that actions are joint velocities) lies under the
-``latentarm`` key, which other readers of the layout leave alone.
+The ``latentarm`` key holds data that the layout has no place for, such as goals; other readers ignore it.
 """
 
 import json
@@ -22,8 +21,7 @@ from latentarm.demonstrations.things import ENVIRONMENT, entry_names, object_nam
 from latentarm.robots.limits_file import limits_document, parse_limits
 
 CODEBASE_VERSION: Final = "v3.0"
-OLDER_VERSIONS: Final = ("v2.0", "v2.1")
-"""Layouts that can be imported, see `layout_v2`."""
+OLDER_VERSIONS: Final = ("v2.0", "v2.1")  # importable layouts, see `read_episodes_v2`
 
 STATE: Final = "observation.state"
 ACTION: Final = "action"
@@ -48,56 +46,34 @@ T = TypeVar("T")
 @final
 @dataclass(frozen=True)
 class Feature:
-    """One float32 vector recorded with every sample.
+    """One float32 vector in every sample."""
 
-    Attributes:
-        name: the layout's name, such as ``observation.state``.
-        width: its length.
-        names: a name for each entry, or None.
-    """
-
-    name: str
+    name: str  # of the layout, such as ``observation.state``
     width: int
-    names: tuple[str, ...] | None = None
+    names: tuple[str, ...] | None = None  # for each entry
 
 
 @final
 @dataclass(frozen=True)
 class Info:
-    """The contents of ``meta/info.json``. Its totals are authoritative: rows beyond them do not exist.
+    """The contents of ``meta/info.json``. Its totals are authoritative: rows beyond them do not exist."""
 
-    Attributes:
-        episodes: number of whole episodes.
-        frames: number of samples in them.
-        tasks: number of distinct task texts.
-        rate_hz: nominal sampling rate.
-        robot: name of the robot, or "".
-        features: the float vectors; pictures, text and integers of other writers are left out.
-        goals: the discrete goals.
-        end_effector: site, body or link of the robot's model file, or None.
-        limits: what was stated of the robot's limits, or None.
-        version: of the layout, such as ``v3.0``.
-        native: whether this package laid the dataset out (its actions are joint velocities then).
-        chunk_files: files in one chunk folder.
-        data_file_mb: size at which a data file is followed by the next.
-        import_record: what importing decided, see `Demonstrations`.
-        provenance: who recorded each episode, as far as that is known: one entry for each, or fewer.
-    """
-
-    episodes: int
-    frames: int
-    tasks: int
-    rate_hz: float
-    robot: str
-    features: tuple[Feature, ...]
+    episodes: int  # number of whole episodes
+    frames: int  # samples in them
+    tasks: int  # number of distinct task texts
+    rate_hz: float  # nominal
+    robot: str  # name, or ""
+    features: tuple[Feature, ...]  # float vectors; pictures, text and integers of other writers are omitted
     goals: tuple[Goal, ...] = ()
-    end_effector: str | None = None
-    limits: StatedLimits | None = None
-    version: str = CODEBASE_VERSION
-    native: bool = True
-    chunk_files: int = CHUNK_FILES
-    data_file_mb: int = DATA_FILE_MB
+    end_effector: str | None = None  # site, body or link of the robot's model file
+    limits: StatedLimits | None = None  # as stated
+    version: str = CODEBASE_VERSION  # of the layout, such as ``v3.0``
+    native: bool = True  # whether this package wrote the dataset (its actions are joint velocities then)
+    chunk_files: int = CHUNK_FILES  # files in one chunk folder
+    data_file_mb: int = DATA_FILE_MB  # size at which the next data file begins
+    # decisions of the import, see `Demonstrations`
     import_record: Mapping[str, str] = field(default_factory=dict)
+    # of each episode, as far as known: one entry each, or fewer
     provenance: tuple[Provenance | None, ...] = ()
 
     @property
@@ -108,21 +84,21 @@ class Info:
 
     @property
     def objects(self) -> tuple[str, ...]:
-        """Names of the things whose poses the dataset holds; empty where the names do not tell."""
+        """Names of the things with poses in the dataset; empty if the entries' names do not tell."""
         return next((object_names(one.names or ()) for one in self.features if one.name == ENVIRONMENT), ())
 
     def provenance_of(self, episode: int) -> Provenance | None:
-        """Who recorded an episode; None where that is unknown, as for one that another program appended."""
+        """Provenance of an episode; None where unknown, as after another program's append."""
         return self.provenance[episode] if episode < len(self.provenance) else None
 
 
 def default_joint_names(dof: int) -> tuple[str, ...]:
-    """Names for joints that came without."""
+    """Names for unnamed joints."""
     return tuple(f"joint_{joint + 1}" for joint in range(dof))
 
 
 def features_of(demonstrations: Demonstrations) -> tuple[Feature, ...]:
-    """The features that a dataset of these demonstrations has, in the order of its columns."""
+    """The features of a dataset of these demonstrations, in the order of its columns."""
     names = demonstrations.joint_names
     first = demonstrations.episodes[0]
     action = () if first.action is None else (Feature(ACTION, len(names), names),)
@@ -134,7 +110,7 @@ def features_of(demonstrations: Demonstrations) -> tuple[Feature, ...]:
 
 
 def info_json(info: Info) -> str:
-    """The document, exactly as other writers of the layout lay it out, with the ``latentarm`` key added."""
+    """The document in the form of other writers of the layout, with the ``latentarm`` key added."""
     features: dict[str, object] = {
         feature.name: {
             "dtype": "float32",
@@ -173,15 +149,7 @@ def info_json(info: Info) -> str:
 
 
 def read_info(root: Path) -> Info:
-    """Read and check ``meta/info.json``.
-
-    Args:
-        root: the dataset's folder.
-
-    Raises:
-        UserError: there is none, it is another version's, it does not say what it must, or it
-            promises more than an import may hold.
-    """
+    """Read and check ``meta/info.json`` in a dataset's folder."""
     path = root / INFO_PATH
     if is_missing(path):
         raise UserError(f"{root} is not a dataset: it has no {INFO_PATH}.")
@@ -224,7 +192,7 @@ def read_info(root: Path) -> Info:
 
 
 def goals_document(goals: Sequence[Goal]) -> list[dict[str, object]]:
-    """What `parse_goals` reads."""
+    """The document that `parse_goals` reads."""
     return [
         {
             "name": goal.name,
@@ -237,15 +205,7 @@ def goals_document(goals: Sequence[Goal]) -> list[dict[str, object]]:
 
 
 def parse_goals(entries: object, where: str) -> tuple[Goal, ...]:
-    """The goals that a dataset or a run lists.
-
-    Args:
-        entries: as `goals_document` gives them.
-        where: the file, for messages.
-
-    Raises:
-        UserError: an entry is not a goal.
-    """
+    """The goals in a dataset or a run."""
     try:
         return tuple(
             Goal(

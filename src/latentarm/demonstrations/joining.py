@@ -1,4 +1,4 @@
-"""Joins demonstrations of one robot that were recorded apart."""
+"""Joins separate demonstrations of one robot."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -18,17 +18,7 @@ _SAME: Final = {
 
 
 def join(parts: Mapping[str, Demonstrations]) -> Demonstrations:
-    """The episodes of all parts, in their order.
-
-    Args:
-        parts: at least one, by what messages call it.
-
-    Returns:
-        With the rate of the first, and the record of each import.
-
-    Raises:
-        UserError: two parts differ in anything that a dataset has one of.
-    """
+    """The episodes of all parts in order, with the first part's rate and the record of each import."""
     (where, first), *others = parts.items()
     for name, other in others:
         differing = [word for field, word in _SAME.items() if getattr(other, field) != getattr(first, field)]

@@ -1,4 +1,4 @@
-"""Importing datasets that LeRobot (layouts v2.0, v2.1 and v3.0) or `write_dataset` wrote."""
+"""Importing datasets of LeRobot (layouts v2.0, v2.1 and v3.0) or `write_dataset`."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -10,22 +10,16 @@ from latentarm.demonstrations.reader import read_episodes, read_episodes_v2
 from latentarm.demonstrations.source import ActionKind, SourceData
 
 PLUGIN: Final = "latentarm"
-"""What LeRobot calls the robot of `lerobot_robot_latentarm`: positions in rad, the gripper's width in m.
-It does not say which arm that drove."""
+"""LeRobot's name for the robot of `lerobot_robot_latentarm`, whatever arm it drives: positions in rad, the
+gripper's width in m."""
 
 
 def read_lerobot(source: Path) -> SourceData:
     """Read a dataset of a LeRobotDataset layout.
 
-    Every vector of floats is kept; pictures, video, text and whole numbers are left out. The layout does
-    not say in which unit positions are nor what an action is; columns called ``*.pos``, as LeRobot's own
-    robots have them, are target positions.
-
-    Args:
-        source: the dataset's folder.
-
-    Raises:
-        UserError: the folder is no such dataset, or a damaged one.
+    Float vectors are kept; pictures, video, text and integers are omitted. The layout states neither the unit
+    of positions nor the meaning of actions; columns called ``*.pos``, as by LeRobot's own robots, are target
+    positions.
     """
     info = read_info(source)
     episodes = (read_episodes_v2 if info.version in OLDER_VERSIONS else read_episodes)(source, info)
@@ -58,7 +52,7 @@ def _layout(info: Info) -> str:
 
 
 def _actions(info: Info) -> ActionKind | None:
-    """What the actions are; None where they are not about the columns of the states."""
+    """The kind of the actions; None where they are not about the columns of the states."""
     if info.native:
         return "velocity"
     names = {feature.name: feature.names for feature in info.features}

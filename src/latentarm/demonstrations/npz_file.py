@@ -1,10 +1,10 @@
 """Importing NumPy archives (``.npz``) of plain arrays.
 
-Keys: ``q`` (N, n) joint positions, rad; ``episode_ends`` (E,) exclusive end of each episode;
-``rate_hz`` (). Optional: ``timestamp`` (N,) s, ``action`` (N, n) joint velocities meant as actions,
-rad/s, ``joint_names`` (n,) and ``robot`` () as text, ``dq`` (N, n) measured velocities, ``tau`` (N, n)
-measured torques, and ``gripper_toggles`` (G,) samples after which the gripper opened or closed. Measured
-velocities are noisy and are never taken for actions.
+Keys: ``q`` (N, n) joint positions, rad; ``episode_ends`` (E,) exclusive end of each episode; ``rate_hz`` ().
+Optional: ``timestamp`` (N,) s, ``action`` (N, n) joint velocities meant as actions, rad/s, ``joint_names``
+(n,) and ``robot`` () as text, ``dq`` (N, n) measured velocities, ``tau`` (N, n) measured torques, and
+``gripper_toggles`` (G,) samples after which the gripper opened or closed. Measured velocities are noisy and
+never become actions.
 """
 
 import lzma
@@ -28,23 +28,13 @@ from latentarm.demonstrations.gripper import GRIPPER_TOGGLED
 from latentarm.demonstrations.info import default_joint_names
 
 FEATURES: Final = {"dq": "observation.velocity", "tau": "observation.effort"}
-MAX_ARRAYS: Final = 100
-"""In one archive."""
+MAX_ARRAYS: Final = 100  # in one archive
 
 TEXTS: Final = ("joint_names", "robot")
 
 
 def read_npz(source: Path, rate_hz: float | None = None, task: str | None = None) -> Demonstrations:
-    """Read demonstrations from a NumPy archive.
-
-    Args:
-        source: the file.
-        rate_hz: sampling rate, where the file says none or is wrong.
-        task: what was done; the file's name by default.
-
-    Raises:
-        UserError: the file is damaged, holds anything but plain arrays, or lacks a key.
-    """
+    """Read demonstrations from a NumPy archive; ``task`` is the file's name by default."""
     arrays = _read_arrays(source)
     for key in ("q", "episode_ends"):
         if key not in arrays:
@@ -98,7 +88,7 @@ def _joint_names(arrays: dict[str, NDArray[np.generic]], dof: int, source: Path)
 
 
 def _read_arrays(source: Path) -> dict[str, NDArray[np.generic]]:
-    """Every array of the archive, once all of them are known to be plain and of bearable size."""
+    """Every array of the archive, once all are known to be plain and of bearable size."""
     try:
         with opened(source, MAX_FILE_BYTES) as stream, zipfile.ZipFile(stream) as archive:
             members = [member for member in archive.infolist() if member.filename.endswith(".npy")]
@@ -130,7 +120,7 @@ def _read_arrays(source: Path) -> dict[str, NDArray[np.generic]]:
 
 
 def _declared_count(archive: zipfile.ZipFile, member: zipfile.ZipInfo, source: Path) -> int:
-    """Numbers that a member declares, checked against the bytes that it really has."""
+    """Numbers that a member declares, checked against its actual bytes."""
     key = member.filename.removesuffix(".npy")
     with archive.open(member) as stream:
         version = npy.read_magic(stream)
@@ -182,10 +172,7 @@ def _episode_ends(values: NDArray[np.generic], samples: int, source: Path) -> li
 
 
 def _gripper(toggles: NDArray[np.generic], ends: list[int], source: Path) -> FloatArray:
-    """(N, 1), one where the gripper has been toggled an odd number of times since its episode began.
-
-    So it is the gripper's state, as far as the toggles tell: 0 is how the episode began, open or closed.
-    """
+    """(N, 1), one after an odd number of toggles since the episode began: another state than at its start."""
     samples = ends[-1]
     index: IntArray = toggles.astype(np.int64)
     whole = toggles.dtype.kind in "iu" or not toggles.size  # NumPy calls an empty row a row of floats

@@ -1,4 +1,4 @@
-"""Context-action pairs ``(c, a)`` drawn from demonstrations, for the decoder to learn from."""
+"""Context-action pairs ``(c, a)`` from demonstrations, for training decoders."""
 
 from typing import Literal
 
@@ -22,35 +22,18 @@ def make_pairs(
     actions: Literal["displacement", "recorded"] = "displacement",
     chain: Chain | None = None,
 ) -> Pairs:
-    """Draw every context-action pair that the demonstrations hold.
+    """Draw every context-action pair from validated demonstrations.
 
-    Without recorded actions, the action of sample t is the displacement to the state k samples
-    later, over the time between the two: ``a = (q[t+k] - q[t]) / |time[t+k] - time[t]|`` for k in
-    ±1..±window within the episode. Negative k runs the demonstration backwards: a stick should command both
-    directions of a motion. The samples' own timestamps are used, so that an uneven rate does not distort
-    speeds.
+    Without recorded actions, the action of sample t is the displacement to the state k samples later, over
+    the time between the two: ``a = (q[t+k] - q[t]) / |time[t+k] - time[t]|`` for k in ±1..±``window`` within
+    the episode. Negative k runs the demonstration backwards: a stick should command both directions of a
+    motion. Using the timestamps keeps an uneven rate from distorting speeds.
 
-    Noise is added to a copy of the states after every action has been taken from the clean ones.
-    If it were added first, the action would contain the noise and a model would score by removing it.
+    Noise of SD ``state_noise_rad`` is added to a copy of the states after all actions have come from the
+    clean ones. Otherwise the action would contain the noise, and a model would score by removing it.
 
-    Still samples before the first motion and after the last are left out: a person who waits with a hand on
-    the arm demonstrates nothing. Pauses within a motion stay.
-
-    Args:
-        demonstrations: whole, validated episodes.
-        window: how many samples ahead and back an action may look, at least 1.
-        state_noise_rad: standard deviation of the noise on the context's states, rad; 0 for none.
-        context: the features that the decoder sees, see `latentarm.core.context.feature_names`.
-        rng: source of the noise.
-        actions: ``"displacement"`` as above, or ``"recorded"`` for the actions in the episodes.
-        chain: the arm, which tells what it holds; where None, nothing is held.
-
-    Returns:
-        The pairs, episode by episode. Context (N, c), action (N, n) in rad/s.
-
-    Raises:
-        UserError: a parameter makes no sense, a feature of the context or a recorded action is asked for
-            and missing, or nothing moves.
+    Still samples before the first motion and after the last are omitted: a person who waits with a hand on
+    the arm demonstrates nothing. Pauses within a motion stay. Without ``chain`` the arm holds nothing.
     """
     if window < 1:
         raise UserError(f"The pair window is {window} samples; it must be at least 1.")
@@ -64,7 +47,7 @@ def make_pairs(
     held: list[BoolArray] = []
     layout = context_layout(demonstrations, context)
     for index, episode in enumerate(demonstrations.episodes):
-        moving = _moving(episode)
+        moving = slice(*moving_range(episode.state, episode.timestamp))
         start, action = (
             _recorded(episode, moving, index)
             if actions == "recorded"
@@ -88,10 +71,6 @@ def make_pairs(
         episode=np.concatenate(owner),
         held=holding,
     )
-
-
-def _moving(episode: Episode) -> slice:
-    return slice(*moving_range(episode.state, episode.timestamp))
 
 
 def _displaced(episode: Episode, moving: slice, window: int) -> tuple[IntArray, FloatArray]:

@@ -1,4 +1,4 @@
-"""Converts drives recorded at a control loop's rate into demonstrations."""
+"""Converts drives at a control loop's rate into demonstrations."""
 
 from dataclasses import replace
 from typing import Final
@@ -11,30 +11,20 @@ from latentarm.demonstrations.gripper import OBSERVED
 from latentarm.demonstrations.things import ENVIRONMENT
 from latentarm.robots.kinematics.stillness import STILL_RAD_S
 
-_ROUNDING: Final = 1e-6
-"""Of a sample; a span of a whole number of samples must not get one more."""
+_ROUNDING: Final = 1e-6  # of a sample: a span of whole samples must not get one more
 
 
 def without_pauses(demonstrations: Demonstrations, rate_hz: float) -> Demonstrations:
-    """The same motions without the pauses in them, at another rate.
+    """The same motions at another rate, without the pauses in them.
 
     A person who steers two axes at a time stops to switch and to think. An action is a displacement over
-    time, so pauses would teach the model to crawl wherever somebody paused. Time stands still
-    here while no joint exceeds `STILL_RAD_S`; states are read off at even steps of what is left, by linear
-    interpolation, and the last state is kept. A control loop's rate is no use for learning either: within the
-    5 samples that an action may look ahead, an arm at 100 Hz hardly moves.
+    time, so pauses would teach the model to crawl there. Time stands still here while no joint exceeds
+    `STILL_RAD_S`; states are linear interpolations at even steps of the rest, plus the last state. A control
+    loop's rate is too high for learning: within the 5 samples of an action's window, an arm at 100 Hz hardly
+    moves.
 
-    Args:
-        demonstrations: recorded drives. Actions and further features are left out: they are those of the
-            moment, and these moments are gone. What was observed of a gripper and of things is kept,
-            as it was when the arm went on.
-        rate_hz: samples a second of motion.
-
-    Returns:
-        Episodes of at least two samples; those in which nothing moves are left out.
-
-    Raises:
-        UserError: nothing moves in any episode.
+    Actions and further features are omitted, because their moments are gone. Features of a gripper and poses
+    of things stay, as they were when the arm went on. Episodes without motion are left out.
     """
     episodes = [_moving(episode, rate_hz) for episode in demonstrations.episodes]
     kept = tuple(episode for episode in episodes if episode is not None)
@@ -62,7 +52,7 @@ def _moving(episode: Episode, rate_hz: float) -> Episode | None:
 
 
 def _moving_time(state: FloatArray, timestamp: FloatArray) -> FloatArray:
-    """(T,), for how long the arm has moved by each sample, s."""
+    """(T,), time in motion up to each sample, s."""
     step_s = np.diff(timestamp)
     moves = np.abs(np.diff(state, axis=0)).max(axis=1) > STILL_RAD_S * step_s
     return np.concatenate([[0.0], np.cumsum(np.where(moves, step_s, 0.0))])

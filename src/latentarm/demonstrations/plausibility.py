@@ -1,4 +1,4 @@
-"""Detects implausible rates and speeds, and speeds beyond this arm's limits."""
+"""Detects implausible rates and speeds, and speeds beyond the arm's limits."""
 
 from collections.abc import Sequence
 from typing import Final
@@ -11,23 +11,14 @@ from latentarm.robots.robot import Robot
 
 SLOWEST_HZ: Final = 1.0
 FASTEST_HZ: Final = 1000.0
-RATE_TOLERANCE: Final = 0.2
-"""How far the timestamps' rate may be from the one that is stated, as a share of it."""
+RATE_TOLERANCE: Final = 0.2  # of the timestamps' rate, as a share of the stated one
 
 IMPLAUSIBLE_RAD_S: Final = 30.0
 """Five turns a second, faster than any arm's joint; usually a sign of lost samples or wrong units."""
 
 
 def check_rate(demonstrations: Demonstrations, source: str) -> None:
-    """Refuse rates that no recording of an arm has, or that the timestamps contradict.
-
-    Args:
-        demonstrations: validated.
-        source: the file, for the message.
-
-    Raises:
-        UserError: see above.
-    """
+    """Refuse rates that no recording of an arm has, or that the timestamps contradict."""
     rate = demonstrations.rate_hz
     if not SLOWEST_HZ <= rate <= FASTEST_HZ:
         raise UserError(
@@ -39,27 +30,13 @@ def check_rate(demonstrations: Demonstrations, source: str) -> None:
     timed = 1.0 / float(np.median(steps))
     if abs(timed - rate) > RATE_TOLERANCE * rate:
         raise UserError(
-            f"{source}: the timestamps advance at {timed:.4g} Hz, but the rate is {rate:g} Hz: one of"
-            f" them is wrong, and"
-            f" so are all speeds. If the timestamps are right, pass --rate-hz {timed:.4g}."
+            f"{source}: the timestamps advance at {timed:.4g} Hz, but the rate is {rate:g} Hz: one of them is"
+            f" wrong, and so are all speeds. If the timestamps are right, pass --rate-hz {timed:.4g}."
         )
 
 
 def speed_warning(demonstrations: Demonstrations, robot: Robot, source: str, names: Sequence[str]) -> str:
-    """Refuse impossible speeds; report those beyond the robot's limits.
-
-    Args:
-        demonstrations: validated, of the robot.
-        robot: that was recorded.
-        source: the file, for the message.
-        names: of the episodes.
-
-    Returns:
-        A sentence about the joint that is furthest beyond its limit, or "" where none is.
-
-    Raises:
-        UserError: a joint is faster than `IMPLAUSIBLE_RAD_S` and than its limit.
-    """
+    """Refuse impossible speeds; return a sentence about the joint furthest beyond its limit, or ""."""
     limit = robot.limits.velocity
     peak, over, count = np.zeros(robot.dof), 0, 0
     for name, episode in zip(names, demonstrations.episodes, strict=True):
@@ -68,9 +45,8 @@ def speed_warning(demonstrations: Demonstrations, robot: Robot, source: str, nam
         for sample, joint in np.argwhere(wild)[:1]:
             raise UserError(
                 f"{source}: episode {name}, sample {sample + 1}: joint {robot.joint_names[joint]} moves at"
-                f" {speed[sample, joint]:.0f} rad/s, which no arm can do: look for lost samples, wrong"
-                f" units (--units) or a"
-                " wrong rate (--rate-hz)."
+                f" {speed[sample, joint]:.0f} rad/s, which no arm can do: look for lost samples, wrong units"
+                " (--units) or a wrong rate (--rate-hz)."
             )
         peak = np.maximum(peak, speed.max(axis=0))
         over += int((speed > limit).any(axis=1).sum())

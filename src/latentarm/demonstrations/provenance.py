@@ -1,4 +1,4 @@
-"""Who recorded an episode, as JSON: in journals and in a dataset's ``meta/info.json``."""
+"""The provenance of an episode as JSON, in journals and in a dataset's ``meta/info.json``."""
 
 from collections.abc import Mapping
 from dataclasses import asdict, fields
@@ -8,8 +8,7 @@ from typing import Any, Final, cast
 from latentarm import __version__
 from latentarm.core.types import Provenance
 
-BY_HAND: Final = "by_hand"
-"""`Provenance.controller` of an arm that was guided by hand."""
+BY_HAND: Final = "by_hand"  # `Provenance.controller` of hand guiding
 
 FIELDS: Final = tuple(field.name for field in fields(Provenance) if field.name != "complete")
 """The fields that are text."""
@@ -24,7 +23,7 @@ def provenance_now(
     device: str = "",
     controller: str = "",
 ) -> Provenance:
-    """Who records an episode that begins now, with this package; see `Provenance`."""
+    """Provenance of an episode that begins now, with this package."""
     return Provenance(
         person=person,
         run=run,
@@ -38,12 +37,12 @@ def provenance_now(
 
 
 def provenance_json(provenance: Provenance) -> dict[str, object]:
-    """Plain mapping, ready for ``json.dumps``; what is unknown is left out."""
+    """Plain mapping, ready for ``json.dumps``, without unknown fields."""
     return {name: value for name, value in asdict(provenance).items() if value not in ("", True)}
 
 
 def parse_provenance(document: object) -> Provenance:
-    """What `provenance_json` gave; fields that are missing, as in older files, are unknown.
+    """The inverse of `provenance_json`; missing fields, as in older files, are unknown.
 
     Raises:
         ValueError: the document, or a field of it, has another type.

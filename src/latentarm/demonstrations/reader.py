@@ -1,6 +1,6 @@
 """Reading LeRobotDatasets by any writer.
 
-Of the v3.0 layout only the rows that its totals cover are read. The v2.0 and v2.1 layouts have a Parquet file
+From the v3.0 layout only the rows within its totals are read. The v2.0 and v2.1 layouts have a Parquet file
 for each episode and a list of the episodes in JSON lines.
 """
 
@@ -21,11 +21,7 @@ from latentarm.demonstrations.tables import TASK_COLUMN, Table, float_column, in
 
 
 def read_tasks(root: Path) -> list[str]:
-    """Task texts in the order of their indices.
-
-    Raises:
-        UserError: the table of tasks is missing or damaged.
-    """
+    """Task texts in the order of their indices."""
     path = root / "meta/tasks.parquet"
     table = read_table(path, ["task_index", TASK_COLUMN])
     texts = ["; ".join(text) for text in _texts(table.column(TASK_COLUMN), path)]
@@ -35,11 +31,7 @@ def read_tasks(root: Path) -> list[str]:
 
 
 def committed_episodes(root: Path, info: Info) -> Table:
-    """The table of episodes without rows that a killed writer left.
-
-    Raises:
-        UserError: rows are missing or out of order.
-    """
+    """The table of episodes without leftovers of a killed writer."""
     folder = root / "meta/episodes"
     paths = sorted(folder.glob("*/*.parquet"))
     if not paths:
@@ -60,15 +52,7 @@ def committed_episodes(root: Path, info: Info) -> Table:
 
 
 def read_episodes(root: Path, info: Info) -> tuple[Episode, ...]:
-    """Every committed episode with all its float features.
-
-    Args:
-        root: the dataset's folder.
-        info: what its ``meta/info.json`` says.
-
-    Raises:
-        UserError: a file is missing, damaged or too large, or an episode is not all there.
-    """
+    """Every committed episode with all its float features."""
     if info.episodes == 0:
         return ()
     size = sum(path.lstat().st_size for path in root.glob("*/**/*.parquet"))
@@ -109,18 +93,7 @@ def _texts(column: Any, path: Path) -> list[list[str]]:
 def read_file(
     path: Path, info: Info, first: int, lengths: Sequence[int], tasks: Sequence[str]
 ) -> list[Episode]:
-    """The episodes from ``first`` on that lie in one data file.
-
-    Args:
-        path: the file.
-        info: what the dataset's ``meta/info.json`` says.
-        first: number of its first episode.
-        lengths: samples in each of its episodes.
-        tasks: what was done in each.
-
-    Raises:
-        UserError: the file is missing, damaged or too large, or an episode is not all there.
-    """
+    """The episodes in one data file, of which ``first`` is the first's number."""
     widths = {feature.name: feature.width for feature in info.features} | {"timestamp": 1}
     table = read_table(path, [*widths, "episode_index", "frame_index"])
     index, frame = (integer_column(table, name, path) for name in ("episode_index", "frame_index"))
@@ -155,15 +128,7 @@ V2_DATA_PATTERN: Final = "data/chunk-{chunk:03d}/episode_{episode:06d}.parquet"
 
 
 def read_episodes_v2(root: Path, info: Info) -> tuple[Episode, ...]:
-    """Every episode with all its float features.
-
-    Args:
-        root: the dataset's folder.
-        info: what its ``meta/info.json`` says.
-
-    Raises:
-        UserError: a file is missing, damaged or too large, or an episode is not all there.
-    """
+    """Every episode of a v2 layout with all its float features."""
     path = root / V2_EPISODES_PATH
     lines = read_bytes(path, MOST_BYTES).splitlines()
     if len(lines) != info.episodes:
@@ -188,7 +153,6 @@ def _read_v2(root: Path, info: Info, lines: list[bytes]) -> tuple[Episode, ...]:
 
 
 def _v2_entry(entry: dict[str, Any], number: int, path: Path) -> tuple[int, str]:
-    """Length and task of an episode."""
     length, tasks = entry.get("length"), entry.get("tasks")
     if entry.get("episode_index") != number or not isinstance(length, int) or not isinstance(tasks, list):
         raise UserError(f"{path} is damaged: line {number + 1} does not describe episode {number}.")

@@ -1,15 +1,14 @@
 """Importing HDF5 files in robomimic's layout (robosuite, LIBERO and others).
 
-States are ``data/demo_*/obs/robot0_joint_pos`` (robosuite; a second arm's ``robot1_joint_pos`` is
-appended) or ``data/demo_*/obs/joint_states`` (LIBERO), rad. There are no timestamps: they follow
-from the control frequency in the environment's arguments. Recorded actions in such files mostly
-are scaled end-effector displacements; they are kept only where the environment's arguments say
-that one arm was driven by a ``JOINT_VELOCITY`` controller, and are then scaled to rad/s.
+States are ``data/demo_*/obs/robot0_joint_pos`` (robosuite; a second arm's ``robot1_joint_pos`` is appended)
+or ``data/demo_*/obs/joint_states`` (LIBERO), rad. Timestamps follow from the control frequency in the
+environment's arguments. Recorded actions mostly are scaled end-effector displacements; they are kept, scaled
+to rad/s, only where the environment's arguments name a ``JOINT_VELOCITY`` controller of one arm.
 
-The gripper is ``obs/robot0_gripper_qpos`` (robosuite) or ``obs/gripper_states`` (LIBERO). robosuite's own
-gripper of the Panda has two fingers that slide from 0 to 0.04 m, the second one negative, and takes the last
-entry of an action as open (below zero) or close (above): its opening and where it is going are kept in m.
-Joints of other grippers are kept as they were recorded.
+The gripper is ``obs/robot0_gripper_qpos`` (robosuite) or ``obs/gripper_states`` (LIBERO). robosuite's gripper
+of the Panda has two fingers that slide from 0 to 0.04 m, the second one negative, and takes the last entry of
+an action as open (below zero) or close (above): its opening and its target are kept in m. Joints of other
+grippers are kept as recorded.
 """
 
 import math
@@ -48,13 +47,10 @@ def read_robomimic(
 
     Args:
         source: the file.
-        rate_hz: sampling rate, where the environment's arguments say none or are wrong.
-        task: what was done; the environment's name by default, else the file's.
-        actions: ``"known"`` keeps actions as described above; ``"joint_velocity"`` takes the
-            caller's word that the first n entries are joint velocities in rad/s.
-
-    Raises:
-        UserError: the file is damaged, or not of this layout.
+        rate_hz: for environments whose arguments lack it or are wrong.
+        task: the environment's name by default, else the file's.
+        actions: ``"known"`` keeps actions as described above; ``"joint_velocity"`` states that the first n
+            entries are joint velocities in rad/s.
     """
     with opened_hdf5(source) as file:
         data = group(file, "data", source)
@@ -85,14 +81,13 @@ def read_robomimic(
 
 
 def _robot(arguments: Mapping[str, Any]) -> str:
-    """What the environment calls its robot; "" where it does not say."""
+    """The environment's name for its robot, or ""."""
     robots = _nested(arguments, "env_kwargs", "robots")
     listed = cast(list[object], robots) if isinstance(robots, list) else [robots]
     return " and ".join(dict.fromkeys(name for name in listed if isinstance(name, str)))
 
 
 def _declared_count(demo: h5py.Group) -> int:
-    """Numbers that one demonstration's tables declare, whatever lies behind them."""
     observations = member(demo, "obs")
     found = [member(demo, "actions")]
     if isinstance(observations, h5py.Group):
@@ -127,7 +122,7 @@ def _rate(arguments: Mapping[str, Any], source: Path) -> float:
 
 
 def _velocity_scale(arguments: Mapping[str, Any]) -> float | None:
-    """rad/s of a full action, where a joint-velocity controller took it, else None."""
+    """rad/s of a full action for a joint-velocity controller, else None."""
     controller = _nested(arguments, "env_kwargs", "controller_configs")
     if _nested(arguments, "env_kwargs", "controller_configs", "body_parts", "right") is not None:
         controller = controller["body_parts"]["right"]
@@ -146,7 +141,6 @@ def _has_panda_gripper(arguments: Mapping[str, Any]) -> bool:
 
 
 def _gripper(demo: h5py.Group, panda: bool, source: Path) -> dict[str, FloatArray]:
-    """Features of one arm's gripper; none where nothing was recorded."""
     found = (table(group(demo, "obs", source), key, source) for key in GRIPPER_KEYS)
     joints = next((values for values in found if values is not None), None)
     if joints is None:

@@ -1,4 +1,4 @@
-"""Whether the robot that a file names is the one the user named."""
+"""Compares a file's name for its robot with the user's robot."""
 
 import re
 from pathlib import Path
@@ -7,7 +7,7 @@ from typing import Final
 from latentarm.robots.robot import Robot
 
 SO_ARMS: Final = ("so100", "so101", "soarm100", "soarm101")
-"""What files call the arms whose positions LeRobot records in degrees or in -100 to 100."""
+"""Names of the arms whose positions LeRobot records in degrees or in -100 to 100."""
 
 _ALIASES: Final = {
     "franka": "panda",
@@ -24,24 +24,19 @@ _ROLES: Final = re.compile(r"follower|leader|robot|arm$")
 
 
 def key_of(name: str) -> str:
-    """A robot's name without case, separators and its role: ``so101_follower`` is ``so101``."""
+    """A robot's name without case, separators and role: ``so101_follower`` is ``so101``."""
     plain = re.sub(r"[^a-z0-9]", "", name.lower())
     key = _ROLES.sub("", plain) or plain
     return _ALIASES.get(key, key)
 
 
 def is_so_arm(name: str) -> bool:
-    """Whether a file says that it was recorded on an SO-100 or SO-101."""
+    """Whether a file names an SO-100 or SO-101."""
     return key_of(name) in {key_of(arm) for arm in SO_ARMS}
 
 
 def may_be(named: str, robot: Robot) -> bool:
-    """Whether a file's name for its robot can mean this robot.
-
-    Args:
-        named: the file's word, such as ``UR5e`` or ``so101_follower``, or the path of a model.
-        robot: compared by its name in the catalogue, or by its file's, folder's and model's name.
-    """
+    """Whether a file's name for its robot can mean this robot, by its name, file, folder or model."""
     if named == robot.name:
         return True
     path = Path(robot.name)
@@ -51,7 +46,7 @@ def may_be(named: str, robot: Robot) -> bool:
 
 
 def _runs(name: str) -> set[str]:
-    """The keys of all words of a name that stand together: of ``so101_new_calib`` also ``so101``."""
+    """Keys of all runs of words in a name: of ``so101_new_calib`` also ``so101``."""
     words = re.findall(r"[a-z0-9]+", name.lower())
     return {
         key_of("".join(words[start:end]))

@@ -14,24 +14,16 @@ ActionKind = Literal["velocity", "position", "unknown"]
 @final
 @dataclass(frozen=True)
 class SourceData:
-    """Demonstrations as a file has them: all its columns, in its order and its units.
+    """Demonstrations in a file's own columns, order and units."""
 
-    Attributes:
-        demonstrations: the states' columns stand as joints, under the file's names or made-up ones;
-            ``robot`` is what the file calls the robot, or "".
-        layout: the kind of file, for people.
-        in_rad: whether the file, or its layout, says that positions are in rad.
-        actions: what the file's actions are, as far as it says so.
-        names: of the episodes; () where they are merely numbered.
-        record: what reading decided, by subject, in words.
-    """
-
+    # columns of the states stand as joints, under the file's names or generated ones; ``robot`` is the file's
+    # word for the robot, or ""
     demonstrations: Demonstrations
-    layout: str
-    in_rad: bool
-    actions: ActionKind = "velocity"
-    names: tuple[str, ...] = ()
-    record: Mapping[str, str] = field(default_factory=dict)
+    layout: str  # kind of file, for people
+    in_rad: bool  # whether the file, or its layout, says that positions are in rad
+    actions: ActionKind = "velocity"  # kind of the file's actions, if it says so
+    names: tuple[str, ...] = ()  # of the episodes; () if they are only numbered
+    record: Mapping[str, str] = field(default_factory=dict)  # decisions of reading, by subject, in words
 
     @property
     def episode_names(self) -> tuple[str, ...]:
@@ -39,11 +31,7 @@ class SourceData:
         return self.names or tuple(map(str, range(len(self.demonstrations.episodes))))
 
     def without(self, names: Sequence[str], source: str) -> "SourceData":
-        """All episodes but those of some names.
-
-        Raises:
-            UserError: there is no such episode.
-        """
+        """All episodes but those of the given names."""
         known = self.episode_names
         for name in names:
             if name not in known:
@@ -59,15 +47,7 @@ class SourceData:
 
 
 def join_files(files: Mapping[str, SourceData], source: str) -> SourceData:
-    """Several files of one kind as one, their episodes named after them.
-
-    Args:
-        files: what each holds, by its name.
-        source: the folder, for messages.
-
-    Raises:
-        UserError: they do not fit each other.
-    """
+    """Several files of one kind as one, with episodes named after the files."""
     first, *others = files.values()
     names = [
         name if len(one.demonstrations.episodes) == 1 else f"{name}/{episode}"

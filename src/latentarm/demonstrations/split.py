@@ -1,4 +1,4 @@
-"""Splitting a dataset by whole episodes, once or into folds, so that no motion is on both sides."""
+"""Splits a dataset by whole episodes, once or into folds, so that no motion is on both sides."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -13,20 +13,7 @@ from latentarm.core.types import Demonstrations, IntArray
 def split_episodes(
     demonstrations: Demonstrations, fraction: float, rng: np.random.Generator
 ) -> tuple[IntArray, IntArray]:
-    """Choose at random which episodes to train on and which to keep for evaluation or validation.
-
-    Args:
-        demonstrations: at least two episodes.
-        fraction: share of the episodes to keep back, within (0, 1); at least one episode
-            ends up on each side.
-        rng: decides which; the same generator state gives the same split.
-
-    Returns:
-        Indices (E_train,) and (E_kept,) into ``demonstrations.episodes``, each rising.
-
-    Raises:
-        UserError: there are fewer than two episodes, or the fraction is not within (0, 1).
-    """
+    """Draw rising indices (E_train,) and (E_kept,), at least one each; a ``fraction`` is kept back."""
     episodes = len(demonstrations.episodes)
     if not 0 < fraction < 1:
         raise UserError(f"The share of episodes to keep back is {fraction:g}; it must lie between 0 and 1.")
@@ -38,69 +25,44 @@ def split_episodes(
 
 
 def select_episodes(demonstrations: Demonstrations, episodes: Sequence[int] | IntArray) -> Demonstrations:
-    """The same demonstrations with only the episodes at the given indices, in the given order.
-
-    Raises:
-        UserError: an index names no episode.
-    """
+    """The demonstrations with only the given episodes, in the given order."""
     for index in episodes:
         if not 0 <= index < len(demonstrations.episodes):
             raise UserError(f"There is no episode {index}: the dataset has {len(demonstrations.episodes)}.")
     return replace(demonstrations, episodes=tuple(demonstrations.episodes[index] for index in episodes))
 
 
-FEW: Final = 3
-"""With at least this many training demonstrations, one is used for validation ..."""
-
-MANY: Final = 8
-"""... and with at least this many, two."""
+FEW: Final = 3  # with at least this many training demonstrations, one is used for validation ...
+MANY: Final = 8  # ... and with at least this many, two.
 
 
 @dataclass(frozen=True)
 class Fold:
-    """One choice of the held-out episodes.
-
-    Attributes:
-        index: which of the folds.
-        held_out: episodes that nothing is fitted to, rising.
-        others: all further ones, in the order in which they are taken where fewer are wanted.
-    """
+    """One choice of the held-out episodes."""
 
     index: int
-    held_out: tuple[int, ...]
-    others: tuple[int, ...]
+    held_out: tuple[int, ...]  # for evaluation only, rising
+    others: tuple[int, ...]  # the rest, in the order of use where fewer are wanted
 
     @property
     def validation(self) -> tuple[int, ...]:
-        """Validation episodes, which stop the training early.
-
-        With fewer than `FEW`, no episodes are set aside, and training stops when its own loss stops falling.
-        """
+        """Episodes for early stopping; with fewer than `FEW` others, these are the training episodes."""
         if len(self.others) < FEW:
             return self.others
         return self.others[: 2 if len(self.others) >= MANY else 1]
 
     @property
     def training(self) -> tuple[int, ...]:
-        """Episodes that the weights are fitted to."""
+        """Episodes for fitting the weights."""
         return self.others if len(self.others) < FEW else self.others[len(self.validation) :]
 
     def with_only(self, demonstrations: int) -> "Fold":
-        """The same fold with only the first of the others, the validation episodes among them."""
+        """The fold with only the first of the others, including its validation episodes."""
         return replace(self, others=self.others[:demonstrations])
 
 
 def make_folds(episodes: int, count: int, rng: np.random.Generator) -> tuple[Fold, ...]:
-    """Hold every episode out exactly once.
-
-    Args:
-        episodes: of the dataset.
-        count: number of folds.
-        rng: which episodes go together, and in which order the others are taken.
-
-    Raises:
-        UserError: there are fewer episodes than folds.
-    """
+    """Hold every episode out exactly once; ``rng`` draws the groups and the order of the others."""
     if episodes < count:
         raise UserError(
             f"It has {episodes} episodes, fewer than the {count} folds: choose fewer folds, or record more."

@@ -18,56 +18,30 @@ STUDY: Final = "inspect"
 @final
 @dataclass(frozen=True)
 class EpisodeSummary:
-    """One episode.
-
-    Attributes:
-        index: its place in the dataset.
-        task: what was done.
-        samples: number of samples T.
-        duration_s: from the first sample to the last.
-        rate_hz: samples per second by its own timestamps.
-        path_rad: length of its path in joint space.
-        path_m: length of the end-effector's path, or None where the robot is unknown.
-        peak_speed_rad_s: fastest joint, from displacements between samples.
-        still_fraction: share of the time in which no joint is faster than `STILL_RAD_S`.
-    """
+    """Figures of one episode."""
 
     index: int
     task: str
     samples: int
     duration_s: float
-    rate_hz: float
-    path_rad: float
-    path_m: float | None
-    peak_speed_rad_s: float
-    still_fraction: float
+    rate_hz: float  # samples per second by its own timestamps
+    path_rad: float  # length of its path in joint space
+    path_m: float | None  # length of the end-effector's path, or None without a robot
+    peak_speed_rad_s: float  # of the fastest joint, from displacements between samples
+    still_fraction: float  # share of the time in which no joint is faster than `STILL_RAD_S`
 
 
 @final
 @dataclass(frozen=True)
 class JointSummary:
-    """One joint over all episodes.
-
-    Attributes:
-        name: the joint.
-        lowest: rad.
-        highest: rad.
-        lower: its limit, rad, or None where the robot is unknown.
-        upper: likewise.
-        margin_rad: how far the nearer limit was away at the closest; negative past it.
-        speed_p50: median speed, rad/s.
-        speed_p95: 95th percentile.
-        speed_p99: 99th percentile.
-        speed_max: fastest.
-        speed_limit: hardware limit, rad/s, or None where the robot is unknown.
-    """
+    """Figures of one joint over all episodes, rad and rad/s; limits are None without a robot."""
 
     name: str
     lowest: float
     highest: float
     lower: float | None
     upper: float | None
-    margin_rad: float | None
+    margin_rad: float | None  # least distance to a limit; negative past it
     speed_p50: float
     speed_p95: float
     speed_p99: float
@@ -78,13 +52,7 @@ class JointSummary:
 @final
 @dataclass(frozen=True)
 class Table:
-    """A table as plain data: the command line draws it.
-
-    Attributes:
-        title: what it shows.
-        columns: headings with units.
-        rows: one text for each column.
-    """
+    """A table as plain data for the command line, with units in its headings."""
 
     title: str
     columns: tuple[str, ...]
@@ -94,43 +62,33 @@ class Table:
 @final
 @dataclass(frozen=True)
 class Summary:
-    """A dataset.
-
-    Attributes:
-        robot: its name, or "" where unknown.
-        rate_hz: nominal sampling rate.
-        episodes: one summary each.
-        joints: one summary each.
-        goals: their names.
-        features: names of what is recorded beside the states.
-        gripper: what the gripper did in each episode; empty where that is not recorded.
-    """
+    """A summary of a dataset."""
 
     robot: str
     rate_hz: float
     episodes: tuple[EpisodeSummary, ...]
     joints: tuple[JointSummary, ...]
-    goals: tuple[str, ...]
-    features: tuple[str, ...]
-    gripper: tuple[GripperUse, ...] = ()
+    goals: tuple[str, ...]  # names
+    features: tuple[str, ...]  # names of everything recorded beside the states
+    gripper: tuple[GripperUse, ...] = ()  # for each episode; empty where not recorded
 
     @property
     def samples(self) -> int:
-        """Samples in all episodes."""
+        """Number of samples in all episodes."""
         return sum(episode.samples for episode in self.episodes)
 
     @property
     def duration_s(self) -> float:
-        """Length of all episodes together."""
+        """Total length of all episodes."""
         return sum(episode.duration_s for episode in self.episodes)
 
     def tables(self) -> tuple[Table, ...]:
-        """Episodes, joints and, where there is one, the gripper, ready to be drawn."""
+        """Tables of episodes, joints and, if recorded, the gripper."""
         gripper = (_gripper_table(self.gripper),) if self.gripper else ()
         return _episode_table(self.episodes), _joint_table(self.joints), *gripper
 
     def rows(self) -> list[Row]:
-        """Every figure in the one format that machines read; the condition is the episode or joint."""
+        """Every figure in machine-readable form; the condition is the episode or joint."""
         rows = [
             _row("episodes", "count", len(self.episodes)),
             _row("samples", "count", self.samples),
@@ -169,12 +127,7 @@ class Summary:
 
 
 def summarise(demonstrations: Demonstrations, robot: Robot | None = None) -> Summary:
-    """Measure a dataset.
-
-    Args:
-        demonstrations: whole, validated episodes.
-        robot: the arm that was recorded; with it limits and the end-effector's path are known.
-    """
+    """Measure a dataset; with a robot also the limits and the end-effector's path."""
     first = demonstrations.episodes[0]
     recorded = ("action",) if first.action is not None else ()
     return Summary(

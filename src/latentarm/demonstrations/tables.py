@@ -1,4 +1,4 @@
-"""The dataset's Parquet tables: samples, episodes and tasks, column for column as LeRobot v3.0 has them."""
+"""The dataset's Parquet tables: samples, episodes and tasks, in the columns of LeRobot v3.0."""
 
 import json
 import os
@@ -18,14 +18,9 @@ from latentarm.demonstrations.bounds import MAX_FILE_BYTES, check_values
 from latentarm.demonstrations.feature_statistics import MEASURES, episode_statistics, pooled
 from latentarm.demonstrations.info import ACTION, INDEX_DTYPES, STATE, Feature
 
-Table: TypeAlias = Any
-"""A `pyarrow.Table`: the library ships no types."""
-
-TASK_COLUMN: Final = "__index_level_0__"
-"""The name that pandas gives to an index without one: readers of the layout look tasks up in it."""
-
-MAX_TABLE_COLUMNS: Final = 10_000
-"""Of a Parquet file; the table of episodes has some ten for each feature."""
+Table: TypeAlias = Any  # a `pyarrow.Table`: the library ships no types
+TASK_COLUMN: Final = "__index_level_0__"  # pandas' name for an unnamed index, in which readers look tasks up
+MAX_TABLE_COLUMNS: Final = 10_000  # the table of episodes has some ten for each feature
 
 INTEGER_COLUMNS: Final = tuple(name for name, dtype in INDEX_DTYPES.items() if dtype == "int64")
 
@@ -33,19 +28,7 @@ INTEGER_COLUMNS: Final = tuple(name for name, dtype in INDEX_DTYPES.items() if d
 def sample_columns(
     episode: Episode, features: Sequence[Feature], *, episode_index: int, first_index: int, task_index: int
 ) -> dict[str, FloatArray]:
-    """One episode as columns.
-
-    Args:
-        episode: whole and validated.
-        features: the dataset's features.
-        episode_index: its place in the dataset.
-        first_index: samples in the dataset before it.
-        task_index: place of its task in the table of tasks.
-
-    Returns:
-        Every column of the sample table by name, (T, k), in the layout's order and in single
-        precision where the layout has it.
-    """
+    """One episode's columns, (T, k), by name in the layout's order and precision."""
     samples = len(episode.timestamp)
     recorded = {STATE: episode.state, ACTION: episode.action, **episode.extras}
     columns = {feature.name: cast(FloatArray, recorded[feature.name]) for feature in features}
@@ -78,14 +61,7 @@ def sample_table(columns: dict[str, FloatArray]) -> Table:
 def episode_row(
     columns: dict[str, FloatArray], task: str, *, data_place: tuple[int, int], episodes_place: tuple[int, int]
 ) -> Table:
-    """The row that the table of episodes holds for one episode.
-
-    Args:
-        columns: what `sample_columns` gave.
-        task: what was done, in words.
-        data_place: chunk and file with its samples.
-        episodes_place: chunk and file with this row.
-    """
+    """One episode's row in the table of episodes; places are chunk and file."""
     index = columns["index"]
     plain = {
         "episode_index": int(columns["episode_index"][0, 0]),
@@ -111,11 +87,7 @@ def episode_row(
 
 
 def statistics_json(episodes: Table) -> str:
-    """``meta/stats.json`` from the rows of the table of episodes.
-
-    Raises:
-        UserError: a row holds no statistics.
-    """
+    """``meta/stats.json`` from the rows of the table of episodes."""
     names = [column.split("/")[1] for column in episodes.column_names if column.endswith("/mean")]
     document: dict[str, dict[str, list[Any]]] = {}
     for name in names:
@@ -136,7 +108,7 @@ def statistics_json(episodes: Table) -> str:
 
 
 def task_table(tasks: Sequence[str]) -> Table:
-    """The table of tasks, with the note by which pandas finds its index in it."""
+    """The table of tasks, with the note that tells pandas its index."""
     note = {
         "index_columns": [TASK_COLUMN],
         "column_indexes": [
@@ -178,11 +150,7 @@ def task_table(tasks: Sequence[str]) -> Table:
 
 
 def read_table(path: Path, columns: Sequence[str] | None = None) -> Table:
-    """Read a Parquet file, or the named columns of it, once its size is known to be bearable.
-
-    Raises:
-        UserError: it is missing, damaged, too large, or lacks a column.
-    """
+    """Read a Parquet file, or named columns of it, if its size is bearable."""
     if is_missing(path):
         raise UserError(f"{path} is missing; the dataset is damaged.")
     with opened(path, MAX_FILE_BYTES) as stream, bounded_memory(str(path), os.fstat(stream.fileno()).st_size):
@@ -223,14 +191,7 @@ def _stored_values(metadata: Any, columns: Sequence[str] | None) -> int:
 
 
 def float_column(table: Table, name: str, width: int, path: Path) -> FloatArray:
-    """A column of vectors (or of scalars, where the width is 1) as an array.
-
-    Returns:
-        (N, width).
-
-    Raises:
-        UserError: an entry is missing or of another width.
-    """
+    """A column of vectors (or of scalars, where the width is 1) as an array (N, width)."""
     column = table.column(name).combine_chunks()
     kind = column.type
     if pa.types.is_fixed_size_list(kind):
@@ -250,11 +211,7 @@ def float_column(table: Table, name: str, width: int, path: Path) -> FloatArray:
 
 
 def integer_column(table: Table, name: str, path: Path) -> IntArray:
-    """A column of whole numbers as an array (N,).
-
-    Raises:
-        UserError: an entry is missing or not a whole number.
-    """
+    """A column of whole numbers as an array (N,)."""
     column = table.column(name)
     if column.null_count or not pa.types.is_integer(column.type):
         raise UserError(f"{path}: the column {name} must hold whole numbers.")

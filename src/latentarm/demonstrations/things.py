@@ -1,7 +1,7 @@
 """Poses of things in a dataset: the feature ``observation.environment_state`` and the names of its entries.
 
 Each thing has seven entries in the base frame: position, m, and quaternion (w, x, y, z). The entries' names,
-``cup.x`` to ``cup.qz``, lie in ``meta/info.json`` as the layout has them and tell which things these are.
+``cup.x`` to ``cup.qz``, are in ``meta/info.json`` and identify the things.
 """
 
 from collections.abc import Sequence
@@ -21,22 +21,13 @@ def entry_names(objects: Sequence[str]) -> tuple[str, ...]:
 
 
 def object_names(entries: Sequence[str]) -> tuple[str, ...]:
-    """The K things that names of entries tell of; empty where the entries are something else."""
+    """The K things that the entries' names identify; empty if the entries are something else."""
     names = tuple(entry.rpartition(".")[0] for entry in entries[:: len(ENTRIES)])
     return names if entry_names(names) == tuple(entries) else ()
 
 
 def check_things(objects: Sequence[str], episode: Episode, source: str) -> None:
-    """Check that the poses of named things are there.
-
-    Args:
-        objects: K names, at least one.
-        episode: the first of the dataset; the others have the same features.
-        source: the file or folder it came from, for the message.
-
-    Raises:
-        UserError: a name is empty or comes twice, or the feature has not 7 entries for each.
-    """
+    """Check the poses of named things in the first episode of a dataset."""
     if not all(objects) or len(set(objects)) != len(objects):
         raise UserError(f"{source}: the names of its things, {', '.join(objects)}, must be distinct.")
     poses = episode.extras.get(ENVIRONMENT)

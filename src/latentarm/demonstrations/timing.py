@@ -1,4 +1,4 @@
-"""Gaps within episodes, and episodes that were sampled at different rates."""
+"""Gaps within episodes, and episodes of different rates."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -12,18 +12,15 @@ from latentarm.demonstrations.plausibility import RATE_TOLERANCE
 from latentarm.demonstrations.source import SourceData
 
 Gaps = Literal["refuse", "split", "keep"]
-"""What becomes of an episode with a gap: it is refused, each part becomes an episode, or it stays whole."""
+"""Refuse an episode with a gap, make an episode of each part, or keep it whole."""
 
 GAP_S: Final = 0.5
-GAP_STEPS: Final = 5.0
-"""A step is a gap where it is longer than `GAP_S` and than so many of its episode's median steps."""
-
-_ROUNDING: Final = 1e-6
-"""Of a sample: a span of a whole number of samples must not lose one."""
+GAP_STEPS: Final = 5.0  # a gap is longer than `GAP_S` and than so many median steps of its episode
+_ROUNDING: Final = 1e-6  # of a sample: a span of whole samples must not lose one
 
 
 def typical_rate_hz(episodes: Sequence[Episode]) -> float:
-    """Samples per second outside gaps, a whole number where within 1 % of one; 0 where no time passes."""
+    """Samples per second outside gaps, rounded to a whole number within 1 %; 0 where no time passes."""
     steps = np.concatenate([np.zeros(0), *(np.diff(one.timestamp) for one in episodes)])
     steps = steps[~_is_gap(steps)]
     elapsed_s = float(steps.sum())
@@ -33,18 +30,9 @@ def typical_rate_hz(episodes: Sequence[Episode]) -> float:
 
 
 def split_at_gaps(data: SourceData, gaps: Gaps, source: str) -> SourceData:
-    """Deal with gaps within episodes.
+    """Refuse, split or keep episodes with gaps; unchanged data without any, else with a note.
 
-    Args:
-        data: what the file holds; episodes whose times do not grow are left for validation to refuse.
-        gaps: what becomes of episodes with gaps.
-        source: the file, for messages.
-
-    Returns:
-        The same where there is no gap; else with a note in the record. Parts of one sample are left out.
-
-    Raises:
-        UserError: there is a gap, and ``gaps`` is ``"refuse"``.
+    Parts of one sample are omitted. Validation later refuses episodes whose times do not grow.
     """
     found: list[str] = []
     parts: list[tuple[str, Episode]] = []
@@ -85,16 +73,7 @@ def split_at_gaps(data: SourceData, gaps: Gaps, source: str) -> SourceData:
 
 
 def check_one_rate(demonstrations: Demonstrations, names: Sequence[str], source: str) -> None:
-    """Refuse episodes that were sampled at different rates.
-
-    Args:
-        demonstrations: validated.
-        names: of the episodes.
-        source: the file, for the message.
-
-    Raises:
-        UserError: see above.
-    """
+    """Refuse episodes of different rates."""
     # Of an even number of steps the lower of the two in the middle: a pause in a short episode is no rate.
     steps = [np.percentile(np.diff(one.timestamp), 50, method="lower") for one in demonstrations.episodes]
     rates = [1.0 / float(step) for step in steps]
@@ -110,18 +89,7 @@ def check_one_rate(demonstrations: Demonstrations, names: Sequence[str], source:
 def resampled(
     demonstrations: Demonstrations, rate_hz: float, names: Sequence[str], source: str
 ) -> Demonstrations:
-    """Every episode at one rate: joints by linear interpolation, all else as it was recorded last.
-
-    Args:
-        demonstrations: validated.
-        rate_hz: samples per second.
-        names: of the episodes.
-        source: the file, for messages.
-
-    Raises:
-        UserError: the rate makes no sense, an episode is too short for it, or has a gap, across which nobody
-            knows the motion.
-    """
+    """Every episode at one rate: joints by linear interpolation, all else with its latest values."""
     if not 0 < rate_hz < np.inf:
         raise UserError(f"--resample-hz is {rate_hz:g}: it must be a finite number above zero.")
     episodes: list[Episode] = []
@@ -157,7 +125,7 @@ def _gaps(episode: Episode) -> IntArray:
 
 
 def _at(episode: Episode, samples: IntArray) -> Episode:
-    """Some samples of an episode, whose time begins anew."""
+    """Some samples of an episode, with time from zero."""
     time_s = episode.timestamp[samples]
     return replace(
         episode,

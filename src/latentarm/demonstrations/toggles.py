@@ -1,4 +1,4 @@
-"""From when a gripper was toggled to how far it was told to be open."""
+"""Converts toggles of a gripper to its commanded opening."""
 
 from dataclasses import replace
 
@@ -13,23 +13,11 @@ from latentarm.robots.gripper import Gripper
 def widths_from_toggles(
     episodes: tuple[Episode, ...], gripper: Gripper | None, starts: GripperStart | None, source: str
 ) -> tuple[tuple[Episode, ...], str]:
-    """Episodes whose gripper has a width where they say only when it was toggled.
+    """Episodes with `GRIPPER_WIDTH` and `ACTION_GRIPPER` instead of toggles, and a note, or "".
 
-    The width is the one that was commanded, fully open or fully closed. Nobody measured it: a gripper that
-    holds something is open further.
-
-    Args:
-        episodes: with the feature `GRIPPER_TOGGLED`; without it they stay as they are.
-        gripper: the robot's; without one the toggles stay what they are.
-        starts: how the gripper is when an episode begins; open where None.
-        source: the file, for messages.
-
-    Returns:
-        The episodes with `GRIPPER_WIDTH` and `ACTION_GRIPPER` in place of the toggles, and what was decided,
-        in words; "" where nothing was.
-
-    Raises:
-        UserError: the start is given, and there are no toggles or the robot has no gripper.
+    The width is the commanded one, fully open or closed. Nobody measured it: a gripper that holds something
+    is open further. Episodes stay as they are without `GRIPPER_TOGGLED` or without a gripper. ``starts`` is
+    the state at an episode's beginning, open where None.
     """
     known = bool(episodes) and all(GRIPPER_TOGGLED in one.extras for one in episodes)
     if gripper is None or not known:
@@ -51,7 +39,7 @@ def widths_from_toggles(
 def _with_width(episode: Episode, starts: GripperStart, most_m: float) -> Episode:
     toggled = episode.extras[GRIPPER_TOGGLED]
     width: FloatArray = np.where((toggled > 0.0) ^ (starts == "open"), most_m, 0.0)
-    # Toggled after a sample: it is told there, and is so at the next.
+    # A toggle after a sample is commanded there, and takes effect at the next.
     target = np.concatenate([width[1:], width[-1:]])
     kept = {name: values for name, values in episode.extras.items() if name != GRIPPER_TOGGLED}
     return replace(episode, extras={**kept, GRIPPER_WIDTH: width, ACTION_GRIPPER: target})

@@ -1,4 +1,4 @@
-"""From a file's columns and units to a robot's joints in rad, with a record of what was decided."""
+"""Converts a file's columns and units to a robot's joints in rad, with a record of all decisions."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -10,13 +10,7 @@ import numpy as np
 from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations, Episode
 from latentarm.demonstrations.columns import Columns, find_columns, is_width
-from latentarm.demonstrations.gripper import (
-    ACTION_GRIPPER,
-    GRIPPER,
-    GRIPPER_OPENING,
-    GRIPPER_WIDTH,
-    OBSERVED,
-)
+from latentarm.demonstrations.gripper import ACTION_GRIPPER, GRIPPER, GRIPPER_OPENING, GRIPPER_WIDTH, OBSERVED
 from latentarm.demonstrations.import_options import ImportOptions
 from latentarm.demonstrations.robot_names import is_so_arm, may_be
 from latentarm.demonstrations.source import SourceData
@@ -31,25 +25,13 @@ LEROBOT_SUFFIX: Final = ".pos"
 """Ends the names of positions of LeRobot's own arms: degrees or -100 to 100, the gripper 0 to 100."""
 
 _OLD_PREFIX: Final = "main_"
-_EARLIER: Final = "before: "
-"""Marks what an earlier import decided, in a dataset of ours that is imported again."""
+_EARLIER: Final = "before: "  # marks decisions of an earlier import of the same data
 
 
 def translate(data: SourceData, robot: Robot, told: ImportOptions, source: str) -> Demonstrations:
-    """A file's demonstrations as the robot's own.
+    """A file's demonstrations in the robot's joints and order, rad and rad/s.
 
-    Args:
-        data: what the file holds.
-        robot: that was recorded.
-        told: what the user says of the file.
-        source: the file, for messages and the record.
-
-    Returns:
-        States and actions of the robot's joints in its order, rad and rad/s; the gripper, and positions
-        that were commanded, as features of their own; and what was decided in ``import_record``.
-
-    Raises:
-        UserError: the file names another robot, or its columns or units cannot be known.
+    The gripper and commanded positions become features; ``import_record`` holds all decisions.
     """
     given = data.demonstrations
     _check_robot(given.robot, robot, told.recorded_on, source)
@@ -62,9 +44,8 @@ def translate(data: SourceData, robot: Robot, told: ImportOptions, source: str) 
     if motors and not told.joints and all(names[index].startswith(_OLD_PREFIX) for index in columns.joints):
         raise UserError(
             f"{source}: LeRobot named columns {_OLD_PREFIX}* before June 2025, when zero was the arm"
-            f" stretched out"
-            " and not the middle of each range: convert the positions first, then name the columns"
-            " with --joints."
+            " stretched out and not the middle of each range: convert the positions first, then name the"
+            " columns with --joints."
         )
     units, how = _units(data, robot, told, columns, motors, source)
     turned = conversion(
@@ -111,9 +92,8 @@ def _check_robot(named: str, robot: Robot, recorded_on: str | None, source: str)
         raise UserError(f"{source} says that it was recorded on {named!r}, not on {recorded_on!r}.")
     if named and recorded_on is None and not may_be(named, robot):
         raise UserError(
-            f"{source} says that it was recorded on {named!r}, and the robot is {robot.name}: name"
-            f" the robot that was"
-            f" recorded with --robot, or pass --recorded-on {named} if these are the same."
+            f"{source} says that it was recorded on {named!r}, and the robot is {robot.name}: name the robot"
+            f" that was recorded with --robot, or pass --recorded-on {named} if these are the same."
         )
 
 
@@ -125,9 +105,8 @@ def _units(
     missing = any(joint not in single for joint in robot.joint_names)
     if missing and general is None and motors and not data.in_rad:
         raise UserError(
-            f"{source} does not say its units, and LeRobot records these joints in degrees or from"
-            f" -100 to 100 alike:"
-            " say which with --units deg (recorded with use_degrees=true) or --units normalized."
+            f"{source} does not say its units, and LeRobot records these joints in degrees or from -100 to"
+            " 100 alike: say which with --units deg (recorded with use_degrees=true) or --units normalized."
         )
     units: list[Unit] = [single.get(joint, general or "rad") for joint in robot.joint_names]
     if told.units:
@@ -149,7 +128,7 @@ def _units(
 
 
 def _gripper_feature(column: str, motors: bool, robot: Robot) -> tuple[str, float]:
-    """What the gripper's column is stored as, and how much of that one of its units is."""
+    """The feature for the gripper's column, and the factor to its unit."""
     if motors:
         opens = robot.gripper
         return (GRIPPER_OPENING, 0.01) if opens is None else (GRIPPER_WIDTH, 0.01 * opens.width_m)
@@ -182,7 +161,7 @@ def _episode(
 
 
 def _clipped(episodes: tuple[Episode, ...], robot: Robot, clip_rad: float) -> tuple[tuple[Episode, ...], str]:
-    """Positions a little outside the limits moved to them, and how many these were."""
+    """Move positions a little outside the limits to them, and count these."""
     if clip_rad == 0.0:
         return episodes, ""
     limits = robot.limits

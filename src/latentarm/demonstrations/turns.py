@@ -1,4 +1,4 @@
-"""Joints without stops: readings that wrap, or that count turns, become one way through the joint's range."""
+"""Joints without stops: readings that wrap or count turns become one way through the joint's range."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -14,7 +14,7 @@ TURN: Final = 2.0 * np.pi
 
 
 def turning(robot: Robot) -> BoolArray:
-    """(n,), the joints without stops: the model gives none, and a limits file none within a turn."""
+    """(n,), whether each joint has no stops: neither the model nor a limits file gives any within a turn."""
     limits = robot.limits
     wide = limits.upper - limits.lower >= TURN
     told = np.array(limits.sources.position)
@@ -22,17 +22,11 @@ def turning(robot: Robot) -> BoolArray:
 
 
 def unwrapped(episodes: Sequence[Episode], robot: Robot) -> tuple[tuple[Episode, ...], str]:
-    """Episodes whose turning joints neither jump by a turn nor lie turns outside the joint's range.
+    """Episodes whose turning joints neither jump by a turn nor lie turns outside their range.
 
-    A joint that does neither in any episode stays as it is. All episodes of another begin within half a turn
-    of the first one's beginning, which is put next to the middle of the range.
-
-    Args:
-        episodes: states in rad; those that are ragged or not finite are left for validation to refuse.
-        robot: that was recorded.
-
-    Returns:
-        The episodes, and what was done; "" where nothing was.
+    A joint that does neither in any episode is unchanged. For any other, each episode begins within half a
+    turn of the first one's beginning, which lies next to the middle of the range. Validation later refuses
+    ragged or infinite states. Also returns a note, or "".
     """
     if any(one.state.ndim != 2 or not len(one.state) or not np.isfinite(one.state).all() for one in episodes):
         return tuple(episodes), ""
@@ -56,7 +50,7 @@ def unwrapped(episodes: Sequence[Episode], robot: Robot) -> tuple[tuple[Episode,
 
 
 def _with(episode: Episode, state: FloatArray) -> Episode:
-    """The episode with other states; positions that were commanded stay as far from them, within a turn."""
+    """The episode with other states; commanded positions keep their distance from them, within a turn."""
     moved = state - episode.state
     if TARGET_POSITION not in episode.extras or not moved.any():
         return replace(episode, state=state)

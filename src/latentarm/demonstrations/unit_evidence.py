@@ -1,4 +1,4 @@
-"""Whether positions look like another unit than the one that they are said to be in."""
+"""Evidence that positions are in another unit than stated."""
 
 from collections.abc import Sequence
 from typing import Final
@@ -19,20 +19,10 @@ def check_degrees(
 ) -> None:
     """Refuse positions that can be degrees and cannot be the radians that they are taken for.
 
-    Being outside the limits is no such evidence: joints without stops count turns, a robot may be another
-    one, and the radians of most arms are within the limits as degrees too. At least a quarter of the joints
-    must go past a whole turn, and one of them outside its limits: past two turns although it has stops, or at
-    more than a turn a second.
-
-    Args:
-        demonstrations: as recorded.
-        joints: the column of each joint.
-        units: of each joint.
-        robot: that was recorded.
-        source: the file, for the message.
-
-    Raises:
-        UserError: see above.
+    Being outside the limits is not evidence: joints without stops count turns, the robot may be another one,
+    and the radians of most arms are within the limits as degrees too. At least a quarter of the joints must
+    go past a whole turn, and one of them outside its limits: past two turns although it has stops, or at more
+    than a turn a second.
     """
     values = _positions(demonstrations, joints)
     hinges = np.array([unit == "rad" for unit in units]) & ~robot.chain.slide
@@ -61,7 +51,7 @@ def check_degrees(
 def radians_after_all(
     demonstrations: Demonstrations, joints: Sequence[int], units: Sequence[Unit], robot: Robot
 ) -> str:
-    """A warning where positions that are said to be in degrees look like radians; "" elsewhere."""
+    """A warning if positions stated in degrees look like radians, else ""."""
     values = _positions(demonstrations, joints)
     if values is None or any(unit == "rad" for unit in units):
         return ""
@@ -72,7 +62,7 @@ def radians_after_all(
 
 
 def _positions(demonstrations: Demonstrations, joints: Sequence[int]) -> FloatArray | None:
-    """(N, n), as recorded; None where they are not readable as numbers, which validation refuses later."""
+    """(N, n), as recorded; None for unreadable numbers, which validation refuses later."""
     states = [one.state for one in demonstrations.episodes if one.state.ndim == 2]
     if not states:
         return None

@@ -1,4 +1,4 @@
-"""The unit of each joint's recorded positions, and the way from there to rad."""
+"""Units of recorded positions, and their conversion to rad."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -14,8 +14,7 @@ Unit = Literal["rad", "deg", "normalized"]
 
 UNITS: Final[tuple[Unit, ...]] = get_args(Unit)
 
-TARGET_POSITION: Final = "action.target_position"
-"""Joint positions that were commanded, rad."""
+TARGET_POSITION: Final = "action.target_position"  # commanded joint positions, rad
 
 FULL_TURN: Final = "wrist_roll"
 """The joint of SO-100 and SO-101 that LeRobot calibrates to a full turn, whatever its stops."""
@@ -24,13 +23,7 @@ FULL_TURN: Final = "wrist_roll"
 @final
 @dataclass(frozen=True)
 class Conversion:
-    """Recorded positions v to positions of the robot: ``scale * v + offset``, in rad (m where prismatic).
-
-    Attributes:
-        units: n units, one for each joint.
-        scale: (n,).
-        offset: (n,).
-    """
+    """Converts recorded positions v to ``scale * v + offset``, each (n,), in rad (m where prismatic)."""
 
     units: tuple[Unit, ...]
     scale: FloatArray
@@ -46,15 +39,7 @@ class Conversion:
 
 
 def parse_units(words: Sequence[str], joints: Sequence[str]) -> tuple[Unit | None, Mapping[str, Unit]]:
-    """What ``--units`` says: a unit for all joints, and those of single joints.
-
-    Args:
-        words: ``deg``, or ``JOINT=deg``, any number of them.
-        joints: the robot's joint names.
-
-    Raises:
-        UserError: a word is neither, or an unknown joint or unit.
-    """
+    """The unit for all joints and those of single joints, from ``deg`` or ``JOINT=deg``."""
     general: Unit | None = None
     single: dict[str, Unit] = {}
     for word in words:
@@ -74,18 +59,11 @@ def parse_units(words: Sequence[str], joints: Sequence[str]) -> tuple[Unit | Non
 def conversion(
     units: Sequence[Unit], joints: Sequence[str], limits: JointLimits, slide: BoolArray, *, full_turn: bool
 ) -> Conversion:
-    """How recorded positions become those of the robot.
+    """The conversion from recorded positions to those of the robot.
 
-    ``normalized`` runs from -100 to 100 over a joint's limits, which is an assumption: LeRobot's calibration
-    runs from one mechanical stop to the other, wherever these are. Prismatic joints are in m under ``rad``
-    and ``deg`` alike.
-
-    Args:
-        units: n units.
-        joints: n names.
-        limits: of the joints.
-        slide: (n,), which joints are prismatic.
-        full_turn: whether `FULL_TURN` runs over a full turn.
+    ``normalized`` is assumed to run from -100 to 100 over a joint's limits; LeRobot's calibration runs from
+    one mechanical stop to the other, wherever these are. Prismatic joints are in m under ``rad`` and ``deg``
+    alike. ``full_turn`` says whether `FULL_TURN` runs over a full turn.
     """
     scale, offset = np.ones(len(units)), np.zeros(len(units))
     for index, (unit, joint) in enumerate(zip(units, joints, strict=True)):

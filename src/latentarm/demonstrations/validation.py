@@ -1,6 +1,6 @@
 """Validation of demonstrations, with a one-sentence error for each fault.
 
-Episodes and samples are counted from zero, as in the dataset's ``episode_index`` and ``frame_index``.
+Episodes and samples count from zero, as in the dataset's ``episode_index`` and ``frame_index``.
 """
 
 from collections.abc import Iterator, Sequence
@@ -16,22 +16,11 @@ from latentarm.demonstrations.gripper import check_gripper
 from latentarm.demonstrations.things import check_things
 from latentarm.robots.limits import JointLimits
 
-LIMIT_TOLERANCE_RAD: Final = 0.01
-"""How far past a joint limit a state may lie: encoder offsets and compliance, 0.6 degrees."""
-
-CLIP_HINT_RAD: Final = 0.2
-"""Calibrations of one kind of arm differ by less; what is further outside has another reason."""
+LIMIT_TOLERANCE_RAD: Final = 0.01  # of a state past a limit: encoder offsets and compliance, 0.6 degrees
+CLIP_HINT_RAD: Final = 0.2  # calibrations of one kind of arm differ by less
 
 RESERVED_FEATURES: Final = frozenset(
-    {
-        "action",
-        "episode_index",
-        "frame_index",
-        "index",
-        "observation.state",
-        "task_index",
-        "timestamp",
-    }
+    {"action", "episode_index", "frame_index", "index", "observation.state", "task_index", "timestamp"}
 )
 
 
@@ -41,17 +30,7 @@ def validate(
     limits: JointLimits | None = None,
     episode_names: Sequence[str] = (),
 ) -> None:
-    """Check everything about demonstrations that the rest of the package relies on.
-
-    Args:
-        demonstrations: what to check.
-        source: the file or folder it came from, for the message.
-        limits: the robot's joint limits; states may pass them by `LIMIT_TOLERANCE_RAD`.
-        episode_names: what messages call the episodes; their numbers by default.
-
-    Raises:
-        UserError: one sentence naming the source, the episode and the sample.
-    """
+    """Check all that the package relies on; states may pass the limits by `LIMIT_TOLERANCE_RAD`."""
     names = demonstrations.joint_names
     if not names or not all(names) or len(set(names)) != len(names) or not all(map(_is_text, names)):
         raise UserError(f"{source}: the joint names {names} must be distinct, not empty and at least one.")
@@ -87,18 +66,7 @@ def validate_episode(
     source: str,
     limits: JointLimits | None = None,
 ) -> None:
-    """Check one episode by itself.
-
-    Args:
-        episode: what to check.
-        index: its place in the dataset, for the message.
-        joint_names: n names.
-        source: the file or folder it came from, for the message.
-        limits: the robot's joint limits, or None where the robot is unknown.
-
-    Raises:
-        UserError: one sentence naming the source, the episode and the sample.
-    """
+    """Check one episode; ``index`` and ``source`` are for messages."""
     where = f"{source}: episode {index}"
     _check_shapes(episode, len(joint_names), where)
     for name, values in _features(episode):
@@ -114,11 +82,7 @@ def validate_episode(
 
 
 def check_same_features(first: Episode, other: Episode, index: int | str, source: str) -> None:
-    """Check that two episodes record the same things: a dataset has one set of features.
-
-    Raises:
-        UserError: naming the feature that only one of them has, or that differs in width.
-    """
+    """Check that two episodes have the same features, as one dataset requires."""
     widths = {name: values.shape[1:] for name, values in _features(first)}
     others = {name: values.shape[1:] for name, values in _features(other)}
     for name in sorted(widths.keys() | others.keys()):
@@ -227,17 +191,7 @@ def _check_limits(state: FloatArray, joint_names: tuple[str, ...], limits: Joint
 
 
 def check_goal(goal: Goal, index: int, dof: int, source: str) -> None:
-    """Check one goal by itself.
-
-    Args:
-        goal: the goal.
-        index: which of the goals it is, from 0.
-        dof: n.
-        source: the file, for messages.
-
-    Raises:
-        UserError: its sizes are not those of n joints and a pose, or a number is not finite.
-    """
+    """Check one goal for n = ``dof`` joints."""
     shapes = (goal.configuration.shape, goal.pose.position.shape, goal.pose.rotation.shape)
     if shapes != ((dof,), (3,), (3, 3)):
         raise UserError(f"{source}: goal {index} must be a configuration of {dof} joints with its pose.")

@@ -1,1 +1,1 @@
-"""The robots that can be driven: their chains, their limits and their shapes."""
+"""Robots: their chains, their limits and their shapes."""

@@ -1,4 +1,4 @@
-"""Make a `Robot` of a MuJoCo model."""
+"""Makes a `Robot` of a MuJoCo model."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -32,27 +32,11 @@ def assemble(
     gripper: Gripper | None = None,
     attachment: Attachment | None = None,
 ) -> Robot:
-    """Read a robot's kinematics and shape from its model, and add what the model does not contain.
+    """Read a robot's kinematics and shape from its model, and add what the model lacks.
 
-    Args:
-        name: what to call it.
-        mjcf: its model as MJCF text. The chain is read from this text, so that the two agree to
-            rounding, whatever the digits in it.
-        end_effectors: names of sites or bodies, "the" tool first.
-        limits: of its joints.
-        home: (n,), rad.
-        tool_speed_limit: m/s.
-        model_path: the file that the model was read from.
-        model: compiled from ``mjcf``, if the caller already has it: large meshes take seconds to compile.
-        tool_speed_source: how the limit of the tool's speed is known.
-        gripper: its gripper, if it has one that can be driven.
-        attachment: what its model carries in its hand, if anything.
-
-    Returns:
-        The robot.
-
-    Raises:
-        UserError: see `latentarm.robots.kinematics.reader.read`.
+    ``mjcf`` is the model's text, from which the chain is read, so that the two agree to rounding.
+    ``end_effectors`` are sites or bodies, the tool first; ``home`` is (n,), rad; ``tool_speed_limit`` is in
+    m/s. Pass ``model`` if it is compiled already: large meshes take seconds.
     """
     if model is None:
         model = mujoco.MjModel.from_xml_string(mjcf)
@@ -81,15 +65,7 @@ def assemble(
 
 
 def restate(robot: Robot, stated: StatedLimits) -> Robot:
-    """The robot with stated limits in place of known or assumed ones.
-
-    Args:
-        robot: the robot.
-        stated: what is stated of some or all of its joints.
-
-    Raises:
-        UserError: a joint is not the robot's, or its figures make no sense together.
-    """
+    """The robot with stated limits in place of known or assumed ones."""
     chain = robot.chain
     limits = with_stated(robot.limits, stated, chain.joint_names, chain.slide.tolist())
     home = robot.home
@@ -116,11 +92,6 @@ def restate(robot: Robot, stated: StatedLimits) -> Robot:
 
 
 def _stated_gripper(robot: Robot, stated: StatedGripper) -> Gripper:
-    """The gripper that a limits file states, on the joints of the model.
-
-    Raises:
-        UserError: the model has no such joints, or one of them is driven as the arm's or has no range.
-    """
     model = robot.model()
     travel: list[tuple[float, float]] = []
     for name in stated.joints:
@@ -142,7 +113,7 @@ def _stated_gripper(robot: Robot, stated: StatedGripper) -> Gripper:
 
 
 def _tuck(model: mujoco.MjModel, reading: ModelChain, limits: JointLimits) -> FloatArray | None:
-    """The key frame "tuck", (n,), rad, where the model has one within the limits."""
+    """Key frame "tuck", (n,), rad, or None where the model has none within the limits."""
     key = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_KEY, "tuck")
     if key < 0:
         return None

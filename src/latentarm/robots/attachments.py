@@ -18,8 +18,7 @@ from latentarm.robots.robot import Robot
 from latentarm.robots.scene.containers import WALL_M, cup
 from latentarm.robots.scene.thing import Part
 
-HANDLE_HALF_M: Final = 0.006
-"""Half the thickness of every handle: as far is each finger of a gripper from the middle."""
+HANDLE_HALF_M: Final = 0.006  # half the thickness of every handle
 
 _TOOL: Final = "tool"
 _STEEL: Final = (0.75, 0.77, 0.80, 1.0)
@@ -41,17 +40,6 @@ _CUP: Final = cup()
 @final
 @dataclass(frozen=True, eq=False)
 class _Kind:
-    """How an attachment is made.
-
-    Attributes:
-        what: what it can do.
-        reach_m: from the hand's frame to the tool's, along z, m; both are turned the same way.
-        parts: its solids without tines, in the tool's frame.
-        mass_kg: of those, kg.
-        tines: its tines, in the tool's frame.
-        tines_kg: of those, kg.
-    """
-
     what: Attachment
     reach_m: float
     parts: tuple[Part, ...]
@@ -119,8 +107,7 @@ def _cup() -> _Kind:
     return _Kind(what, _CUP_REACH_M, (_handle(_CUP_REACH_M, wall), *parts), 0.15)
 
 
-ATTACHMENTS: Final = {"fork": _fork, "spoon": _spoon, "cup": _cup}
-"""What `attach` can put in a robot's hand."""
+ATTACHMENTS: Final = {"fork": _fork, "spoon": _spoon, "cup": _cup}  # for `attach`
 
 
 def attach(robot: Robot, attachment: str) -> Robot:
@@ -128,13 +115,10 @@ def attach(robot: Robot, attachment: str) -> Robot:
 
     A gripper is closed about the handle and stays so: the robot has none to command. The attachment becomes
     part of the last link, with its mass, its inertia and its shell. The first tool of the chain is then named
-    "tool". It is turned as the hand is, and lies on the hand's z axis:
-
-    - *fork*: in the middle between the tips of the tines; z points where they do, and y lies across them,
-      along the edge that cuts.
-    - *spoon*: in the middle of its bowl, which opens along x.
-    - *cup*: in the middle of the room in it, which opens along x. With the hand level and its x axis up, as
-      the Panda's is when it points straight away, the cup stands upright.
+    "tool". It is turned as the hand is, and lies on the hand's z axis: for a *fork* between the tips of the
+    tines, with z along them and y across them, along the cutting edge; for a *spoon* in the middle of its
+    bowl, which opens along x; for a *cup* in the middle of its room, which opens along x, so that it stands
+    upright when the Panda's hand points straight away.
 
     Args:
         robot: any robot; its end-effector is the hand, whose z axis points away from the arm.
@@ -181,7 +165,6 @@ def attach(robot: Robot, attachment: str) -> Robot:
 
 
 def _home(robot: Robot) -> dict[str, FloatArray]:
-    """Where every joint of the model is at home, by its name."""
     model = robot.model()
     at = reference_positions(model)
     ends = np.append(model.jnt_qposadr, model.nq)
@@ -189,7 +172,6 @@ def _home(robot: Robot) -> dict[str, FloatArray]:
 
 
 def _hang(spec: mujoco.MjSpec, robot: Robot, kind: _Kind) -> None:
-    """Add the attachment to the hand, and the tool's site to it."""
     hand = robot.chain.tools[0].name
     site = spec.site(hand)
     if site is None:

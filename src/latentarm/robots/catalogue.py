@@ -1,4 +1,4 @@
-"""Robots by name, those of the MuJoCo Menagerie included where `mujoco-menagerie` is installed."""
+"""Robots by name, including the MuJoCo Menagerie's where `mujoco-menagerie` is installed."""
 
 import importlib
 from collections.abc import Callable
@@ -40,9 +40,6 @@ def load_robot(
         end_effector: site or body of a file's model; see `load_model_file`.
         limits: stated limits, in place of known or assumed ones.
 
-    Returns:
-        The robot.
-
     Raises:
         AmbiguousEndEffectorError: the model's end-effector must be named.
         UserError: the name is unknown, an end-effector is given for a named robot, the file cannot be
@@ -53,15 +50,7 @@ def load_robot(
 
 
 def load_recorded_robot(demonstrations: Demonstrations, dataset: str = "") -> Robot:
-    """The robot that demonstrations were recorded on, with the end-effector and limits that they name.
-
-    Args:
-        demonstrations: of a robot that they name.
-        dataset: their folder, for messages.
-
-    Raises:
-        UserError: they name no robot or no end-effector where one is needed, or it cannot be loaded.
-    """
+    """The robot of a recording, with the end-effector and limits that its dataset names."""
     whose = dataset or "The dataset"
     if not demonstrations.robot:
         raise UserError(f"{whose} does not name its robot: import it again with --robot.")
@@ -95,17 +84,7 @@ def _load(name_or_path: str, end_effector: str | None) -> Robot:
 
 
 def menagerie_file(name: str) -> Path | None:
-    """The MJCF file of a Menagerie robot, from the package's cache or downloaded into it.
-
-    Args:
-        name: a name in the Menagerie, such as "kinova_gen3".
-
-    Returns:
-        The file, or None where the package is not installed or has no such robot.
-
-    Raises:
-        UserError: the robot is neither in the cache nor can it be downloaded.
-    """
+    """The MJCF file of a Menagerie robot, downloaded if need be; None if robot or package is missing."""
     try:
         menagerie: Any = importlib.import_module("mujoco_menagerie")
     except ModuleNotFoundError:

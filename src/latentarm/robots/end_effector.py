@@ -1,4 +1,4 @@
-"""Which site or body of a model is the end-effector, and which of the model's joints move it."""
+"""Finds a model's end-effector, and the joints that move it."""
 
 import re
 from dataclasses import dataclass
@@ -14,19 +14,18 @@ FINGER: Final = re.compile(r"finger|jaw|gripper|knuckle|thumb|claw", re.IGNORECA
 FINGER_BODY: Final = re.compile(r"finger|jaw|knuckle|thumb|claw|mover", re.IGNORECASE)
 """Names of bodies that only a gripper's joint moves; "gripper" is often the whole hand."""
 
-MOST_NAMED: Final = 12
-"""An error lists at most this many end-effectors."""
+MOST_NAMED: Final = 12  # end-effectors in an error
 
 _DRIVABLE: Final = (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE))
 _JOINT: Final = int(mujoco.mjtEq.mjEQ_JOINT)
 
 
 class AmbiguousEndEffectorError(UserError):
-    """A model does not say which end-effector is meant.
+    """A model leaves several end-effectors to choose from.
 
     Attributes:
         why: why none was chosen, without a full stop.
-        choices: what can be named, in words.
+        choices: in words.
     """
 
     def __init__(self, why: str, choices: str) -> None:
@@ -38,34 +37,18 @@ class AmbiguousEndEffectorError(UserError):
 @final
 @dataclass(frozen=True)
 class Moved:
-    """A site or body that could be the end-effector.
-
-    Attributes:
-        name: its name.
-        joints: ids of the arm's joints that move it.
-        fingers: ids of a gripper's joints that move it.
-    """
+    """A site or body that could be the end-effector."""
 
     name: str
-    joints: frozenset[int]
-    fingers: frozenset[int]
+    joints: frozenset[int]  # ids of the arm's joints that move it
+    fingers: frozenset[int]  # ids of a gripper's joints that move it
 
 
 def choose_end_effector(model: mujoco.MjModel) -> str:
     """The only moving site, or else the only moving body without children.
 
-    It must be moved by every joint of the arm and by none of a gripper's. If there are several candidates,
-    or the only one leaves joints unused, the person must decide.
-
-    Args:
-        model: a robot's model.
-
-    Returns:
-        The name of a site or body.
-
-    Raises:
-        AmbiguousEndEffectorError: there is no such site or body.
-        UserError: nothing in the model can be driven.
+    Every joint of the arm must move it, and none of a gripper's. If several qualify, or the only one leaves
+    joints unused, raises AmbiguousEndEffectorError: the person must decide.
     """
     arm = arm_joints(model)
     if not arm and not finger_joints(model):
@@ -114,7 +97,7 @@ def finger_joints(model: mujoco.MjModel) -> frozenset[int]:
 
 
 def followers(model: mujoco.MjModel) -> dict[int, int]:
-    """For each joint the one it follows (<mimic> in URDF, <equality><joint> in MJCF), or -1."""
+    """Leader of each joint that follows another (<mimic> in URDF, <equality><joint> in MJCF), or -1."""
     return {
         int(model.eq_obj1id[i]): int(model.eq_obj2id[i])
         for i in range(model.neq)
@@ -123,7 +106,7 @@ def followers(model: mujoco.MjModel) -> dict[int, int]:
 
 
 def _choices(model: mujoco.MjModel, found: list[Moved]) -> str:
-    """The candidates, those moved by the most joints first."""
+    """Candidates, those moved by the most joints first."""
     palms = {int(model.body_parentid[model.jnt_bodyid[joint]]) for joint in finger_joints(model)}
     found = [*found, *(_moved(model, model.body(palm).name, palm) for palm in sorted(palms))]
     named = {one.name: one for one in found if one.name and one.joints}
@@ -141,7 +124,6 @@ def _count(joints: int) -> str:
 
 
 def _leaves(model: mujoco.MjModel) -> list[tuple[str, int]]:
-    """Names and ids of the bodies that carry no other."""
     parents = {int(parent) for parent in model.body_parentid[1:]}
     return [(model.body(i).name, i) for i in range(1, model.nbody) if i not in parents]
 

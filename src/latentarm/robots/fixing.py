@@ -1,4 +1,4 @@
-"""Fix joints of a model where they are."""
+"""Fixes joints of a model where they are."""
 
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
@@ -12,11 +12,7 @@ if TYPE_CHECKING:
 
 
 def arm_model(robot: Robot) -> "mujoco.MjModel":
-    """The robot's model with the arm's joints alone; its gripper's fingers stay where the model has them.
-
-    Args:
-        robot: its gripper is the only thing that moves besides the arm.
-    """
+    """The model with the arm's joints alone; the gripper's fingers stay where the model has them."""
     import mujoco
 
     from latentarm.robots.kinematics.reader import reference_positions
@@ -32,12 +28,7 @@ def arm_model(robot: Robot) -> "mujoco.MjModel":
 
 
 def fix_slides(spec: "mujoco.MjSpec", positions: Mapping[str, float]) -> None:
-    """Take sliding joints out of a model, with what couples them and with its key frames.
-
-    Args:
-        spec: is changed.
-        positions: by the joints' names, where each is from now on, m.
-    """
+    """Remove sliding joints from a model, with their couplings, and its key frames, at positions in m."""
     import mujoco
 
     for key in spec.keys:

@@ -1,4 +1,4 @@
-"""What a robot's joints can do, and how each figure is known."""
+"""Limits of a robot's joints, and the source of each figure."""
 
 from dataclasses import dataclass, field
 from typing import Final, Literal, final
@@ -9,7 +9,7 @@ from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray
 
 Source = Literal["model", "manufacturer", "limits_file", "assumed"]
-"""Where a limit comes from: the robot's model, its manufacturer, a limits file, or an assumption."""
+"""Source of a limit."""
 
 Quantity = Literal["position", "velocity", "acceleration", "jerk"]
 QUANTITIES: Final[tuple[Quantity, ...]] = ("position", "velocity", "acceleration", "jerk")
@@ -20,14 +20,7 @@ _FIGURES: Final = ("lower", "upper", "velocity", "acceleration", "jerk")
 @final
 @dataclass(frozen=True)
 class LimitSources:
-    """How each limit of n joints is known; "assumed" throughout where nothing is said.
-
-    Attributes:
-        position: n sources, of lower and upper together.
-        velocity: n sources.
-        acceleration: n sources.
-        jerk: n sources.
-    """
+    """Sources of the limits of n joints, "assumed" by default; ``position`` is for lower and upper."""
 
     position: tuple[Source, ...] = ()
     velocity: tuple[Source, ...] = ()
@@ -49,27 +42,13 @@ class LimitSources:
 @final
 @dataclass(frozen=True, eq=False)
 class JointLimits:
-    """Limits of n joints, validated at construction.
+    """Limits of n joints, validated at construction. Sliding joints have m instead of rad."""
 
-    Prismatic joints have the same fields in m instead of rad.
-
-    Attributes:
-        lower: (n,), lowest position, rad.
-        upper: (n,), highest position, rad.
-        velocity: (n,), largest speed, rad/s.
-        acceleration: (n,), largest acceleration, rad/s².
-        jerk: (n,), largest jerk, rad/s³.
-        sources: how each of them is known.
-
-    Raises:
-        UserError: a limit is missing, not finite, not positive, or lower is not below upper.
-    """
-
-    lower: FloatArray
-    upper: FloatArray
-    velocity: FloatArray
-    acceleration: FloatArray
-    jerk: FloatArray
+    lower: FloatArray  # (n,), rad
+    upper: FloatArray  # (n,), rad
+    velocity: FloatArray  # (n,), rad/s
+    acceleration: FloatArray  # (n,), rad/s²
+    jerk: FloatArray  # (n,), rad/s³
     sources: LimitSources = field(default_factory=LimitSources)
 
     def __post_init__(self) -> None:
@@ -117,7 +96,7 @@ class JointLimits:
 
     @property
     def assumed(self) -> dict[Quantity, tuple[int, ...]]:
-        """Indices of the joints with assumed limits, by quantity, for quantities that have any."""
+        """Joints with assumed limits, by quantity, for quantities that have any."""
         found: dict[Quantity, tuple[int, ...]] = {
             quantity: tuple(
                 joint for joint, source in enumerate(self.sources.of(quantity)) if source == "assumed"
@@ -127,12 +106,5 @@ class JointLimits:
         return {quantity: joints for quantity, joints in found.items() if joints}
 
     def violation(self, q: FloatArray) -> FloatArray:
-        """How far positions lie outside the limits.
-
-        Args:
-            q: (..., n), rad.
-
-        Returns:
-            (..., n), rad, zero inside.
-        """
+        """Distance of positions (..., n) beyond the limits, rad, zero inside."""
         return np.maximum(np.maximum(self.lower - q, q - self.upper), 0.0)

@@ -33,11 +33,8 @@ from latentarm.core.untrusted.hand_written import check_keys, number_of, table_o
 from latentarm.core.untrusted.opening import read_bytes
 from latentarm.robots.limits import JointLimits, LimitSources, Quantity, Source
 
-MOST_BYTES: Final = 100_000
-"""A longer file is refused: a joint takes some 200 bytes."""
-
-_DEEPEST: Final = 4
-"""Tables within tables of YAML; the parser takes time with the square of the depth."""
+MOST_BYTES: Final = 100_000  # a joint takes some 200
+_DEEPEST: Final = 4  # level of tables in YAML; the parser's time is quadratic in it
 
 TOOL_SPEED: Final = "tool_speed_m_per_s"
 
@@ -56,14 +53,7 @@ _UNITS: Final = {"rad": 1.0, "deg": math.pi / 180.0, "m": 1.0}
 
 
 def read_limits(path: Path) -> StatedLimits:
-    """Read a limits file.
-
-    Args:
-        path: ending in .toml, .yaml or .yml.
-
-    Raises:
-        UserError: the file cannot be read or is invalid; the message names the key.
-    """
+    """Read a limits file, which ends in .toml, .yaml or .yml."""
     text = read_bytes(path, MOST_BYTES)
     try:
         if path.suffix.lower() == ".toml":
@@ -80,7 +70,7 @@ def read_limits(path: Path) -> StatedLimits:
 
 
 def _check_plain(text: bytes, path: Path) -> None:
-    """Refuse YAML that is deeply nested or uses aliases, before it is parsed into objects."""
+    """Refuse deeply nested YAML and aliases before parsing it into objects."""
     depth = 0
     for event in yaml.parse(text, yaml.SafeLoader):
         if isinstance(event, yaml.AliasEvent):
@@ -91,15 +81,7 @@ def _check_plain(text: bytes, path: Path) -> None:
 
 
 def parse_limits(document: object, where: str) -> StatedLimits:
-    """Validate the limits in a limits file, a dataset or a run.
-
-    Args:
-        document: mappings and numbers, as `limits_document` gives them or with degrees.
-        where: the file, for messages.
-
-    Raises:
-        UserError: a key is unknown, given twice or in the wrong unit, or its value is no sensible number.
-    """
+    """Validate the limits in a limits file, a dataset or a run; ``where`` names the file in errors."""
     top = table_of(document, where, "")
     check_keys(top, ("joints", TOOL_SPEED, GRIPPER), where, "")
     joints = table_of(top.get("joints", {}), where, "joints")
@@ -117,7 +99,7 @@ def parse_limits(document: object, where: str) -> StatedLimits:
 
 
 def limits_document(stated: StatedLimits) -> dict[str, object]:
-    """What `parse_limits` reads, in rad or m."""
+    """The document that `parse_limits` reads, in rad or m."""
     joints: dict[str, dict[str, float]] = {}
     for name, one in stated.joints.items():
         figures = {"velocity": one.velocity, "acceleration": one.acceleration, "jerk": one.jerk}
@@ -139,17 +121,7 @@ def limits_document(stated: StatedLimits) -> dict[str, object]:
 def with_stated(
     limits: JointLimits, stated: StatedLimits, names: Sequence[str], slide: Sequence[bool]
 ) -> JointLimits:
-    """The limits with stated values in place of known or assumed ones.
-
-    Args:
-        limits: of n joints.
-        stated: what somebody states.
-        names: n names of joints.
-        slide: (n,), which of them slide.
-
-    Raises:
-        UserError: a joint is unknown, or slides and its limits are given in rad.
-    """
+    """The limits with stated values in place of known or assumed ones, for n named joints."""
     known = list(names)
     figures = {name: np.array(getattr(limits, name)) for name in _FIGURES}
     sources: dict[Quantity, list[Source]] = {

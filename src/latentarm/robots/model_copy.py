@@ -1,4 +1,4 @@
-"""A copy of a robot's model: its XML, and next to it every file that the XML names."""
+"""A copy of a robot's model: its XML, and every file that the XML names."""
 
 from pathlib import Path
 from typing import Final
@@ -20,26 +20,15 @@ from latentarm.robots.model_xml import (
 from latentarm.robots.robot import Robot
 from latentarm.robots.urdf import prepare_urdf
 
-MOST_COPIED: Final = 64 << 20
-"""Bytes of all the files of a copy."""
-
-COPIES: Final = ("model.xml", "model.urdf")
-"""Names of a copy: MJCF or URDF."""
+MOST_COPIED: Final = 64 << 20  # bytes of all the files of a copy
+COPIES: Final = ("model.xml", "model.urdf")  # names of a copy: MJCF or URDF
 
 
 def copy_model(robot: Robot, folder: Path) -> str:
-    """Copy a robot's model file with its meshes and textures, so that the copy needs no other file.
+    """Copy a model file with its meshes and textures, and return the copy's name, one of `COPIES`.
 
-    Args:
-        robot: one that was loaded from a file. An MJCF is copied as MuJoCo writes it, includes resolved; a
-            URDF with its links and joints alone, without visual geometry.
-        folder: made if it does not exist.
-
-    Returns:
-        The name of the copy, one of `COPIES`.
-
-    Raises:
-        UserError: the files have more than `MOST_COPIED` bytes, or cannot be read or written.
+    An MJCF is copied as MuJoCo writes it, includes resolved; a URDF with its links and joints alone, without
+    visual geometry.
     """
     source = Path(str(robot.model_path))
     root = read_model_xml(source).root
@@ -74,15 +63,7 @@ def copy_model(robot: Robot, folder: Path) -> str:
 
 
 def load_copy(path: Path, end_effector: str | None) -> Robot:
-    """Load a robot from a copy that `copy_model` made; no file outside the copy's folder is opened.
-
-    Args:
-        path: the copy.
-        end_effector: see `load_model_file`.
-
-    Raises:
-        UserError: it names a file outside its folder; or see `load_model_file`.
-    """
+    """Load a robot from a copy that `copy_model` made, and open no file outside the copy's folder."""
     _check_inside(path, path.name)
     root, _ = read_xml(path)
     for element in root.iter():
@@ -94,7 +75,7 @@ def load_copy(path: Path, end_effector: str | None) -> Robot:
 
 
 def _check_inside(path: Path, name: str) -> None:
-    """Refuse a file that does not lie beside a copy, in a run's folder, also by way of a link."""
+    """Refuse a file outside the copy's folder, also one behind a link."""
     folder = path.parent.parent.resolve() / path.parent.name
     if (path.parent / name).resolve().parent != folder:
         raise UserError(f"{path} names {name!r}, which does not lie beside it: train the model again.")

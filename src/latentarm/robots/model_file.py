@@ -20,61 +20,40 @@ from latentarm.robots.model_xml import read_model_xml
 from latentarm.robots.robot import Robot
 from latentarm.robots.urdf import Urdf, prepare_urdf
 
-MOST_JOINTS = 64
-"""Longer chains are rejected: they are not arms, and comparing their pairs of links takes minutes."""
-
-SINGULAR = 0.05
-"""A start whose tool's least singular value is below this share of the best that was found is moved."""
+MOST_JOINTS = 64  # longer chains are no arms, and their pairs of links take minutes
+SINGULAR = 0.05  # a start with a smaller share of the best least singular value is moved
 
 
 @final
 @dataclass(frozen=True)
 class Defaults:
-    """What is assumed of a joint if the file does not say.
+    """Assumptions about a joint where the file is silent.
 
     MJCF has no place for velocity, acceleration and jerk; URDF has one for velocity alone.
-
-    Attributes:
-        range: half of the range, about zero, rad or m.
-        velocity: rad/s or m/s.
-        acceleration: rad/s² or m/s².
-        jerk: rad/s³ or m/s³.
     """
 
-    range: float
-    velocity: float
-    acceleration: float
-    jerk: float
+    range: float  # half of the range, about zero, rad or m
+    velocity: float  # rad/s or m/s
+    acceleration: float  # rad/s² or m/s²
+    jerk: float  # rad/s³ or m/s³
 
 
 HINGE = Defaults(range=2.0 * np.pi, velocity=1.0, acceleration=10.0, jerk=1000.0)
 SLIDE = Defaults(range=1.0, velocity=0.25, acceleration=2.5, jerk=250.0)
-LONGEST_LINK_M = 5.0
-"""A link of an arm is shorter; one of 5 mm, taken for m, is not."""
-
-TOOL_SPEED_LIMIT = 1.0
-"""Assumed largest speed of the tool, m/s."""
+LONGEST_LINK_M = 5.0  # a link is shorter, unless its mesh is in mm
+TOOL_SPEED_LIMIT = 1.0  # assumed largest speed of the tool, m/s
 
 
 def load_model_file(path: Path, end_effector: str | None = None) -> Robot:
     """Load a robot from an MJCF or URDF file.
 
-    It starts at the key frame "home" if there is one, else in the middle of its joints' ranges, or
-    near there where that is singular. `Defaults` fill in what the file does not state.
+    It starts at the key frame "home" if there is one, else in the middle of its joints' ranges, or near there
+    where that is singular. `Defaults` fill gaps in the file. Its name is the file's absolute path: datasets
+    remember it and are read from other folders. Raises AmbiguousEndEffectorError where an end-effector must
+    be named.
 
-    Args:
-        path: the file.
-        end_effector: name of a site or body; needed where `choose_end_effector` chooses none. One that
-            only some of the joints move is accepted: the others stay still, see `Robot.still_joints`.
-
-    Returns:
-        The robot, with the file's absolute path as its name: datasets remember it, and are read from
-        other folders.
-
-    Raises:
-        AmbiguousEndEffectorError: an end-effector must be named.
-        UserError: the file or a mesh is missing or broken, the end-effector is unknown, a joint on the way
-            cannot be driven by itself, or a limit is not a limit.
+    ``end_effector`` is the name of a site or body, needed where `choose_end_effector` chooses none. Joints
+    that do not move it stay still, see `Robot.still_joints`.
     """
     source = read_model_xml(path)
     if source.root.tag not in ("robot", "mujoco"):
@@ -111,11 +90,7 @@ def _loaded(path: Path, urdf: Urdf | None, end_effector: str | None) -> Robot:
 
 
 def _check_meshes(model: mujoco.MjModel) -> None:
-    """Refuse links as long as no arm has them: their meshes are in mm.
-
-    Raises:
-        UserError: naming the mesh and its link.
-    """
+    """Refuse links too long for any arm: their meshes are in mm."""
     for geom in np.flatnonzero(
         (model.geom_type == mujoco.mjtGeom.mjGEOM_MESH) & (model.body_weldid[model.geom_bodyid] > 0)
     ):
@@ -131,7 +106,6 @@ def _check_meshes(model: mujoco.MjModel) -> None:
 
 
 def _as_mjcf(spec: mujoco.MjSpec, path: Path) -> str:
-    """The model as MJCF text that can be compiled from anywhere."""
     folder = path.resolve().parent
     spec.compiler.meshdir = str(folder / spec.compiler.meshdir)
     spec.compiler.texturedir = str(folder / spec.compiler.texturedir)
@@ -174,7 +148,6 @@ def _source(known: bool) -> Source:
 
 
 def _home(model: mujoco.MjModel, reading: ModelChain, limits: JointLimits) -> FloatArray:
-    """(n,), where the robot starts, rad."""
     key = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_KEY, "home")
     if key >= 0:
         home = np.array(model.key_qpos[key][model.jnt_qposadr[reading.joints]])
@@ -193,14 +166,13 @@ def _home(model: mujoco.MjModel, reading: ModelChain, limits: JointLimits) -> Fl
 
 
 def _lowest_point(chain: Chain, q: FloatArray) -> FloatArray:
-    """(N,), height of the lowest joint or tool, m."""
     transforms = chain.link_transforms(q)
     _, origins = chain.joint_axes(transforms)
     return np.minimum(origins[..., 2].min(axis=-1), chain.tool_pose(transforms).position[..., 2])
 
 
 def _least_singular_value(chain: Chain, q: FloatArray) -> FloatArray:
-    """(N,), how far the tool is from losing a direction in which it could move."""
+    """(N,), the tool's distance from losing a direction in which it could move."""
     values = np.asarray(np.linalg.svd(chain.jacobian(q), compute_uv=False), dtype=np.float64)
     # A robot of few joints lacks some directions everywhere; those are not held against a start.
     rank = int((values > 1e-9).sum(axis=-1).max())

@@ -1,8 +1,7 @@
 """Robot models as XML that this program may not have written: bounded before MuJoCo parses them in C.
 
-MuJoCo opens whatever path a model names, and waits for a named pipe; it repeats an element as often as it
-is told, and crashes on a model that attaches itself. What is checked here is what it cannot be stopped in;
-memory is bounded by `latentarm.core.untrusted.memory`.
+MuJoCo opens any path in a model, waits for a named pipe, repeats an element without limit, and crashes on a
+model that attaches itself. `latentarm.core.untrusted.memory` bounds its memory.
 """
 
 from collections.abc import Iterator, Mapping
@@ -16,23 +15,12 @@ from xml.parsers import expat
 from latentarm.core.errors import UserError
 from latentarm.core.untrusted.opening import check_file, is_missing, read_bytes
 
-MOST_XML_BYTES: Final = 20_000_000
-"""Of one XML file; meshes lie in files of their own."""
-
-MOST_FILE_BYTES: Final = 1 << 28
-"""Of a mesh, a picture or a height field."""
-
-MOST_FILES: Final = 1000
-"""That a model names."""
-
-MOST_ELEMENTS: Final = 20_000
-"""Of XML in one file, and copies of one element that a model may ask for."""
-
-MOST_LEVELS: Final = 100
-"""Of XML elements in each other, as in MuJoCo's own parser."""
-
-NESTED: Final = frozenset({"include", "model"})
-"""Elements that name another model's file."""
+MOST_XML_BYTES: Final = 20_000_000  # of one XML file without meshes
+MOST_FILE_BYTES: Final = 1 << 28  # of a mesh, a picture or a height field
+MOST_FILES: Final = 1000  # in a model
+MOST_ELEMENTS: Final = 20_000  # in one file, and copies of one element
+MOST_LEVELS: Final = 100  # as in MuJoCo's own parser
+NESTED: Final = frozenset({"include", "model"})  # elements that name another model's file
 
 FILE_ATTRIBUTES: Final = frozenset(
     {"file", "filename", "fileup", "filedown", "fileleft", "fileright", "filefront", "fileback"}
@@ -44,27 +32,14 @@ FOLDERS: Final = ("meshdir", "texturedir", "assetdir")
 @final
 @dataclass(frozen=True)
 class ModelXml:
-    """A model's XML.
-
-    Attributes:
-        root: its outermost element.
-        size: bytes of the file and of all files that it names.
-    """
+    """A model's XML, and the bytes of its file and of all files that it names."""
 
     root: Xml.Element
     size: int
 
 
 def read_model_xml(path: Path) -> ModelXml:
-    """Read a URDF or MJCF file, and check every file that an MJCF names.
-
-    Args:
-        path: the file.
-
-    Raises:
-        UserError: it or a file that it names is no regular file or too large; it is not XML, declares a
-            document type, is nested too deep, repeats an element too often, or contains itself.
-    """
+    """Read a URDF or MJCF file, and check every file that an MJCF names."""
     root, size = read_xml(path)
     if root.tag == "mujoco":
         for found, file in enumerate(_named(path, root, (path.resolve(),))):
@@ -75,11 +50,7 @@ def read_model_xml(path: Path) -> ModelXml:
 
 
 def read_xml(path: Path) -> tuple[Xml.Element, int]:
-    """The outermost element of an XML file, and the file's bytes; files that it names are not looked at.
-
-    Raises:
-        UserError: see `read_model_xml`.
-    """
+    """The outermost element of an XML file, and the file's bytes; does not open files that it names."""
     text = read_bytes(path, MOST_XML_BYTES)
     root = parse_xml(path, text)
     _check_copies(path, root)
@@ -87,15 +58,7 @@ def read_xml(path: Path) -> tuple[Xml.Element, int]:
 
 
 def parse_xml(path: Path, text: bytes) -> Xml.Element:
-    """The outermost element of an XML document; like MuJoCo, it accepts prefixes that are not declared.
-
-    Args:
-        path: the file, for messages.
-        text: its content.
-
-    Raises:
-        UserError: it is not XML, declares a document type, or has too many elements or levels.
-    """
+    """The outermost element of an XML document; like MuJoCo, it accepts undeclared prefixes."""
 
     def refuse(*_: object) -> None:
         # Without declarations nothing can expand or be fetched from elsewhere.
@@ -132,7 +95,7 @@ def parse_xml(path: Path, text: bytes) -> Xml.Element:
 
 
 def _check_copies(path: Path, root: Xml.Element) -> None:
-    """Bound what elements such as <replicate> and <flexcomp> make of themselves."""
+    """Bound the copies that elements such as <replicate> and <flexcomp> make of themselves."""
     waiting = [(root, 1)]
     while waiting:
         element, copies = waiting.pop()
@@ -151,7 +114,7 @@ def _check_copies(path: Path, root: Xml.Element) -> None:
 
 
 def _named(path: Path, root: Xml.Element, above: tuple[Path, ...]) -> Iterator[Path]:
-    """Files that an MJCF names, as often as it does; those that it includes are searched too."""
+    """Files that an MJCF names, with repetitions, and those of the files that it includes."""
     folders = {above[0].parent}
     for compiler in root.iter("compiler"):
         folders |= {above[0].parent / compiler.attrib[key] for key in FOLDERS if key in compiler.attrib}
@@ -169,7 +132,7 @@ def _named(path: Path, root: Xml.Element, above: tuple[Path, ...]) -> Iterator[P
 
 
 def _places(attributes: Mapping[str, str], folders: set[Path]) -> Iterator[Path]:
-    """Everywhere that MuJoCo may look for an element's files; what is not there it says itself."""
+    """Every place where MuJoCo may look for an element's files; MuJoCo reports missing ones."""
     for key in FILE_ATTRIBUTES & attributes.keys():
         name = attributes[key].strip()
         yield from (place for folder in folders if name and not is_missing(place := folder / name))

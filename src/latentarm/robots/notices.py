@@ -6,7 +6,7 @@ from latentarm.robots.robot import Robot
 
 
 def assumed_limits(robot: Robot) -> str:
-    """Which limits are assumed, such as "acceleration and jerk of all joints"; "" where none."""
+    """Assumed limits in words, such as "acceleration and jerk of all joints"; "" without any."""
     joints: dict[tuple[int, ...], list[str]] = {}
     for quantity, indices in robot.limits.assumed.items():
         joints.setdefault(indices, []).append(quantity)
@@ -17,7 +17,7 @@ def assumed_limits(robot: Robot) -> str:
 
 
 def notices(robot: Robot) -> list[str]:
-    """Notices for the person who is about to drive or record a robot; empty if everything is known."""
+    """Notices for the person who is about to drive or record a robot."""
     said: list[str] = []
     tool = robot.chain.tools[0].name
     if robot.still_joints:

@@ -1,4 +1,4 @@
-"""The Franka Emika Panda and the Franka Research 3, built from the manufacturer's published figures."""
+"""The Franka Emika Panda and the Franka Research 3, from the manufacturer's published figures."""
 
 from functools import cache
 
@@ -24,8 +24,7 @@ LIMITS = JointLimits(
 )
 """Franka control-parameters documentation."""
 
-TORQUE_LIMIT = (87.0, 87.0, 87.0, 87.0, 12.0, 12.0, 12.0)
-"""Of each joint, N m; the same documentation."""
+TORQUE_LIMIT = (87.0, 87.0, 87.0, 87.0, 12.0, 12.0, 12.0)  # of each joint, N m; the same documentation
 
 _FR3_LOWER = np.array([-2.7437, -1.7837, -2.9007, -3.0421, -2.8065, 0.5445, -3.0159])
 _FR3_UPPER = np.array([2.7437, 1.7837, 2.9007, -0.1518, 2.8065, 4.5169, 3.0159])
@@ -41,11 +40,8 @@ FR3_LIMITS = JointLimits(
 """The manufacturer's limits of the FR3 (https://frankarobotics.github.io/docs/robot_specifications.html).
 Positions end where the Panda's do too: beyond, it is not known which of the links cannot meet."""
 
-FR3_TOOL_SPEED_LIMIT = 3.0
-"""Cartesian limit of the FR3's end-effector, m/s."""
-
-TOOL_SPEED_LIMIT = 1.7
-"""Cartesian limit of the end-effector, m/s."""
+FR3_TOOL_SPEED_LIMIT = 3.0  # Cartesian limit of the FR3's end-effector, m/s
+TOOL_SPEED_LIMIT = 1.7  # Cartesian limit of the end-effector, m/s
 
 # Modified Denavit-Hartenberg (Craig): a and d in m, alpha in rad. Joint i turns about its own z axis.
 _A = (0.0, 0.0, 0.0, 0.0825, -0.0825, 0.0, 0.088)
@@ -146,31 +142,20 @@ _NEVER_MEET = (
 
 @cache
 def panda() -> Robot:
-    """The Panda with its hand; "tool" is the point between the fingertips.
-
-    Returns the same object each time; do not write to its arrays.
-    """
+    """The Panda with its hand; "tool" lies between the fingertips. Cached: do not write to its arrays."""
     return franka("panda", LIMITS, TOOL_SPEED_LIMIT)
 
 
 @cache
 def fr3() -> Robot:
-    """The FR3 with its hand; "tool" is the point between the fingertips.
-
-    Its links are as long as the Panda's, and its shell is taken for the same. Returns the same object each
-    time; do not write to its arrays.
-    """
+    """The FR3 with its hand, with the Panda's links and shell. Cached: do not write to its arrays."""
     return franka("fr3", FR3_LIMITS, FR3_TOOL_SPEED_LIMIT)
 
 
 def franka(model: str, limits: JointLimits, tool_speed_limit: float) -> Robot:
     """An arm with the Panda's links and hand.
 
-    Args:
-        model: name of the robot.
-        limits: of its seven joints, positions within those of the Panda: for these it is known which links
-            never meet.
-        tool_speed_limit: of the end-effector, m/s.
+    Positions must lie within the Panda's limits: only for those is it known which links never meet.
     """
     spec = mujoco.MjSpec()
     spec.modelname = model

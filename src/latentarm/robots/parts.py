@@ -17,16 +17,7 @@ _SHAPES: Final = {
 
 
 def add_parts(body: mujoco.MjsBody, parts: Sequence[Part], mass_kg: float) -> list[mujoco.MjsGeom]:
-    """Add solids to a body, with its mass spread evenly over their volumes.
-
-    Args:
-        body: gets them.
-        parts: in the body's frame.
-        mass_kg: of all of them together, kg.
-
-    Returns:
-        The geoms, in the order of the parts.
-    """
+    """Add solids to a body, with its mass spread evenly over their volumes; returns their geoms in order."""
     volumes = [_volume(part) for part in parts]
     return [
         body.add_geom(
@@ -42,7 +33,6 @@ def add_parts(body: mujoco.MjsBody, parts: Sequence[Part], mass_kg: float) -> li
 
 
 def _volume(part: Part) -> float:
-    """Of a part, m³."""
     size = part.size
     if part.shape == "box":
         return 8.0 * size[0] * size[1] * size[2]

@@ -1,4 +1,4 @@
-"""Planar arms as in the paper's simulations: n links of equal length, one arm or two."""
+"""Planar arms of the paper's simulations: n links of equal length, one arm or two."""
 
 from functools import cache
 
@@ -10,31 +10,15 @@ from latentarm.robots.assemble import assemble
 from latentarm.robots.limits import JointLimits, LimitSources
 from latentarm.robots.robot import Robot
 
-REACH_M = 1.0
-"""Length of a whole arm."""
-
-BASES_APART_M = 0.8
-"""Distance between the bases of two arms, along y."""
+REACH_M = 1.0  # length of a whole arm
+BASES_APART_M = 0.8  # distance between the bases of two arms, along y
 
 _RADIUS_M = 0.02
 
 
 @cache
 def planar(n_links: int = 5, arms: int = 1) -> Robot:
-    """A planar arm in the x-y plane, or two side by side whose states are one vector.
-
-    Returns the same object each time; do not write to its arrays.
-
-    Args:
-        n_links: joints of each arm.
-        arms: 1 or 2; with two, the left arm's joints come first, and each arm has a tool.
-
-    Returns:
-        The robot, with ``n_links * arms`` joints.
-
-    Raises:
-        UserError: no links, or neither one nor two arms.
-    """
+    """A planar arm, or two side by side with one state, the left first. Do not write to its arrays."""
     if n_links < 1 or arms not in (1, 2):
         raise UserError(
             f"A planar robot has at least one link and one or two arms, not {n_links} links and {arms} arms."

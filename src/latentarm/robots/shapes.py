@@ -1,4 +1,4 @@
-"""A robot's capsules, derived from the geoms of any MuJoCo model, and which of them could collide."""
+"""A robot's capsules, from the geoms of any MuJoCo model, and the pairs of them that could collide."""
 
 from collections.abc import Sequence
 from itertools import combinations
@@ -20,11 +20,8 @@ _CAPSULE = int(mujoco.mjtGeom.mjGEOM_CAPSULE)
 _CYLINDER = int(mujoco.mjtGeom.mjGEOM_CYLINDER)
 _MESH = int(mujoco.mjtGeom.mjGEOM_MESH)
 
-PER_BODY = 2
-"""Capsules that one body keeps; more are merged, so that distances stay cheap online."""
-
-PER_LINK = 4
-"""Capsules that one link keeps, over all the bodies fixed to it."""
+PER_BODY = 2  # capsules that one body keeps; more are merged, so that distances stay cheap online
+PER_LINK = 4  # capsules that one link keeps, over all the bodies fixed to it
 
 Balls = tuple[FloatArray, FloatArray]
 """Centres (K, 3), m, and radii (K,), m, of balls whose convex hull covers a shape."""
@@ -35,21 +32,14 @@ def read_capsules(
 ) -> Capsules:
     """Capsules that cover a robot: its moving links and the fixed bodies that carry them.
 
-    Spheres and capsules stay as they are; a cylinder becomes the capsule around its axis; boxes,
-    meshes and other geoms become the capsule around their corners or vertices. A body's visual
-    geoms count only where it has none that collide. Scenery (planes, geoms of the world itself,
-    bodies that do not carry the robot) is left out: it belongs to the task.
+    Spheres and capsules stay as they are; a cylinder becomes the capsule around its axis; boxes, meshes and
+    other geoms become the capsule around their corners or vertices. Visual geoms count only for bodies
+    without colliding ones. Scenery (planes, geoms of the world, bodies that do not carry the robot) belongs
+    to the task.
 
-    Args:
-        model: the robot's model.
-        reading: what `latentarm.robots.kinematics.reader.read` found in it.
-        sliding: names of sliding joints that move by themselves, such as those of a gripper's fingers: what
-            they move is covered wherever it slides.
-        apart: names of bodies whose capsules are merged with no other body's, such as those of a fork: it
-            must come close to things.
-
-    Returns:
-        The capsules, each in its link's frame.
+    ``sliding`` names joints that move independently, such as those of a gripper's fingers: their bodies are
+    covered wherever they slide. ``apart`` names bodies whose capsules merge with no other body's, such as
+    those of a fork, which must come close to things.
     """
     slides = _slides(model, reading, sliding)
     by_link: dict[int, list[tuple[str, Balls]]] = {}
@@ -84,7 +74,7 @@ _UNMOVED: FloatArray = np.zeros((1, 3))
 
 
 def _slides(model: mujoco.MjModel, reading: ModelChain, joints: Sequence[str]) -> dict[int, FloatArray]:
-    """For each body that the sliding joints move: (2, 3), from where it is read to both ends, m."""
+    """For each body that the sliding joints move: (2, 3), from its reference position to both ends, m."""
     reference = reference_positions(model)
     found: dict[int, FloatArray] = {}
     for name in joints:
@@ -106,20 +96,12 @@ def _swept(balls: Balls, slides: FloatArray) -> Balls:
 
 
 def body_name(model: mujoco.MjModel, body: int) -> str:
-    """What the capsules of a body are called."""
+    """Name of a body's capsules."""
     return str(model.body(body).name) or f"body {body}"
 
 
 def bounding_capsule(centres: FloatArray, radii: FloatArray) -> tuple[FloatArray, FloatArray, float]:
-    """A small capsule around balls: the best along their principal, their longest or a frame axis.
-
-    Args:
-        centres: (K, 3), m.
-        radii: (K,), m; zero for points.
-
-    Returns:
-        Both ends of its segment, each (3,), m, and its radius, m.
-    """
+    """Ends, each (3,), and radius, m, of the smallest capsule along several axes around balls."""
     spread = centres - centres.mean(axis=0)
     farthest = spread[np.argmax(np.vecdot(spread, spread))]
     longest = centres[np.argmax(np.linalg.norm(centres - centres.mean(axis=0) - farthest, axis=1))]
@@ -132,14 +114,7 @@ def bounding_capsule(centres: FloatArray, radii: FloatArray) -> tuple[FloatArray
 
 
 def convex_hull_vertices(points: FloatArray) -> FloatArray:
-    """The points that span the convex hull: whatever convex covers them covers all.
-
-    Args:
-        points: (K, 3), m. A mesh has tens of thousands, its hull some hundreds.
-
-    Returns:
-        (H, 3), m; all points where they lie in one plane or on one line.
-    """
+    """The points (H, 3) that span the convex hull; all points where they lie in one plane or line."""
     try:
         return points[ConvexHull(points).vertices]
     except (QhullError, ValueError):  # flat, or fewer than four points
@@ -149,7 +124,7 @@ def convex_hull_vertices(points: FloatArray) -> FloatArray:
 def _capsule_along(
     axis: FloatArray, centres: FloatArray, radii: FloatArray
 ) -> tuple[FloatArray, FloatArray, float]:
-    """The capsule around balls whose segment runs along a unit axis amid them."""
+    """The capsule around balls whose segment runs along a unit axis between them."""
     along = centres @ axis
     across = centres - along[:, None] * axis
     middle = 0.5 * ((across - radii[:, None]).min(axis=0) + (across + radii[:, None]).max(axis=0))
@@ -170,7 +145,7 @@ def _volume(capsule: tuple[FloatArray, FloatArray, float]) -> float:
 
 
 def _merged(pieces: list[tuple[str, Balls]], most: int) -> list[tuple[str, Balls]]:
-    """At most ``most`` capsules for the pieces, merged two by two where that adds the least volume."""
+    """At most ``most`` capsules, merged two by two where that adds the least volume."""
     kept = [(name, _as_balls(bounding_capsule(*balls))) for name, balls in pieces]
     while len(kept) > most:
         joined = {
@@ -193,7 +168,7 @@ def _as_balls(capsule: tuple[FloatArray, FloatArray, float]) -> Balls:
 
 
 def _belongs(model: mujoco.MjModel, reading: ModelChain, body: int) -> bool:
-    """Whether a body is part of the robot: moved by it, carrying it, or fixed to what carries it."""
+    """Whether a body is part of the robot: moved by it, carrying it, or fixed to a body that carries it."""
     if reading.body_link[body] >= 0:
         return True
     while body > 0:
@@ -215,7 +190,7 @@ def _solid_geoms(model: mujoco.MjModel, body: int) -> list[int]:
 
 
 def _balls(model: mujoco.MjModel, geom: int, body_transform: FloatArray) -> Balls:
-    """Balls that cover a geom, in the frame of the link that its body rides on."""
+    """Balls that cover a geom, in its link's frame."""
     kind, size = model.geom_type[geom], model.geom_size[geom]
     if kind == _SPHERE:
         centres, radius = np.zeros((1, 3)), float(size[0])
@@ -237,34 +212,19 @@ def _balls(model: mujoco.MjModel, geom: int, body_transform: FloatArray) -> Ball
     return placed, np.full(len(centres), radius)
 
 
-SAMPLES = 4000
-"""Configurations that are sampled within the joint limits, always the same ones."""
-
-TOUCHING_M = 0.02
-"""Closer than this, two capsules count as touching."""
-
-NEVER_CLOSER_M = 0.05
-"""Pairs that never come closer than this in any sampled configuration are left out."""
+SAMPLES = 4000  # configurations within the joint limits, always the same
+TOUCHING_M = 0.02  # closer than this, two capsules count as touching
+NEVER_CLOSER_M = 0.05  # pairs that never come closer than this in any sampled configuration are left out
 
 
 def self_pairs(
     chain: Chain, capsules: Capsules, limits: JointLimits, home: FloatArray, excluded: BoolArray
 ) -> IntArray:
-    """Pairs of capsules that may collide, as found by sampling.
+    """Pairs (P, 2) of capsules that may collide, found by sampling.
 
-    Left out are pairs on the same or on adjacent links, pairs of bodies that the model excludes,
-    pairs that touch at home or in most sampled configurations (their capsules are coarser than the
-    robot's shell there), and pairs that never come near each other.
-
-    Args:
-        chain: the robot's chain.
-        capsules: its K capsules.
-        limits: joint limits, within which configurations are sampled.
-        home: (n,), rad.
-        excluded: (K, K), pairs of capsules that the model excludes.
-
-    Returns:
-        (P, 2), indices of capsules.
+    Omits pairs on the same or on adjacent links, ``excluded`` ones (K, K), pairs that touch at home or in
+    most sampled configurations (their capsules are coarser than the robot's shell there), and pairs that
+    never come near each other.
     """
     pairs = np.array(
         [

@@ -10,41 +10,22 @@ from latentarm.core.errors import UserError
 from latentarm.core.untrusted.opening import check_file
 from latentarm.robots.model_xml import MOST_FILE_BYTES
 
-MESH_FORMATS = (".stl", ".obj", ".msh")
-"""Mesh files that MuJoCo reads."""
+MESH_FORMATS = (".stl", ".obj", ".msh")  # mesh files that MuJoCo reads
 
 
 @final
 @dataclass(frozen=True)
 class Urdf:
-    """A URDF made ready for MuJoCo.
+    """A URDF prepared for MuJoCo."""
 
-    Attributes:
-        text: the URDF without visual geometry, its collision meshes as absolute paths.
-        velocity: the velocity limit of each joint that has one above zero, rad/s (m/s where prismatic).
-            Exporters write zero where they know none.
-        mesh_bytes: of all collision meshes, on disk.
-    """
-
-    text: str
+    text: str  # without visual geometry, its collision meshes as absolute paths
+    # limits by joint, rad/s (m/s where prismatic); without zeros, which exporters write for unknown ones
     velocity: dict[str, float]
-    mesh_bytes: int
+    mesh_bytes: int  # of all collision meshes, on disk
 
 
 def prepare_urdf(path: Path, root: Xml.Element) -> Urdf:
-    """Resolve the meshes of a URDF and read its velocity limits.
-
-    Args:
-        path: the file, for messages and for paths relative to it.
-        root: its parsed <robot> element; it is changed.
-
-    Returns:
-        The URDF, ready for MuJoCo.
-
-    Raises:
-        UserError: the file still contains xacro, a collision mesh is missing or in a format that
-            MuJoCo cannot read, a velocity limit is no number, or a joint's name occurs twice.
-    """
+    """Resolve the meshes of a URDF, read its velocity limits and change its parsed <robot> element."""
     if any(element.tag.startswith("xacro:") for element in root.iter()):
         raise UserError(f"{path} is a xacro file: expand it first, with `xacro {path.name} > robot.urdf`.")
     names = [joint.get("name") for joint in root.findall("joint")]
@@ -81,7 +62,7 @@ def _velocities(path: Path, root: Xml.Element) -> Iterator[tuple[str, float]]:
 
 
 def _mesh_file(path: Path, link: str, filename: str) -> Path:
-    """Where a link's mesh lies, found from a plain, a file:// or a package:// name."""
+    """Path of a link's mesh from a plain, a file:// or a package:// name."""
     named = next((found for found in _places(path, filename) if found.is_file()), None)
     if named is None:
         raise UserError(

@@ -1,1 +1,1 @@
-"""Tasks: where an arm starts, its goals, when it has succeeded, and a simulated demonstrator."""
+"""Tasks: an arm's start, its goals, success, and a simulated demonstrator."""

@@ -1,4 +1,4 @@
-"""The tasks that an arm can be driven at, by name: ours, and those that other distributions register."""
+"""Tasks for driving, by name: ours, and those that other distributions register."""
 
 from typing import Final
 
@@ -49,16 +49,8 @@ SCENE_TASKS: Final = Catalogue(
 
 
 def make_scene_task(name: str) -> SceneTask:
-    """A task with things.
-
-    Args:
-        name: a name in `SCENE_TASKS`.
-
-    Raises:
-        UserError: there is no such task, or it does not load.
-    """
+    """The task of that name in `SCENE_TASKS`."""
     return SCENE_TASKS.find(name, "--task")()
 
 
-HELD_OUT: Final = "held_out"
-"""Following the held-out episodes of a run, `Replay`: a task that only a run can make."""
+HELD_OUT: Final = "held_out"  # `Replay` of a run's held-out episodes: only a run can make this task

@@ -12,55 +12,30 @@ from latentarm.core.types import Demonstrations, Episode, FloatArray
 from latentarm.robots.kinematics.chain import Chain
 from latentarm.tasks.task import Task
 
-_FINE = 400
-"""Samples with which a stroke's timing is integrated before it is sampled at the rate asked for."""
-_WAVES = 3
-"""Half-waves, at most, in the low-frequency noise along a stroke."""
+_FINE = 400  # samples for integrating a stroke's timing
+_WAVES = 3  # most half-waves in the low-frequency noise along a stroke
 
 
 @final
 @dataclass(frozen=True)
 class Hand:
-    """How the simulated person moves: smoothly, with variation, without tremor.
+    """The motion of a simulated person: smooth, varied, without tremor."""
 
-    Attributes:
-        rate_hz: sampling rate of the demonstrations.
-        joint_speed: fastest that any joint moves, rad/s.
-        tool_speed: fastest that the tool moves, m/s.
-        slowest: a stroke peaks at this share of those speeds, or more.
-        deviation: SD of the smooth deviation from the straight path, rad in each joint.
-        spread: SD of where a stroke ends, rad in each joint.
-        undershoot: largest share of a stroke that its main movement leaves to a correction.
-        hurry: SD of the logarithm of the speed's variation along a stroke.
-        pause_s: longest rest between strokes, s.
-    """
-
-    rate_hz: float = 20.0
-    joint_speed: float = 0.42
-    tool_speed: float = 0.2
-    slowest: float = 0.7
-    deviation: float = 0.02
-    spread: float = 0.008
-    undershoot: float = 0.15
-    hurry: float = 0.2
-    pause_s: float = 0.4
+    rate_hz: float = 20.0  # of the samples
+    joint_speed: float = 0.42  # largest speed of any joint, rad/s
+    tool_speed: float = 0.2  # largest speed of the tool, m/s
+    slowest: float = 0.7  # least share of those speeds at which a stroke peaks
+    deviation: float = 0.02  # SD of the smooth deviation from the straight path, rad in each joint
+    spread: float = 0.008  # SD of a stroke's end, rad in each joint
+    undershoot: float = 0.15  # largest share of a stroke that its main movement leaves to a correction
+    hurry: float = 0.2  # SD of the logarithm of the speed's variation along a stroke
+    pause_s: float = 0.4  # longest rest between strokes, s
 
 
 def demonstrate(
     chain: Chain, start: FloatArray, strokes: Sequence[FloatArray], hand: Hand, rng: np.random.Generator
 ) -> FloatArray:
-    """One demonstration: from a start along strokes, resting shortly in between.
-
-    Args:
-        chain: the arm's kinematics, for the tool's speed.
-        start: (n,), rad.
-        strokes: each (V, n), configurations to pass after the start or the stroke before, rad.
-        hand: how the simulated person moves.
-        rng: source of all variation.
-
-    Returns:
-        (T, n), states every ``1 / hand.rate_hz`` seconds, rad.
-    """
+    """States (T, n), rad, from a start along strokes, each of configurations (V, n), rad, with rests."""
     parts = [start[None]]
     for via in strokes:
         moved = _stroke(chain, np.concatenate([parts[-1][-1:], via]), hand, rng)
@@ -74,12 +49,8 @@ def demonstrate_goals(
 ) -> Demonstrations:
     """Demonstrations of a task, each of one stroke to a goal, the goals in turn.
 
-    Args:
-        task: what is demonstrated.
-        stroke: from the index of a goal to the configurations (V, n) to pass on the way to it, rad.
-        verb: what is done at a goal, for the episodes' texts.
-        episodes: how many.
-        rng: source of all variation.
+    ``stroke`` maps a goal's index to the configurations (V, n), rad, on the way to it; ``verb`` is for the
+    episodes' texts.
 
     Raises:
         UserError: fewer than one episode is asked for.
@@ -98,17 +69,7 @@ def demonstrate_goals(
 def demonstrations_of(
     task: Task, episode: Callable[[int], Episode], episodes: int, hand: Hand
 ) -> Demonstrations:
-    """Episodes of a task, one after the other, with what a dataset says of its robot and goals.
-
-    Args:
-        task: what is demonstrated.
-        episode: makes the episode with an index.
-        episodes: how many.
-        hand: how the simulated person moves.
-
-    Raises:
-        UserError: fewer than one episode is asked for.
-    """
+    """Episodes of a task, with its robot and goals; ``episode`` makes the one with an index."""
     if episodes < 1:
         raise UserError(f"Ask for at least one demonstration, not {episodes}.")
     robot = task.robot
@@ -124,7 +85,7 @@ def demonstrations_of(
 
 
 def _stroke(chain: Chain, via: FloatArray, hand: Hand, rng: np.random.Generator) -> FloatArray:
-    """One movement through configurations (V, n), its first sample left out: (T, n)."""
+    """One movement through configurations (V, n), without its first sample: (T, n)."""
     progress = _progress(hand, rng)
     fine = _path(via, hand, rng)(progress)
     # Per unit of the stroke's own time, which is 1 in total.
@@ -138,7 +99,6 @@ def _stroke(chain: Chain, via: FloatArray, hand: Hand, rng: np.random.Generator)
 
 
 def _path(via: FloatArray, hand: Hand, rng: np.random.Generator) -> CubicSpline:
-    """A smooth curve from via[0] to near via[-1], over progress in [0, 1]."""
     knots = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(via, axis=0), axis=-1))])
     progress = np.linspace(0.0, 1.0, 50)
     curve = CubicSpline(knots / knots[-1], via)(progress)
@@ -151,10 +111,10 @@ def _path(via: FloatArray, hand: Hand, rng: np.random.Generator) -> CubicSpline:
 
 
 def _progress(hand: Hand, rng: np.random.Generator) -> FloatArray:
-    """Share of a stroke that is done, from 0 to 1, over its own time: (_FINE + 1,).
+    """Completed share of a stroke, from 0 to 1, over its own time: (_FINE + 1,).
 
-    A main movement falls a little short and a correction that begins before it ends does the rest
-    (both of minimum jerk), and the clock of both runs unevenly.
+    A main movement falls a little short, and a correction that begins before it ends does the rest (both of
+    minimum jerk); the clock of both runs unevenly.
     """
     own_time = np.linspace(0.0, 1.0, _FINE + 1)
     wave = np.arange(1, _WAVES + 1)
@@ -169,6 +129,6 @@ def _progress(hand: Hand, rng: np.random.Generator) -> FloatArray:
 
 
 def _minimum_jerk(share: FloatArray) -> FloatArray:
-    """Flash and Hogan's profile from 0 to 1 over the share of the movement's time, held outside."""
+    """Flash and Hogan's profile from 0 to 1."""
     t = np.clip(share, 0.0, 1.0)
     return t**3 * (10.0 - 15.0 * t + 6.0 * t**2)

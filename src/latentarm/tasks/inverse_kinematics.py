@@ -1,4 +1,4 @@
-"""Configurations that put the tool at a given pose."""
+"""Inverse kinematics: configurations that put the tool at a given pose."""
 
 from collections.abc import Sequence
 
@@ -11,28 +11,20 @@ from latentarm.robots.robot import Robot
 
 _STEP_S = 0.1
 _STEPS = 300
-_CLOSE = 1e-4
-"""The pose counts as met within this, m and rad together."""
-_POSTURE_COST = 1e-3
-"""Weight of the preferred posture relative to the tool's pose; it resolves redundancy."""
+_CLOSE = 1e-4  # tolerance of the pose, m and rad together
+_POSTURE_COST = 1e-3  # weight of the preferred posture relative to the tool's pose; it resolves redundancy
 
 
 def solve(robot: Robot, pose: Pose, posture: FloatArray, held: Sequence[int] = ()) -> FloatArray:
-    """The configuration near a preferred posture that puts the robot's first tool at a pose.
+    """The configuration (n,), rad, near a posture that puts the robot's first tool at a pose.
 
-    Differential inverse kinematics (mink) from the posture on, within the joint limits.
+    Differential inverse kinematics (mink), within the joint limits.
 
     Args:
-        robot: the arm; its tool is a site of its model.
-        pose: wanted, in the base frame.
-        posture: (n,), where the search begins and what redundant joints stay close to, rad.
-        held: indices of joints that stay exactly where the posture has them.
-
-    Returns:
-        (n,), rad.
-
-    Raises:
-        UserError: the arm does not reach the pose from there.
+        robot: its tool is a site of its model.
+        pose: in the base frame.
+        posture: (n,), rad, the start of the search; redundant joints stay close to it.
+        held: indices of joints that stay exactly at the posture.
     """
     import mink
 

@@ -1,10 +1,9 @@
-"""What can go wrong for good in a run of a task with things."""
+"""Irreversible failures in a run of a task with things."""
 
 from dataclasses import dataclass
 from typing import Final, Literal, final
 
-MishapKind = Literal["dropped", "knocked_over", "spilled", "pressed"]
-"""What went wrong."""
+MishapKind = Literal["dropped", "knocked_over", "spilled", "pressed"]  # kind of failure
 
 _SAID: Final[dict[MishapKind, str]] = {
     "dropped": "dropped the",
@@ -17,17 +16,12 @@ _SAID: Final[dict[MishapKind, str]] = {
 @final
 @dataclass(frozen=True)
 class Mishap:
-    """Something that has gone wrong for good.
-
-    Attributes:
-        kind: what.
-        thing: name of the thing or of the grains that it happened to.
-    """
+    """An irreversible failure, and the thing or the grains that it happened to."""
 
     kind: MishapKind
     thing: str
 
     @property
     def text(self) -> str:
-        """In a few words, for tables and films: "dropped the cup"."""
+        """A few words for tables and films: "dropped the cup"."""
         return f"{_SAID[self.kind]} {self.thing}"

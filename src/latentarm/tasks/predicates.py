@@ -1,4 +1,4 @@
-"""What can be true of things: the conditions that steps of tasks wait for, and those that end a run."""
+"""Predicates of things: conditions for the steps of tasks, and failures that end a run."""
 
 from dataclasses import dataclass, field
 from typing import final
@@ -6,30 +6,23 @@ from typing import final
 import numpy as np
 
 from latentarm.core.types import FloatArray
-from latentarm.robots.scene.interior import Interior
 from latentarm.robots.scene.scene import TOOL, SceneState
+from latentarm.robots.scene.thing import Interior
 from latentarm.tasks.mishap import Mishap
 
 
 @final
 @dataclass(frozen=True)
 class Above:
-    """The tool is over a thing.
-
-    Attributes:
-        thing: its name.
-        aside_m: how far aside it may be, m.
-        lowest_m: how far over the thing's middle it must be, at least, m.
-        highest_m: at most, m.
-    """
+    """The tool is over a thing."""
 
     thing: str
-    aside_m: float
-    lowest_m: float
-    highest_m: float
+    aside_m: float  # largest horizontal distance, m
+    lowest_m: float  # least height over the thing's middle, m
+    highest_m: float  # largest, m
 
     def __call__(self, state: SceneState) -> bool:
-        """Whether it is."""
+        """Whether it is so."""
         away = state.tool.position - state.poses[self.thing].position
         near = np.hypot(away[0], away[1]) <= self.aside_m
         return bool(near and self.lowest_m <= away[2] <= self.highest_m)
@@ -38,54 +31,39 @@ class Above:
 @final
 @dataclass(frozen=True)
 class Taken:
-    """A thing is between the fingers or on the tines.
-
-    Attributes:
-        thing: its name.
-    """
+    """A thing is between the fingers or on the tines."""
 
     thing: str
 
     def __call__(self, state: SceneState) -> bool:
-        """Whether it is."""
+        """Whether it is so."""
         return self.thing in state.stabbed | state.gripped
 
 
 @final
 @dataclass(frozen=True)
 class Stabbed:
-    """A thing is on the tines, and has left what it lay on.
-
-    Attributes:
-        thing: its name.
-        above_m: height of its middle in the base frame that it must have, m.
-    """
+    """A thing is on the tines, and has left its place."""
 
     thing: str
-    above_m: float
+    above_m: float  # least height of its middle in the base frame, m
 
     def __call__(self, state: SceneState) -> bool:
-        """Whether it is."""
+        """Whether it is so."""
         return self.thing in state.stabbed and state.poses[self.thing].position[2] >= self.above_m
 
 
 @final
 @dataclass(frozen=True)
 class CarriedOver:
-    """A thing that the arm holds is over another one.
-
-    Attributes:
-        thing: its name.
-        over: the other's name.
-        aside_m: how far aside it may be, m.
-    """
+    """A thing that the arm holds is over another one."""
 
     thing: str
     over: str
-    aside_m: float
+    aside_m: float  # largest horizontal distance, m
 
     def __call__(self, state: SceneState) -> bool:
-        """Whether it is."""
+        """Whether it is so."""
         away = state.poses[self.thing].position - state.poses[self.over].position
         return bool(Taken(self.thing)(state) and np.hypot(away[0], away[1]) <= self.aside_m)
 
@@ -93,40 +71,28 @@ class CarriedOver:
 @final
 @dataclass(frozen=True)
 class Holding:
-    """A thing is between the fingers, and has left what it stood on.
-
-    Attributes:
-        thing: its name.
-        above_m: height of its frame in the base frame of the arm that it must have, m.
-    """
+    """A thing is between the fingers, and has left its place."""
 
     thing: str
-    above_m: float
+    above_m: float  # least height of its frame in the base frame, m
 
     def __call__(self, state: SceneState) -> bool:
-        """Whether it is."""
+        """Whether it is so."""
         return self.thing in state.gripped and state.poses[self.thing].position[2] >= self.above_m
 
 
 @final
 @dataclass(frozen=True)
 class Poured:
-    """A share of the grains is in a container.
-
-    Attributes:
-        grains: their name.
-        container: its name.
-        interior: the room in it.
-        share: of the grains, in (0, 1].
-    """
+    """A share of the grains is in a container."""
 
     grains: str
     container: str
-    interior: Interior
-    share: float
+    interior: Interior  # of the container
+    share: float  # of the grains, in (0, 1]
 
     def __call__(self, state: SceneState) -> bool:
-        """Whether it is."""
+        """Whether it is so."""
         inside = state.inside(self.grains, self.container, self.interior)
         return bool(inside.mean() >= self.share)
 
@@ -134,38 +100,27 @@ class Poured:
 @final
 @dataclass(frozen=True)
 class Apart:
-    """Two things that were one have been cut apart.
-
-    Attributes:
-        first: name of one.
-        second: name of the other.
-    """
+    """Two things that were one have been cut apart."""
 
     first: str
     second: str
 
     def __call__(self, state: SceneState) -> bool:
-        """Whether they have."""
+        """Whether it is so."""
         return (self.first, self.second) not in state.bonds
 
 
 @final
 @dataclass(frozen=True)
 class Within:
-    """A thing's middle is inside a container.
-
-    Attributes:
-        thing: its name.
-        container: its name.
-        interior: the room in it.
-    """
+    """A thing's middle is inside a container."""
 
     thing: str
     container: str
     interior: Interior
 
     def __call__(self, state: SceneState) -> bool:
-        """Whether it is."""
+        """Whether it is so."""
         pose = state.poses[self.container]
         x, y, z = (state.poses[self.thing].position - pose.position) @ pose.rotation
         inside = np.hypot(x, y) <= self.interior.radius_m
@@ -175,24 +130,16 @@ class Within:
 @final
 @dataclass(frozen=True, eq=False)
 class Placed:
-    """A thing rests in a region.
-
-    Attributes:
-        thing: its name.
-        centre: (3,), where its frame is to be, in the base frame of the arm, m.
-        within_m: (3,), how far from there it may be along each axis, m.
-        let_go: whether nothing may hold it any more; food may stay on the fork where it lies on a plate.
-        still_m_s: slower than this it rests, m/s.
-    """
+    """A thing rests in a region."""
 
     thing: str
-    centre: FloatArray
-    within_m: FloatArray
-    let_go: bool
-    still_m_s: float = 0.02
+    centre: FloatArray  # (3,), target of its frame in the base frame, m
+    within_m: FloatArray  # (3,), tolerance along each axis, m
+    let_go: bool  # whether nothing may hold it any more; food may stay on the fork
+    still_m_s: float = 0.02  # slower than this it rests
 
     def __call__(self, state: SceneState) -> bool:
-        """Whether it does."""
+        """Whether it is so."""
         away = np.abs(state.poses[self.thing].position - self.centre)
         held = self.let_go and self.thing in state.gripped | state.stabbed
         still = state.speed_m_s[self.thing] <= self.still_m_s
@@ -202,26 +149,17 @@ class Placed:
 @final
 @dataclass(eq=False)
 class Swept:
-    """A thing has been drawn through a container, as through icing.
-
-    It remembers: made anew for every run.
-
-    Attributes:
-        thing: its name.
-        container: its name.
-        interior: the room in it.
-        length_m: how far it must have come inside, m.
-    """
+    """A thing has been drawn through a container, as through icing. It has memory: make one for each run."""
 
     thing: str
     container: str
-    interior: Interior
-    length_m: float
+    interior: Interior  # of the container
+    length_m: float  # way inside, m
     _swept_m: float = field(default=0.0, init=False)
     _last: FloatArray | None = field(default=None, init=False)
 
     def __call__(self, state: SceneState) -> bool:
-        """Whether it has, counting what it has seen so far."""
+        """Whether it is so."""
         place = state.poses[self.thing].position
         if Within(self.thing, self.container, self.interior)(state):
             if self._last is not None:
@@ -235,26 +173,17 @@ class Swept:
 @final
 @dataclass(eq=False)
 class Stirred:
-    """A thing has been led to and fro about the middle of a container.
-
-    It remembers: made anew for every run.
-
-    Attributes:
-        thing: its name.
-        container: its name.
-        interior: the room in it; the thing's frame must be below its rim.
-        turns: how far it must go about the middle, to and fro counted alike, in whole turns.
-    """
+    """A thing has gone to and fro about the middle of a container. It has memory: make one for each run."""
 
     thing: str
     container: str
-    interior: Interior
-    turns: float
+    interior: Interior  # of the container; the thing's frame must be below its rim
+    turns: float  # way about the middle in whole turns, both directions counted alike
     _swept_rad: float = field(default=0.0, init=False)
     _last_rad: float | None = field(default=None, init=False)
 
     def __call__(self, state: SceneState) -> bool:
-        """Whether it has, counting what it has seen so far."""
+        """Whether it is so."""
         pose = state.poses[self.container]
         x, y, z = (state.poses[self.thing].position - pose.position) @ pose.rotation
         if not (np.hypot(x, y) <= self.interior.radius_m and z <= self.interior.top_m):
@@ -274,18 +203,13 @@ class Stirred:
 @final
 @dataclass(frozen=True)
 class Dropped:
-    """A thing has fallen below a height.
-
-    Attributes:
-        thing: its name.
-        below_m: height in the base frame of the arm, m.
-    """
+    """A thing has fallen below a height."""
 
     thing: str
-    below_m: float
+    below_m: float  # in the base frame, m
 
     def __call__(self, state: SceneState) -> Mishap | None:
-        """That it has."""
+        """The mishap, if it is so."""
         fell = state.poses[self.thing].position[2] < self.below_m
         return Mishap("dropped", self.thing) if fell else None
 
@@ -293,18 +217,13 @@ class Dropped:
 @final
 @dataclass(frozen=True)
 class KnockedOver:
-    """A thing lies on its side, and nobody holds it.
-
-    Attributes:
-        thing: its name.
-        angle_rad: how far it may lean, rad.
-    """
+    """A thing lies on its side, and nobody holds it."""
 
     thing: str
-    angle_rad: float = float(np.deg2rad(60.0))
+    angle_rad: float = float(np.deg2rad(60.0))  # largest lean
 
     def __call__(self, state: SceneState) -> Mishap | None:
-        """That it does."""
+        """The mishap, if it is so."""
         up = state.poses[self.thing].rotation[2, 2]
         fallen = up < np.cos(self.angle_rad) and self.thing not in state.gripped
         return Mishap("knocked_over", self.thing) if fallen else None
@@ -313,27 +232,20 @@ class KnockedOver:
 @final
 @dataclass(frozen=True)
 class Spilled:
-    """Too many grains are neither in one of some containers nor in the air above them.
-
-    Attributes:
-        grains: their name.
-        below_m: below this height in the base frame of the arm, outside of the containers, they are spilled.
-        containers: names, and the room in each.
-        share: of the grains that may be spilled.
-    """
+    """Too many grains are neither in given containers nor in the air above them."""
 
     grains: str
-    below_m: float
-    containers: tuple[tuple[str, Interior], ...]
-    share: float
+    below_m: float  # outside of the containers, grains below this height in the base frame are spilled, m
+    containers: tuple[tuple[str, Interior], ...]  # names and interiors
+    share: float  # of the grains that may be spilled
 
     def __call__(self, state: SceneState) -> Mishap | None:
-        """That they are."""
+        """The mishap, if it is so."""
         most = self.share * len(state.grains[self.grains])
         return Mishap("spilled", self.grains) if self.count(state) > most else None
 
     def count(self, state: SceneState) -> int:
-        """How many grains are spilled."""
+        """The number of spilled grains."""
         spilled = state.grains[self.grains][:, 2] < self.below_m
         for name, interior in self.containers:
             spilled &= ~state.inside(self.grains, name, interior)
@@ -343,18 +255,13 @@ class Spilled:
 @final
 @dataclass(frozen=True)
 class Pressed:
-    """The tool presses harder on something than it may.
+    """The tool presses on something with more than ``most_n``."""
 
-    Attributes:
-        thing: its name, or `latentarm.robots.scene.scene.TABLE`.
-        most_n: N.
-    """
-
-    thing: str
+    thing: str  # a name, or `latentarm.robots.scene.scene.TABLE`
     most_n: float
 
     def __call__(self, state: SceneState) -> Mishap | None:
-        """That it does."""
+        """The mishap, if it is so."""
         first, second = sorted((self.thing, TOOL))
         pressed = state.force_n.get((first, second), 0.0) > self.most_n
         return Mishap("pressed", self.thing) if pressed else None

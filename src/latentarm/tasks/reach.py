@@ -1,4 +1,4 @@
-"""Any arm, reachable poses: the task for a robot of which nothing else is known."""
+"""Reachable poses for any arm: the task for a robot without a task of its own."""
 
 from typing import final
 
@@ -10,17 +10,10 @@ from latentarm.robots.robot import Robot
 from latentarm.tasks.demonstrator import demonstrate_goals
 from latentarm.tasks.task import Task, within
 
-SPREAD = 0.5
-"""How far a goal's joints lie from home at most, rad."""
-
-START_SPREAD = 0.1
-"""How far a start's joints lie from home at most, rad."""
-
-TRIES = 100
-"""Starts and goals that are drawn before there is said to be none."""
-
-MARGIN = 0.15
-"""How far starts and goals stay from joint limits, rad."""
+SPREAD = 0.5  # of a goal's joints about home, rad
+START_SPREAD = 0.1  # of a start's joints about home, rad
+TRIES = 100  # draws of a start or goal before giving up
+MARGIN = 0.15  # of starts and goals to joint limits, rad
 
 
 @final
@@ -28,12 +21,8 @@ class Reach(Task):
     """Bring the tool of any arm to poses about its home configuration, in free space.
 
     Args:
-        robot: the arm.
-        goals: how many poses.
-        seed: which poses; the same seed gives the same task.
-
-    Raises:
-        UserError: fewer than one goal is asked for, or the tool hardly moves.
+        goals: number of poses
+        seed: the same seed gives the same poses
     """
 
     any_robot = True
@@ -67,15 +56,11 @@ class Reach(Task):
 
     @property
     def obstacles(self) -> tuple[()]:
-        """None: nothing is known of the place."""
+        """None: the place is unknown."""
         return ()
 
     def sample_start(self, goal: int, rng: np.random.Generator) -> FloatArray:
-        """About home and not yet at the goal, (n,), rad.
-
-        Raises:
-            UserError: the goal is wherever the arm could start.
-        """
+        """About home and not yet at the goal, (n,), rad."""
         for _ in range(TRIES):
             start = self._about_home(START_SPREAD, rng)
             if not self.reached(self.robot.chain.forward(start), self.goals[goal].pose):
@@ -83,11 +68,7 @@ class Reach(Task):
         raise self._hardly_moves()
 
     def waypoints(self, goal: int, manner: str) -> tuple[Pose, ...]:
-        """The goal's pose alone.
-
-        Raises:
-            UserError: there is no such goal or manner.
-        """
+        """The goal's pose alone."""
         if not 0 <= goal < len(self.goals) or manner not in self.manners:
             raise UserError(f"One can reach the goals 0 to {len(self.goals) - 1}, not {manner!r} {goal}.")
         return (self.goals[goal].pose,)
@@ -97,17 +78,13 @@ class Reach(Task):
         return within(pose, waypoint)
 
     def demonstrate(self, episodes: int, rng: np.random.Generator) -> Demonstrations:
-        """Straight to the goals in turn, as a simulated person would.
-
-        Raises:
-            UserError: fewer than one episode is asked for.
-        """
+        """Straight strokes to the goals in turn, by a simulated person."""
         return demonstrate_goals(
             self, lambda goal: self.goals[goal].configuration[None], "reach", episodes, rng
         )
 
     def _goal(self, name: str, rng: np.random.Generator) -> Goal:
-        """A goal that is not where the arm stands at home."""
+        """A goal away from home."""
         chain = self.robot.chain
         home = chain.forward(self._about_home(0.0, rng))
         for _ in range(TRIES):
@@ -125,7 +102,7 @@ class Reach(Task):
         )
 
     def _about_home(self, spread: float, rng: np.random.Generator) -> FloatArray:
-        """Home with each joint moved at random, kept off the limits (half-way between narrow ones)."""
+        """Home with each joint moved at random, off the limits (half-way between narrow ones)."""
         limits = self.robot.limits
         middle = (limits.lower + limits.upper) / 2
         lowest = np.minimum(limits.lower + MARGIN, middle)

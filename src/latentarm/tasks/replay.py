@@ -1,4 +1,4 @@
-"""Where demonstrations began and ended, as a task: to see whether a model can do what people did."""
+"""The ways of demonstrations as a task, to test whether a model can do what people did."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -23,40 +23,24 @@ from latentarm.robots.robot import Robot
 from latentarm.tasks.demonstrator import demonstrate_goals
 from latentarm.tasks.task import REACHED_ANGLE, REACHED_DISTANCE, GripperTask, within
 
-WAYPOINT_SPACING = 0.25
-"""Way of the tool between two waypoints, m, a radian of turning counted as `RADIAN`."""
-
-RADIAN = 0.2
-"""What a radian of turning counts as way, m."""
+WAYPOINT_SPACING = 0.25  # way of the tool between two waypoints, m
+RADIAN = 0.2  # equivalent way of a radian of turning, m
 
 
 @final
 @dataclass(frozen=True, eq=False)
 class GripperRoutes:
-    """Ways along which a gripper opens and closes.
+    """Routes along which a gripper opens and closes."""
 
-    Attributes:
-        states: as `routes_of` gives them, with a waypoint wherever the gripper is told something new.
-        open_at: (K + 1,) for each, 1 where the gripper is to be open from there on, and 0 where closed.
-    """
-
-    states: tuple[FloatArray, ...]
+    states: tuple[FloatArray, ...]  # as from `routes_of`, with a waypoint at every new command to the gripper
+    # (K + 1,) for each, 1 where the gripper is to be open from there on, and 0 where closed
     open_at: tuple[FloatArray, ...]
 
 
 def gripper_routes_of(
     robot: Robot, demonstrations: Demonstrations, is_told_open: Callable[[Episode], BoolArray]
 ) -> GripperRoutes:
-    """The ways that demonstrations went, and where they told the gripper to open and to close.
-
-    Args:
-        robot: the arm that was recorded.
-        demonstrations: see `routes_of`.
-        is_told_open: whether the gripper is told to be open, at each sample (T,) of an episode.
-
-    Raises:
-        UserError: the tool goes nowhere in any of them.
-    """
+    """Routes of demonstrations with their commands to the gripper, open or not, (T,) per episode."""
     states: list[FloatArray] = []
     open_at: list[FloatArray] = []
     for episode in _leaving(robot, demonstrations):
@@ -69,32 +53,20 @@ def gripper_routes_of(
 
 
 def routes_of(robot: Robot, demonstrations: Demonstrations) -> tuple[FloatArray, ...]:
-    """The ways that demonstrations went.
-
-    Args:
-        robot: the arm that was recorded.
-        demonstrations: the episodes to follow; those in which the tool goes nowhere are left out.
-
-    Returns:
-        For each episode its start and then the waypoints along it, the last one its end: (K + 1, n), rad.
-
-    Raises:
-        UserError: the tool goes nowhere in any of them.
-    """
+    """Each episode's start and waypoints to its end, (K + 1, n), rad, where its tool goes anywhere."""
     return tuple(one.state[_stops(robot, one.state)] for one in _leaving(robot, demonstrations))
 
 
 @final
 class Replay(GripperTask):
-    """Drive the way that demonstrations went, from where they began, through poses along them.
+    """Drive the ways of demonstrations, from their starts through poses along them.
 
-    A goal is where an episode ended. Episodes that training never saw make this the honest test of
-    a model on real demonstrations, for which nothing else is known of the task.
+    A goal is the end of an episode. Episodes that training never saw make this the honest test of a model on
+    real demonstrations.
 
     Args:
-        robot: the arm that was recorded.
-        routes: one or more, see `routes_of`.
-        open_at: what the gripper does along them, see `GripperRoutes`; nothing where it is empty.
+        routes: one or more, from `routes_of`
+        open_at: the gripper along them, see `GripperRoutes`; empty for none
     """
 
     def __init__(
@@ -116,7 +88,7 @@ class Replay(GripperTask):
 
     @property
     def goals(self) -> tuple[Goal, ...]:
-        """Where each episode ended."""
+        """The end of each episode."""
         chain = self._robot.chain
         return tuple(
             Goal(f"end {index + 1}", route[-1], chain.forward(route[-1]))
@@ -130,29 +102,21 @@ class Replay(GripperTask):
 
     @property
     def obstacles(self) -> tuple[()]:
-        """None: nothing is known of the place."""
+        """None: the place is unknown."""
         return ()
 
     def sample_start(self, goal: int, rng: np.random.Generator) -> FloatArray:
-        """Where the goal's episode began, (n,), rad."""
+        """The start of the goal's episode, (n,), rad."""
         return self._route(goal)[0]
 
     def waypoints(self, goal: int, manner: str) -> tuple[Pose, ...]:
-        """Poses along the goal's episode, the last one its end.
-
-        Raises:
-            UserError: there is no such goal or manner.
-        """
+        """Poses along the goal's episode, the last one its end."""
         self._check(manner)
         poses = self._robot.chain.forward(self._route(goal)[1:])
         return tuple(Pose(*pose) for pose in zip(poses.position, poses.rotation, strict=True))
 
     def asks(self, goal: int, manner: str) -> tuple[GripperAsk, ...]:
-        """What the person did with the gripper on the goal's way.
-
-        Raises:
-            UserError: there is no such goal or manner.
-        """
+        """The person's requests to the gripper on the goal's way."""
         self._check(manner)
         self._route(goal)
         if not self._open_at:
@@ -164,11 +128,7 @@ class Replay(GripperTask):
         return within(pose, waypoint)
 
     def demonstrate(self, episodes: int, rng: np.random.Generator) -> Demonstrations:
-        """Along the routes in turn, as a simulated person would.
-
-        Raises:
-            UserError: fewer than one episode is asked for.
-        """
+        """Strokes along the routes in turn, by a simulated person."""
         return demonstrate_goals(self, lambda goal: self._route(goal)[1:], "follow", episodes, rng)
 
     def _check(self, manner: str) -> None:
@@ -182,16 +142,12 @@ class Replay(GripperTask):
 
 
 def _leaving(robot: Robot, demonstrations: Demonstrations) -> list[Episode]:
-    """The episodes in which the tool goes somewhere, without the still samples at their ends.
-
-    Raises:
-        UserError: there is no such episode.
-    """
+    """Episodes in which the tool goes somewhere, without the still samples at their ends."""
     found: list[Episode] = []
     for one in demonstrations.episodes:
         moving = slice(*moving_range(one.state, one.timestamp))
         path = one.state[moving]
-        if len(path) and _leaves(robot, path):
+        if len(path) and _away(robot, path).max() > 1.0:
             extras = {name: values[moving] for name, values in one.extras.items()}
             found.append(Episode(path, one.timestamp[moving], extras=extras))
     if not found:
@@ -204,10 +160,7 @@ def _leaving(robot: Robot, demonstrations: Demonstrations) -> list[Episode]:
 
 
 def _stops(robot: Robot, path: FloatArray) -> IntArray:
-    """Which of the states (T, n) of an episode are its start and its waypoints, (K + 1,).
-
-    One of them is away from the start, also where the way is short and leads back.
-    """
+    """Indices of an episode's start and waypoints, (K + 1,); at least one is away from the start."""
     poses = robot.chain.forward(path)
     turned = angle_between(poses.rotation[1:], poses.rotation[:-1])
     way = np.cumsum(np.linalg.norm(np.diff(poses.position, axis=0), axis=1) + RADIAN * turned)
@@ -218,13 +171,8 @@ def _stops(robot: Robot, path: FloatArray) -> IntArray:
     return stops if away[stops].max() > 1.0 else np.union1d(stops, away.argmax())
 
 
-def _leaves(robot: Robot, path: FloatArray) -> bool:
-    """Whether the tool is ever anywhere but where it began."""
-    return bool(_away(robot, path).max() > 1.0)
-
-
 def _away(robot: Robot, path: FloatArray) -> FloatArray:
-    """How far the tool is from where it began, (T,): up to 1 it is still there, see `within`."""
+    """Distance of the tool from its start, (T,): up to 1 it is still there, see `within`."""
     poses = robot.chain.forward(path)
     distance = np.linalg.norm(poses.position - poses.position[0], axis=1)
     angle = angle_between(poses.rotation, poses.rotation[0])

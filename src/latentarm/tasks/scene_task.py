@@ -1,4 +1,4 @@
-"""Tasks with things that are held, stabbed, cut and poured; they are done in physics."""
+"""Tasks with things to hold, stab, cut and pour, in physics."""
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
@@ -6,39 +6,41 @@ from typing import final
 
 import numpy as np
 
-from latentarm.core.types import FloatArray, Goal
+from latentarm.core.types import FloatArray, Goal, GripperAsk
 from latentarm.robots.kinematics.obstacles import Obstacle
 from latentarm.robots.robot import Robot
 from latentarm.robots.scene.scene import Scene
 from latentarm.tasks.steps import Failure, TaskStep
 
+Region = tuple[tuple[float, float], tuple[float, float]]  # lowest and highest x, lowest and highest y, m
+
+
+def anywhere(region: Region, rng: np.random.Generator) -> FloatArray:
+    """A place in a region, uniformly at random, (2,), m."""
+    lower, upper = np.array(region).T
+    return rng.uniform(lower, upper)
+
 
 @final
 @dataclass(frozen=True, eq=False)
 class Beginning:
-    """How one run of a task begins, and what is to be done in it.
+    """The start of one run of a task, and its steps."""
 
-    Attributes:
-        state: (n,), where the arm starts, rad.
-        scene: what stands about it.
-        steps: what is to be done, in order.
-        failures: what ends the run.
-        goals: what the person may want first, for a belief; empty where that is no discrete choice.
-        objects: names of the things that matter, in the order of the context feature ``objects``.
-        text: what is done, in words.
-    """
-
-    state: FloatArray
+    state: FloatArray  # (n,), start of the arm, rad
     scene: Scene
-    steps: tuple[TaskStep, ...]
-    failures: tuple[Failure, ...]
+    steps: tuple[TaskStep, ...]  # in order
+    failures: tuple[Failure, ...]  # each ends the run
+    # the person's possible first goals, for a belief; empty where these are no discrete choice
     goals: tuple[Goal, ...]
-    objects: tuple[str, ...]
-    text: str
+    objects: tuple[str, ...]  # names of the relevant things, in the order of the context feature ``objects``
+    text: str  # the task in words
+    # asked of the gripper all along: at the start, and once each step is done; () where only waypoints ask
+    asks: tuple[GripperAsk, ...] = ()
+    patient: bool = False  # whether the run goes on where the tool comes no nearer
 
 
 class SceneTask(ABC):
-    """Something to be done with things, in steps."""
+    """A task with things, in steps."""
 
     @property
     @abstractmethod
@@ -53,12 +55,12 @@ class SceneTask(ABC):
     @property
     @abstractmethod
     def choices(self) -> tuple[str, ...]:
-        """What a person may choose to do; at least one."""
+        """Variants that a person may choose from; at least one."""
 
     @property
     @abstractmethod
     def obstacles(self) -> tuple[Obstacle, ...]:
-        """What the arm must keep clear of."""
+        """Shapes that the arm must keep clear of."""
 
     @property
     @abstractmethod
@@ -67,7 +69,7 @@ class SceneTask(ABC):
 
     @abstractmethod
     def begin(self, choice: int, rng: np.random.Generator) -> Beginning:
-        """Draw one run: where things and the arm are.
+        """Draw one run: places of things and start of the arm.
 
         Args:
             choice: index into `choices`.

@@ -1,4 +1,4 @@
-"""A task with things as steps that tick off one after the other."""
+"""A task with things as a sequence of steps."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -25,52 +25,37 @@ StepKind = Literal[
     "stirred",
     "placed",
 ]
-"""What is done in a step."""
+"""Kinds of acts in a step."""
 
 Predicate = Callable[[SceneState], bool]
 """Whether something holds of the things at one moment. One that remembers is made anew for every run."""
 
-Failure = Callable[[SceneState], Mishap | None]
-"""What has gone wrong for good, or None."""
+Failure = Callable[[SceneState], Mishap | None]  # an irreversible failure, or None
 
 
-CAREFUL: Final = 0.5
-"""Share of a waypoint's tolerances that counts with each further try of its step."""
+CAREFUL: Final = 0.5  # factor of a waypoint's tolerances with each further try
 
 FINE_M: Final = 0.002
-FINE_RAD: Final = 0.04
-"""No person comes nearer than this where something is done."""
+FINE_RAD: Final = 0.04  # least tolerances where something is done
 
 ROUGH_M: Final = 0.01
-ROUGH_RAD: Final = float(np.deg2rad(7.5))
-"""The same of waypoints that are only passed."""
-
-PATIENCE_S: Final = 3.0
-"""So long a person presses on at a waypoint for what they look at there, s."""
+ROUGH_RAD: Final = float(np.deg2rad(7.5))  # the same at waypoints on the way
+PATIENCE_S: Final = 3.0  # the person waits so long at a waypoint for its condition
 
 
 @final
 @dataclass(frozen=True, eq=False)
 class Waypoint:
-    """Where a person brings the tool in a step, and what they do there.
+    """A pose of the tool in a step, and the person's acts there."""
 
-    Attributes:
-        pose: where, as things stand now.
-        within_m: how near it counts as reached, m.
-        within_rad: how nearly in that orientation, rad.
-        gripper: what is asked of the gripper there.
-        wait_s: how long they wait there, for what they have begun to happen, s.
-        speed: share of their usual speed on the way there, in (0, 1].
-        until: what they look at there. They press on until it holds, and go on as soon as it does; if it does
-            not within `PATIENCE_S`, they try the step again.
-    """
-
-    pose: Callable[[SceneState], Pose]
-    within_m: float = 0.02
-    within_rad: float = float(np.deg2rad(15.0))
-    gripper: GripperAsk | None = None
-    wait_s: float = 0.0
-    speed: float = 1.0
+    pose: Callable[[SceneState], Pose]  # from the present state
+    within_m: float = 0.02  # tolerance, m
+    within_rad: float = float(np.deg2rad(15.0))  # tolerance of the orientation
+    gripper: GripperAsk | None = None  # request to the gripper there
+    wait_s: float = 0.0  # the person waits so long there for the effect of their act
+    speed: float = 1.0  # share of their usual speed on the way there, in (0, 1]
+    # the person presses on there until this holds and goes on as soon as it does; if it does not within
+    # `PATIENCE_S`, they try the step again
     until: Predicate | None = None
 
     def reached(self, state: SceneState) -> bool:
@@ -80,12 +65,12 @@ class Waypoint:
         return self._distance(state, pose) <= 1.0 and self._turn(state, pose) <= 1.0
 
     def missed_by(self, state: SceneState) -> float:
-        """How far the tool is from there; 1 is the farthest that counts as reached."""
+        """Distance of the tool from there; 1 is the farthest that counts as reached."""
         pose = self.pose(state)
         return max(self._distance(state, pose), self._turn(state, pose))
 
     def closer(self, tries: int) -> "Waypoint":
-        """The same with smaller tolerances, after so many tries."""
+        """The same with smaller tolerances, for a further try."""
         if tries == 0:
             return self
         acts = self.gripper is not None or self.wait_s > 0 or self.until is not None
@@ -98,63 +83,39 @@ class Waypoint:
         )
 
     def _distance(self, state: SceneState, pose: Pose) -> float:
-        """From the tool to a pose, in `within_m`."""
         return float(np.linalg.norm(state.tool.position - pose.position)) / self.within_m
 
     def _turn(self, state: SceneState, pose: Pose) -> float:
-        """The same for orientation, in `within_rad`."""
         return float(angle_between(state.tool.rotation, pose.rotation)) / self.within_rad
 
 
 @final
 @dataclass(frozen=True, eq=False)
 class TaskStep:
-    """Something to be done.
-
-    Attributes:
-        kind: what is done.
-        thing: name of the thing that it is done to, or where it is done.
-        name: both in words.
-        done: whether it has been done.
-        waypoints: how a person does it; tried again from the first, with more care, if it is not done after
-            the last.
-        holds: name of what must be in the hand or on the fork until it is done, which an earlier step took;
-            None for nothing.
-    """
+    """One step of a task."""
 
     kind: StepKind
-    thing: str
-    name: str
-    done: Predicate
+    thing: str  # the object or the place of the step
+    name: str  # in words
+    done: Predicate  # whether the step is complete
+    # the person's way; they try again from the first, with more care, if the step is not done after the last
     waypoints: tuple[Waypoint, ...]
-    holds: str | None = None
+    holds: str | None = None  # thing that an earlier step took and that must stay in the hand or on the fork
 
 
-RETRY_S: Final = 1.0
-"""A step that is not done so long after its last waypoint is tried again, s."""
-
-LOST_S: Final = 1.0
-"""A thing is lost once it has been away for so long, s: what is put down takes a moment to come to rest."""
-
-LOST_M: Final = 0.03
-"""So far from where it was held it is away, m: what is held may rest on one finger, or be out of touch for a
-moment."""
-
-_TAKES: Final = ("holding", "stabbed")
-"""Kinds of steps in which something is taken."""
+RETRY_S: Final = 1.0  # an unfinished step is tried again so long after its last waypoint
+LOST_S: Final = 1.0  # a thing is lost after so long away: a released thing takes a moment to come to rest
+LOST_M: Final = 0.03  # distance from its hold that counts as away: one finger may lose touch for a moment
+_TAKES: Final = ("holding", "stabbed")  # kinds of steps that take something
 
 
 @final
 class Progress:
-    """How far a run of a task has come, and where a person brings the tool next.
+    """The progress of a run, and the person's next waypoint.
 
-    A step is tried again, each time with more care, when it is not done after its last waypoint, when what a
-    waypoint waits for does not come, and when `again` says so. Where a thing has slipped or was let go too
-    early, the step that took it is done again; what was done after that need not be.
-
-    Args:
-        steps: of the task, in order.
-        failures: what ends the run.
+    A step is tried again, each time with more care, when it is not done after its last waypoint, when a
+    waypoint's condition does not come true, and when `again` says so. Where a thing has slipped, or was let
+    go too early, the step that took it is done again; later steps that are done stay done.
     """
 
     def __init__(self, steps: Sequence[TaskStep], failures: Sequence[Failure] = ()) -> None:
@@ -170,68 +131,64 @@ class Progress:
 
     @property
     def steps(self) -> tuple[TaskStep, ...]:
-        """What is to be done, in order."""
+        """All steps, in order."""
         return self._steps
 
     @property
     def done(self) -> int:
-        """How many steps have been done."""
+        """Number of steps done."""
         return self._done
 
     @property
     def share(self) -> float:
-        """Share of the steps that have been done."""
+        """Share of the steps done."""
         return self._done / len(self._steps)
 
     @property
     def succeeded(self) -> bool:
-        """Whether all steps have been done, and nothing has gone wrong."""
+        """Whether all steps are done without a failure."""
         return self._done == len(self._steps) and self._failure is None
 
     @property
     def failure(self) -> Mishap | None:
-        """What has gone wrong for good."""
+        """The irreversible failure, if any."""
         return self._failure
 
     @property
     def lost(self) -> int | None:
-        """Index of the step that is to be done again, because what it took is no longer held."""
+        """Index of the step to repeat because the thing that it took is no longer held."""
         return self._lost
 
     @property
     def step(self) -> TaskStep | None:
-        """What is to be done now; None where nothing is left."""
+        """The present step; None where nothing is left."""
         if self._lost is not None:
             return self._steps[self._lost]
         return self._steps[self._done] if self._done < len(self._steps) else None
 
     @property
     def waypoint(self) -> Waypoint | None:
-        """Where the tool is to go now; None where nothing is left to do."""
+        """The tool's present target; None where nothing is left."""
         return self._at
 
     @property
     def tries(self) -> int:
-        """How often the step was tried before."""
+        """Number of earlier tries of the step."""
         return self._tries
 
     @property
     def asks(self) -> GripperAsk | None:
-        """What the person asks of the gripper now."""
+        """The person's present request to the gripper."""
         waypoint = self.waypoint
         return None if waypoint is None or self._arrived_s is None else waypoint.gripper
 
     @property
     def waits(self) -> bool:
-        """Whether the person is at a waypoint and waits for what they have begun there."""
+        """Whether the person waits at a waypoint for the effect of their act."""
         return self._arrived_s is not None
 
     def update(self, state: SceneState) -> None:
-        """Take how things stand now.
-
-        Args:
-            state: at every tick of the loop.
-        """
+        """Take the present state, at every tick of the loop."""
         if self._failure is None:
             self._failure = next((found for fails in self._failures if (found := fails(state))), None)
         before = self.step
@@ -252,7 +209,6 @@ class Progress:
         self._at = self._next()
 
     def _go_on(self, waypoint: Waypoint, state: SceneState) -> None:
-        """To the next waypoint, once everything is done at this one."""
         seen = waypoint.until is not None and waypoint.until(state)
         if self._arrived_s is None:
             if not waypoint.reached(state) and not (seen and waypoint.gripper is None):
@@ -279,7 +235,7 @@ class Progress:
         return None if step is None else step.waypoints[self._waypoint].closer(self._tries)
 
     def _slipped(self, state: SceneState) -> int | None:
-        """Index of the step that took what should be held now and is not."""
+        """Index of the step that took the thing that should be held now and is not."""
         if self._lost is not None:
             return None if self._steps[self._lost].done(state) else self._lost
         thing = self._steps[self._done].holds if self._done < len(self._steps) else None

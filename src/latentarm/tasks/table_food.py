@@ -1,4 +1,4 @@
-"""The food and its dishes of the table-top task, to be drawn: nothing touches them there."""
+"""Food and dishes of the table-top task, for display only."""
 
 from collections.abc import Mapping
 from typing import Final
@@ -11,8 +11,7 @@ from latentarm.robots.scene.thing import Part, Thing
 
 _PLATE_RADIUS_M: Final = 0.06
 _PLATE_HALF_M: Final = 0.005
-_HALF_M: Final = 0.014
-"""Half the height of every item."""
+_HALF_M: Final = 0.014  # half the height of every item
 
 _CHINA: Final = (0.95, 0.95, 0.97, 1.0)
 _WOOD: Final = (0.62, 0.47, 0.33, 1.0)
@@ -26,18 +25,12 @@ _FOOD: Final[Mapping[str, Part]] = {
 
 
 def food_on_dishes(items: Mapping[str, tuple[float, float]], height_m: float) -> Scene:
-    """Each item on a dish of its own.
-
-    Args:
-        items: x and y of each, m; a carrot, tofu or a melon.
-        height_m: of the middle of every item, m.
-    """
+    """Each item on a dish of its own: carrot, tofu or melon by x and y, m, its middle at ``height_m``."""
     dishes = (_dish(name, *place, height_m - _HALF_M) for name, place in items.items())
     return Scene((*dishes, *(_item(name, *place, height_m) for name, place in items.items())))
 
 
 def _dish(item: str, x: float, y: float, top_m: float) -> Thing:
-    """A plate on a stand, its frame in the middle of its top."""
     half = (top_m - 2 * _PLATE_HALF_M) / 2
     disc = Part("cylinder", (_PLATE_RADIUS_M, _PLATE_HALF_M), (0.0, 0.0, -_PLATE_HALF_M), colour=_CHINA)
     below = -2 * _PLATE_HALF_M - half

@@ -1,4 +1,4 @@
-"""A Panda at a table with three food items, each to be reached and then stabbed or scooped."""
+"""A Panda at a table with three food items, each to reach and then to stab or scoop."""
 
 from functools import cached_property
 from typing import final
@@ -16,42 +16,31 @@ from latentarm.tasks.inverse_kinematics import solve
 from latentarm.tasks.table_food import food_on_dishes
 from latentarm.tasks.task import Task, within
 
-TABLE_HEIGHT = 0.0
-"""Height of the table top in the robot's base frame, m: the arm is mounted on the table."""
+TABLE_HEIGHT = 0.0  # in the robot's base frame, m: the arm stands on the table
 
 ITEMS = {"carrot": (0.50, -0.28), "tofu": (0.60, 0.0), "melon": (0.50, 0.28)}
-"""Where the food is, x and y, m; each item lies on a raised dish."""
+"""x and y of the food, m; each item lies on a raised dish."""
 
-ITEM_HEIGHT = 0.10
-"""Height of the food above the table top, m."""
-
-HOVER = 0.13
-"""How far above the food a reach ends, m."""
-
-SCOOP_TILT = 0.45
-"""How far the tool tilts when it scoops, its tip pointing outwards, rad."""
-
-SCOOP_SWEEP = (-0.03, 0.04)
-"""Where a scoop enters and leaves the food, m outwards from its middle."""
+ITEM_HEIGHT = 0.10  # above the table top, m
+HOVER = 0.13  # height of a reach's end above the food, m
+SCOOP_TILT = 0.45  # of the tool, its tip outwards, rad
+SCOOP_SWEEP = (-0.03, 0.04)  # start and end of a scoop, m outwards from the food's middle
 
 START_SPREAD = np.array([0.3, 0.05, 0.05, 0.05, 0.05, 0.05, 0.05])
 """How far each joint may start from the ready pose, rad: mostly turned about the base."""
 
-NEXT_BITE = 0.15
-"""Share of demonstrations that begin above another item, as when one bite follows another."""
-
-_VIA = 3
-"""Configurations between the ends of a stab or scoop, so that the tool follows a line."""
+NEXT_BITE = 0.15  # share of demonstrations that begin above another item
+_VIA = 3  # configurations along a stab or scoop, so that the tool follows a line
 
 
 @final
 class TableTop(Task):
     """Three food items on a table, in an arc in front of a Panda whose hand holds a fork.
 
-    The tool point stands for the fork's tip and its z axis for where the fork points. A goal is the
-    configuration with the fork upright above an item, turned outwards from the base. To stab, the
-    fork goes straight down from there; to scoop, it tilts, goes low before the item and sweeps
-    outwards through it. The demonstrator is a simulated person.
+    The tool point stands for the fork's tip, and its z axis for the fork's direction. A goal is the
+    configuration with the fork upright above an item, turned outwards from the base. To stab, the fork goes
+    straight down from there; to scoop, it tilts, goes low before the item and sweeps outwards through it. The
+    demonstrator is a simulated person.
     """
 
     @property
@@ -71,7 +60,7 @@ class TableTop(Task):
 
     @property
     def obstacles(self) -> tuple[Obstacle, ...]:
-        """The table; the food and its dishes are soft and may be touched."""
+        """The table; the arm may touch the soft food and its dishes."""
         return (HalfSpace("table", np.array([0.0, 0.0, TABLE_HEIGHT]), np.array([0.0, 0.0, 1.0])),)
 
     @property
@@ -89,11 +78,7 @@ class TableTop(Task):
         return self.robot.home + rng.uniform(-START_SPREAD, START_SPREAD)
 
     def waypoints(self, goal: int, manner: str) -> tuple[Pose, ...]:
-        """The pose above the item, then the end of the stab or scoop.
-
-        Raises:
-            UserError: there is no such goal or manner.
-        """
+        """The pose above the item, then the end of the stab or scoop."""
         if not 0 <= goal < len(ITEMS):
             raise UserError(f"The table has goals 0 to {len(ITEMS) - 1}, not {goal}.")
         return self.goals[goal].pose, self.robot.chain.forward(self._manipulation(goal, manner)[-1])
@@ -103,11 +88,7 @@ class TableTop(Task):
         return within(pose, waypoint)
 
     def demonstrate(self, episodes: int, rng: np.random.Generator) -> Demonstrations:
-        """Reach and manipulate, goals and manners in turn, as a simulated person would.
-
-        Raises:
-            UserError: fewer than one episode is asked for.
-        """
+        """Reach and manipulate, goals and manners in turn, by a simulated person."""
         hand = Hand()
         return demonstrations_of(self, lambda index: self._episode(index, hand, rng), episodes, hand)
 
@@ -142,7 +123,6 @@ class TableTop(Task):
         return Goal(name, configuration, self.robot.chain.forward(configuration))
 
     def _manipulation(self, goal: int, manner: str) -> FloatArray:
-        """Configurations along a stab or scoop after the goal, (V, 7), rad."""
         if manner not in self.manners:
             raise UserError(f"At the table one can {' or '.join(self.manners)}, not {manner!r}.")
         return self._manipulations[goal, manner]
@@ -156,7 +136,7 @@ class TableTop(Task):
         }
 
     def _along(self, goal: Goal, poses: list[Pose]) -> FloatArray:
-        """Configurations for poses one after the other, each found from the one before, (V, n), rad."""
+        """Configurations (V, n), rad, for poses in turn, each found from the one before."""
         configurations = [goal.configuration]
         for pose in poses:
             configurations.append(solve(self.robot, pose, configurations[-1]))
@@ -164,7 +144,6 @@ class TableTop(Task):
 
 
 def _line(name: str, manner: str) -> list[Pose]:
-    """Poses of the tool along a stab or scoop, after the pose above the item."""
     share = np.linspace(0.0, 1.0, _VIA + 2)[1:]
     if manner == "stab":
         return [_above(name, height=HOVER * (1.0 - s)) for s in share]
@@ -180,14 +159,6 @@ def _line(name: str, manner: str) -> list[Pose]:
 
 
 def _above(name: str, height: float, tilt: float = 0.0, outwards: float = 0.0) -> Pose:
-    """A pose of the fork over an item.
-
-    Args:
-        name: of the item.
-        height: of the tip above the food, m.
-        tilt: of the fork from upright, its tip outwards, rad.
-        outwards: shift away from the robot's base, m.
-    """
     x, y = ITEMS[name]
     direction = np.array([x, y]) / np.hypot(x, y)
     out = np.array([*direction, 0.0])

@@ -1,4 +1,4 @@
-"""What every task says about itself, and when a pose counts as reached."""
+"""The contract of a task, and when a pose counts as reached."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
@@ -15,11 +15,11 @@ from latentarm.robots.scene.scene import Scene
 
 
 class Task(ABC):
-    """A robot in a place with discrete goals, and ways (manners) of doing something at each.
+    """A robot with discrete goals, and ways (manners) of doing something at each.
 
     Attributes:
-        any_robot: whether the task is made with a robot, any one; else it is made without arguments and has
-            a robot of its own.
+        any_robot: whether the task takes any robot as its argument; else it takes no arguments and has its
+            own.
     """
 
     any_robot: ClassVar[bool] = False
@@ -42,21 +42,21 @@ class Task(ABC):
     @property
     @abstractmethod
     def manners(self) -> tuple[str, ...]:
-        """What can be done at a goal, at least one name."""
+        """Names of the acts that are possible at a goal, at least one."""
 
     @property
     @abstractmethod
     def obstacles(self) -> Sequence[Obstacle]:
-        """What the arm must keep clear of."""
+        """Shapes that the arm must keep clear of."""
 
     @property
     def shown(self) -> Scene:
-        """What stands about the arm, to be drawn and never touched; a task says what."""
+        """Things about the arm for display only; empty by default."""
         return Scene()
 
     @abstractmethod
     def sample_start(self, goal: int, rng: np.random.Generator) -> FloatArray:
-        """A state to begin from on the way to a goal, (n,), rad.
+        """A start on the way to a goal, (n,), rad.
 
         Args:
             goal: index into `goals`.
@@ -65,7 +65,7 @@ class Task(ABC):
 
     @abstractmethod
     def waypoints(self, goal: int, manner: str) -> tuple[Pose, ...]:
-        """Poses that the tool must come to, one after the other, for the task to be done.
+        """Poses that the tool must reach in turn for the task to be done.
 
         Args:
             goal: index into `goals`.
@@ -97,7 +97,7 @@ class GripperTask(Task, ABC):
 
     @abstractmethod
     def asks(self, goal: int, manner: str) -> tuple[GripperAsk, ...]:
-        """What is asked of the gripper at the start, and from each of the `waypoints` on; () for nothing.
+        """Requests to the gripper at the start, and from each of the `waypoints` on; () for none.
 
         Args:
             goal: index into `goals`.
@@ -109,16 +109,7 @@ class GripperTask(Task, ABC):
 
 
 def check_not_done(task: Task, start: FloatArray, waypoints: Sequence[Pose]) -> None:
-    """Refuse a start from which nothing is left to do: to stand still is no success.
-
-    Args:
-        task: the task.
-        start: (n,), where the arm is to start, rad.
-        waypoints: what the tool must come to.
-
-    Raises:
-        UserError: the tool is at every waypoint already.
-    """
+    """Refuse a start (n,), rad, from which nothing is left to do: standing still is no success."""
     pose = task.robot.chain.forward(start)
     if all(task.reached(pose, waypoint) for waypoint in waypoints):
         raise UserError(
@@ -127,11 +118,8 @@ def check_not_done(task: Task, start: FloatArray, waypoints: Sequence[Pose]) -> 
         )
 
 
-REACHED_DISTANCE = 0.03
-"""A waypoint is reached within this distance, m, ..."""
-
-REACHED_ANGLE = np.deg2rad(20.0)
-"""... and this angle, rad."""
+REACHED_DISTANCE = 0.03  # a waypoint is reached within this distance, m, ...
+REACHED_ANGLE = np.deg2rad(20.0)  # ... and this angle, rad.
 
 
 def within(pose: Pose, waypoint: Pose) -> bool:

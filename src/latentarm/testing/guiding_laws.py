@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from latentarm.arms.guiding import GuidableArm
-from latentarm.arms.real import RealArm
+from latentarm.arms.real import GuidableArm, RealArm
 from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray, GripperCommand
 from latentarm.robots.robot import Robot

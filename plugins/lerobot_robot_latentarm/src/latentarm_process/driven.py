@@ -16,7 +16,7 @@ from latentarm.runs.folder import read_run
 from latentarm.runs.tasks import task_of_run
 from latentarm.safety.config import SafetyConfig
 from latentarm.tasks.catalogue import SCENE_TASKS
-from latentarm.tasks.surroundings import surroundings_of
+from latentarm.tasks.place import surroundings_of
 from latentarm.tasks.task import Task
 
 PERIOD_S: Final = 0.01

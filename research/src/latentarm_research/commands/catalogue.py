@@ -3,6 +3,7 @@
 from typing import Final
 
 from latentarm.commands.catalogue import CommandSet, Entry
+from latentarm_research.measurements.catalogue import MEASUREMENTS
 from latentarm_research.studies.catalogue import STUDIES
 
 
@@ -29,6 +30,10 @@ COMMANDS: Final = CommandSet(
         **{
             f"reproduce {name}": _ours(f"reproduce:{name.replace('-', '_')}", entry.summary)
             for name, entry in STUDIES.items()
+        },
+        **{
+            f"measure {name}": _ours(f"measure:{name.replace('-', '_')}", entry.summary)
+            for name, entry in MEASUREMENTS.items()
         },
         "study list": _ours("study:list_studies", "List the paper's user studies."),
         "study show": _ours(
@@ -60,6 +65,7 @@ COMMANDS: Final = CommandSet(
     },
     {
         "reproduce": "Reproduce a study of the paper; `reproduce --help` lists them.",
+        "measure": "Measure what is behind a figure of the documentation; `measure --help` lists them.",
         "study": "Send simulated people through the paper's user studies; `study --help` lists how.",
     },
 )

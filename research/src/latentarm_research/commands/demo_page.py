@@ -10,9 +10,10 @@ from latentarm.core.style import save_figure
 from latentarm.core.types import Row
 from latentarm.evaluation.table import markdown_table
 from latentarm.tasks.scene_task import SceneTask
+from latentarm_research.drives.drives import Planned
 from latentarm_research.drives.film import Camera, Film, strip
-from latentarm_research.drives.task_drive import STUCK_S, TaskTrace
-from latentarm_research.drives.task_drives import Series, drive_again
+from latentarm_research.drives.trace import Trace
+from latentarm_research.metrics.ending import STUCK_S
 from latentarm_research.people.names import OperatorName
 
 FILM: Final = "film.png"
@@ -35,15 +36,14 @@ class Filmed:
     said: str
 
 
-def film(out: Path, model: str, series: Series, driven: Sequence[TaskTrace], seed: int) -> Filmed:
+def film(out: Path, model: str, planned: Sequence[Planned], driven: Sequence[Trace]) -> Filmed:
     """Film the first drive that succeeded, where this machine renders.
 
     Args:
         out: folder to write to.
         model: name of the model that was driven with.
-        series: the drives.
+        planned: the drives.
         driven: what came of them.
-        seed: of the drives.
 
     Raises:
         UserError: the file cannot be written.
@@ -52,7 +52,7 @@ def film(out: Path, model: str, series: Series, driven: Sequence[TaskTrace], see
     if first is None:
         return Filmed("", f"No drive with the model {model} succeeded, so there is no {FILM}.")
     seen = Film()
-    trace = drive_again(series, seed, first, seen.sees)
+    trace = planned[first].drive(seen.sees)
     try:
         times, pictures = seen.frames(CAMERA)
     except UserError as error:
@@ -65,7 +65,7 @@ def film(out: Path, model: str, series: Series, driven: Sequence[TaskTrace], see
     )
 
 
-def held_in_words(driven: Mapping[str, Sequence[TaskTrace]]) -> str:
+def held_in_words(driven: Mapping[str, Sequence[Trace]]) -> str:
     """In how many drives of each condition the fork holds the food at the end."""
     counts = [
         f"{sum(trace.figures.success for trace in traces)} of {len(traces)} drives with {name}"

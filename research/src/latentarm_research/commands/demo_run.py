@@ -38,12 +38,12 @@ from latentarm.tasks.place import ScenePlace
 from latentarm_research.commands.demo_page import FILM, film, held_in_words, page
 from latentarm_research.drives.arm_figure import draw_task
 from latentarm_research.drives.demonstrate import demonstrate
-from latentarm_research.drives.drive import STATE_NOISE_RAD
+from latentarm_research.drives.drive import STATE_NOISE_RAD, Setup
 from latentarm_research.drives.drive_figures import draw_drives, draw_inputs, marks_of_first_steps
-from latentarm_research.drives.task_drive import TaskSetup, TaskTrace
-from latentarm_research.drives.task_drives import Series, drive_series
+from latentarm_research.drives.drives import Planned, drive_all, plan_drives
+from latentarm_research.drives.trace import Trace
 from latentarm_research.metrics.comparison_figure import comparison_figure
-from latentarm_research.metrics.task_drives import task_drive_rows
+from latentarm_research.metrics.drives import drive_rows
 from latentarm_research.people.catalogue import PEOPLE
 from latentarm_research.people.names import OperatorName
 
@@ -130,18 +130,17 @@ def run_demo(config: "DemoOptions", sizes: Sizes = USUAL) -> Shown:
     )
     properties = _learn_all(config, sizes)
     conditions = _conditions(task, config, sizes.seeds)
-    number = len(task.choices) * sum(one.series.drives for one in conditions)
+    number = sum(len(one.planned) for one in conditions)
     console.print(f"3/3  Simulated operators drive {number} times, in {len(conditions)} conditions.")
-    series = [one.series for one in conditions]
-    driven = drive_series(series, config.seed, config.jobs, bars=config.bars)
+    driven = drive_all([one.planned for one in conditions], config.jobs, bars=config.bars)
     tables: dict[OperatorName, list[Row]] = {person: [] for person in DRIVERS}
     for condition, traces in zip(conditions, driven, strict=True):
-        tables[condition.person] += task_drive_rows(condition.subject, [trace.measured for trace in traces])
+        tables[condition.person] += drive_rows(condition.subject, [trace.figures for trace in traces])
     rows = [_named(person, row) for person, table in tables.items() for row in table]
     write_results(config.out / "results.json", [*rows, *properties], _about(config, sizes))
     shown = [(one, traces) for one, traces in zip(conditions, driven, strict=True) if one.person == SHOWN]
     held = held_in_words({condition.name: traces for condition, traces in shown})
-    filmed = film(config.out, MODELS[0], shown[0][0].series, shown[0][1], config.seed)
+    filmed = film(config.out, MODELS[0], shown[0][0].planned, shown[0][1])
     _draw({str(one.subject.condition): traces for one, traces in shown if one.drawn}, properties, config.out)
     text = page(
         task,
@@ -166,7 +165,7 @@ def _place(task: Marshmallows, seed: int) -> ScenePlace:
     return ScenePlace(task.robot, begun.goals, task.obstacles)
 
 
-def _draw(shown: Mapping[str, Sequence[TaskTrace]], properties: Sequence[Row], out: Path) -> None:
+def _draw(shown: Mapping[str, Sequence[Trace]], properties: Sequence[Row], out: Path) -> None:
     """Draw drives by condition, and the properties of the latent spaces."""
     marks = marks_of_first_steps(next(iter(shown.values())))
     draw_drives(shown, marks, out / "paths.png")
@@ -230,12 +229,12 @@ class _Condition:
     Attributes:
         person: who drives.
         subject: of the figures.
-        series: their drives; all seeds of a model take turns.
+        planned: their drives; all seeds of a model take turns.
     """
 
     person: OperatorName
     subject: Subject
-    series: Series
+    planned: Sequence[Planned]
 
     @property
     def name(self) -> str:
@@ -261,9 +260,10 @@ def _conditions(task: Marshmallows, config: "DemoOptions", seeds: int) -> list[_
         _Condition(
             person,
             Subject("demo", task=task.name, model=model, condition=condition),
-            Series(
-                [TaskSetup(task, one, PEOPLE[person], help_by, ARM) for one in controllers],
+            plan_drives(
+                [[Setup(task, one, PEOPLE[person], help_by, ARM) for one in controllers]],
                 config.drives if person == SHOWN else config.others,
+                config.seed,
             ),
         )
         for person in DRIVERS

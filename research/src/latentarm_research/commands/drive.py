@@ -10,7 +10,7 @@ def drive(options: DriveOptions) -> int:
 
     Exits with 1 when no drive reached its goal. For example: latentarm drive runs/pour-cae
     """
-    from latentarm_research.commands.drive_at_goals import drive_run
+    from latentarm_research.commands.drive_run import drive_run
     from latentarm_research.drives.drive_table import endings_in_words
 
     driven = drive_run(options, note)

@@ -152,8 +152,7 @@ class Driven:
 
     Attributes:
         rows: mean and SD over the drives.
-        entries: one mapping per drive, see `latentarm_research.drives.drive_table.COLUMNS`, with things
-            `latentarm_research.drives.task_drive_table.COLUMNS`.
+        entries: one mapping per drive, see `latentarm_research.drives.drive_table.COLUMNS`.
         controller: what drove.
         operator: who gave inputs.
         task: what was done.

@@ -10,7 +10,7 @@ from tyro.conf import Positional, arg
 
 from latentarm.commands.configuration import write_options
 from latentarm.commands.options import Json, StudyOptions
-from latentarm.commands.output import note, print_renderables, say, show
+from latentarm.commands.output import print_renderables, say, show
 from latentarm.core.errors import UserError
 from latentarm_research.commands.study_name import StudyName
 from latentarm_research.user_studies.catalogue import NAMES, load_definition
@@ -19,7 +19,8 @@ from latentarm_research.user_studies.own.definition_file import find_definition
 from latentarm_research.user_studies.sizes import PRESETS
 
 if TYPE_CHECKING:
-    from latentarm_research.user_studies.run import Request
+    from latentarm_research.studies.study import Request
+    from latentarm_research.user_studies.sizes import Sizes
 
 Simulated = Annotated[
     int | None,
@@ -88,26 +89,15 @@ def run_study(
 
     For example: latentarm study run harmonic --simulated 2 --preset smoke
     """
-    from latentarm_research.user_studies.folder import claim, write_documents
-    from latentarm_research.user_studies.report.report import report_files, write_report
-    from latentarm_research.user_studies.run import send_people
+    from latentarm_research.studies.study import run_study as measure_study
+    from latentarm_research.user_studies.run import study_of
 
     definition = find_definition(name)
     folder = Path("studies", definition.name) if out is None else out
     request = _request(definition, options, simulated, preset, folder)
-    people = request.people
-    claim(request, report_files(definition))
-    ran = send_people(request)
-    rows = write_documents(request, ran)
+    report = measure_study(study_of(definition, name), request)
     write_options(folder, "study run")
-    command = f"latentarm study run {name} --simulated {people} --preset {preset} --seed {options.seed}"
-    why = write_report(folder, ran, rows, command)
-    if why:
-        note([why])
-    verdicts = Table("", "says", "why", title=f"{definition.title}: {ran.sizes.people(people)}")
-    for one in ran.analysis.verdicts:
-        verdicts.add_row(one.hypothesis.name, one.says, one.why)
-    show(rows, options.json, verdicts)
+    show(report.rows, options.json, *report.tables)
     say(f"Report, figures and results.json are in {folder}/ (begin with {folder}/report.html).", options.json)
     return 0
 
@@ -132,27 +122,33 @@ def power_of_study(
 
     For example: latentarm study power harmonic --results studies/harmonic
     """
-    from latentarm_research.user_studies.folder import claim_power, read_trials, write_power
+    from latentarm.runs.results_folder import ResultsFolder, write_json
+    from latentarm_research.studies.study import Grid
+    from latentarm_research.user_studies.kept import SESSIONS
     from latentarm_research.user_studies.power import TARGETS, power_of
-    from latentarm_research.user_studies.run import send_people
+    from latentarm_research.user_studies.recorded import read_recorded
+    from latentarm_research.user_studies.run import study_of
 
     definition = find_definition(name)
     folder = Path("studies", f"{definition.name}-power") if out is None else out
-    about: dict[str, object] = {"draws": draws, "seed": options.seed}
+    study = study_of(definition, name)
+    claimed = ResultsFolder(f"power of {study.name}", ("power.json",), (SESSIONS,))
+    about = {"study": claimed.name, "definition": definition.digest, "draws": draws, "seed": options.seed}
     if results is None:
         request = _request(definition, options, simulated, preset, folder)
-        claim_power(folder, definition, {**about, "drawn_from": request.about})
-        trials = send_people(request).trials
+        claimed.claim(folder, {**about, "drawn_from": study.about(request)})
+        recorded = study.measure(request, Grid(request))
     else:
-        found, trials = read_trials(results)
+        recorded = read_recorded(results)
+        found = recorded.definition
         if found != definition:
             raise UserError(
                 f"{results} holds a run of the study {found.name}, definition {found.digest[:12]}: name a"
                 f" run of {definition.name}, definition {definition.digest[:12]}."
             )
-        claim_power(folder, definition, {**about, "drawn_from": str(results)})
-    power = power_of(definition, trials, draws, options.seed)
-    write_power(folder, power)
+        claimed.claim(folder, {**about, "drawn_from": str(results)})
+    power = power_of(definition, recorded.trials, draws, options.seed)
+    write_json(folder / "power.json", power.as_json())
     if options.json:
         print(json_format.dumps(power.as_json(), indent=2))
         return 0
@@ -169,21 +165,19 @@ def power_of_study(
 
 def _request(
     definition: Definition, options: StudyOptions, simulated: int | None, preset: str, out: Path
-) -> "Request":
+) -> "Request[Sizes]":
     """What was asked for.
 
     Raises:
         UserError: something is out of its range.
     """
-    from latentarm_research.user_studies.run import Request
+    from latentarm_research.studies.study import Request
+    from latentarm_research.user_studies.sizes import sizes_of
 
-    if preset not in PRESETS:
-        raise UserError(f"There is no preset {preset!r}: choose from {', '.join(PRESETS)}.")
     return Request(
-        definition,
-        PRESETS[preset],
-        definition.people if simulated is None else simulated,
         out,
+        sizes_of(preset, definition.people if simulated is None else simulated),
+        tuple(task.name for task in definition.tasks),
         seed=options.seed,
         jobs=options.jobs,
         backend=options.backend,

@@ -5,7 +5,6 @@ import json as json_format
 from pathlib import Path
 from typing import Annotated
 
-from rich.table import Table
 from tyro.conf import Positional, arg
 
 from latentarm.commands.configuration import write_options
@@ -65,12 +64,13 @@ def analyse_study(
 
     For example: latentarm study analyse studies/harmonic
     """
-    from latentarm_research.user_studies.analysis.analysis import analyse
+    from latentarm.runs.results_folder import ResultsFolder
+    from latentarm_research.studies.study import REPORTED, write_report
     from latentarm_research.user_studies.answers.reading import read_answers
     from latentarm_research.user_studies.answers.scales import rate
-    from latentarm_research.user_studies.folder import claim_analysis, rows_of, write_analysis
     from latentarm_research.user_studies.recorded import read_recorded
-    from latentarm_research.user_studies.report.report import report_files, write_report_of
+    from latentarm_research.user_studies.report.figures import figure_names
+    from latentarm_research.user_studies.report.report import ANALYSIS, RATINGS, report_of
 
     recorded = read_recorded(folder)
     definition = recorded.definition
@@ -83,26 +83,23 @@ def analyse_study(
         given = read_answers(answers, definition, recorded.met)
         ratings = rate(definition, given, recorded.trials)
         digest = hashlib.sha256(read_bytes(answers, MAX_TEXT_BYTES)).hexdigest()
+    figures = (f"{figure}.png" for figure in figure_names(definition))
+    claimed = ResultsFolder(f"analysis of {definition.study}", (*REPORTED, ANALYSIS, RATINGS, *figures))
     about: dict[str, object] = {
+        "study": claimed.name,
+        "definition": definition.digest,
         "analysed": str(folder),
         "people": len(recorded.met),
         "people_are": recorded.people_are,
         "answers": digest,
     }
     path = Path("studies", f"{definition.name}-analysis") if out is None else out
-    claim_analysis(path, definition, about, report_files(definition))
-    scores = () if ratings is None else ratings.scores
-    analysis = analyse(definition, recorded.trials, scores, recorded.sizes.not_judged)
-    rows = rows_of(definition, analysis.trials)
-    write_analysis(path, about, analysis, rows, ratings)
-    write_options(path, "study analyse")
+    claimed.claim(path, about)
     asked = "" if answers is None else f" --answers {answers}"
-    why = write_report_of(path, recorded, analysis, rows, ratings, f"latentarm study analyse {folder}{asked}")
-    if why:
+    report = report_of(recorded, f"latentarm study analyse {folder}{asked}", ratings)
+    if why := write_report(path, report, about):
         note([why])
-    verdicts = Table("", "says", "why", title=f"{definition.title}: {recorded.who}")
-    for one in analysis.verdicts:
-        verdicts.add_row(one.hypothesis.name, one.says, one.why)
-    show(rows, json, verdicts)
+    write_options(path, "study analyse")
+    show(report.rows, json, *report.tables)
     say(f"Report, figures and analysis.json are in {path}/ (begin with {path}/report.html).", json)
     return 0

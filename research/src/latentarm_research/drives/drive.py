@@ -1,180 +1,215 @@
-"""One simulated drive: a simulated operator, a controller, Algorithm 1 with its safety filters, an arm."""
+"""One simulated drive: a simulated operator, a controller, Algorithm 1 with its safety filters, an arm.
+
+A task at goals is driven like one with things: its waypoints are the steps (`GoalTask`), and nothing can be
+touched.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Final, final
 
 import numpy as np
 
-from latentarm.arms.catalogue import DEFAULT_ARM, make_simulated_arm
-from latentarm.arms.contract import check_arm
-from latentarm.assistance.assistance import AssistanceRule
-from latentarm.assistance.belief import Rule
+from latentarm.arms.catalogue import DEFAULT_ARM, PHYSICAL_ARM, make_scene_arm, make_simulated_arm
+from latentarm.arms.contract import Arm, SceneArm, check_arm
+from latentarm.assistance.assistance import Assistance, AssistanceRule
+from latentarm.assistance.belief import Belief, Rule
 from latentarm.assistance.boltzmann import BoltzmannBelief
 from latentarm.assistance.controllers.contract import Controller
 from latentarm.control.clock import SimulatedClock
 from latentarm.control.step import Step
-from latentarm.core.types import FloatArray, Input, Pose, StepRecord
+from latentarm.core.types import Input, Pose, Reading, StepRecord
+from latentarm.robots.kinematics.pose_rows import thing_rows
+from latentarm.robots.scene.scene import SceneState
 from latentarm.safety.config import SafetyConfig
-from latentarm.tasks.surroundings import surroundings_of
-from latentarm.tasks.task import GripperTask, Task, check_not_done
-from latentarm_research.metrics.drives import Drive, GoalDrive, measure_goal_drive
-from latentarm_research.metrics.ending import Ending, why_it_ended
+from latentarm.tasks.goal_task import without_things
+from latentarm.tasks.place import watched
+from latentarm.tasks.scene_task import Beginning, SceneTask
+from latentarm.tasks.steps import Progress
+from latentarm_research.drives.following import Following, poses_at
+from latentarm_research.drives.trace import Trace
 from latentarm_research.people.loop_limits import LoopLimits
+from latentarm_research.people.operator import Operator
 from latentarm_research.people.person import Person, SimulatedPerson
 
-RATE_HZ = 100.0
+RATE_HZ: Final = 100.0
 """Rate of the simulated loop, the most that a real arm is sent from Python."""
 
-STATE_NOISE_RAD = 0.05
+STATE_NOISE_RAD: Final = 0.05
 """A driven arm leaves the demonstrated states: with this noise in training the decoder has been there."""
 
-BELIEF_PERIOD_S = 0.1
+BELIEF_PERIOD_S: Final = 0.1
 """How often the belief is updated: as often as the simulated operator decides."""
 
+REARM_S: Final = 2.0
+"""After a stop the simulated person lets go, and enables the arm again so much later, s."""
 
+Record = Callable[[Beginning], Callable[[StepRecord], None]]
+"""Begins to record a drive."""
+
+
+@final
 @dataclass(frozen=True, eq=False)
 class Setup:
     """Everything that stays the same from drive to drive.
 
     Attributes:
-        task: the robot, the goals and when they are reached.
+        task: what is to be done; `GoalTask` at goals.
         controller: what the simulated operator steers with.
-        assistance: how the robot helps towards its belief over the task's goals; None never helps.
         person: the simulated person who drives.
-        time_limit_s: a drive that lasts longer has failed.
+        assistance: how the robot helps towards its belief over the goals; None never helps.
+        arm: what moves, a simulated arm of `latentarm.arms.catalogue`; by default
+            `PHYSICAL_ARM` with things and `DEFAULT_ARM` without.
         rule: how inputs change the belief; without help too, for a decoder may look at it.
-        arm: what moves, a simulated arm of `latentarm.arms.catalogue`.
     """
 
-    task: Task
+    task: SceneTask
     controller: Controller
-    assistance: AssistanceRule | None
     person: Person
-    time_limit_s: float
+    assistance: AssistanceRule | None = None
+    arm: str | None = None
     rule: Rule = BoltzmannBelief
-    arm: str = DEFAULT_ARM
 
 
-@dataclass(frozen=True, eq=False)
-class Trace:
-    """What is kept of a drive for figures, sampled at the loop's rate.
-
-    Attributes:
-        measured: its figures.
-        goal: index of the goal.
-        progress: share of the waypoints that were reached.
-        ending: why it ended.
-        time_s: (T,), s.
-        position: (T, 3), the tool, m.
-        input: (T, d).
-        mode: (T,), index of the controller's mode.
-        belief: (T, G).
-    """
-
-    measured: GoalDrive
-    goal: int
-    progress: float
-    ending: Ending
-    time_s: FloatArray
-    position: FloatArray
-    input: FloatArray
-    mode: FloatArray
-    belief: FloatArray
-
-    @property
-    def figures(self) -> Drive:
-        """Those that every drive has."""
-        return self.measured.drive
-
-
-def simulate(
+def drive(
     setup: Setup,
-    goal: int,
-    manner: str,
+    choice: int,
     rng: np.random.Generator,
-    watch: Callable[[StepRecord], None] | None = None,
+    watch: Callable[[Arm], None] | None = None,
+    record: Record | None = None,
 ) -> Trace:
-    """Drive once, until the task is done or the time is over.
+    """Drive once, until the task is done, has failed, or the time is over.
 
     Args:
         setup: who drives what, and how.
-        goal: index into the task's goals.
-        manner: what is done at the goal.
-        rng: of the start and of the simulated operator.
-        watch: is told every step, such as a recorder.
-
-    Returns:
-        The drive.
+        choice: index into the task's choices.
+        rng: of the start, of the things' places and of the simulated operator.
+        watch: sees the arm at every tick, such as a camera.
+        record: is told how the drive begins, and gives what is told every step, with where all things of the
+            scene are, in its order.
 
     Raises:
         UserError: the task is done where the arm starts, or the arm cannot be used.
     """
     task, controller = setup.task, setup.controller
-    dt_s = 1.0 / RATE_HZ
-    start = task.sample_start(goal, rng)
+    begun = task.begin(choice, rng)
+    note = None if record is None else record(begun)
     clock = SimulatedClock()
-    step = _step(setup, dt_s)
-    operator = SimulatedPerson(task.robot, setup.person, dt_s, LoopLimits(step.dead_zone, step.joint_speed))
-    remaining = list(task.waypoints(goal, manner))
-    asks = task.asks(goal, manner) if isinstance(task, GripperTask) else ()
-    since_s = 0.0
-    check_not_done(task, start, remaining)
-    with make_simulated_arm(setup.arm, task.robot, start, clock.now_s) as arm:
+    follow = Following(begun)
+    step = _step(setup, begun, follow)
+    limits = LoopLimits(step.dead_zone, step.joint_speed)
+    operator = SimulatedPerson(task.robot, setup.person, step.dt_s, limits)
+    with _arm(setup, begun, clock) as arm:
         check_arm(arm.spec, task.robot)
         reading = arm.read()
         step.reset(reading.q)
-        records = [step(Input(np.zeros(controller.input_dim)), 0.0, reading, clock.now_s())]
+        first = step(Input(np.zeros(controller.input_dim)), 0.0, reading, clock.now_s())
+        if not begun.scene.names:
+            follow.records.append(first)
         arm.enable()
         step.enable()
-        for tick in range(1, int(setup.time_limit_s * RATE_HZ) + 1):
-            clock.wait_until(tick * dt_s)
+        rearming = _Rearming(step, follow.progress)
+        for tick in range(1, int(task.time_limit_s * RATE_HZ) + 1):
+            clock.wait_until(tick * step.dt_s)
             reading = arm.read()
-            pose = task.robot.chain.forward(reading.q)
-            while remaining and task.reached(pose, remaining[0]):
-                remaining.pop(0)
-                since_s = (tick - 1) * dt_s
-            if not remaining:
-                break
-            given = operator.act(step.context(reading.q), controller, step.mode, remaining[0], rng)
-            if asks:
-                given = replace(given, gripper=asks[-1 - len(remaining)])
-            records.append(step(given, 0.0, reading, clock.now_s()))
+            state = _state(arm, begun, task.robot.chain.forward(reading.q), clock.now_s())
+            follow.sees(state)
             if watch is not None:
-                watch(records[-1])
-            arm.send(records[-1].command)
-    return _trace(records, setup, goal, manner, remaining, since_s)
+                watch(arm)
+            if follow.ending is not None:
+                break
+            if rearming.lets_go(clock.now_s()):
+                operator.reset()
+                given = Input(np.zeros(controller.input_dim))
+            else:
+                given = _given(operator, reading, state, follow.progress, step, controller, rng)
+                if begun.asks:
+                    given = replace(given, gripper=begun.asks[follow.progress.done])
+            taken = step(given, 0.0, reading, clock.now_s())
+            follow.records.append(taken)
+            if note is not None:
+                note(replace(taken, things=thing_rows(state.poses, begun.scene.names)))
+            arm.send(taken.command)
+    return follow.trace(choice, task.robot.chain, rearming.stops)
 
 
-def _step(setup: Setup, dt_s: float) -> Step:
-    task = setup.task
-    goals = np.stack([goal.configuration for goal in task.goals])
+def _arm(setup: Setup, begun: Beginning, clock: SimulatedClock) -> Arm:
+    robot = setup.task.robot
+    if begun.scene.names:
+        return make_scene_arm(setup.arm or PHYSICAL_ARM, robot, begun.state, clock.now_s, begun.scene)
+    return make_simulated_arm(setup.arm or DEFAULT_ARM, robot, begun.state, clock.now_s)
+
+
+def _state(arm: Arm, begun: Beginning, tool: Pose, time_s: float) -> SceneState:
+    if begun.scene.names and isinstance(arm, SceneArm):
+        return arm.scene_state()
+    return without_things(tool, time_s, poses_at(begun))
+
+
+def _step(setup: Setup, begun: Beginning, follow: Following) -> Step:
+    belief: Belief | None = None
+    assistance: Assistance | None = None
+    if begun.goals:
+        goals = np.stack([goal.configuration for goal in begun.goals])
+        belief = setup.rule(goals, period_s=BELIEF_PERIOD_S)
+        assistance = None if setup.assistance is None else setup.assistance(goals)
     return Step(
-        task.robot,
+        setup.task.robot,
         setup.controller,
-        SafetyConfig(obstacles=tuple(task.obstacles)),
-        goals=task.goals,
-        belief=setup.rule(goals, period_s=BELIEF_PERIOD_S),
-        assistance=None if setup.assistance is None else setup.assistance(goals),
-        dt_s=dt_s,
-        surroundings=surroundings_of(task, setup.controller.objects),
+        SafetyConfig(obstacles=setup.task.obstacles),
+        goals=begun.goals,
+        belief=belief,
+        assistance=assistance,
+        dt_s=1.0 / RATE_HZ,
+        surroundings=watched(lambda: follow.poses, setup.controller.objects),
     )
 
 
-def _trace(
-    records: list[StepRecord], setup: Setup, goal: int, manner: str, remaining: list[Pose], since_s: float
-) -> Trace:
-    chain = setup.task.robot.chain
-    waypoints: tuple[Pose, ...] = setup.task.waypoints(goal, manner)
-    return Trace(
-        measured=measure_goal_drive(
-            records, chain, waypoints[-1], [goal.pose for goal in setup.task.goals], success=not remaining
-        ),
-        goal=goal,
-        progress=1.0 - len(remaining) / len(waypoints),
-        ending=why_it_ended(records, chain, remaining[0] if remaining else None, since_s),
-        time_s=np.array([record.time_s for record in records]),
-        position=chain.forward(np.stack([record.state for record in records])).position,
-        input=np.stack([record.input for record in records]),
-        mode=np.array([record.mode for record in records], dtype=np.float64),
-        belief=np.stack([record.belief for record in records]),
+def _given(
+    operator: Operator,
+    reading: Reading,
+    state: SceneState,
+    progress: Progress,
+    step: Step,
+    controller: Controller,
+    rng: np.random.Generator,
+) -> Input:
+    """The person's input: a push towards the waypoint, or rest while the gripper acts."""
+    waypoint = progress.waypoint
+    if waypoint is None or progress.asks is not None:
+        return Input(np.zeros(controller.input_dim), gripper=progress.asks)
+    carries = state.stabbed | state.gripped
+    return operator.act(
+        step.context(reading.q),
+        controller,
+        step.mode,
+        waypoint.pose(state),
+        rng,
+        waypoint.within_m,
+        waypoint.speed,
+        np.array([name in carries for name in controller.objects], dtype=np.bool_),
     )
+
+
+@final
+class _Rearming:
+    """What the person does about stops: they let go, enable the arm again, and begin the step again."""
+
+    def __init__(self, step: Step, progress: Progress) -> None:
+        self.stops = 0
+        self._step = step
+        self._progress = progress
+        self._since_s: float | None = None
+
+    def lets_go(self, time_s: float) -> bool:
+        """Whether the arm is stopped; in the end it is enabled for the next tick."""
+        if self._step.stopped is None:
+            self._since_s = None
+            return False
+        if self._since_s is None:
+            self.stops += 1
+            self._since_s = time_s
+        elif time_s - self._since_s >= REARM_S:
+            self._step.enable()
+            self._progress.again()
+        return True

@@ -3,14 +3,14 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, Literal, Protocol, TypeVar, final
+from typing import TYPE_CHECKING, Final, Literal, final
 
 import numpy as np
 
 from latentarm.core.style import FONT_SIZE, legend_below, new_figure, save_figure, tidy
 from latentarm.core.types import FloatArray, Goal
 from latentarm.evaluation.looks import look_of
-from latentarm_research.drives.task_drive import TaskTrace
+from latentarm_research.drives.trace import Trace
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -26,52 +26,6 @@ WIDTH_MM = 170.0
 
 TICKS: Final = 3
 """Intervals across a panel, at most: a narrow one has no room for the labels of more."""
-
-
-class Outcome(Protocol):
-    """Whether a drive did what it was for."""
-
-    @property
-    def success(self) -> bool:
-        """Whether it did."""
-        ...
-
-
-class Drawn(Protocol):
-    """A drive as figures show it, with things or without."""
-
-    @property
-    def figures(self) -> Outcome:
-        """What is measured of it."""
-        ...
-
-    @property
-    def goal(self) -> int:
-        """Index of what it was for."""
-        ...
-
-    @property
-    def time_s(self) -> FloatArray:
-        """(T,), s."""
-        ...
-
-    @property
-    def position(self) -> FloatArray:
-        """(T, 3), the tool, m."""
-        ...
-
-    @property
-    def input(self) -> FloatArray:
-        """(T, d)."""
-        ...
-
-    @property
-    def mode(self) -> FloatArray:
-        """(T,), index of the controller's mode."""
-        ...
-
-
-_Drive = TypeVar("_Drive", bound=Drawn)
 
 
 @final
@@ -95,12 +49,12 @@ def marks_of_goals(goals: Sequence[Goal]) -> list[Mark]:
     return [Mark(goal.name, index, goal.pose.position) for index, goal in enumerate(goals)]
 
 
-def marks_of_first_steps(traces: Sequence[TaskTrace]) -> list[Mark]:
+def marks_of_first_steps(traces: Sequence[Trace]) -> list[Mark]:
     """Where the first step of each drive leads, which lies elsewhere in each."""
-    return [Mark(trace.steps[0].name, trace.goal, trace.target) for trace in traces]
+    return [Mark(trace.steps[0].name, trace.choice, trace.target) for trace in traces]
 
 
-def draw_drives(traces: Mapping[str, Sequence[Drawn]], marks: Sequence[Mark], path: Path) -> None:
+def draw_drives(traces: Mapping[str, Sequence[Trace]], marks: Sequence[Mark], path: Path) -> None:
     """Draw where the tool went, from above and from the side, one column per condition.
 
     Args:
@@ -137,12 +91,12 @@ def outcome_lines() -> "list[Line2D]":
     return [Line2D([], [], color="black", linestyle=dash, linewidth=0.9) for dash in OUTCOMES.values()]
 
 
-def _draw_view(axes: "Axes", drives: Sequence[Drawn], marks: Sequence[Mark], across: int, up: int) -> None:
+def _draw_view(axes: "Axes", drives: Sequence[Trace], marks: Sequence[Mark], across: int, up: int) -> None:
     for trace in drives:
         axes.plot(
             trace.position[:, across],
             trace.position[:, up],
-            color=GOAL_COLOURS[trace.goal % len(GOAL_COLOURS)],
+            color=GOAL_COLOURS[trace.choice % len(GOAL_COLOURS)],
             linestyle=OUTCOMES["goal reached" if trace.figures.success else "goal not reached"],
             linewidth=0.7,
             alpha=0.6,
@@ -163,7 +117,7 @@ def _draw_view(axes: "Axes", drives: Sequence[Drawn], marks: Sequence[Mark], acr
     axes.set_aspect("equal", adjustable="box")
 
 
-def draw_inputs(traces: Mapping[str, Sequence[Drawn]], path: Path) -> None:
+def draw_inputs(traces: Mapping[str, Sequence[Trace]], path: Path) -> None:
     """Draw the typical drive of each condition over time: what the person did, and when they changed modes.
 
     Typical is the drive that takes the median time.
@@ -210,6 +164,6 @@ def draw_inputs(traces: Mapping[str, Sequence[Drawn]], path: Path) -> None:
     save_figure(figure, path)
 
 
-def median_drive(drives: Sequence[_Drive]) -> _Drive:
+def median_drive(drives: Sequence[Trace]) -> Trace:
     """The drive that takes the median time; of an even number, the shorter of the two in the middle."""
     return sorted(drives, key=lambda trace: float(trace.time_s[-1]))[(len(drives) - 1) // 2]

@@ -4,110 +4,103 @@ import csv
 import io
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from math import isnan
 from pathlib import Path
 from typing import Final
 
 from latentarm.core.files import write_text
-from latentarm_research.drives.drive import Trace
-from latentarm_research.metrics.drives import Drive
+from latentarm_research.drives.drives import Planned
+from latentarm_research.drives.trace import Trace
 
-EVERY_DRIVE: Final[dict[str, str]] = {
+COLUMNS: Final[dict[str, str]] = {
+    "drive": "number of the drive, from 0",
+    "choice": "index of what was to be done, from 0; at goals of the goal",
+    "choice_name": "its name",
+    "text": "what was to be done, in words",
+    "repeat": "number of the drive for this choice, from 0",
+    "seed": "seed of the command; things, start and inputs depend on seed, choice and repeat alone",
+    "controller": "latent, latent_assist, end_effector, two_sticks or retargeting",
+    "operator": "greedy, learning, reading, unsteady or planning; all are simulated",
+    "success": "whether all steps were done and nothing went wrong; at goals each waypoint is a step",
+    "steps_done": "share of the steps that were done, 0 to 1",
+    "not_done": "the first step that was not done, in words",
+    "ended_because": "done, mishap, time_limit, operator_stuck, held_back or safety_stop",
+    "ended_in_words": "the same in words",
     "time_s": "duration, s",
     "idle_s": "time without input, s",
     "input_magnitude_s": "integral of the input's length over time, s of full deflection",
     "turned_round": "share of the time in which the stick is over 90 degrees from where it was within 0.5 s",
     "mode_switches": "how often the controller's mode changed",
     "path_length_m": "length of the tool's path, m",
-}
-"""Columns that the tables of all kinds of drives have, and what each holds."""
-
-COLUMNS: Final[dict[str, str]] = {
-    "drive": "number of the drive, from 0",
-    "goal": "index of the goal, from 0",
-    "goal_name": "its name",
-    "manner": "what is done at the goal",
-    "repeat": "number of the drive to this goal, from 0",
-    "seed": "seed of the command; start and inputs depend on seed, goal and repeat alone",
-    "controller": "latent, latent_assist, end_effector, two_sticks or retargeting",
-    "operator": "greedy, learning, reading, unsteady or planning; all are simulated",
-    "success": "whether all waypoints were reached",
-    "ended_because": "reached, time_limit, operator_stuck, held_back or safety_stop",
-    "ended_in_words": "the same as a sentence",
-    **EVERY_DRIVE,
+    "stops": "how often the arm was stopped and had to be enabled again",
     "goal_error_m_s": "integral over time of the tool's distance to the closest goal, m s",
     "goal_error_m": "mean of the same distance over time, m",
     "final_distance_m": "tool from the last waypoint at the end, m",
     "final_angle_deg": "the same for orientation, degrees",
-    "waypoints_reached": "share of the waypoints that were reached, 0 to 1",
+    "preference_alignment": "mean dot product of where the tool points and where it should",
+    "table_force_n": "largest force of the tool on the table or a dish, N",
+    "food_force_n": "largest force of the tool on food, N",
+    "spilled": "grains that were spilled",
+    "grains": "grains that there were",
 }
-"""What each column of ``drives.csv`` holds; ``drives`` in ``drives.json`` has the same fields."""
+"""What each column of ``drives.csv`` holds; ``drives`` in ``drives.json`` has the same fields.
 
-
-@dataclass(frozen=True)
-class Planned:
-    """A drive before it is driven.
-
-    Attributes:
-        goal_name: of the goal.
-        manner: what is done at the goal.
-        repeat: number of the drive to this goal.
-    """
-
-    goal_name: str
-    manner: str
-    repeat: int
+A figure that a drive does not have, such as a force where nothing can be touched, is empty, or null in JSON.
+"""
 
 
 def drive_entries(
-    planned: Sequence[Planned], traces: Sequence[Trace], *, seed: int, controller: str, operator: str
+    planned: Sequence[Planned], traces: Sequence[Trace], *, controller: str, operator: str
 ) -> list[dict[str, object]]:
     """One mapping per drive, with the keys of `COLUMNS` in that order.
 
     Args:
         planned: the drives, in order.
         traces: what came of them.
-        seed: of the command.
         controller: what drove.
         operator: who gave inputs.
     """
     return [
-        {
-            "drive": number,
-            "goal": trace.goal,
-            "goal_name": plan.goal_name,
-            "manner": plan.manner,
-            "repeat": plan.repeat,
-            "seed": seed,
-            "controller": controller,
-            "operator": operator,
-            "success": trace.figures.success,
-            "ended_because": trace.ending.reason,
-            "ended_in_words": trace.ending.detail,
-            **every_drive(trace.figures),
-            "goal_error_m_s": trace.measured.goal_error_m_s,
-            "goal_error_m": trace.measured.goal_error_m,
-            "final_distance_m": trace.measured.final_distance,
-            "final_angle_deg": trace.measured.final_angle_deg,
-            "waypoints_reached": trace.progress,
-        }
-        for number, (plan, trace) in enumerate(zip(planned, traces, strict=True))
+        {name: None if isinstance(value, float) and isnan(value) else value for name, value in entry.items()}
+        for entry in (
+            _entry(number, plan, trace, controller, operator)
+            for number, (plan, trace) in enumerate(zip(planned, traces, strict=True))
+        )
     ]
 
 
-def every_drive(figures: Drive) -> dict[str, object]:
-    """The cells of `EVERY_DRIVE`.
-
-    Args:
-        figures: of one drive.
-    """
+def _entry(number: int, plan: Planned, trace: Trace, controller: str, operator: str) -> dict[str, object]:
+    figures = trace.figures
     return {
+        "drive": number,
+        "choice": plan.choice,
+        "choice_name": plan.setup.task.choices[plan.choice],
+        "text": trace.text,
+        "repeat": plan.repeat,
+        "seed": plan.seed,
+        "controller": controller,
+        "operator": operator,
+        "success": figures.success,
+        "steps_done": figures.steps_done,
+        "not_done": trace.ended_in,
+        "ended_because": trace.ending.reason,
+        "ended_in_words": trace.ending.detail,
         "time_s": figures.time_s,
         "idle_s": figures.idle_s,
         "input_magnitude_s": figures.input_magnitude,
         "turned_round": figures.turned_round,
         "mode_switches": figures.mode_switches,
         "path_length_m": figures.path_length,
+        "stops": figures.stops,
+        "goal_error_m_s": figures.goal_error_m_s,
+        "goal_error_m": figures.goal_error_m,
+        "final_distance_m": figures.final_distance,
+        "final_angle_deg": figures.final_angle_deg,
+        "preference_alignment": figures.preference_alignment,
+        "table_force_n": figures.table_force_n,
+        "food_force_n": figures.food_force_n,
+        "spilled": figures.spilled,
+        "grains": figures.grains,
     }
 
 

@@ -1,76 +1,94 @@
-"""Many simulated drives: every goal several times, the same for every controller."""
+"""Many simulated drives: every choice of a task several times, the same for every controller."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Final, final
 
 import numpy as np
 
+from latentarm.arms.contract import Arm
 from latentarm.core.parallel.grid import run_grid
-from latentarm.tasks.task import Task
-from latentarm_research.drives.drive import Setup, Trace, simulate
+from latentarm.tasks.goal_task import GoalTask
+from latentarm_research.drives.drive import Record, Setup, drive
+from latentarm_research.drives.trace import Trace
 
-DRIVE_STREAM = 2
-"""Separates the drives' randomness from everything else drawn from the same seed."""
-
-DrivePlan = tuple[int, str, np.random.Generator]
-"""Goal, manner and randomness of a drive."""
+AT_GOALS: Final = 2
+WITH_THINGS: Final = 12
+"""Separate the drives' randomness from everything else drawn from the same seed."""
 
 
-def drive_all(
-    setups: Sequence[Setup], drives: int, seed: int, jobs: int, *, bars: bool = False
-) -> list[Trace]:
-    """Drive to every goal ``drives`` times, the task's manners in turn, processes side by side.
+@final
+@dataclass(frozen=True, eq=False)
+class Planned:
+    """A drive before it is driven. Driven again, it is the same to the bit.
 
-    A drive depends on the seed, the goal and its number alone, so that every controller meets the
-    same starts and the number of processes changes nothing.
+    Its randomness depends on the seed, the choice and its number alone, so that every controller meets the
+    same starts and things, and the number of processes changes nothing.
+
+    Attributes:
+        setup: who drives what.
+        choice: index into the task's choices.
+        repeat: number of the drive for this choice.
+        seed: of the start, of the things' places and of the simulated operator.
+    """
+
+    setup: Setup
+    choice: int
+    repeat: int
+    seed: int
+
+    def drive(self, watch: Callable[[Arm], None] | None = None, record: Record | None = None) -> Trace:
+        """Drive; see `latentarm_research.drives.drive.drive`.
+
+        Raises:
+            UserError: the task is done where the arm starts, or the arm cannot be used.
+        """
+        stream = AT_GOALS if isinstance(self.setup.task, GoalTask) else WITH_THINGS
+        rng = np.random.default_rng([stream, self.seed, self.choice, self.repeat])
+        return drive(self.setup, self.choice, rng, watch, record)
+
+
+def plan_drives(setups: Sequence[Sequence[Setup]], drives: int, seed: int) -> list[Planned]:
+    """Drives of one condition, choice by choice.
 
     Args:
-        setups: on one task; they take turns, so that no figure depends on one trained model.
-        drives: to each goal.
-        seed: of the starts and of the simulated operator.
+        setups: of one task, a list for each of its manners. Manners take turns among the drives for a choice,
+            and the setups of a manner among all drives, so that no figure depends on one trained model.
+        drives: for each choice.
+        seed: of the starts, of the things' places and of the simulated operator.
+    """
+    planned: list[Planned] = []
+    for index in range(drives * len(setups[0][0].task.choices)):
+        choice, repeat = divmod(index, drives)
+        turn = setups[repeat % len(setups)]
+        planned.append(Planned(turn[index % len(turn)], choice, repeat, seed))
+    return planned
+
+
+def drive_all(conditions: Sequence[Sequence[Planned]], jobs: int, *, bars: bool = False) -> list[list[Trace]]:
+    """Drive in each condition, processes side by side.
+
+    Args:
+        conditions: the drives of each.
         jobs: processes; -1 is one per core.
         bars: show on standard error how many drives are done.
 
-    Returns:
-        The drives, goal by goal.
+    Raises:
+        UserError: the task is done where an arm starts, or an arm cannot be used.
     """
-    plan = drive_plan(setups[0].task, drives, seed)
-    calls = [_Call(setups[number % len(setups)], *call) for number, call in enumerate(plan)]
-    return run_grid(_simulate, calls, jobs=jobs, backend="joblib", label=_name_of, bars=bars, unit="drives")
-
-
-@dataclass(frozen=True, eq=False)
-class _Call:
-    """One drive of `drive_all`."""
-
-    setup: Setup
-    goal: int
-    manner: str
-    rng: np.random.Generator
-
-
-def _simulate(call: _Call) -> Trace:
-    return simulate(call.setup, call.goal, call.manner, call.rng)
-
-
-def _name_of(call: _Call) -> str:
-    return f"the drive to {call.setup.task.goals[call.goal].name}"
-
-
-def drive_plan(task: Task, drives: int, seed: int) -> list[DrivePlan]:
-    """Goal, manner and randomness of every drive, goal by goal; the manners take turns.
-
-    Args:
-        task: whose goals are driven to.
-        drives: to each goal.
-        seed: of the starts and of the simulated operator.
-    """
-    return [
-        (
-            goal,
-            task.manners[number % len(task.manners)],
-            np.random.default_rng([DRIVE_STREAM, seed, goal, number]),
+    traces = iter(
+        run_grid(
+            Planned.drive,
+            [planned for condition in conditions for planned in condition],
+            jobs=jobs,
+            backend="joblib",
+            label=_name_of,
+            bars=bars,
+            unit="drives",
         )
-        for goal in range(len(task.goals))
-        for number in range(drives)
-    ]
+    )
+    return [[next(traces) for _ in condition] for condition in conditions]
+
+
+def _name_of(planned: Planned) -> str:
+    return f"the drive for the {planned.setup.task.choices[planned.choice]}"

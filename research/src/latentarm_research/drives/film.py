@@ -11,7 +11,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from latentarm.arms.contract import SceneArm
+from latentarm.arms.contract import Arm
 from latentarm.arms.mujoco import MujocoArm
 from latentarm.core.errors import UserError
 from latentarm.core.style import FONT_SIZE, SMALL_FONT_SIZE, TWO_COLUMNS_MM, new_figure
@@ -20,7 +20,7 @@ from latentarm.core.types import FloatArray
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from latentarm_research.drives.task_drive import TaskTrace
+    from latentarm_research.drives.trace import Trace
 
 PERIOD_S: Final = 0.1
 """How often a picture may be taken, s."""
@@ -69,7 +69,7 @@ class Camera:
 class Film:
     """Watches a drive, and renders moments of it afterwards.
 
-    Give `sees` to `latentarm_research.drives.task_drive.drive_task` as ``watch``.
+    Give `sees` to `latentarm_research.drives.drive.drive` as ``watch``.
     """
 
     def __init__(self) -> None:
@@ -77,7 +77,7 @@ class Film:
         self._time_s: list[float] = []
         self._positions: list[FloatArray] = []
 
-    def sees(self, arm: SceneArm) -> None:
+    def sees(self, arm: Arm) -> None:
         """Remember where everything is.
 
         Raises:
@@ -111,7 +111,7 @@ class Film:
         return [self._time_s[index] for index in chosen], pictures
 
 
-def strip(heading: str, time_s: Sequence[float], pictures: Sequence[Image], trace: "TaskTrace") -> "Figure":
+def strip(heading: str, time_s: Sequence[float], pictures: Sequence[Image], trace: "Trace") -> "Figure":
     """Pictures of a drive in rows, each with the time and the step that is under way.
 
     Args:
@@ -135,7 +135,7 @@ def strip(heading: str, time_s: Sequence[float], pictures: Sequence[Image], trac
     return figure
 
 
-def _under_way(trace: "TaskTrace", at_s: float) -> str:
+def _under_way(trace: "Trace", at_s: float) -> str:
     """The step that is to be done at a time, in words."""
     done = int(np.searchsorted(trace.done_s, at_s, side="right"))
     return trace.steps[done].name if done < len(trace.steps) else "done"

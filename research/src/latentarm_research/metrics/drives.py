@@ -1,58 +1,93 @@
-"""Measures of a drive: success, time, input, mode switches, path, and distances from goals and target."""
+"""Measures of a drive: how far it came, time, input, the tool's way, forces, and what was spilled."""
 
 import itertools
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Final, final
 
 import numpy as np
 
 from latentarm.core.types import FloatArray, Pose, Row, StepRecord
-from latentarm.evaluation.contract import PlacesTool
 from latentarm.evaluation.summary import Subject, summarise
 from latentarm.robots.kinematics.rotations import angle_between
 from latentarm_research.metrics.stick import idle_time, turned_round_share
 
 
+@final
 @dataclass(frozen=True)
 class Drive:
-    """Figures that every drive has.
+    """Figures of one drive.
 
     Attributes:
-        success: the task was done.
-        time_s: from the first step to the last, s.
+        success: all steps were done, and nothing went wrong.
+        steps_done: share of the steps that were done.
+        time_s: from the first step of the loop to the last, s.
         idle_s: time without input, s.
         input_magnitude: integral of ‖u‖ over time, s (seconds of full deflection of one axis).
         turned_round: share of the time in which the stick points away from where it pointed a moment ago.
         mode_switches: how often the controller's mode changed.
         path_length: way of the tool through space, m.
+        stops: how often the arm was stopped, such as for not following when it met a dish.
+        goal_error_m_s: integral over time of the tool's distance to the goal that is closest to it, m s; NaN
+            without goals.
+        goal_error_m: mean of the same distance over time, m.
+        final_distance: of the tool from the last waypoint of the last step at the end, m.
+        final_angle_deg: the same for orientation, degrees.
+        preference_alignment: mean over time of the dot product of the direction in which the tool points and
+            the one needed at that moment.
+        table_force_n: largest force of the tool on the table or a dish, N; NaN where nothing can be touched.
+        food_force_n: largest force of the tool on food, N; NaN where nothing can be touched.
+        spilled: grains that were spilled.
+        grains: grains that there were.
     """
 
     success: bool
+    steps_done: float
     time_s: float
     idle_s: float
     input_magnitude: float
     turned_round: float
     mode_switches: int
     path_length: float
-
-
-@dataclass(frozen=True)
-class GoalDrive:
-    """Figures of one drive to a goal.
-
-    Attributes:
-        drive: those that every drive has.
-        goal_error_m_s: integral over time of the tool's distance to the goal that is closest to it, m s.
-        goal_error_m: mean of the same distance over time, m.
-        final_distance: of the tool from the target at the end, m.
-        final_angle_deg: of the tool from the target's orientation at the end, degrees.
-    """
-
-    drive: Drive
+    stops: int
     goal_error_m_s: float
     goal_error_m: float
     final_distance: float
     final_angle_deg: float
+    preference_alignment: float
+    table_force_n: float
+    food_force_n: float
+    spilled: int
+    grains: int
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """What the task says of a drive.
+
+    Attributes:
+        success: all steps were done, and nothing went wrong.
+        steps_done: share of the steps that were done.
+        stops: how often the arm was stopped.
+        target: the last waypoint of the last step, as things stand at the end.
+        goals: places that the person might have wanted, (G, 3), m.
+        preference_alignment: see `latentarm_research.metrics.preference_alignment`.
+        force_n: largest force of the tool on the ``table`` (dishes too) and on ``food``, N; None where
+            nothing can be touched.
+        spilled: grains that were spilled.
+        grains: grains that there were.
+    """
+
+    success: bool
+    steps_done: float
+    stops: int
+    target: Pose
+    goals: FloatArray
+    preference_alignment: float = np.nan
+    force_n: Mapping[str, float] | None = None
+    spilled: int = 0
+    grains: int = 0
 
 
 def path_length(position: FloatArray) -> float:
@@ -79,21 +114,24 @@ def goal_error(time_s: FloatArray, position: FloatArray, goals: FloatArray) -> t
         goals: (G, 3), m.
 
     Returns:
-        The integral over time, m s, and the mean, m; for a drive that took no time, 0 and the distance.
+        The integral over time, m s, and the mean, m; for a drive that took no time, 0 and the distance;
+        without goals NaN.
     """
+    if not len(goals):
+        return np.nan, np.nan
     closest = np.linalg.norm(position[:, None] - goals, axis=-1).min(axis=1)
     total = float(closest[:-1] @ np.diff(time_s))
     took_s = float(time_s[-1] - time_s[0])
     return total, total / took_s if took_s > 0.0 else float(closest[0])
 
 
-def measure_drive(records: Sequence[StepRecord], position: FloatArray, *, success: bool) -> Drive:
+def measure_drive(records: Sequence[StepRecord], tool: Pose, outcome: Outcome) -> Drive:
     """Figures of a drive from its record.
 
     Args:
-        records: every step in order.
-        position: (T, 3), the tool at each, m.
-        success: whether the task says that it was done.
+        records: every step of the loop in order.
+        tool: (T,), where the tool was at each.
+        outcome: what the task says of it.
 
     Raises:
         ValueError: there are no records.
@@ -102,76 +140,59 @@ def measure_drive(records: Sequence[StepRecord], position: FloatArray, *, succes
         raise ValueError("A drive without a single step has no figures.")
     time_s = np.array([record.time_s for record in records])
     u = np.stack([record.input for record in records])
+    total, mean = goal_error(time_s, tool.position, outcome.goals)
+    force_n = outcome.force_n
     return Drive(
-        success=success,
+        success=outcome.success,
+        steps_done=outcome.steps_done,
         time_s=float(time_s[-1] - time_s[0]),
         idle_s=idle_time(time_s, u),
         input_magnitude=input_magnitude(time_s, u),
         turned_round=turned_round_share(time_s, u),
         mode_switches=mode_switches([record.mode for record in records]),
-        path_length=path_length(position),
-    )
-
-
-def measure_goal_drive(
-    records: Sequence[StepRecord],
-    chain: PlacesTool,
-    target: Pose,
-    goals: Sequence[Pose],
-    *,
-    success: bool,
-    tool: int = 0,
-) -> GoalDrive:
-    """Figures of a drive to a goal from its record.
-
-    Args:
-        records: every step in order; the last holds the state in which the drive ended.
-        chain: the robot's forward kinematics.
-        target: where the tool was to end.
-        goals: all that the person might have wanted; at least one.
-        success: whether the task says that it was done.
-        tool: which end-effector, where there are several.
-
-    Raises:
-        ValueError: there are no records.
-    """
-    if not records:
-        raise ValueError("A drive without a single step has no figures.")
-    pose = chain.forward(np.stack([record.state for record in records]), tool)
-    position = pose.position
-    time_s = np.array([record.time_s for record in records])
-    total, mean = goal_error(time_s, position, np.stack([goal.position for goal in goals]))
-    return GoalDrive(
-        drive=measure_drive(records, position, success=success),
+        path_length=path_length(tool.position),
+        stops=outcome.stops,
         goal_error_m_s=total,
         goal_error_m=mean,
-        final_distance=float(np.linalg.norm(position[-1] - target.position)),
-        final_angle_deg=float(np.rad2deg(angle_between(pose.rotation[-1], target.rotation))),
+        final_distance=float(np.linalg.norm(tool.position[-1] - outcome.target.position)),
+        final_angle_deg=float(np.rad2deg(angle_between(tool.rotation[-1], outcome.target.rotation))),
+        preference_alignment=outcome.preference_alignment,
+        table_force_n=np.nan if force_n is None else force_n.get("table", 0.0),
+        food_force_n=np.nan if force_n is None else force_n.get("food", 0.0),
+        spilled=outcome.spilled,
+        grains=outcome.grains,
     )
+
+
+MEASURES: Final = (
+    "steps_done",
+    "time_s",
+    "idle_s",
+    "input_magnitude",
+    "turned_round",
+    "mode_switches",
+    "path_length",
+    "stops",
+    "goal_error_m_s",
+    "goal_error_m",
+    "final_distance",
+    "preference_alignment",
+    "table_force_n",
+    "food_force_n",
+)
+"""Fields of `Drive` that are measures as they are, in the order of rows."""
 
 
 def drive_rows(subject: Subject, drives: Sequence[Drive]) -> list[Row]:
-    """Mean and SD over the drives of one condition, of what every drive has.
+    """Mean and SD over the drives of one condition; measures that no drive has are left out.
 
     ``success_rate`` is the share of drives that succeeded. All other figures are over all drives,
     failed ones too, so that a controller cannot look fast by giving up.
     """
-    return [
-        summarise(subject, "success_rate", [drive.success for drive in drives]),
-        summarise(subject, "time_s", [drive.time_s for drive in drives]),
-        summarise(subject, "idle_s", [drive.idle_s for drive in drives]),
-        summarise(subject, "input_magnitude", [drive.input_magnitude for drive in drives]),
-        summarise(subject, "turned_round", [drive.turned_round for drive in drives]),
-        summarise(subject, "mode_switches", [drive.mode_switches for drive in drives]),
-        summarise(subject, "path_length", [drive.path_length for drive in drives]),
+    spilled = [one.spilled / one.grains if one.grains else np.nan for one in drives]
+    rows = [
+        summarise(subject, "success_rate", [one.success for one in drives]),
+        *(summarise(subject, name, [float(getattr(one, name)) for one in drives]) for name in MEASURES),
+        summarise(subject, "spilled_share", spilled),
     ]
-
-
-def goal_drive_rows(subject: Subject, drives: Sequence[GoalDrive]) -> list[Row]:
-    """Mean and SD over the drives to goals of one condition, failed ones too."""
-    return [
-        *drive_rows(subject, [one.drive for one in drives]),
-        summarise(subject, "goal_error_m_s", [one.goal_error_m_s for one in drives]),
-        summarise(subject, "goal_error_m", [one.goal_error_m for one in drives]),
-        summarise(subject, "final_distance", [one.final_distance for one in drives]),
-    ]
+    return [row for row in rows if row.n]

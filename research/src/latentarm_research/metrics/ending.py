@@ -11,10 +11,12 @@ from latentarm.core.types import Pose, StepRecord
 from latentarm.evaluation.contract import PlacesTool
 from latentarm.robots.kinematics.rotations import angle_between
 
-Reason = Literal["reached", "time_limit", "operator_stuck", "held_back", "safety_stop"]
+Reason = Literal["done", "mishap", "time_limit", "operator_stuck", "held_back", "safety_stop"]
 
 STUCK_S: Final = 20.0
 """No progress for this long counts as stuck, s; a shorter drive never counts as stuck."""
+
+NOT_NEARER: Final = f"no nearer for {STUCK_S:g} s"
 
 PROGRESS_M: Final = 0.005
 """Coming this much nearer to the next waypoint than ever before is progress, m."""
@@ -39,25 +41,23 @@ class Ending:
     detail: str
 
 
-def why_it_ended(
-    records: Sequence[StepRecord], chain: PlacesTool, waypoint: Pose | None, since_s: float
+def why_it_timed_out(
+    records: Sequence[StepRecord], chain: PlacesTool, waypoint: Pose, since_s: float
 ) -> Ending:
-    """Why a drive ended.
+    """Why a drive was not done within its time.
 
     Args:
         records: every step in order.
         chain: the robot's forward kinematics.
-        waypoint: the waypoint that was not reached; None if all were.
+        waypoint: the waypoint that was not reached.
         since_s: when that waypoint became the next one, on the records' clock, s.
     """
-    if waypoint is None:
-        return Ending("reached", "reached the goal")
     stop = records[-1].command.stop
     if stop is not None:
         return Ending("safety_stop", f"stopped by safety: {stop.reason.rstrip('.')}")
     now_s = records[-1].time_s
     if now_s - since_s < STUCK_S or _progressed(records, chain, waypoint, since_s):
-        return Ending("time_limit", f"still on its way at the time limit of {now_s - records[0].time_s:g} s")
+        return Ending("time_limit", "out of time")
     lately = [record for record in records if record.time_s >= now_s - STUCK_S]
     # Help moves the arm too, so the requested motion is that of both.
     wanted = sum(
@@ -72,10 +72,7 @@ def why_it_ended(
         filters = Counter(name for one in lately for name in one.command.limited_by)
         named = ", ".join(name for name, _ in filters.most_common(2)) or "the verified stop"
         return Ending("held_back", f"held back by the safety filters ({named})")
-    return Ending(
-        "operator_stuck",
-        f"operator stuck: no input brought the tool nearer in the last {STUCK_S:g} s",
-    )
+    return Ending("operator_stuck", NOT_NEARER)
 
 
 def _progressed(records: Sequence[StepRecord], chain: PlacesTool, waypoint: Pose, since_s: float) -> bool:

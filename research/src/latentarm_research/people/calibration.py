@@ -41,4 +41,4 @@ PROVENANCE: Final[Mapping[str, Any]] = _FROZEN.pop("provenance")
 """How `CALIBRATED` was fitted: the command, the seed, what was aimed at, and all figures before and after."""
 
 CALIBRATED: Final = Calibration(**_FROZEN)
-"""Frozen before any latent action was driven by these people; see `scripts/calibrate_population.py`."""
+"""Frozen before these people drove any latent action; `latentarm measure calibration` measures it."""

@@ -11,8 +11,9 @@ from typing import Final
 
 from latentarm.evaluation.looks import look_of
 from latentarm.evaluation.table import ABSENT, format_figure
+from latentarm_research.studies.means_test import Direction
 from latentarm_research.studies.page import listed, markdown_table
-from latentarm_research.studies.statistics import LEVEL, Direction, Statistic, format_p, holm
+from latentarm_research.studies.statistics import LEVEL, Statistic, format_p, holm
 
 SIDES: Final[Mapping[Direction, str]] = {"less": "below", "greater": "above"}
 SIGNS: Final[Mapping[Direction, str]] = {"less": "<", "greater": ">"}

@@ -1,31 +1,27 @@
-"""Tests of means, corrections for many tests, and intervals."""
+"""One-sided tests of means, corrections for many tests, and intervals."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Final, Literal
+from typing import Final
 
 import numpy as np
 
 from latentarm.core.types import FloatArray
-
-Direction = Literal["less", "greater"]
+from latentarm_research.studies.means_test import (
+    TAIL,
+    Direction,
+    MeansTest,
+    one_sample_test,
+    spreads,
+    welch_test,
+)
 
 LEVEL: Final = 0.05
 """A test holds where p, after Holm's correction, is below this."""
 
-NO_SPREAD: Final = 1e-9
-"""SD, in the largest figure, below which several figures are the same but for rounding."""
-
-
-CONFIDENCE: Final = 0.95
 RESAMPLES: Final = 4000
 BOOTSTRAP_SEED: Final = 95
 """Always the same, so that a figure is the same whenever it is drawn."""
-
-
-def spreads(values: FloatArray) -> bool:
-    """Whether figures (n,) differ by more than rounding."""
-    return len(values) > 1 and float(values.std(ddof=1)) > NO_SPREAD * float(np.abs(values).max())
 
 
 @dataclass(frozen=True)
@@ -48,9 +44,6 @@ class Statistic:
     hedges_g: float | None = None
 
 
-NO_DIFFERENCE: Final = Statistic("none: no spread")
-
-
 def compare_means(values: FloatArray, reference: FloatArray, direction: Direction) -> Statistic:
     """Test whether figures (n,) are less, or greater, than those of a reference (m,), on average.
 
@@ -65,51 +58,26 @@ def compare_means(values: FloatArray, reference: FloatArray, direction: Directio
         return replace(turned, t=None if turned.t is None else -turned.t)
     if not spreads(reference):
         return one_sample(values, float(reference.mean()), direction)
-    return _welch(values, reference, direction)
+    return _one_sided("Welch", welch_test(values, reference), direction)
 
 
 def one_sample(values: FloatArray, fixed: float, direction: Direction) -> Statistic:
-    """Test whether figures (n,) that spread are less, or greater, than a fixed one, on average.
-
-    On differences of pairs against 0 this is the paired test.
-    """
-    from scipy.stats import ttest_1samp  # takes a second, and only a finished study needs it
-
-    result = ttest_1samp(values, fixed, alternative=direction)
-    d = (float(values.mean()) - fixed) / float(values.std(ddof=1))
-    # As if against a sample of one: the correction is 0 for two figures and so says nothing of them.
-    g = _hedges(d, len(values) + 1) if len(values) > 2 else None
-    return _statistic("one-sample", result, direction, g)
+    """Test whether figures (n,) are less, or greater, than a fixed one, on average."""
+    return _one_sided("one-sample", one_sample_test(values, fixed), direction)
 
 
 def paired(values: FloatArray, reference: FloatArray, direction: Direction) -> Statistic:
     """Test whether figures (n,) are less, or greater, than others of the same seeds (n,), on average."""
     if len(values) < 2:
         return Statistic("none: too few seeds")
-    more = values - reference
-    # Of a paired test this is the one-sample test of the differences.
-    return replace(one_sample(more, 0.0, direction), test="paired t") if spreads(more) else NO_DIFFERENCE
+    return _one_sided("paired t", one_sample_test(values - reference), direction)
 
 
-def _welch(values: FloatArray, reference: FloatArray, direction: Direction) -> Statistic:
-    from scipy.stats import ttest_ind  # takes a second, and only a finished study needs it
-
-    result = ttest_ind(values, reference, equal_var=False, alternative=direction)
-    n, m = len(values), len(reference)
-    pooled = ((n - 1) * values.var(ddof=1) + (m - 1) * reference.var(ddof=1)) / (n + m - 2)
-    d = float((values.mean() - reference.mean()) / np.sqrt(pooled))
-    return _statistic("Welch", result, direction, _hedges(d, n + m))
-
-
-def _hedges(d: float, n: int) -> float:
-    """Cohen's d without its bias in small samples of n figures in all (Hedges 1981)."""
-    return d * (1.0 - 3.0 / (4.0 * n - 9.0))
-
-
-def _statistic(test: str, result: Any, direction: Direction, g: float | None) -> Statistic:
-    """SciPy's result with an effect size that is positive in the direction that was asked for."""
-    signed = g if g is None or direction == "greater" else -g
-    return Statistic(test, float(result.statistic), float(result.df), float(result.pvalue), signed)
+def _one_sided(test: str, found: MeansTest | None, direction: Direction) -> Statistic:
+    if found is None:
+        return Statistic("none: no spread")
+    signed = found.g if found.g is None or direction == "greater" else -found.g
+    return Statistic(test, found.t, found.dof, found.p_of(direction), signed)
 
 
 def holm(p: Sequence[float | None]) -> list[float | None]:
@@ -144,8 +112,7 @@ def bootstrap_interval(values: FloatArray) -> tuple[FloatArray, FloatArray]:
         / units
     )
     means = np.tensordot(draws, values, axes=1)
-    tail = (1.0 - CONFIDENCE) / 2.0
-    low, high = np.quantile(means, (tail, 1.0 - tail), axis=0)
+    low, high = np.quantile(means, (TAIL, 1.0 - TAIL), axis=0)
     # A mean of equal values differs from them by rounding.
     lowest, highest = values.min(axis=0), values.max(axis=0)
     return np.clip(low, lowest, highest), np.clip(high, lowest, highest)

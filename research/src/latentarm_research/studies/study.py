@@ -1,7 +1,9 @@
 """Studies: their definition, a request for one, and the runner."""
 
+import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
+from math import inf
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, Final, Generic, Protocol, TypeVar
@@ -15,14 +17,18 @@ from latentarm.core.untrusted.console import VisibleConsole
 from latentarm.evaluation.results import write_results
 from latentarm.runs.checks import check_seed
 from latentarm.runs.results_folder import ResultsFolder, write_json
-from latentarm_research.studies.hypotheses import Comparison
+from latentarm_research.studies.html import html_page
 from latentarm_research.studies.page import SMOKE
+from latentarm_research.studies.printing import HTML, PDF, print_page
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from rich.console import RenderableType
 
-ALWAYS_MADE: Final = ("results.json", "results.md", "hypotheses.json", "timings.json")
+REPORTED: Final = ("results.json", "hypotheses.json", "results.md", HTML, PDF)
+"""Files that every report is written to; `PDF` only where a browser prints it."""
+
+ALWAYS_MADE: Final = (*REPORTED, "timings.json")
 """Files that every study writes."""
 
 Cell = TypeVar("Cell")
@@ -35,6 +41,14 @@ class Sizes(Protocol):
     @property
     def name(self) -> str:
         """What it is called on the command line."""
+        ...
+
+
+class HypothesisTest(Protocol):
+    """A test of a hypothesis."""
+
+    def as_json(self) -> dict[str, object]:
+        """Plain mapping, ready for ``json.dumps``."""
         ...
 
 
@@ -147,10 +161,11 @@ class Report:
 
     Attributes:
         rows: for ``results.json``.
-        page: ``results.md``.
+        page: ``results.md``, which HTML and PDF are made of.
         figures: PNGs by name, without suffix.
         tests: of the hypotheses.
         documents: further JSON files by name.
+        records: the same for long lists of numbers, without line breaks.
         timings: how long parts took, s, apart from the grids.
         tables: the study at a glance, for a terminal.
     """
@@ -158,8 +173,9 @@ class Report:
     rows: list[Row]
     page: str
     figures: "Mapping[str, Figure]"
-    tests: Sequence[Comparison] = ()
+    tests: Sequence[HypothesisTest] = ()
     documents: Mapping[str, object] = field(default_factory=dict)
+    records: Mapping[str, object] = field(default_factory=dict)
     timings: Mapping[str, object] = field(default_factory=dict)
     tables: "Sequence[RenderableType]" = ()
 
@@ -180,8 +196,9 @@ class Study(Generic[Preset, Measured]):
         documents: names of all JSON files that it may write in addition to `ALWAYS_MADE`.
         depends_on: what else the figures depend on, for ``config.json``.
         kept: folders of results of cells, see `Keep`.
-        options: names of the preset's fields that the command line may change. With the same ``out`` and
-            other values of these, or other tasks, a study goes on from what is kept.
+        options: names of the preset's fields that the command line may change.
+        grows: options that change no result of a kept cell: with the same ``out`` and other values of these,
+            or other tasks, a study goes on from what is kept.
     """
 
     name: str
@@ -196,10 +213,12 @@ class Study(Generic[Preset, Measured]):
     depends_on: Callable[[Request[Preset]], Mapping[str, object]] = lambda request: {}
     kept: tuple[str, ...] = ()
     options: tuple[str, ...] = ()
+    grows: tuple[str, ...] = ()
 
     def about(self, request: Request[Preset]) -> dict[str, object]:
-        """What the figures depend on."""
-        sizes = asdict(request.preset)  # pyright: ignore[reportArgumentType]
+        """What the figures depend on; sizes without a limit are None."""
+        entries = asdict(request.preset)  # pyright: ignore[reportArgumentType]
+        sizes = {name: None if value == inf else value for name, value in entries.items()}
         return {
             "study": self.name,
             **{name: sizes.pop(name) for name in self.options},
@@ -223,23 +242,46 @@ def run_study(study: Study[Preset, Measured], request: Request[Preset]) -> Repor
     request = _with_tasks(study, request)
     made = (*ALWAYS_MADE, *study.documents, *(f"{name}.png" for name in study.figures))
     about = study.about(request)
-    grows = ("tasks", *study.options) if study.kept else ()
+    grows = ("tasks", *study.grows) if study.kept else ()
     ResultsFolder(study.name, made, study.kept, grows).claim(request.out, about)
     grid = Grid(request)
     measured = study.measure(request, grid)
     grid.say("Drawing, testing the hypotheses, writing the page.")
     report = study.report(request, measured)
-    tests = () if request.preset.name == SMOKE else report.tests
-    for name, figure in report.figures.items():
-        save_figure(figure, request.out / f"{name}.png")
-    write_text(request.out / "results.md", report.page)
-    write_json(request.out / "hypotheses.json", [one.as_json() for one in tests])
-    for name, document in report.documents.items():
-        write_json(request.out / name, document)
+    if request.preset.name == SMOKE:
+        report = replace(report, tests=())
     timings = {"backend": request.backend, "jobs": request.jobs, "grid_s": grid.took_s, **report.timings}
     write_json(request.out / "timings.json", timings)
-    write_results(request.out / "results.json", report.rows, about)
+    if why := write_report(request.out, report, about):
+        grid.say(why)
     return report
+
+
+def write_report(out: Path, report: Report, about: Mapping[str, object]) -> str:
+    """Write a report's figures, documents, and the page as Markdown, HTML and PDF.
+
+    Args:
+        out: a folder that has been claimed.
+        report: the results.
+        about: what they depend on, for ``results.json``.
+
+    Returns:
+        Why there is no PDF, in a sentence; empty where there is one.
+
+    Raises:
+        UserError: a file cannot be written.
+    """
+    for name, figure in report.figures.items():
+        save_figure(figure, out / f"{name}.png")
+    write_text(out / "results.md", report.page)
+    write_text(out / HTML, html_page(report.page, out))
+    write_json(out / "hypotheses.json", [one.as_json() for one in report.tests])
+    for name, document in report.documents.items():
+        write_json(out / name, document)
+    for name, record in report.records.items():
+        write_text(out / name, json.dumps(record, separators=(",", ":"), allow_nan=False) + "\n")
+    write_results(out / "results.json", report.rows, about)
+    return print_page(out / HTML, out / PDF)
 
 
 def again(study: Study[Preset, Any], request: Request[Preset]) -> str:

@@ -1,17 +1,21 @@
-"""Two cups before an arm, each to be reached and then grasped from the side or from the top (section 8.2).
+"""Two cups before an arm, each to reach and then to grasp from the side or from the top (section 8.2).
 
-One input is to say all of it: first which cup, then which grasp. The paper leaves the place open; what is
-chosen here, once and for every model:
+One input chooses first the cup and then the grasp. The paper leaves the place open; we chose, once and for
+every model:
 
-- the cups stand to the left and to the right of the arm's start, equally far, 1 rad apart about the base;
-- a goal is the configuration just before a cup, from where both grasps begin;
-- the two grasps part from there to opposite sides, as a hand does that comes in from the side or over the
-  top, and end 0.4 to 0.9 rad from the goal in joint space, less than the goals are apart;
-- joint 1 turns the arm to a cup and rests during a grasp, so that a grasp leads neither to the other cup nor
-  away from it: as the paper says, inputs then choose the manner and no longer the goal;
-- every demonstration shows both grasps, out and back: at a cup, either direction of the input has a meaning;
-- the simulated person moves at one speed. With real hands most of what differs between two actions is how
-  fast they are, and a one-dimensional latent action would be spent on that.
+- The cups stand left and right of the arm's start, equally far, 1 rad apart about the base.
+
+- A goal is the configuration just before a cup, from where both grasps begin.
+
+- The two grasps part to opposite sides and end 0.4 to 0.9 rad from the goal in joint space, less than the
+distance between the goals.
+
+- Joint 1 turns the arm to a cup and rests during a grasp, so that inputs then choose the manner and no longer
+the goal, as in the paper.
+
+- Every demonstration shows both grasps, out and back: at a cup, either direction of the input has a meaning.
+
+- The simulated person moves at one speed, so that the latent action does not encode speed.
 """
 
 from abc import ABC, abstractmethod
@@ -55,24 +59,18 @@ _VIA: Final = 3
 
 
 class Place(NamedTuple):
-    """Where the tool is, seen from a cup.
+    """A place of the tool relative to a cup."""
 
-    Attributes:
-        back: nearer to the base than the cup, m.
-        left: to the left of the cup, m.
-        up: above the cup, m; a planar arm has no use for it.
-        turn: from the orientation in which the cup is approached, rad: about the vertical for a planar
-            arm, otherwise towards the horizontal.
-    """
-
-    back: float
-    left: float
-    up: float
+    back: float  # towards the base, m
+    left: float  # m
+    up: float  # m; unused by a planar arm
+    # from the approach orientation, rad: about the vertical for a planar arm, otherwise towards the
+    # horizontal
     turn: float
 
 
 class TwoCups(Task, ABC):
-    """Two cups and an arm that is to grasp one of them; the person who demonstrates is simulated."""
+    """Two cups and an arm that grasps one of them; the demonstrator is simulated."""
 
     before: Place = Place(back=0.06, left=0.0, up=0.0, turn=0.0)
     """Where a reach ends and a grasp begins."""
@@ -85,12 +83,12 @@ class TwoCups(Task, ABC):
     @property
     @abstractmethod
     def posture(self) -> FloatArray:
-        """(n,), rad: in which a cup straight ahead would be approached; sideways, joint 1 turns."""
+        """(n,), rad: the approach of a cup straight ahead; joint 1 turns it sideways."""
 
     @property
     @abstractmethod
     def grasps(self) -> dict[str, Place]:
-        """Where each manner of grasping ends."""
+        """The end of each manner of grasping."""
 
     @abstractmethod
     def pose(self, bearing_rad: float, place: Place) -> Pose:
@@ -103,7 +101,7 @@ class TwoCups(Task, ABC):
 
     @property
     def obstacles(self) -> tuple[()]:
-        """None: the cups are to be touched."""
+        """None: the arm may touch the cups."""
         return ()
 
     @property
@@ -116,11 +114,7 @@ class TwoCups(Task, ABC):
         return self.start + rng.normal(0.0, START_SPREAD_RAD, self.robot.dof)
 
     def waypoints(self, goal: int, manner: str) -> tuple[Pose, ...]:
-        """Just before the cup, then where the grasp ends.
-
-        Raises:
-            UserError: there is no such goal or manner.
-        """
+        """Just before the cup, then the end of the grasp."""
         if not 0 <= goal < len(CUPS) or manner not in self.manners:
             raise UserError(
                 f"There are cups 0 and 1, to be grasped from the {' or the '.join(self.manners)}, "
@@ -133,12 +127,9 @@ class TwoCups(Task, ABC):
         return within(pose, waypoint)
 
     def demonstrate(self, episodes: int, rng: np.random.Generator) -> Demonstrations:
-        """Reach, grasp and let go in both manners, with the actions that were taken.
+        """Reach, grasp and let go in both manners, with the actions as taken.
 
         Cups take turns, and so does the manner that comes first.
-
-        Raises:
-            UserError: fewer than one episode is asked for.
         """
         hand = Hand()
         return demonstrations_of(self, lambda index: self._episode(index, hand, rng), episodes, hand)
@@ -195,10 +186,7 @@ class TwoCups(Task, ABC):
 
 @final
 class PlanarTwoCups(TwoCups):
-    """A planar arm of 5 joints, seen from above; its hand comes in turned to one side or to the other.
-
-    A plane has no top: the second grasp is the mirror image of the first.
-    """
+    """A planar arm of 5 joints, seen from above; the second grasp mirrors the first, for lack of a top."""
 
     @property
     def name(self) -> str:
@@ -297,13 +285,13 @@ def _bearing(cup: int) -> float:
 
 
 def _axes(bearing_rad: float) -> tuple[FloatArray, FloatArray]:
-    """Outwards and to the left at a bearing, each (3,)."""
+    """Unit vectors outwards and to the left at a bearing, each (3,)."""
     cos, sin = np.cos(bearing_rad), np.sin(bearing_rad)
     return np.array([cos, sin, 0.0]), np.array([-sin, cos, 0.0])
 
 
 def _at_one_speed(state: FloatArray, step_rad: float) -> FloatArray:
-    """The same way (T, n) in steps of one length in joint space, rests left out."""
+    """The same way (T, n) in equal steps in joint space, without rests."""
     step = np.linalg.norm(np.diff(state, axis=0), axis=-1)
     moving = np.concatenate([[True], step > 1e-9])
     way = np.concatenate([[0.0], np.cumsum(step)])

@@ -18,7 +18,7 @@ from latentarm.tasks.scene_task import SceneTask
 from latentarm_research.assistance.catalogue import published_belief
 from latentarm_research.assistance.interpolation import Interpolation
 from latentarm_research.baselines.retargeting import RetargetingController
-from latentarm_research.drives.task_drive import TaskSetup
+from latentarm_research.drives.drive import Setup
 from latentarm_research.people.person import Person
 from latentarm_research.user_studies.definition import Condition
 from latentarm_research.user_studies.training import Trained
@@ -31,7 +31,7 @@ ANGULAR_RAD_S: Final = 0.4
 
 def setup_of(
     condition: Condition, task: SceneTask, person: Person, trained: Trained | None, number: int
-) -> TaskSetup:
+) -> Setup:
     """Everything that a trial of a condition is driven with.
 
     Args:
@@ -41,7 +41,7 @@ def setup_of(
         trained: models of the task; None for conditions without.
         number: of the person among those that were asked.
     """
-    return TaskSetup(
+    return Setup(
         task,
         controller_of(condition, task.robot, trained, number),
         person,

@@ -3,7 +3,7 @@
 import hashlib
 import json
 from dataclasses import asdict, dataclass
-from typing import Literal, final
+from typing import Final, Literal, final
 
 from latentarm.core.errors import UserError
 from latentarm.evaluation.measures import label_of
@@ -24,6 +24,10 @@ Design = Literal["within", "between"]
 
 Aligns = Literal["none", "no_priors", "all_priors"]
 """z = u; the paper's network f learned from answers alone; and with its three priors."""
+
+
+PREFIX: Final = "user study "
+"""Before a study's name, in what a folder of its results says that it is."""
 
 
 @final
@@ -198,6 +202,11 @@ class Definition:
                 raise UserError(f"An order of the study {self.name} must name its conditions, each once.")
         if self.people < 2:
             raise UserError(f"The study {self.name} needs two people or more, not {self.people}.")
+
+    @property
+    def study(self) -> str:
+        """What rows and folders of results call it."""
+        return f"{PREFIX}{self.name}"
 
     @property
     def claims(self) -> tuple[Claim, ...]:

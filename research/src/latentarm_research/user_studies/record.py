@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from math import isfinite
+from pathlib import Path
 from typing import Any, cast, final
 
 from latentarm.core.errors import UserError
@@ -84,3 +85,20 @@ def read_trial(entry: object, where: str) -> Trial:
     return Trial(
         fields["person"], fields["condition"], fields["task"], fields["order"], fields["trial"], known
     )
+
+
+def read_trials(document: Mapping[str, object], path: Path) -> tuple[Trial, ...]:
+    """The trials of a document.
+
+    Args:
+        document: with a list ``trials``.
+        path: its file, for messages.
+
+    Raises:
+        UserError: there is no list, or a trial is not what it should be.
+    """
+    entries = document.get("trials")
+    if not isinstance(entries, list):
+        raise UserError(f"{path} must hold a list of trials.")
+    listed = enumerate(cast(list[object], entries))
+    return tuple(read_trial(entry, f"{path}, trial {index}") for index, entry in listed)

@@ -1,6 +1,6 @@
-"""A run's folder read again, of simulated or of real people."""
+"""The trials of a study, of simulated or of real people, and the folder that holds them."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final, Literal, cast, final
@@ -10,14 +10,20 @@ from latentarm.core.untrusted.documents import read_object
 from latentarm.runs.results_folder import CONFIG
 from latentarm_research.people.population import draw_people
 from latentarm_research.people.traits import Traits
-from latentarm_research.user_studies.definition import Definition
-from latentarm_research.user_studies.folder import TRACES, TRIALS, read_trials
-from latentarm_research.user_studies.own.records import read_record
-from latentarm_research.user_studies.record import Trial
+from latentarm_research.user_studies.catalogue import NAMES, load_definition
+from latentarm_research.user_studies.definition import PREFIX, Definition
+from latentarm_research.user_studies.own.definition_file import read_definition
+from latentarm_research.user_studies.record import Trial, read_trials
 from latentarm_research.user_studies.sizes import PRESETS, Sizes
-from latentarm_research.user_studies.trace import Trace
+from latentarm_research.user_studies.trace import Trace, read_traces
 
 PeopleAre = Literal["simulated", "real"]
+
+DEFINITION: Final = "definition.json"
+TRIALS: Final = "trials.json"
+TRACES: Final = "traces.json"
+PEOPLE: Final = "people.json"
+DOCUMENTS: Final = (DEFINITION, TRIALS, TRACES, PEOPLE)
 
 PEOPLE_ARE: Final[tuple[PeopleAre, ...]] = ("simulated", "real")
 
@@ -25,7 +31,7 @@ PEOPLE_ARE: Final[tuple[PeopleAre, ...]] = ("simulated", "real")
 @final
 @dataclass(frozen=True, eq=False)
 class Recorded:
-    """What a folder holds.
+    """Trials, and whose they are.
 
     Attributes:
         definition: of the study.
@@ -42,6 +48,25 @@ class Recorded:
     traces: tuple[Trace, ...]
     simulated: tuple[Traits, ...]
     sizes: Sizes
+
+    @property
+    def documents(self) -> dict[str, object]:
+        """What a folder of them holds besides the traces, by file; the same wherever it is computed."""
+        about = self._about
+        return {
+            DEFINITION: {"digest": self.definition.digest, **self.definition.as_json()},
+            TRIALS: {**about, "trials": [one.as_json() for one in self.trials]},
+            PEOPLE: {**about, "people": [dict(one.as_json()) for one in self.simulated]},
+        }
+
+    @property
+    def records(self) -> dict[str, object]:
+        """The file of the traces."""
+        return {TRACES: {**self._about, "traces": [one.as_json() for one in self.traces]}}
+
+    @property
+    def _about(self) -> dict[str, object]:
+        return {"definition": self.definition.digest, "people_are": self.people_are}
 
     @property
     def met(self) -> dict[int, set[str]]:
@@ -67,17 +92,46 @@ def read_recorded(folder: Path) -> Recorded:
     Raises:
         UserError: a document is missing, wrong, or of another definition or other people than the others.
     """
-    definition, trials = read_trials(folder)
-    config, document = read_object(folder / CONFIG), read_object(folder / TRIALS)
-    said: Any = config.get("people_are")
-    if said not in PEOPLE_ARE:
+    config = read_object(folder / CONFIG)
+    definition = _definition(folder, config)
+    people_are: Any = config.get("people_are")
+    if people_are not in PEOPLE_ARE:
         raise UserError(f"{folder / CONFIG}: people_are must be one of {', '.join(PEOPLE_ARE)}.")
-    if document.get("people_are") != said:
-        raise UserError(f"{folder / TRIALS}: people_are must be {said!r}, as in {CONFIG}.")
+    document = _document(folder / TRIALS, definition)
+    if document.get("people_are") != people_are:
+        raise UserError(f"{folder / TRIALS}: people_are must be {people_are!r}, as in {CONFIG}.")
+    trials = read_trials(document, folder / TRIALS)
     _check_trials(definition, trials, folder / TRIALS)
-    simulated = _simulated(folder, config) if said == "simulated" else ()
-    traces = _traces(folder / TRACES, definition)
-    return Recorded(definition, said, tuple(trials), traces, simulated, _sizes(folder / CONFIG, config))
+    path = folder / TRACES
+    return Recorded(
+        definition,
+        people_are,
+        trials,
+        read_traces(_document(path, definition), path) if path.exists() else (),
+        _simulated(folder, config) if people_are == "simulated" else (),
+        _sizes(folder / CONFIG, config),
+    )
+
+
+def _definition(folder: Path, config: Mapping[str, Any]) -> Definition:
+    study = str(config.get("study", ""))
+    name = study.removeprefix(PREFIX)
+    if not study.startswith(PREFIX):
+        raise UserError(
+            f"{folder} holds no run of a user study: name a folder that latentarm study run made."
+        )
+    return load_definition(name) if name in NAMES else read_definition(folder / DEFINITION)
+
+
+def _document(path: Path, definition: Definition) -> dict[str, Any]:
+    """A document of trials or traces of a definition."""
+    document = read_object(path)
+    if document.get("definition") != definition.digest:
+        raise UserError(
+            f"{path} was made with another definition of the study {definition.name}: run it again, or use"
+            " the version of latentarm that made it."
+        )
+    return document
 
 
 def _check_trials(definition: Definition, trials: Sequence[Trial], path: Path) -> None:
@@ -107,31 +161,20 @@ def _check_trials(definition: Definition, trials: Sequence[Trial], path: Path) -
 
 def _simulated(folder: Path, config: dict[str, Any]) -> tuple[Traits, ...]:
     """Drawn again, and compared with what the folder says."""
-    people, seed = config.get("people"), config.get("seed")
+    people, seed = config.get("simulated"), config.get("seed")
     if not isinstance(people, int) or not isinstance(seed, int):
-        raise UserError(f"{folder / CONFIG}: people and seed must be whole numbers.")
+        raise UserError(f"{folder / CONFIG}: simulated and seed must be whole numbers.")
     drawn = draw_people(people, seed)
-    if read_object(folder / "people.json").get("people") != [dict(one.as_json()) for one in drawn]:
+    if read_object(folder / PEOPLE).get("people") != [dict(one.as_json()) for one in drawn]:
         raise UserError(
-            f"{folder / 'people.json'} has other people than this version draws: use the one that made it."
+            f"{folder / PEOPLE} has other people than this version draws: use the one that made it."
         )
     return drawn
 
 
 def _sizes(path: Path, config: dict[str, Any]) -> Sizes:
-    sizes = config.get("sizes")
+    sizes = config.get("preset")
     name = str(cast(dict[str, Any], sizes).get("name")) if isinstance(sizes, dict) else "paper"
     if name not in PRESETS:
-        raise UserError(f"{path}: the sizes must be those of a preset: {', '.join(PRESETS)}.")
+        raise UserError(f"{path}: preset must be one of: {', '.join(PRESETS)}.")
     return PRESETS[name]
-
-
-def _traces(path: Path, definition: Definition) -> tuple[Trace, ...]:
-    if not path.exists():
-        return ()
-    document = read_object(path)
-    entries = document.get("traces")
-    if document.get("definition") != definition.digest or not isinstance(entries, list):
-        raise UserError(f"{path} must hold a list of traces of the same definition.")
-    listed = enumerate(cast(list[object], entries))
-    return tuple(read_record(Trace, entry, f"{path}, trace {index}") for index, entry in listed)

@@ -1,182 +1,122 @@
-"""A run of a study with simulated people: their trials, and the analysis of these."""
+"""A user study with simulated people, as a study that the one runner runs."""
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
-from time import perf_counter
-from typing import Final, TypeVar, final
 
-from latentarm.core.errors import UserError
-from latentarm.core.parallel.grid import check_processes, run_grid
-from latentarm.core.untrusted.console import VisibleConsole
-from latentarm.runs.checks import check_seed
+from latentarm.runs.results_folder import package_versions
 from latentarm_research.people.population import draw_people
 from latentarm_research.people.traits import Traits
+from latentarm_research.studies import fitting, streams
+from latentarm_research.studies.source import source_digest
 from latentarm_research.studies.streams import generator
-from latentarm_research.user_studies.analysis.analysis import Analysis, analyse
+from latentarm_research.studies.study import Grid, Report, Request, Study, again
+from latentarm_research.user_studies import (
+    alignments,
+    conditions,
+    limited_time,
+    order,
+    scenes,
+    session,
+    training,
+)
 from latentarm_research.user_studies.definition import Definition
 from latentarm_research.user_studies.designs.catalogue import design_of
-from latentarm_research.user_studies.folder_name import folder_name
-from latentarm_research.user_studies.record import Trial
+from latentarm_research.user_studies.kept import KEEP_SESSIONS, SESSIONS
+from latentarm_research.user_studies.recorded import DOCUMENTS, Recorded
+from latentarm_research.user_studies.report.figures import figure_names
+from latentarm_research.user_studies.report.report import ANALYSIS, report_of
 from latentarm_research.user_studies.session import SessionCell, go_through
-from latentarm_research.user_studies.sizes import Sizes, Stream
-from latentarm_research.user_studies.trace import Trace
+from latentarm_research.user_studies.sizes import PRESETS, Sizes, Stream, sizes_of
 from latentarm_research.user_studies.training import Trained, TrainingCell, train
 
-FEWEST_PEOPLE: Final = 2
 
-Cell = TypeVar("Cell")
-Result = TypeVar("Result")
+def study_of(definition: Definition, named: str = "") -> Study[Sizes, Recorded]:
+    """The study in which simulated people go through a definition.
 
-
-@final
-@dataclass(frozen=True)
-class Request:
-    """What a run was asked for.
-
-    Attributes:
+    Args:
         definition: of the study.
-        sizes: of the run.
-        people: how many simulated people go through it.
-        out: a new folder, or that of an earlier run that asked for the same, which is replaced.
-        seed: of everything random.
-        jobs: processes side by side; -1 is one per core.
-        backend: where they run, a name in `latentarm.core.parallel.backends.BACKENDS`.
-        quiet: say nothing while working.
-        bars: show how far the grids are.
-
-    Raises:
-        UserError: people, seed, jobs or backend are out of range.
+        named: what the command line was given for it; its own name where empty.
     """
 
-    definition: Definition
-    sizes: Sizes
-    people: int
-    out: Path
-    seed: int = 0
-    jobs: int = -1
-    backend: str = "joblib"
-    quiet: bool = False
-    bars: bool = False
+    def report(request: Request[Sizes], recorded: Recorded) -> Report:
+        found = report_of(recorded, again(study, request))
+        return replace(found, documents={**found.documents, **recorded.documents}, records=recorded.records)
 
-    def __post_init__(self) -> None:
-        check_seed(self.seed)
-        check_processes(self.jobs, self.backend)
-        if self.people < FEWEST_PEOPLE:
-            raise UserError(
-                f"A study needs {FEWEST_PEOPLE} people or more, not {self.people}: see --simulated."
-            )
-
-    @property
-    def about(self) -> dict[str, object]:
-        """What the figures depend on."""
-        return {
-            "study": folder_name(self.definition),
-            "definition": self.definition.digest,
-            "people": self.people,
-            "people_are": "simulated",
-            "sizes": self.sizes.as_json(),
-            "seed": self.seed,
-        }
+    study = Study(
+        name=definition.study,
+        command=f"study run {named or definition.name}",
+        presets={name: sizes_of(name, definition.people) for name in PRESETS},
+        tasks=tuple(task.name for task in definition.tasks),
+        simulated=("people_are",),
+        measure=partial(send_people, definition),
+        report=report,
+        figures=figure_names(definition),
+        documents=(ANALYSIS, *DOCUMENTS),
+        depends_on=lambda _: _depends_on(definition),
+        kept=(SESSIONS,),
+        options=("simulated",),
+    )
+    return study
 
 
-@final
-@dataclass(frozen=True, eq=False)
-class Ran:
-    """What came of a run.
-
-    Attributes:
-        definition: of the study.
-        sizes: of the run.
-        people: who went through it.
-        trials: of all people.
-        traces: of all trials, for figures.
-        trained: models by task; empty where no condition has any.
-        analysis: of the trials.
-        grid_s: how long the grids took, s.
-    """
-
-    definition: Definition
-    sizes: Sizes
-    people: tuple[Traits, ...]
-    trials: tuple[Trial, ...]
-    traces: tuple[Trace, ...]
-    trained: Mapping[str, Trained]
-    analysis: Analysis
-    grid_s: float
-
-
-def send_people(request: Request) -> Ran:
-    """Let simulated people go through a study, and analyse their trials. Writes nothing.
+def send_people(definition: Definition, request: Request[Sizes], grid: Grid) -> Recorded:
+    """Let simulated people go through a study; sessions that are kept are not gone through again.
 
     Raises:
         UserError: a cell cannot be driven as asked, or the backend is not available.
     """
-    definition = request.definition
-    people = draw_people(request.people, request.seed)
-    began = perf_counter()
-    trained = {
-        one.task: one
-        for one in _run(
-            request, "Demonstrations and models", train, _training_cells(request, people), _task_label
-        )
+    people = draw_people(request.preset.simulated, request.seed)
+    cells = _session_cells(definition, request, people)
+    missing = {_trained_as(cell) for cell in cells if KEEP_SESSIONS.read(request.out, cell) is None}
+    training = _training_cells(definition, request, people, missing)
+    trained: Mapping[str, Trained] = {
+        one.task: one for one in grid.run("Demonstrations and models", train, training, _task_label)
     }
-    cells = _session_cells(request, people, trained)
-    sessions = _run(request, "Sessions of simulated people", go_through, cells, _session_label)
-    grid_s = perf_counter() - began
-    trials = tuple(trial for session in sessions for trial in session.trials)
-    traces = tuple(trace for session in sessions for trace in session.traces)
-    analysis = analyse(definition, trials, not_judged=request.sizes.not_judged)
-    return Ran(definition, request.sizes, people, trials, traces, trained, analysis, grid_s)
+    cells = [replace(cell, trained=trained.get(_trained_as(cell))) for cell in cells]
+    sessions = grid.run("Sessions of simulated people", go_through, cells, _session_label, KEEP_SESSIONS)
+    trials = tuple(trial for one in sessions for trial in one.trials)
+    traces = tuple(trace for one in sessions for trace in one.traces)
+    return Recorded(definition, "simulated", trials, traces, people, request.preset)
 
 
-def _training_cells(request: Request, people: tuple[Traits, ...]) -> list[TrainingCell]:
-    definition = request.definition
+def _training_cells(
+    definition: Definition, request: Request[Sizes], people: tuple[Traits, ...], names: set[str]
+) -> list[TrainingCell]:
     if not any(condition.model for condition in definition.conditions):
         return []
-    return [
-        TrainingCell(definition, task, people, request.sizes, request.seed)
-        for task in definition.tasks
-        if not task.trained_with
-    ]
+    tasks = [task for task in definition.tasks if task.name in names]
+    return [TrainingCell(definition, task, people, request.preset, request.seed) for task in tasks]
 
 
 def _session_cells(
-    request: Request, people: tuple[Traits, ...], trained: Mapping[str, Trained]
+    definition: Definition, request: Request[Sizes], people: tuple[Traits, ...]
 ) -> list[SessionCell]:
-    definition = request.definition
+    """All sessions, without the models."""
     rng = generator(request.seed, definition.name, Stream.ORDER)
-    taken = design_of(definition).orders(definition, request.people, rng)
+    orders = design_of(definition).orders(definition, len(people), rng)
     return [
         SessionCell(
-            definition,
-            definition.condition(name),
-            task,
-            one,
-            place,
-            trained.get(task.trained_with or task.name),
-            request.sizes,
-            request.seed,
+            definition, definition.condition(name), task, one, place, None, request.preset, request.seed
         )
-        for one, order in zip(people, taken, strict=True)
-        for place, name in enumerate(order)
+        for one, conditions_met in zip(people, orders, strict=True)
+        for place, name in enumerate(conditions_met)
         for task in definition.tasks
+        if task.name in request.tasks
     ]
 
 
-def _run(
-    request: Request,
-    what: str,
-    function: Callable[[Cell], Result],
-    cells: Sequence[Cell],
-    label: Callable[[Cell], str],
-) -> list[Result]:
-    if not cells:
-        return []
-    VisibleConsole(stderr=True, quiet=request.quiet).print(f"{what}: {len(cells)} cells.")
-    return run_grid(
-        function, cells, jobs=request.jobs, backend=request.backend, label=label, bars=request.bars
-    )
+def _trained_as(cell: SessionCell) -> str:
+    """The task whose models a session needs."""
+    return cell.task.trained_with or cell.task.name
+
+
+def _depends_on(definition: Definition) -> dict[str, object]:
+    """The definition, and the code of a session, so that a study does not go on with other code."""
+    used = (alignments, conditions, fitting, limited_time, order, scenes, session, streams, training)
+    code = source_digest([Path(module.__file__ or "") for module in used])
+    return {"definition": definition.digest, "code": code, "versions": package_versions()}
 
 
 def _task_label(cell: TrainingCell) -> str:

@@ -8,7 +8,8 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from latentarm.tasks.scene_task import SceneTask
-from latentarm_research.drives.task_drive import TaskTrace, drive_task
+from latentarm_research.drives import trace as drives
+from latentarm_research.drives.drive import drive
 from latentarm_research.metrics.drives import goal_error
 from latentarm_research.people.person import Person
 from latentarm_research.people.traits import Traits
@@ -149,7 +150,7 @@ def together(measured: Sequence[dict[str, float]]) -> dict[str, float]:
     return found
 
 
-def _attempts(cell: SessionCell, number: int, choice: int) -> list[TaskTrace]:
+def _attempts(cell: SessionCell, number: int, choice: int) -> list[drives.Trace]:
     """One drive, and where the trial's time allows it another one after each that failed."""
     scene = scene_of(cell.task.scene)
     left_s = min(cell.task.trial_s or scene.time_limit_s, cell.sizes.trial_s)
@@ -162,10 +163,10 @@ def _attempts(cell: SessionCell, number: int, choice: int) -> list[TaskTrace]:
     return driven
 
 
-def _drive(cell: SessionCell, task: SceneTask, number: int, choice: int, attempt: int) -> TaskTrace:
+def _drive(cell: SessionCell, task: SceneTask, number: int, choice: int, attempt: int) -> drives.Trace:
     setup = setup_of(cell.condition, task, _person(cell, number), cell.trained, cell.traits.number)
     use = (Stream.TRIALS, cell.traits.number, number, attempt)
-    return drive_task(setup, choice, generator(cell.seed, f"{cell.definition.name} {cell.task.name}", *use))
+    return drive(setup, choice, generator(cell.seed, f"{cell.definition.name} {cell.task.name}", *use))
 
 
 def _person(cell: SessionCell, number: int) -> Person:
@@ -176,20 +177,20 @@ def _person(cell: SessionCell, number: int) -> Person:
     return cell.traits.person(number, practice_s)
 
 
-def _measured(task: StudyTask, trace: TaskTrace) -> dict[str, float]:
+def _measured(task: StudyTask, trace: drives.Trace) -> dict[str, float]:
     """Figures of one drive; those that have no value are left out."""
-    measured, drive = trace.measured, trace.figures
+    figures = trace.figures
     found = {
-        "success_rate": float(drive.success),
-        "steps_done": measured.steps_done,
-        "time_s": drive.time_s,
-        "idle_s": drive.idle_s,
-        "input_magnitude": drive.input_magnitude,
-        "turned_round": drive.turned_round,
-        "mode_switches": float(drive.mode_switches),
-        "path_length": drive.path_length,
-        "stops": float(measured.stops),
-        "preference_alignment": measured.preference_alignment,
+        "success_rate": float(figures.success),
+        "steps_done": figures.steps_done,
+        "time_s": figures.time_s,
+        "idle_s": figures.idle_s,
+        "input_magnitude": figures.input_magnitude,
+        "turned_round": figures.turned_round,
+        "mode_switches": float(figures.mode_switches),
+        "path_length": figures.path_length,
+        "stops": float(figures.stops),
+        "preference_alignment": figures.preference_alignment,
     }
     if task.plates:
         plates = np.stack([trace.states[0].poses[name].position for name in task.plates])

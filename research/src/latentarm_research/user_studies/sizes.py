@@ -1,11 +1,12 @@
 """How large a run of a study with simulated people is; none of it belongs to the definition."""
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from enum import IntEnum
-from math import isinf
 from typing import Final, final
 
+from latentarm.core.errors import UserError
+from latentarm_research.studies.page import SMOKE
 from latentarm_research.user_studies.definition import StudyTask
 
 
@@ -16,6 +17,7 @@ class Sizes:
 
     Attributes:
         name: of the preset.
+        simulated: people who are sent through the study; 0 where people are real.
         trial_s: a trial that takes longer has failed, s; the task's own limit where it is shorter.
         most_trials: of each task in each condition, at most.
         demonstrations_share: of the minutes of demonstrations that the definition asks for.
@@ -28,6 +30,7 @@ class Sizes:
     """
 
     name: str
+    simulated: int = 0
     trial_s: float = float("inf")
     most_trials: int = 1000
     demonstrations_share: float = 1.0
@@ -41,11 +44,11 @@ class Sizes:
     @property
     def not_judged(self) -> str:
         """Why no claim is tested in a run of these sizes; empty where claims are."""
-        return "" if self.name == "paper" else f"preset {self.name}: it only shows that the study runs"
+        return f"preset {SMOKE}: it only shows that the study runs" if self.name == SMOKE else ""
 
     def people(self, number: int) -> str:
         """Simulated people in words, with the preset where that is not the whole study."""
-        return f"{number} simulated people" + (f" (preset {self.name})" if self.not_judged else "")
+        return f"{number} simulated people" + (f" (preset {SMOKE})" if self.not_judged else "")
 
     def as_run(self, task: StudyTask) -> StudyTask:
         """A task as a run of these sizes does it."""
@@ -56,19 +59,11 @@ class Sizes:
             demonstrations_min=task.demonstrations_min * self.demonstrations_share,
         )
 
-    def as_json(self) -> dict[str, object]:
-        """Plain mapping; None for times that have no limit."""
-        known = {
-            name: None if isinstance(value, float) and isinf(value) else value
-            for name, value in asdict(self).items()
-        }
-        return {**known, "hidden": list(self.hidden)}
-
 
 PRESETS: Final[Mapping[str, Sizes]] = {
     "paper": Sizes("paper"),
-    "smoke": Sizes(
-        "smoke",
+    SMOKE: Sizes(
+        SMOKE,
         trial_s=1.0,
         most_trials=1,
         demonstrations_share=0.01,
@@ -79,6 +74,22 @@ PRESETS: Final[Mapping[str, Sizes]] = {
     ),
 }
 """``paper`` is the whole study. ``smoke`` only shows that it runs: its trials end after a second."""
+
+FEWEST_PEOPLE: Final = 2
+
+
+def sizes_of(preset: str, people: int) -> Sizes:
+    """The sizes of a preset, for so many simulated people.
+
+    Raises:
+        UserError: there is no such preset, or too few people.
+    """
+    if preset not in PRESETS:
+        raise UserError(f"There is no preset {preset!r}: choose from {', '.join(PRESETS)}.")
+    if people < FEWEST_PEOPLE:
+        raise UserError(f"A study needs {FEWEST_PEOPLE} people or more, not {people}: see --simulated.")
+    return replace(PRESETS[preset], simulated=people)
+
 
 LEAST_DEMONSTRATIONS: Final = 2
 """One to learn from and one for validation."""

@@ -1,16 +1,20 @@
 """What figures show of a trial: the tool's way, how far it was from the plates, and the stick."""
 
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING, Any, Final, final
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final, cast, final
 
 import numpy as np
 
+from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray
-from latentarm_research.metrics.task_drives import StepAlignment
+from latentarm_research.metrics.preference_alignment import StepAlignment
 from latentarm_research.user_studies.definition import StudyTask
+from latentarm_research.user_studies.own.records import read_record
 
 if TYPE_CHECKING:
-    from latentarm_research.drives.task_drive import TaskTrace
+    from latentarm_research.drives import trace as drives
 
 POINTS: Final = 60
 """Of a way and of a course over time, at most."""
@@ -58,7 +62,7 @@ class Trace:
         return asdict(self)
 
 
-def trace_of(person: int, condition: str, task: StudyTask, trial: int, driven: "TaskTrace") -> Trace:
+def trace_of(person: int, condition: str, task: StudyTask, trial: int, driven: "drives.Trace") -> Trace:
     """What is kept of a drive.
 
     Args:
@@ -91,7 +95,24 @@ def trace_of(person: int, condition: str, task: StudyTask, trial: int, driven: "
     )
 
 
-def _stick(driven: "TaskTrace") -> FloatArray:
+def read_traces(document: Mapping[str, object], path: Path) -> tuple[Trace, ...]:
+    """The traces of a document.
+
+    Args:
+        document: with a list ``traces``.
+        path: its file, for messages.
+
+    Raises:
+        UserError: there is no list, or a trace is not what it should be.
+    """
+    entries = document.get("traces")
+    if not isinstance(entries, list):
+        raise UserError(f"{path} must hold a list of traces.")
+    listed = enumerate(cast(list[object], entries))
+    return tuple(read_record(Trace, entry, f"{path}, trace {index}") for index, entry in listed)
+
+
+def _stick(driven: "drives.Trace") -> FloatArray:
     pushed = driven.input[driven.input.any(axis=-1)][:, :2]
     edges = np.linspace(-1.0, 1.0, BINS + 1)
     counts = np.histogram2d(pushed[:, 0], pushed[:, 1], bins=(edges, edges))[0]

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from latentarm_research.studies.alignment.cell import Cell, CellResult
+from latentarm_research.studies.alignment.cell import AlignmentCell, AlignmentErrors
 from latentarm_research.studies.alignment.curves import CHOICES, CurveCell, CurveResult
 from latentarm_research.studies.alignment.preset import CHOSEN, CONDITIONS, NO_ALIGN, PRESETS
 from latentarm_research.studies.alignment.scene import DecoderCell, LearnedDecoder
@@ -25,7 +25,9 @@ def make_result(means=AS_IN_THE_PAPER, task="plane", model="cae", noise=0.0, run
         name: np.array([mean]) if name == NO_ALIGN else mean * about
         for name, mean in zip(CONDITIONS, means, strict=True)
     }
-    return CellResult(Cell(decoder(task, model), noise), errors, 0.05, dict.fromkeys(CONDITIONS[2:], 1.0))
+    return AlignmentErrors(
+        AlignmentCell(decoder(task, model), noise), errors, 0.05, dict.fromkeys(CONDITIONS[2:], 1.0)
+    )
 
 
 def make_curve(task="plane", noise=0.0, counts=(1, 3, 6, 10, 20), faster=1.0, runs=6):

@@ -16,17 +16,19 @@ from latentarm.core.context import ContextLayout
 from latentarm.core.style import save_figure
 from latentarm.core.types import Goal, Pose
 from latentarm.robots.catalogue import load_robot
+from latentarm.tasks.goal_task import GoalTask
 from latentarm.tasks.inverse_kinematics import solve
 from latentarm.tasks.table_top import TableTop
 from latentarm.tasks.task import Task, within
 from latentarm_research.drives.drive import Setup
+from latentarm_research.drives.drives import Planned
 from latentarm_research.people.expectation import Expectation
 from latentarm_research.people.person import Person
 from latentarm_research.studies.alignment.drives import (
     DRIVEN,
     HELPED,
     KNOWS,
-    Driven,
+    AlignedDrive,
     DrivesResult,
     drive,
     drive_all,
@@ -44,7 +46,7 @@ from latentarm_research.studies.alignment.preset import (
     WITHOUT_PRIORS,
     Drives,
 )
-from latentarm_research.studies.alignment.rows import Measured
+from latentarm_research.studies.alignment.rows import AlignmentResults
 from latentarm_research.studies.alignment.study import STUDY
 from latentarm_research.studies.study import Request
 
@@ -114,8 +116,8 @@ def perfect(u, context):
 
 def driven(alignment, person=TURNED):
     controller = LatentController(TwoDirections(), alignment)
-    setup = Setup(OneGoal(), controller, None, Person(imagines=person), 6.0)
-    return drive(setup, 0, 0, "come", np.random.default_rng(0))
+    setup = Setup(GoalTask(OneGoal(), "come", 6.0), controller, Person(imagines=person))
+    return drive(OneGoal(), Planned(setup, choice=0, repeat=0, seed=0), 0)
 
 
 def test_with_a_perfect_alignment_of_a_linear_decoder_the_goal_is_reached_nearly_straight():
@@ -202,7 +204,7 @@ def result(reached):
     def made(number, there):
         off = 0.05 * TURNED.directions[0] + 0.02 * np.cross(*TURNED.directions)
         end = goals[number % 3].pose.position + (0.0 if there else off)
-        return Driven(number % 3, number % 2, 0.1 + 0.01 * number if there else None, there, end[None])
+        return AlignedDrive(number % 3, number % 2, 0.1 + 0.01 * number if there else None, there, end[None])
 
     return DrivesResult(
         cell=drive_cells(TINY, 0)[0],
@@ -254,7 +256,9 @@ def test_misses_are_parted_into_what_the_person_steers_and_what_nobody_does():
 
 def test_the_page_says_what_holds_and_what_does_not():
     found = [result({TOOL_SPACE: 6, WITHOUT_PRIORS: 6, KNOWS: 6})]
-    page = STUDY.report(Request(Path("out"), TINY, ("table_top",)), Measured([], [], [], [], found)).page
+    page = STUDY.report(
+        Request(Path("out"), TINY, ("table_top",)), AlignmentResults([], [], [], [], found)
+    ).page
     assert "**simulated**" in page
     assert "turned by 60 degrees and mirrored" in page
     assert f"| {TOOL_SPACE} | 0.60 ± 0.14 | 6 of 6 (100%) |" in page

@@ -10,7 +10,7 @@ import pytest
 from latentarm.alignment.answers import Answers
 from latentarm.alignment.contract import identity
 from latentarm.alignment.queries import order_of_questions
-from latentarm_research.studies.alignment.cell import Cell, measure_cell
+from latentarm_research.studies.alignment.cell import AlignmentCell, measure_cell
 from latentarm_research.studies.alignment.curves import (
     AT_RANDOM,
     CHOICES,
@@ -64,7 +64,7 @@ def learned_at(task):
 
 @cache
 def measured_at(task):
-    return measure_cell(Cell(learned_at(task), 0.5))
+    return measure_cell(AlignmentCell(learned_at(task), 0.5))
 
 
 @pytest.fixture(scope="module", params=["plane", "reach_and_pour"])
@@ -90,7 +90,7 @@ def test_every_condition_has_an_error_for_each_run(learned):
 
 def test_a_cell_is_the_same_from_the_same_seed():
     learned, result = learned_at("reach_and_pour"), measured_at("reach_and_pour")
-    again = measure_cell(Cell(learned, 0.5))
+    again = measure_cell(AlignmentCell(learned, 0.5))
     for name, errors in result.errors.items():
         np.testing.assert_array_equal(errors, again.errors[name])
     assert again.encoded == result.encoded

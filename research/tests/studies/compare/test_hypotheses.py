@@ -1,13 +1,13 @@
 import numpy as np
 
-from latentarm_research.studies.compare.cell import CellResult, Place
+from latentarm_research.studies.compare.cell import FoldResult, Place
 from latentarm_research.studies.compare.hypotheses import ENCODINGS, compared, said
 
 
-def cells(model: str, errors: tuple[float, ...]) -> list[CellResult]:
+def cells(model: str, errors: tuple[float, ...]) -> list[FoldResult]:
     """A cell per fold, with two seeds about each error."""
     return [
-        CellResult(
+        FoldResult(
             Place("pour", 0.01, model, fold, 12),
             {measure: np.array([error - 1.0, error + 1.0]) for measure in ENCODINGS},
             None,  # type: ignore[arg-type]

@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 
 from latentarm.core.types import Row
-from latentarm_research.studies.compare.cell import CellResult, Place
+from latentarm_research.studies.compare.cell import FoldResult, Place
 from latentarm_research.studies.compare.rows import rows_of, rows_of_fewer, seeds_of
 from latentarm_research.studies.compare.tables import in_millimetres, page_table
 
 
-def cell(fold: int, values: list[float], demonstrations: int = 4, measure: str = "reversal") -> CellResult:
+def cell(fold: int, values: list[float], demonstrations: int = 4, measure: str = "reversal") -> FoldResult:
     place = Place("pour", 0.01, "cae", fold, demonstrations)
-    return CellResult(place, {measure: np.array(values)}, None, 0.0, 0.0, 0.0)  # type: ignore[arg-type]
+    return FoldResult(place, {measure: np.array(values)}, None, 0.0, 0.0, 0.0)  # type: ignore[arg-type]
 
 
 RESULTS = [cell(0, [0.1, 0.3]), cell(1, [0.5, 0.9])]

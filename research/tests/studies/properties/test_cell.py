@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from latentarm.evaluation.measures import MEASURES
-from latentarm_research.studies.properties.cell import Cell, demonstrated, measure_cell
+from latentarm_research.studies.properties.cell import PropertiesCell, demonstrated, measure_cell
 from latentarm_research.studies.properties.preset import Preset
 from latentarm_research.tasks.planar.catalogue import MOTIONS
 
@@ -49,7 +49,7 @@ OF_TASK = {
 
 
 def cell(task="sine", model="cae", noise_rad=0.0, seed=0):
-    return Cell(task, model, noise_rad, TINY, seed)
+    return PropertiesCell(task, model, noise_rad, TINY, seed)
 
 
 measured = cache(measure_cell)

@@ -6,7 +6,7 @@ import pytest
 
 from latentarm.core.types import Row
 from latentarm_research.studies.properties.cells import (
-    Verdict,
+    PaperVerdict,
     cells_table,
     count,
     judge,
@@ -17,7 +17,7 @@ from latentarm_research.studies.properties.paper import OF_MEANS, PAPER
 from latentarm_research.studies.properties.preset import PRESETS
 from latentarm_research.studies.properties.sweep import AS_CHOSEN, designs
 
-FAVOUR, WITHIN, MISSED = Verdict.IN_FAVOUR, Verdict.WITHIN, Verdict.MISSED
+FAVOUR, WITHIN, MISSED = PaperVerdict.IN_FAVOUR, PaperVerdict.WITHIN, PaperVerdict.MISSED
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ from latentarm.evaluation.looks import LOOKS, look_of
 from latentarm.models.catalogue import KINDS
 from latentarm.robots.planar import planar
 from latentarm_research.studies.drawing import arm_line
-from latentarm_research.studies.properties.cell import Cell, CellResult, condition
+from latentarm_research.studies.properties.cell import PropertiesCell, PropertiesResult, condition
 from latentarm_research.studies.properties.figures import (
     beside_paper_figure,
     controllability_figure,
@@ -47,8 +47,8 @@ class Turning:
 
 def results_of(tasks, models):
     return [
-        CellResult(
-            Cell(task, model, noise, PRESETS["smoke"], 0),
+        PropertiesResult(
+            PropertiesCell(task, model, noise, PRESETS["smoke"], 0),
             {},
             Turning(MOTIONS[task]().latent_dim, MOTIONS[task]().robot.dof),
             1.0,

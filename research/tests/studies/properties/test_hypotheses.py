@@ -8,7 +8,7 @@ from scipy import stats
 
 from latentarm.models.estimators import MODELS
 from latentarm_research.studies.hypotheses import verdicts
-from latentarm_research.studies.properties.cell import Cell, CellResult
+from latentarm_research.studies.properties.cell import PropertiesCell, PropertiesResult
 from latentarm_research.studies.properties.hypotheses import (
     FURTHER_MODELS,
     LINEAR,
@@ -22,8 +22,8 @@ ERROR = "median_error_percent_of_pca"
 
 
 def result(model, measure, values, task="sine", noise_rad=0.0):
-    cell = Cell(task, model, noise_rad, PRESETS["smoke"], 0)
-    return CellResult(cell, {measure: np.array(values, dtype=float)}, decoder=None, fit_s=0.0)
+    cell = PropertiesCell(task, model, noise_rad, PRESETS["smoke"], 0)
+    return PropertiesResult(cell, {measure: np.array(values, dtype=float)}, decoder=None, fit_s=0.0)
 
 
 def only(results):

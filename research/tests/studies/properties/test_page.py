@@ -7,7 +7,7 @@ import pytest
 
 from latentarm.core.types import Row
 from latentarm_research.studies.hypotheses import comparison_table
-from latentarm_research.studies.properties.cell import Cell, CellResult
+from latentarm_research.studies.properties.cell import PropertiesCell, PropertiesResult
 from latentarm_research.studies.properties.paper import with_paper
 from latentarm_research.studies.properties.preset import PRESETS
 from latentarm_research.studies.properties.study import STUDY
@@ -102,8 +102,8 @@ def results_of(seeds=3, noises=(0.0, 0.1), tasks=tuple(MOTIONS)):
             for model, mean in {"pca": 100.0, "vae": 80.0, "cvae": 4.0, "scl": 3.0}.items():
                 figures = {ERROR: mean + rng.random(seeds), "r2": rng.uniform(0.95, 1.0, seeds)}
                 results.append(
-                    CellResult(
-                        Cell(task, model, noise, SMALL, 0),
+                    PropertiesResult(
+                        PropertiesCell(task, model, noise, SMALL, 0),
                         figures,
                         Turning(MOTIONS[task]().latent_dim, MOTIONS[task]().robot.dof),
                         fit_s=0.0,

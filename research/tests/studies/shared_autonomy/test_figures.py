@@ -4,7 +4,13 @@ import pytest
 from figure_faults import faults
 from latentarm.core.style import COLUMN_MM, MM_PER_INCH, TWO_COLUMNS_MM
 from latentarm.evaluation.looks import look_of
-from latentarm_research.studies.shared_autonomy.cell import METHODS, TASKS, Cell, CellResult, Outcome
+from latentarm_research.studies.shared_autonomy.cell import (
+    METHODS,
+    TASKS,
+    AutonomyCell,
+    AutonomyResult,
+    Outcome,
+)
 from latentarm_research.studies.shared_autonomy.drive import steps_of
 from latentarm_research.studies.shared_autonomy.figures import (
     changes_figure,
@@ -32,7 +38,7 @@ def results_of(tmp_path, preset, tasks=tuple(TASKS), drives=2):
         return Outcome(method, person, measures, course, course)
 
     return [
-        CellResult(
+        AutonomyResult(
             cell,
             tuple(outcome(cell, method, person) for method in cell.methods for person in cell.people),
             rng.uniform(10.0, 20.0, cell.seeds),
@@ -123,4 +129,4 @@ def test_one_seed_has_no_bars_and_is_drawn_all_the_same(tmp_path):
     results = results_of(tmp_path, preset, drives=1)
     assert_well_drawn(expertise_figure(results, preset, tuple(TASKS)), COLUMN_MM)
     assert any(result.cell.entropy == preset.entropy for result in results)
-    assert all(isinstance(result.cell, Cell) and result.cell.model in MODELS for result in results)
+    assert all(isinstance(result.cell, AutonomyCell) and result.cell.model in MODELS for result in results)

@@ -5,7 +5,7 @@ import pytest
 from scipy import stats
 
 from latentarm_research.studies.hypotheses import verdicts
-from latentarm_research.studies.shared_autonomy.cell import METHODS, Cell, CellResult, Outcome
+from latentarm_research.studies.shared_autonomy.cell import METHODS, AutonomyCell, AutonomyResult, Outcome
 from latentarm_research.studies.shared_autonomy.hypotheses import REACHED, TRAPPED, compare_methods
 from latentarm_research.studies.shared_autonomy.preset import Entropy, Preset
 
@@ -23,8 +23,8 @@ def results_of(errors, task=TASK, model="cae", variant=None):
 
     parts = {None: ("LA", "LA+SA"), Entropy(2.0): ("LA+SA+Entropy",)}
     return [
-        CellResult(
-            Cell(task, model, entropy, variant, methods, PRESET.people, 4, 1, PRESET, 0),
+        AutonomyResult(
+            AutonomyCell(task, model, entropy, variant, methods, PRESET.people, 4, 1, PRESET, 0),
             tuple(outcome(method, person) for method in methods for person in PRESET.people),
             np.ones(4),
             0.0,

@@ -16,10 +16,8 @@ from latentarm.runs.results_folder import CONFIG
 from latentarm.tasks.catalogue import SCENE_TASKS, make_scene_task
 from latentarm.tasks.eating.marshmallows import Marshmallows
 from latentarm.tasks.scene_task import SceneTask
-from latentarm_research.metrics.drives import Drive
-from latentarm_research.metrics.task_drives import TaskDrive
 from latentarm_research.studies.study import ALWAYS_MADE, Request, again, run_study
-from latentarm_research.studies.tasks.cell import Driven, show, training_set
+from latentarm_research.studies.tasks.cell import TaskRunResult, show, training_set
 from latentarm_research.studies.tasks.condition import DEMONSTRATOR, ORIENTED, SWITCHING, Condition
 from latentarm_research.studies.tasks.figures import success_figure
 from latentarm_research.studies.tasks.kept import MODELS
@@ -28,6 +26,7 @@ from latentarm_research.studies.tasks.rows import rows_of, runs_as_json
 from latentarm_research.studies.tasks.runs import Run, kept_in, time_ratios
 from latentarm_research.studies.tasks.study import STUDY
 from latentarm_research.studies.tasks.tables import failure_table, measure_table, success_table, time_table
+from made_drives import drive_of
 
 TINY = Preset(
     "tiny",
@@ -158,7 +157,7 @@ def test_more_people_and_runs_are_added(stopped, monkeypatch):
 
     def drive(cell):
         measured.append((cell.person, cell.number))
-        return Driven(cell.task, cell.condition, ran(cell.number, 1), 0.5)
+        return TaskRunResult(cell.task, cell.condition, ran(cell.number, 1), 0.5)
 
     monkeypatch.setattr("latentarm_research.studies.tasks.study.drive", drive)
     monkeypatch.setattr("latentarm_research.studies.tasks.study.show", show)
@@ -231,13 +230,9 @@ def test_only_tasks_of_the_catalogue_are_made():
         make_scene_task("soup")
 
 
-def figures(success, steps_done):
-    return TaskDrive(Drive(success, 1.0, 1.0, 1.0, 1.0, 3, 1.0), steps_done, 0, float("nan"), 1.0, 1.0, 0, 0)
-
-
 def ran(number, done, why="done", steps=("above", "stabbed"), drive=True):
     success = done == len(steps) and why == "done"
-    measured = figures(success=success, steps_done=done / len(steps)) if drive else None
+    measured = drive_of(success, steps_done=done / len(steps)) if drive else None
     ended_in = "" if done == len(steps) else f"the {steps[done]} one"
     return Run(number, "left", steps, done, success, ended_in, why, 9.0, measured)
 

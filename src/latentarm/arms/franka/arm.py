@@ -4,16 +4,13 @@ import math
 from collections.abc import Callable
 from typing import Final, final
 
-import numpy as np
-
 from latentarm.arms.address import ArmAddress
-from latentarm.arms.contract import ArmSpec, ArmStatus
+from latentarm.arms.contract import ArmSpec, ArmStatus, finite_velocity
 from latentarm.arms.franka.hand import Hand
 from latentarm.arms.franka.link import Link, findings, library, open_link, refusals, set_up
 from latentarm.arms.franka.options import read_options
 from latentarm.arms.franka.worker import Order, Trouble, Worker
-from latentarm.arms.guiding import GuidableArm
-from latentarm.arms.real import Findings
+from latentarm.arms.real import Findings, GuidableArm
 from latentarm.core.errors import UserError
 from latentarm.core.types import Command, GripperCommand, GripperReading, Reading
 from latentarm.robots.robot import Robot
@@ -25,8 +22,7 @@ STOPS_AFTER_S: Final = 0.03
 ended, because the process was killed or the cable is cut, the arm itself stops after 20 cycles without a
 message."""
 
-_SILENT_S: Final = 0.5
-"""An arm that has said nothing for so long is taken for lost, s."""
+_SILENT_S: Final = 0.5  # an arm that is silent for so long counts as lost
 
 
 @final
@@ -34,13 +30,8 @@ class FrankaArm(GuidableArm):
     """A Franka Research 3 or Panda, by joint velocities at up to 100 Hz; its 1 kHz is franky's, in C++.
 
     Args:
-        robot: what the arm is.
         address: ``franka://HOST`` with the options of `FrankaOptions`.
-        now_s: the clock that readings are timed by, s; never goes back.
-
-    Raises:
-        UserError: an option is unknown or out of its range, the robot has not seven joints or carries
-            something whose mass is not stated, or franky-control is not installed.
+        now_s: the clock of readings, s; never goes back
     """
 
     def __init__(self, robot: Robot, address: ArmAddress, now_s: Callable[[], float]) -> None:
@@ -68,11 +59,11 @@ class FrankaArm(GuidableArm):
 
     @property
     def spec(self) -> ArmSpec:
-        """See the base class."""
+        """The arm's fixed properties."""
         return self._spec
 
     def look(self) -> Findings:
-        """See the base class. The arm's collision thresholds do change: they are set on connecting."""
+        """Inspect the arm without moving it. Its collision thresholds do change, by connecting."""
         if self._worker is not None:
             raise RuntimeError("the arm is connected; look before that")
         link = self._open()
@@ -82,7 +73,7 @@ class FrankaArm(GuidableArm):
             link.close()
 
     def connect(self) -> None:
-        """See the base class."""
+        """Connect; the arm is then disabled."""
         self.close()
         link = self._ready_link()
         # franky and libfranka raise exceptions of their own.
@@ -96,7 +87,7 @@ class FrankaArm(GuidableArm):
             ) from error
 
     def close(self) -> None:
-        """See the base class."""
+        """Stop the arm and disconnect."""
         self._enabled = False
         if self._worker is not None:
             self._last = self.read()
@@ -107,7 +98,7 @@ class FrankaArm(GuidableArm):
             self._hand = None
 
     def read(self) -> Reading:
-        """See the base class."""
+        """The newest reading."""
         if self._worker is None:
             if self._last is None:
                 raise RuntimeError("the arm was never connected")
@@ -121,7 +112,7 @@ class FrankaArm(GuidableArm):
         return last
 
     def status(self) -> ArmStatus:
-        """See the base class."""
+        """Whether the arm can move, and if not, why."""
         worker = self._worker
         if worker is None:
             return ArmStatus("off", "The arm is not connected.")
@@ -137,42 +128,36 @@ class FrankaArm(GuidableArm):
         return ArmStatus("moving" if worker.running else "ready")
 
     def enable(self) -> None:
-        """See the base class."""
+        """Ask to take commands."""
         if self._worker is not None and self.status().phase == "disabled":
             if not self._enabled:
                 self._halt()
             self._enabled = True
 
     def disable(self) -> None:
-        """See the base class."""
+        """Stop, and take no commands."""
         self._enabled = False
         self._halt()
 
     def guide(self) -> None:
-        """See the base class. It ends within a second where this process does."""
+        """Ask to be moved by hand. It ends within a second where this process does."""
         if self._worker is not None and not self._enabled and self.status().phase == "disabled":
             self._worker.guide()
 
     def move_gripper(self, command: GripperCommand) -> None:
-        """See the base class."""
+        """Move the gripper of an arm that takes no commands."""
         if self._worker is not None and self._hand is not None and not self.status().takes_commands:
             self._hand.ask(command)
 
     def recover(self) -> None:
-        """See the base class. A lost connection is made again; the hand's too."""
+        """Ask to end a recoverable fault. A lost connection is made again; the hand's too."""
         if self._worker is not None:
             self._enabled = False
             self._worker.recover()
 
     def send(self, command: Command) -> None:
-        """See the base class.
-
-        Raises:
-            ValueError: the command is not 7 finite joint velocities for a finite time.
-        """
-        velocity = np.array(command.velocity, dtype=np.float64)
-        if velocity.shape != (7,) or not np.isfinite(velocity).all():
-            raise ValueError("a command needs 7 finite joint velocities")
+        """Take a command; ignored unless enabled."""
+        velocity = finite_velocity(command, 7)
         if not math.isfinite(command.duration_s):
             raise ValueError("a command needs a finite duration")
         worker = self._worker
@@ -184,7 +169,7 @@ class FrankaArm(GuidableArm):
             self._hand.ask(command.gripper)
 
     def stop(self) -> None:
-        """See the base class."""
+        """Stop now, and stay enabled."""
         self._halt()
 
     def _halt(self) -> None:
@@ -192,7 +177,7 @@ class FrankaArm(GuidableArm):
             self._worker.give(Order(None, self._now_s()))
 
     def _watch(self, worker: Worker) -> None:
-        """Notice what the worker cannot: that it waits for a silent arm, or that the hand is gone."""
+        """Detect faults that the worker cannot: it waits for a silent arm, or the hand is gone."""
         silent_s = self._now_s() - worker.measured.time_s
         if silent_s > _SILENT_S:
             reason = f"Nothing has come from the arm for {silent_s:.1f} s: check its power and cable."
@@ -205,11 +190,7 @@ class FrankaArm(GuidableArm):
         return open_link(self._host, self._options, self._robot)
 
     def _ready_link(self) -> Link:
-        """A link that may be driven.
-
-        Raises:
-            UserError: the arm does not answer, or is refused.
-        """
+        """A link that is ready to drive."""
         link = self._open()
         try:
             for reason in refusals(link, self._options, self._robot):

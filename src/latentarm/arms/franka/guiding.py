@@ -1,4 +1,4 @@
-"""Guiding a Franka by hand: torque control without stiffness, as the arm carries its own weight."""
+"""Guiding a Franka by hand: torque control without stiffness; the arm carries its own weight."""
 
 from typing import Any, Final, Literal, final
 
@@ -8,25 +8,21 @@ from latentarm.arms.franka.limits import FrankaLimits
 from latentarm.arms.franka.link import Link
 from latentarm.core.types import FloatArray
 
-LASTS_S: Final = 1.0
-"""The arm comes to rest where guiding is not asked for again within this time, s."""
+LASTS_S: Final = 1.0  # the arm comes to rest if guiding is not renewed within this time
 
 _RENEWED_S: Final = 0.4
 
 _DAMPING: Final = (1.0, 1.0, 1.0, 1.0, 0.5, 0.5, 0.5)
-"""What resists the hand, N m s/rad: enough that an arm that is let go comes to rest."""
+"""N m s/rad, against the hand, so that a released arm comes to rest."""
 
 
 @final
 class Guiding:
-    """What the arm's worker does for guiding; called in its thread.
+    """Guiding for the arm's worker, in its thread.
 
-    Each motion is bounded in franky's control thread, at 1 kHz: where the worker does not renew it, a
-    `TorqueStopMotion` brings the arm to rest, and it then holds its position.
-
-    Args:
-        franky: the module.
-        limits: what the arm can do; near the ends of its joints it pushes back.
+    Franky's control thread bounds each motion, at 1 kHz: if the worker does not renew it, a
+    `TorqueStopMotion` brings the arm to rest, and it then holds its position. Near the ends of its joints it
+    pushes back.
     """
 
     def __init__(self, franky: Any, limits: FrankaLimits) -> None:
@@ -36,14 +32,7 @@ class Guiding:
         self.phase: Literal["no", "on", "ending"] = "no"
 
     def follow(self, link: Link, q: FloatArray, now_s: float, *, wanted: bool) -> None:
-        """Begin, renew or end it.
-
-        Args:
-            link: open.
-            q: (7,), where the joints are, rad.
-            now_s: our clock, s.
-            wanted: whether the arm is to be guided.
-        """
+        """Begin, renew or end guiding; joints are at ``q``, (7,), rad."""
         if wanted and (self.phase == "no" or (self.phase == "on" and now_s - self._began_s > _RENEWED_S)):
             link.arm.move(self._motion(q), asynchronous=True)
             self.phase, self._began_s = "on", now_s
@@ -52,7 +41,7 @@ class Guiding:
             self.phase = "ending"
 
     def ended(self, link: Link) -> bool:
-        """Whether the arm has ended it by itself, and rests.
+        """Whether the arm has ended guiding by itself, and rests.
 
         Raises:
             Exception: of franky, where an error has ended it.

@@ -10,17 +10,10 @@ from latentarm.robots.gripper import Gripper
 if TYPE_CHECKING:
     import franky
 
-POLL_S: Final = 0.02
-"""Time between two readings, s; the hand itself has some thirty in a second."""
-
-_ANSWER_S: Final = 3.0
-"""A hand that was told to stop says so within this time, s."""
-
-_CLOSED_M: Final = 0.001
-"""A command to a width below this closes the hand on whatever is there, m."""
-
-_NOTHING_M: Final = 0.002
-"""Fingers that are no farther apart than this hold nothing, m."""
+POLL_S: Final = 0.02  # between two readings; the hand has some thirty a second
+_ANSWER_S: Final = 3.0  # a hand confirms a stop within this time
+_CLOSED_M: Final = 0.001  # a command to a smaller width closes the hand
+_NOTHING_M: Final = 0.002  # fingers this close hold nothing
 
 _ALIKE_M: Final = 5e-4
 
@@ -37,12 +30,8 @@ class Hand:
     """Drives a connected hand.
 
     A command to close grasps, and keeps the force; any other moves to a width. A new command stops the one
-    before, and one with speed 0 does no more than that: what has been grasped stays grasped. Nothing is let
-    go of because commands end, nor by `close`.
-
-    Args:
-        hand: what franky has connected.
-        gripper: what the robot's model says of it.
+    before, and one with speed 0 only stops: a grasp persists. Neither the end of commands nor `close` lets go
+    of anything.
 
     Raises:
         Exception: of franky, where no reading comes.
@@ -66,16 +55,16 @@ class Hand:
 
     @property
     def reading(self) -> GripperReading:
-        """The newest."""
+        """The newest reading."""
         return self._reading
 
     @property
     def lost(self) -> str:
-        """Why there are no readings any more, or ""."""
+        """Why readings have ended, or ""."""
         return self._lost
 
     def ask(self, command: GripperCommand) -> None:
-        """Take a command; one like the last changes nothing. Does not wait."""
+        """Take a command without waiting; repeating the last changes nothing."""
         with self._lock:
             if _alike(command, self._asked):
                 return
@@ -83,7 +72,7 @@ class Hand:
         self._wake.set()
 
     def close(self) -> None:
-        """End the thread; fingers under way stop, and keep what they hold."""
+        """End the thread; moving fingers stop, and keep their grasp."""
         self._closing.set()
         self._wake.set()
         self._thread.join(_ANSWER_S)
@@ -126,11 +115,7 @@ class Hand:
             self._motion = self._hand.move_async(width, speed)
 
     def _end_motion(self) -> bool:
-        """Stop the fingers, where they are under way, and wait for the hand's answer.
-
-        Returns:
-            True if a motion had ended by itself.
-        """
+        """Stop moving fingers and await the hand's answer; returns whether a motion had ended by itself."""
         if self._motion is None or self._motion.wait(0.0):
             ended, self._motion = self._motion is not None, None
             return ended

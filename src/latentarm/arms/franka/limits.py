@@ -1,4 +1,4 @@
-"""What each Franka arm can do, and how much of it commands may use."""
+"""Limits of each Franka arm, and the share of them that commands may use."""
 
 import re
 from dataclasses import dataclass
@@ -10,61 +10,32 @@ from latentarm.core.types import FloatArray
 from latentarm.robots.panda import LIMITS as PANDA_LIMITS
 from latentarm.robots.robot import Robot
 
-SHARE: Final = 0.99
-"""How much of a limit is used; a share of 1 exceeds some by rounding."""
-
-_AHEAD_S: Final = 0.1
-"""Speeds are kept within the limits of where a joint will be after this time too, s."""
+SHARE: Final = 0.99  # used share of a limit; a share of 1 exceeds some by rounding
+_AHEAD_S: Final = 0.1  # speeds also keep the limits of the position after this time
 
 
 @final
 @dataclass(frozen=True, eq=False)
 class FrankaLimits:
-    """What one kind of arm can do.
+    """Limits of one kind of arm."""
 
-    Attributes:
-        kind: what its manufacturer calls it.
-        lower: (7,), lowest joint position that the arm allows, rad.
-        upper: (7,), highest, rad.
-        velocity: (7,), rad/s.
-        acceleration: (7,), rad/s².
-        jerk: (7,), rad/s³.
-        deceleration: (7,), how fast a joint slows down towards its ends, rad/s².
-        offset: (7,), how much slower it is there than it could be, rad/s.
-    """
-
-    kind: str
-    lower: FloatArray
-    upper: FloatArray
-    velocity: FloatArray
-    acceleration: FloatArray
-    jerk: FloatArray
-    deceleration: FloatArray
-    offset: FloatArray
+    kind: str  # the manufacturer's name
+    lower: FloatArray  # (7,), rad
+    upper: FloatArray  # (7,), rad
+    velocity: FloatArray  # (7,), rad/s
+    acceleration: FloatArray  # (7,), rad/s²
+    jerk: FloatArray  # (7,), rad/s³
+    deceleration: FloatArray  # (7,), towards the ends of a joint, rad/s²
+    offset: FloatArray  # (7,), reduction of the speed there, rad/s
 
     def speeds(self, q: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """The limits of a velocity at a position, as libfranka computes them from the model of an FR3.
-
-        Args:
-            q: (7,), rad.
-
-        Returns:
-            Lowest and highest velocity, each (7,), rad/s; zero lies between them.
-        """
+        """Velocity limits, each (7,), rad/s, at a position (7,), rad, by libfranka's formula for an FR3."""
         down = np.sqrt(2.0 * self.deceleration * np.maximum(q - self.lower, 0.0)) - self.offset
         up = np.sqrt(2.0 * self.deceleration * np.maximum(self.upper - q, 0.0)) - self.offset
         return -np.clip(down, 0.0, self.velocity), np.clip(up, 0.0, self.velocity)
 
     def slowed(self, velocity: FloatArray, q: FloatArray) -> FloatArray:
-        """A velocity in the same direction that keeps to `SHARE` of the limits, now and a moment ahead.
-
-        Args:
-            velocity: (7,), rad/s.
-            q: (7,), rad.
-
-        Returns:
-            (7,), rad/s.
-        """
+        """A velocity (7,), rad/s, in the same direction, within `SHARE` of the limits now and soon."""
         ahead = np.clip(velocity, -self.velocity, self.velocity) * _AHEAD_S
         factor = 1.0
         for where in (q, q + ahead):
@@ -82,7 +53,7 @@ class FrankaLimits:
         return bool(((velocity > most) | (velocity < least)).any())
 
     def excess(self, robot: Robot) -> str:
-        """What of a robot's limits the arm cannot do, in words; "" where it can do everything."""
+        """A limit of the robot that the arm cannot reach, in words, or ""."""
         theirs = robot.limits
         for joint in range(robot.dof):
             for what, asked, can, unit in (
@@ -127,14 +98,7 @@ the ends half of its acceleration is kept for stopping."""
 
 
 def limits_of(urdf: str) -> FrankaLimits | None:
-    """The limits of the arm that describes itself so.
-
-    Args:
-        urdf: the model that the arm sends; a Panda sends none.
-
-    Returns:
-        Its limits, or None where it is another arm.
-    """
+    """The limits of the arm that sends this URDF (a Panda sends none), or None for another arm."""
     if not urdf:
         return PANDA
     named = re.search(r"<robot[^>]*\bname\s*=\s*[\"']([^\"']+)", urdf)

@@ -1,4 +1,4 @@
-"""A connection to a Franka: opened, looked at, set up. Nothing here moves it."""
+"""A connection to a Franka: opened, inspected, set up. Nothing here moves it."""
 
 import statistics
 import threading
@@ -18,12 +18,10 @@ from latentarm.robots.robot import Robot
 if TYPE_CHECKING:
     import franky
 
-_CONNECT_S: Final = 8.0
-"""An arm that has not answered by then is not there, s."""
+_CONNECT_S: Final = 8.0  # an arm that has not answered by then is absent
 
 _AXIS_RAD: Final = 0.01
-_AXIS_M: Final = 0.003
-"""How far a joint's axis may lie from where the robot's model has it."""
+_AXIS_M: Final = 0.003  # tolerance of a joint's axis in the robot's model
 
 _REALTIME_FILE: Final = Path("/sys/kernel/realtime")
 
@@ -33,53 +31,29 @@ _ROUND_TRIPS: Final = 9
 
 @final
 class Link:
-    """An open connection. It ends with `close`: franky itself has only the end of its objects for that.
-
-    Args:
-        arm: franky's robot.
-        hand: franky's gripper, or None where the robot has none.
-        limits: what the arm can do; None where it is an arm that is not known.
-    """
+    """An open connection until `close`; ``hand`` may be None, and ``limits`` is None for an unknown arm."""
 
     def __init__(
         self, arm: "franky.Robot", hand: "franky.Gripper | None", limits: FrankaLimits | None
     ) -> None:
         self._arm: franky.Robot | None = arm
-        self._hand = hand
-        self._limits = limits
+        self.hand = hand  # do not keep it longer than this link
+        self.limits = limits
 
     @property
     def arm(self) -> "franky.Robot":
-        """Franky's robot; nobody keeps it.
-
-        Raises:
-            RuntimeError: the connection has ended.
-        """
+        """Franky's robot; do not keep a reference."""
         if self._arm is None:
             raise RuntimeError("the connection to the arm has ended")
         return self._arm
 
-    @property
-    def hand(self) -> "franky.Gripper | None":
-        """Franky's gripper, or None; nobody keeps it longer than this link."""
-        return self._hand
-
-    @property
-    def limits(self) -> FrankaLimits | None:
-        """What the arm can do, or None."""
-        return self._limits
-
     def close(self) -> None:
         """End the connection; the arm then stops by itself."""
-        self._arm = self._hand = None
+        self._arm = self.hand = None
 
 
 def library() -> Any:
-    """The module ``franky``.
-
-    Raises:
-        UserError: it is not installed.
-    """
+    """The module ``franky``."""
     try:
         import franky
     except ImportError as error:
@@ -91,16 +65,7 @@ def library() -> Any:
 
 
 def open_link(host: str, options: FrankaOptions, robot: Robot) -> Link:
-    """Connect. The arm's collision thresholds are set as it is connected; nothing moves.
-
-    Args:
-        host: name or address of the arm.
-        options: its thresholds, and whether a realtime kernel is needed.
-        robot: what the arm is meant to be.
-
-    Raises:
-        UserError: there is no arm or no hand, it does not answer, or it speaks another version.
-    """
+    """Connect. This sets the arm's collision thresholds; nothing moves."""
     franky = library()
     found: list[Link] = []
     failed: list[Exception] = []
@@ -136,16 +101,7 @@ def open_link(host: str, options: FrankaOptions, robot: Robot) -> Link:
 
 
 def set_up(link: Link, options: FrankaOptions, robot: Robot) -> None:
-    """Tell the arm its thresholds, payload and attachment, and franky the limits of its motions.
-
-    Args:
-        link: open; none of its `refusals` apply.
-        options: what to set.
-        robot: whose limits motions keep to.
-
-    Raises:
-        UserError: the arm does not take them.
-    """
+    """Set the arm's thresholds, payload and attachment, and the limits of franky's motions."""
     limits = link.limits
     if limits is None:
         raise ValueError("an arm that is not known is refused before it is set up")
@@ -172,7 +128,7 @@ def set_up(link: Link, options: FrankaOptions, robot: Robot) -> None:
 
 
 def refusals(link: Link, options: FrankaOptions, robot: Robot) -> tuple[str, ...]:
-    """Why this arm is not driven as this robot; empty where it can be."""
+    """Reasons not to drive this arm as this robot."""
     found: list[str] = []
     if link.limits is None:
         found.append("The arm says it is neither an FR3 nor a Panda: it is not known what it can do.")
@@ -200,7 +156,7 @@ def refusals(link: Link, options: FrankaOptions, robot: Robot) -> tuple[str, ...
 
 
 def findings(link: Link, options: FrankaOptions, robot: Robot) -> Findings:
-    """What the arm says of itself, and why it is not driven, if so."""
+    """The arm's facts, and reasons not to drive it."""
     state = link.arm.state
     limits = link.limits
     facts = [
@@ -240,7 +196,7 @@ def _set_thresholds(link: Link, options: FrankaOptions) -> None:
 
 
 def _axes_apart(link: Link, robot: Robot) -> str:
-    """How far the joint axes of the arm and of the model lie apart, in words; "" where they are the same."""
+    """Distance between the joint axes of the arm and of the model, in words, or ""."""
     franky = library()
     state = link.arm.state
     jacobian = np.asarray(link.arm.model.zero_jacobian(franky.Frame.Flange, state))
@@ -293,13 +249,13 @@ def _width(robot: Robot) -> float:
 
 
 def _realtime(franky: Any, options: FrankaOptions) -> Any:
-    """Libfranka is asked to insist only where it will get it; else `refusals` says so."""
+    """Insist on real time only where libfranka will get it; else `refusals` says so."""
     insist = options.realtime == "enforce" and has_realtime()
     return franky.RealtimeConfig.Enforce if insist else franky.RealtimeConfig.Ignore
 
 
 def has_realtime() -> bool:
-    """Whether this computer runs a realtime kernel, as libfranka looks for it."""
+    """Whether this computer runs a realtime kernel, by libfranka's test."""
     try:
         return _REALTIME_FILE.read_text(encoding="ascii").strip() == "1"
     except OSError:

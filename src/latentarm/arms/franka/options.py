@@ -1,4 +1,4 @@
-"""What the address of a Franka sets: ``franka://HOST?payload_kg=0.3&realtime=ignore``."""
+"""Options in the address of a Franka: ``franka://HOST?payload_kg=0.3&realtime=ignore``."""
 
 import math
 from collections.abc import Mapping
@@ -26,37 +26,26 @@ _LARGEST_PAYLOAD_KG: Final = 3.0
 @final
 @dataclass(frozen=True)
 class FrankaOptions:
-    """What is set when a Franka is connected.
+    """Settings for connecting a Franka."""
 
-    Attributes:
-        collision_torque_nm: (7,), external torque of a joint at which the arm stops, N m. These and the next
-            two are those of libfranka's own example of joint velocities.
-        collision_force_n: (3,), the same for forces along the axes of the base, N.
-        collision_moment_nm: (3,), the same for moments about them, N m.
-        payload_kg: mass of what the hand carries for the whole drive, kg.
-        payload_centre_m: (3,), its centre of mass in the flange's frame, m.
-        payload_inertia_kg_m2: (3,), its moments of inertia about that centre, kg m².
-        attachment_tip_m: (3,), where the tip of what the hand carries is, in the frame of the end-effector
-            that is set in Desk, m; the arm judges forces there. None leaves what is set.
-        realtime: whether libfranka insists on a realtime kernel.
-    """
-
+    # (7,), external torque of a joint at which the arm stops, N m; these and the next two are from
+    # libfranka's example of joint velocities
     collision_torque_nm: tuple[float, ...] = (20.0, 20.0, 18.0, 18.0, 16.0, 14.0, 12.0)
+    # (3,), the same for forces along the axes of the base, N
     collision_force_n: tuple[float, ...] = (20.0, 20.0, 20.0)
-    collision_moment_nm: tuple[float, ...] = (25.0, 25.0, 25.0)
-    payload_kg: float = 0.0
-    payload_centre_m: tuple[float, ...] = (0.0, 0.0, 0.0)
+    collision_moment_nm: tuple[float, ...] = (25.0, 25.0, 25.0)  # (3,), the same for moments about them, N m
+    payload_kg: float = 0.0  # mass of the hand's load for the whole drive, kg
+    payload_centre_m: tuple[float, ...] = (0.0, 0.0, 0.0)  # (3,), its centre of mass in the flange's frame, m
+    # (3,), its moments of inertia about that centre, kg m²
     payload_inertia_kg_m2: tuple[float, ...] = (0.0, 0.0, 0.0)
+    # (3,), tip of the attachment in the frame of the end-effector that Desk has set, m; the arm judges forces
+    # there. None leaves the present setting.
     attachment_tip_m: tuple[float, ...] | None = None
-    realtime: Realtime = "enforce"
+    realtime: Realtime = "enforce"  # whether libfranka insists on a realtime kernel
 
 
 def read_options(address: ArmAddress) -> FrankaOptions:
-    """The options of an address.
-
-    Raises:
-        UserError: one is unknown, no number, or out of its range; or a port is given.
-    """
+    """The options of an address."""
     if address.port is not None:
         raise UserError("--arm franka takes no port: a Franka always listens on 1337 and 1338.")
     given = address.only(*_NAMES)
@@ -85,7 +74,7 @@ def read_options(address: ArmAddress) -> FrankaOptions:
 def _figures(
     given: Mapping[str, str], name: str, count: int, least: float, most: float
 ) -> tuple[float, ...] | None:
-    """One figure for all, or ``count`` of them with commas between; None where nothing is given."""
+    """One figure for all, or ``count`` of them with commas between; None where absent."""
     if name not in given:
         return None
     try:

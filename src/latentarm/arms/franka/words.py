@@ -1,4 +1,4 @@
-"""A Franka's errors, and what franky raises, as sentences for a person."""
+"""Errors of a Franka and of franky as sentences for a person."""
 
 from collections.abc import Sequence
 from typing import Final
@@ -18,12 +18,7 @@ _ERRORS: Final = {
 
 
 def fault(errors: Sequence[str], said: str) -> str:
-    """Why the arm has stopped by itself, for a person who knows that it has.
-
-    Args:
-        errors: names of the errors that the arm reports.
-        said: what libfranka says of it.
-    """
+    """Why the arm has stopped, from the names of its errors, or else from libfranka's text."""
     if not errors:
         return f"{plain(said)}."
     reasons = ", and ".join(_ERRORS.get(name, name.replace("_", " ")) for name in errors)
@@ -31,5 +26,5 @@ def fault(errors: Sequence[str], said: str) -> str:
 
 
 def plain(error: object) -> str:
-    """What libfranka says, on one line, without its name and full stop."""
+    """Libfranka's text on one line, without its name and full stop."""
     return " ".join(str(error).split()).removeprefix("libfranka: ").rstrip(".")

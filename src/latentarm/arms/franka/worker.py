@@ -1,4 +1,4 @@
-"""The thread that talks to a Franka, so that nobody else waits for it."""
+"""The thread that talks to a Franka, so that no other thread waits for it."""
 
 import threading
 import time
@@ -19,16 +19,12 @@ from latentarm.core.types import FloatArray
 if TYPE_CHECKING:
     import franky
 
-POLL_S: Final = 0.004
-"""Time between two readings, s."""
-
-_BACK_S: Final = 0.5
-"""The arm's clock may seem to go back by so much: states may overtake each other, s."""
+POLL_S: Final = 0.004  # time between two readings, s
+_BACK_S: Final = 0.5  # the arm's clock may seem to go back by so much: states may overtake each other
 
 _CLOSE_S: Final = 3.0
 
-_RECOVERS_S: Final = 0.2
-"""An error is gone so soon after the arm was told to recover from it, s."""
+_RECOVERS_S: Final = 0.2  # an error is gone so soon after recovery
 
 _BUTTON: Final = "The stop button of the arm is pressed, or its enabling device is let go: release it."
 
@@ -44,64 +40,41 @@ _OTHER_MODES: Final[dict[str, tuple[ArmPhase, str]]] = {
 @final
 @dataclass(frozen=True, eq=False)
 class Trouble:
-    """Why the arm takes no commands.
+    """Why the arm takes no commands."""
 
-    Attributes:
-        phase: *fault* or *emergency_stop*.
-        reason: one sentence.
-        recoverable: whether the worker's `recover` can end it; else it ends by itself.
-        lost: whether the connection is gone, and recovering makes a new one.
-    """
-
-    phase: ArmPhase
-    reason: str
-    recoverable: bool
-    lost: bool = False
+    phase: ArmPhase  # *fault* or *emergency_stop*
+    reason: str  # one sentence
+    recoverable: bool  # whether the worker's `recover` can end it; else it ends by itself
+    lost: bool = False  # whether the connection is gone, and recovering makes a new one
 
 
 @final
 @dataclass(frozen=True, eq=False)
 class Measured:
-    """A state of the arm.
+    """A state of the arm."""
 
-    Attributes:
-        q: (7,), rad.
-        dq: (7,), rad/s.
-        time_s: when it came, on our clock, s.
-        arm_s: the arm's own clock, s.
-    """
-
-    q: FloatArray
-    dq: FloatArray
-    time_s: float
-    arm_s: float
+    q: FloatArray  # (7,), rad
+    dq: FloatArray  # (7,), rad/s
+    time_s: float  # of arrival, on our clock, s
+    arm_s: float  # on the arm's clock, s
 
 
 @final
 @dataclass(frozen=True, eq=False)
 class Order:
-    """What the arm is to do.
+    """An order to the arm."""
 
-    Attributes:
-        velocity: (7,), rad/s; None stops it.
-        until_s: when it runs out, on our clock, s.
-    """
-
-    velocity: FloatArray | None
-    until_s: float
+    velocity: FloatArray | None  # (7,), rad/s; None stops it
+    until_s: float  # its end on our clock, s
 
 
 @final
 class Worker:
     """Carries out the newest order, and keeps the newest state.
 
-    Every motion has a bound of its own in franky's control thread, at 1 kHz: when an order has run out, a
+    Franky's control thread bounds every motion, at 1 kHz: when an order has run out, a
     `JointVelocityStopMotion` takes over, whatever becomes of this thread or this process's Python.
-
-    Args:
-        link: open and set up.
-        reconnect: opens a new link in place of one that is lost.
-        now_s: our clock, s.
+    ``reconnect`` opens a new link in place of a lost one.
 
     Raises:
         Exception: of franky, where no state comes.
@@ -136,18 +109,18 @@ class Worker:
 
     @property
     def running(self) -> bool:
-        """Whether a motion is under way, or about to begin; without one the arm holds still."""
+        """Whether a motion is in progress or about to begin; without one the arm holds still."""
         order = self._order
         return self._running or (order is not None and order.velocity is not None)
 
     @property
     def guided(self) -> bool:
-        """Whether a person can move the arm by hand: until it has come to rest after that, too."""
+        """Whether a person can move the arm by hand, or it has not yet come to rest after that."""
         return self._guiding.phase != "no"
 
     @property
     def in_torque_control(self) -> bool:
-        """Whether the arm is guided, or is about to be: it takes no velocities."""
+        """Whether the arm is guided or about to be, so that it takes no velocities."""
         return self._guide or self.guided
 
     @property
@@ -157,7 +130,7 @@ class Worker:
 
     @property
     def limits(self) -> FrankaLimits:
-        """What the arm can do."""
+        """The arm's limits."""
         return self._limits
 
     def give(self, order: Order) -> None:
@@ -204,7 +177,6 @@ class Worker:
         self._end()
 
     def _pass(self) -> None:
-        """Carry out what was asked, and take a state."""
         with self._lock:
             order, self._order = self._order, None
             trouble = self._trouble
@@ -247,7 +219,7 @@ class Worker:
 
     @property
     def _drives(self) -> bool:
-        """Whether the last order that was carried out moves the arm."""
+        """Whether the last order carried out moves the arm."""
         driven = self._driven
         return driven is not None and driven.velocity is not None and bool(driven.velocity.any())
 
@@ -275,7 +247,7 @@ class Worker:
             self._measured = state
 
     def _guard(self) -> None:
-        """Stop what has run out before its motion began, and what comes too near the end of a joint."""
+        """Stop an order that ran out before its motion began, or that comes too near the end of a joint."""
         driven = self._driven
         if driven is None or driven.velocity is None:
             return
@@ -292,7 +264,6 @@ class Worker:
         return Measured(q, dq, now_s, float(state.time.to_sec()))
 
     def _see(self, mode: str, state: "franky.RobotState") -> None:
-        """Take note of what mode the arm is in."""
         if mode == "Reflex":
             self._fault(fault(_names(state.current_errors) or _names(state.last_motion_errors), "a reflex"))
         elif mode in _OTHER_MODES:
@@ -350,14 +321,13 @@ class Worker:
                 self._trouble = None
 
     def _recovered(self) -> bool:
-        """Whether the error is gone after all: franky's answer may come from a state that is older."""
+        """Whether the error is gone after all: franky's answer may come from an older state."""
         until_s = self._now_s() + _RECOVERS_S
         while (mode := self._link.arm.state.robot_mode.name) == "Reflex" and self._now_s() < until_s:
             time.sleep(POLL_S)
         return mode != "Reflex"
 
     def _end(self) -> None:
-        """Come to rest, and let go of the arm."""
         try:
             if self._running:
                 self._move(self._franky.JointVelocityStopMotion())
@@ -370,5 +340,4 @@ class Worker:
 
 
 def _names(errors: "franky.Errors") -> list[str]:
-    """The errors that are set."""
     return [name for name in dir(errors) if not name.startswith("_") and getattr(errors, name) is True]

@@ -1,1 +1,1 @@
-"""Arms of LeRobot, such as the SO-101, driven next to their bus by a process of their own."""
+"""Arms of LeRobot, such as the SO-101, driven next to their bus by a separate process."""

@@ -8,51 +8,42 @@ from typing import Any, Final, cast, final
 import numpy as np
 
 from latentarm.arms.address import ArmAddress
-from latentarm.arms.contract import ArmPhase, ArmSpec, ArmStatus
-from latentarm.arms.guiding import GuidableArm
+from latentarm.arms.contract import ArmPhase, ArmSpec, ArmStatus, finite_velocity
 from latentarm.arms.helper_process import HelperProcess
 from latentarm.arms.lerobot import keeper
 from latentarm.arms.lerobot.options import Options
-from latentarm.arms.real import Fact, Findings
+from latentarm.arms.real import Fact, Findings, GuidableArm
 from latentarm.core.errors import UserError
 from latentarm.core.types import Command, GripperCommand, GripperReading, Reading
 from latentarm.robots.robot import Robot
 
-RATE_HZ: Final = 100.0
-"""How often its process tells the servos where to be."""
+RATE_HZ: Final = 100.0  # of the servos' targets
 
 STOPS_AFTER_S: Final = 0.05
 """Its process sees that a command has run out in its next round; a round takes 10 ms, and 50 ms at most where
 the bus is slow. A process that is slower than that, or killed, tells the servos nothing new."""
 
-_LOADING_S: Final = 240.0
-"""LeRobot is imported within this time, s."""
-
-_BUS_S: Final = 10.0
-"""The bus is opened and asked within this time, s."""
+_LOADING_S: Final = 240.0  # for importing LeRobot
+_BUS_S: Final = 10.0  # for opening and asking the bus
 
 _ENDING_S: Final = 2.0
 
-_SILENT_S: Final = 1.0
-"""A process that has said nothing for so long does not answer, s."""
+_SILENT_S: Final = 1.0  # a process that is silent for so long does not answer
 
 
 @final
 class LerobotArm(GuidableArm):
-    """An arm of LeRobot whose servos take positions, driven next to its bus by a process of its own.
+    """An arm of LeRobot whose servos take positions, driven next to its bus by a separate process.
 
-    The servos have no watchdog. The process makes up for that (`latentarm.arms.lerobot.keeper`): velocities
-    become position targets there, each command for its duration, and the last target stands when commands
-    end for any reason. The arm then holds its position under power. Neither disabling nor closing it lets it
-    drop; switch its supply off for that, with a hand under it.
+    The servos have no watchdog. The process makes up for that (`latentarm.arms.lerobot.keeper`): it turns
+    velocities into position targets, each command for its duration, and the last target stands when commands
+    end for any reason. The arm then holds its position under power. Neither disabling nor closing lets it
+    drop; to lower it, switch its supply off with a hand under it.
 
     Args:
-        robot: what the arm is; its joints have the names of the motors.
-        address: ``port`` of the bus, and the file ``calibration`` or the ``id`` that lerobot-calibrate got.
-        now_s: the clock that readings are timed by, s.
-
-    Raises:
-        UserError: LeRobot is not installed or has no such arm, or the address lacks something.
+        robot: its joints have the names of the motors
+        address: ``port`` of the bus, and the file ``calibration`` or the ``id`` given to lerobot-calibrate
+        now_s: the clock of readings, s
     """
 
     def __init__(self, robot: Robot, address: ArmAddress, now_s: Callable[[], float]) -> None:
@@ -78,11 +69,11 @@ class LerobotArm(GuidableArm):
 
     @property
     def spec(self) -> ArmSpec:
-        """See the base class."""
+        """The arm's fixed properties."""
         return self._spec
 
     def look(self) -> Findings:
-        """See the base class."""
+        """Inspect the arm without moving it."""
         answer = self._ask("look")
         facts = {"arm": self._options.kind, "port": self._options.port}
         facts |= cast("dict[str, str]", answer["facts"])
@@ -94,7 +85,7 @@ class LerobotArm(GuidableArm):
         return Findings(listed, (*self._misfits(), *answer["refusals"]))
 
     def connect(self) -> None:
-        """See the base class."""
+        """Connect; the arm is then disabled."""
         if self._open and self._alive:
             return
         if misfits := self._misfits():
@@ -114,14 +105,14 @@ class LerobotArm(GuidableArm):
         self._status = ArmStatus("off", "The arm is not connected.")
 
     def read(self) -> Reading:
-        """See the base class."""
+        """The newest reading."""
         if self._newest is None:
             raise RuntimeError("an arm has no reading before it is connected")
         self._drain()
         return self._newest
 
     def status(self) -> ArmStatus:
-        """See the base class."""
+        """Whether the arm can move, and if not, why."""
         self._drain()
         if self._open and keeper.now_s() - self._heard_s > _SILENT_S:
             return ArmStatus(
@@ -132,36 +123,30 @@ class LerobotArm(GuidableArm):
         return self._status
 
     def enable(self) -> None:
-        """See the base class."""
+        """Ask to take commands."""
         self._tell("enable")
 
     def disable(self) -> None:
-        """See the base class."""
+        """Stop, and take no commands."""
         self._tell("disable")
         if self._status.takes_commands:
             self._status = _DISABLED
 
     def guide(self) -> None:
-        """See the base class. The joints' torque is off meanwhile: the arm sinks unless somebody holds it."""
+        """Ask to be moved by hand, with the joints' torque off: the arm sinks unless somebody holds it."""
         self._tell("guide")
 
     def move_gripper(self, command: GripperCommand) -> None:
-        """See the base class. A jaw without torque is open to any hand, and is told nothing."""
+        """Move the gripper of an arm that takes no commands; any hand opens a jaw without torque."""
         self._tell("grip", gripper=[command.width_m, command.speed_m_s])
 
     def recover(self) -> None:
-        """See the base class."""
+        """Ask to end a recoverable fault."""
         self._tell("recover")
 
     def send(self, command: Command) -> None:
-        """See the base class.
-
-        Raises:
-            ValueError: the velocity has the wrong shape or is not finite: no safety filter sends that.
-        """
-        velocity = np.array(command.velocity, dtype=np.float64)
-        if velocity.shape != (self._robot.dof,) or not np.isfinite(velocity).all():
-            raise ValueError(f"a command needs {self._robot.dof} finite joint velocities")
+        """Take a command; ignored unless enabled."""
+        velocity = finite_velocity(command, self._robot.dof)
         gripper = command.gripper
         self._tell(
             "move",
@@ -172,7 +157,7 @@ class LerobotArm(GuidableArm):
         )
 
     def stop(self) -> None:
-        """See the base class."""
+        """Stop now, and stay enabled."""
         self._tell("stop")
 
     @property
@@ -180,7 +165,7 @@ class LerobotArm(GuidableArm):
         return self._process is not None and self._process.alive
 
     def _begin(self) -> HelperProcess:
-        """Start the process next to the bus, which says what the arm is."""
+        """Start the process next to the bus, which describes the arm."""
         process = HelperProcess("latentarm.arms.lerobot.keeper")
         self._process = process
         # Closing keeps it, because LeRobot takes seconds to load; it ends with this object at the latest.
@@ -211,7 +196,6 @@ class LerobotArm(GuidableArm):
         self._process = None
 
     def _misfits(self) -> tuple[str, ...]:
-        """Why the arm is not the robot."""
         if set(self._spec.joint_names) == set(self._robot.joint_names):
             return ()
         return (
@@ -225,11 +209,6 @@ class LerobotArm(GuidableArm):
             self._process.port.send({"do": what, **details})
 
     def _ask(self, what: str) -> dict[str, Any]:
-        """Ask and wait.
-
-        Raises:
-            UserError: the arm refuses, or nobody answers.
-        """
         process = self._process
         if process is None or not process.alive:
             self._end()

@@ -1,4 +1,4 @@
-"""A robot of LeRobot by its motors' bus. Nothing here imports LeRobot before a `MotorsBus` is made."""
+"""A robot of LeRobot over its motors' bus. Nothing here imports LeRobot before a `MotorsBus` is made."""
 
 import math
 import re
@@ -20,35 +20,16 @@ KINDS: Final = ("so100_follower", "so101_follower", "koch_follower", "omx_follow
 
 _MODULES: Final = ("so_follower", "koch_follower", "omx_follower")
 
-GRIPPER: Final = "gripper"
-"""The motor that is the gripper of these robots; LeRobot reads it from 0 (closed) to 100 (open)."""
-
-HOTTEST_C: Final = 60
-"""A motor that is hotter is not driven, °C; its own protection is at 70."""
-
-_ANSWER_S: Final = 0.002
-"""The longest wait for a byte before the servos' SDK looks again whether its own time is over, s."""
-
-RAMP_RAD_S2: Final = 100 * 2 * math.pi / 4096
-"""Unit of the register Acceleration of Feetech's servos: 100 encoder steps/s², in rad/s²."""
-
-SLOWEST_RAMP_RAD_S2: Final = 10.0
-"""A motor that speeds up and slows down by less, by its own registers, does not stop when it is told to."""
-
-_BEYOND_DEG: Final = 15.0
-"""A joint that says that it is farther outside its calibrated range cannot be there, degrees."""
-
-_ALIKE_STEPS: Final = 20
-"""Two readings of a motor that stands still differ by no more encoder steps."""
-
-_TRIES: Final = 3
-"""A bus loses an answer now and then: what has time is asked so many times."""
-
-_MISSING: Final = re.compile(r"- (\d+) \(expected")
-"""Numbers of motors in LeRobot's list of those that do not answer."""
-
-_FAILURES: Final = (OSError, RuntimeError, ValueError)
-"""What LeRobot raises where a bus or a motor does not answer as it should."""
+GRIPPER: Final = "gripper"  # motor of the gripper; LeRobot reads it from 0 (closed) to 100 (open)
+HOTTEST_C: Final = 60  # hotter motors are not driven; their own protection is at 70
+_ANSWER_S: Final = 0.002  # longest wait for a byte before the servos' SDK checks its time-out
+RAMP_RAD_S2: Final = 100 * 2 * math.pi / 4096  # unit of Feetech's register Acceleration: 100 encoder steps/s²
+SLOWEST_RAMP_RAD_S2: Final = 10.0  # a motor with a slower ramp in its registers does not stop in time
+_BEYOND_DEG: Final = 15.0  # a joint cannot be farther outside its calibrated range
+_ALIKE_STEPS: Final = 20  # largest difference between two readings of a motor at rest
+_TRIES: Final = 3  # a bus loses an answer now and then
+_MISSING: Final = re.compile(r"- (\d+) \(expected")  # numbers of missing motors in LeRobot's list
+_FAILURES: Final = (OSError, RuntimeError, ValueError)  # raised by LeRobot for a bad answer
 
 
 _Answer = TypeVar("_Answer")
@@ -58,14 +39,8 @@ _Answer = TypeVar("_Answer")
 class MotorsBus:
     """The bus of one robot, with LeRobot's own classes; not open at first.
 
-    Positions of the arm's motors are in degrees from the middle of their calibrated range, as LeRobot reads
-    them with ``use_degrees``. Nothing but `release` switches torque off.
-
-    Args:
-        options: the robot.
-
-    Raises:
-        UserError: LeRobot has no such robot, or reads one of its joints in no angle.
+    Positions of the arm's motors are in degrees from the middle of their calibrated range, as with LeRobot's
+    ``use_degrees``. Only `release` switches torque off. Methods raise OSError where a motor does not answer.
     """
 
     def __init__(self, options: Options) -> None:
@@ -84,11 +59,7 @@ class MotorsBus:
                 )
 
     def open(self) -> None:
-        """Open the port and see that all motors are there; changes nothing.
-
-        Raises:
-            UserError: the port or a motor does not answer.
-        """
+        """Open the port and check that all motors answer; changes nothing."""
         kind, port = self._options.kind, self._options.port
         try:
             _again(self._open_once)
@@ -122,11 +93,7 @@ class MotorsBus:
             self._bus.disconnect(disable_torque=False)
 
     def refusals(self) -> tuple[str, ...]:
-        """Why the arm is not driven; its bus is open.
-
-        Raises:
-            OSError: a motor does not answer.
-        """
+        """Reasons not to drive the arm; its bus is open."""
         found: list[str] = []
         file = Path(self._robot.calibration_fpath)
         kind, port, name = self._options.kind, self._options.port, self._options.name
@@ -156,11 +123,7 @@ class MotorsBus:
         return tuple(found)
 
     def facts(self) -> dict[str, str]:
-        """What the arm tells of itself; its bus is open.
-
-        Raises:
-            OSError: a motor does not answer.
-        """
+        """Facts about the arm; its bus is open."""
         spans_s: list[float] = []
         for _ in range(20):
             begun = time.perf_counter()
@@ -191,7 +154,7 @@ class MotorsBus:
         return told
 
     def ranges(self) -> dict[str, float]:
-        """How far each joint may turn to either side of its middle by its calibration, degrees."""
+        """Half of each joint's calibrated range, degrees."""
         found: dict[str, float] = {}
         for name in self.joints:
             one = self._bus.calibration[name]
@@ -200,11 +163,7 @@ class MotorsBus:
         return found
 
     def positions(self) -> Mapping[str, float]:
-        """Joints in degrees, the gripper from 0 to 100.
-
-        Raises:
-            OSError: a motor does not answer, or says what cannot be.
-        """
+        """Joints in degrees, the gripper from 0 to 100; an impossible value is an OSError too."""
         found = self._whole("Present_Position", normalize=True)
         ranges = self.ranges()
         for name in self.joints:
@@ -215,25 +174,18 @@ class MotorsBus:
         return found
 
     def go(self, targets: Mapping[str, float]) -> None:
-        """Tell the motors where to be; units as of `positions`."""
+        """Send targets to the motors, in units of `positions`."""
         self._bus.sync_write("Goal_Position", dict(targets))
 
     def limp(self) -> tuple[str, ...]:
-        """The motors whose torque is off.
-
-        Raises:
-            OSError: a motor does not answer.
-        """
+        """The motors whose torque is off."""
         return tuple(name for name, on in self._read("Torque_Enable").items() if not on)
 
     def energise(self) -> None:
-        """Switch torque on where it is off, at the positions where the motors are.
+        """Switch torque on where it is off, at the motors' present positions.
 
-        An arm without torque is configured too, as LeRobot does when it connects. One under power is not:
-        that would let it drop for a moment.
-
-        Raises:
-            OSError: a motor does not answer, or has no torque even so.
+        An arm without any torque is configured too, as by LeRobot's connect. One under power is not: that
+        would let it drop for a moment.
         """
         limp = self.limp()
         # That all have torque must be no late answer to another question.
@@ -249,24 +201,16 @@ class MotorsBus:
             raise ConnectionError(f"{', '.join(still)} stays without torque: check its supply and its cable.")
 
     def release(self, motors: Sequence[str]) -> None:
-        """Switch torque off at some motors.
-
-        Raises:
-            OSError: a motor does not answer.
-        """
+        """Switch torque off at some motors."""
         self._bus.disable_torque(list(motors), num_retry=_TRIES)
 
     def _has(self, register: str) -> bool:
-        """Whether the motors have a register: those of other makers have others."""
+        """Whether the motors have a register: other makers have others."""
         models = {motor.model for motor in self._bus.motors.values()}
         return all(register in self._bus.model_ctrl_table[model] for model in models)
 
     def _sure_positions(self) -> dict[str, int]:
-        """Where the motors are, encoder steps, as they say twice in a row: torque will hold them there.
-
-        Raises:
-            OSError: a motor does not answer, or says something else each time.
-        """
+        """Encoder steps that the motors report twice in a row: torque will hold them there."""
         before = self._read("Present_Position")
         for _ in range(_TRIES):
             now = self._read("Present_Position")
@@ -279,13 +223,10 @@ class MotorsBus:
         return self._whole(register, normalize=False)
 
     def _whole(self, register: str, *, normalize: bool) -> dict[str, Any]:
-        """What all motors answer.
+        """Answers of all motors, each checked to be whole.
 
-        LeRobot takes an answer without enough bytes for a 0. A late answer to what was asked before can have
+        LeRobot takes an answer without enough bytes for a 0. A late answer to an earlier question can have
         fewer bytes. As a position, 0 would let the arm go there.
-
-        Raises:
-            OSError: a motor does not answer, or not to this.
         """
         found: dict[str, Any] = self._bus.sync_read(register, normalize=normalize, num_retry=1)
         reader = self._bus.sync_reader
@@ -296,7 +237,6 @@ class MotorsBus:
 
 
 def _again(ask: Callable[[], _Answer]) -> _Answer:
-    """Ask, and ask again where the bus does not answer."""
     for _ in range(_TRIES - 1):
         with suppress(*_FAILURES):
             return ask()
@@ -306,8 +246,8 @@ def _again(ask: Callable[[], _Answer]) -> _Answer:
 def _sleep_until_answers_come(port: Any) -> None:
     """Let the port of a servos' SDK sleep while there is nothing to read.
 
-    The SDK asks for bytes in a loop that never sleeps. At real-time priority that keeps the kernel's worker
-    that brings the bytes off the processor, so that answers came too late on a busy machine.
+    The SDK polls in a loop that never sleeps. At real-time priority that keeps the kernel's worker for
+    incoming bytes off the processor, so that answers came too late on a busy machine.
     """
     read_at_once = port.readPort
 
@@ -319,7 +259,6 @@ def _sleep_until_answers_come(port: Any) -> None:
 
 
 def _robot(options: Options) -> Any:
-    """LeRobot's object."""
     robots = import_module("lerobot.robots")
     for module in _MODULES:
         import_module(f"lerobot.robots.{module}")

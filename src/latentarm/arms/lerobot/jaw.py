@@ -4,21 +4,15 @@ from typing import Final, final
 
 import numpy as np
 
-_BEHIND: Final = 6.0
-"""A jaw that stays this far behind its target, of 100, presses on something."""
-
-_HOLDS_S: Final = 0.2
-"""One that has done so for this long holds it, s."""
+_BEHIND: Final = 6.0  # a jaw this far behind its target, of 100, presses on something
+_HOLDS_S: Final = 0.2  # and holds it after this time
 
 
 @final
 class Jaw:
-    """Moves a target towards the commanded opening, and says how far the jaw is open.
+    """Moves a target towards the commanded opening, and reports the jaw's opening.
 
-    The opening is taken to grow evenly with the servo's angle: for a jaw on a hinge, an approximation.
-
-    Args:
-        width_m: the largest opening, m.
+    The opening is assumed to grow evenly with the servo's angle: for a jaw on a hinge, an approximation.
     """
 
     def __init__(self, width_m: float) -> None:
@@ -28,12 +22,12 @@ class Jaw:
         self._behind_s = 0.0
 
     def begin(self, at: float) -> None:
-        """Stay where the jaw is, from 0 to 100."""
+        """Stay at the jaw's position, from 0 to 100."""
         self._target = self._goal = self._at = at
         self._behind_s = 0.0
 
     def command(self, width_m: float, speed_m_s: float) -> None:
-        """Open or close to a width, m, at a speed, m/s; at 0 it halts."""
+        """Go to a width, m, at a speed, m/s; at 0 it halts."""
         if speed_m_s <= 0.0:
             self.halt()
             return
@@ -41,19 +35,14 @@ class Jaw:
         self._speed = speed_m_s * self._per_m
 
     def halt(self) -> None:
-        """Stay where it is; what is held stays held, as hard as now."""
+        """Stop here; a hold persists, as hard as now."""
         if self._speed > 0.0 and self._behind_s < _HOLDS_S:
             self._target = self._at
         # Once: a jaw that gives way later presses back.
         self._goal, self._speed = self._target, 0.0
 
     def advance(self, span_s: float, at: float) -> float:
-        """The target by now, from 0 to 100.
-
-        Args:
-            span_s: since the time before, s.
-            at: where the jaw is, from 0 to 100.
-        """
+        """The present target, from 0 to 100, after ``span_s`` with the jaw at ``at``, from 0 to 100."""
         self._at = at
         behind = at - self._target > _BEHIND
         self._behind_s = self._behind_s + span_s if behind else 0.0
@@ -64,5 +53,5 @@ class Jaw:
         return self._target
 
     def measured(self) -> tuple[float, bool]:
-        """How far it is open, m, and whether it holds something."""
+        """The opening, m, and whether it holds something."""
         return max(self._at, 0.0) / self._per_m, self._behind_s >= _HOLDS_S

@@ -1,9 +1,9 @@
 """The process next to the bus: it holds the arm's position when commands run out.
 
-The servos of LeRobot's arms know positions only, and stay at the last one they were told. This process tells
-them a new one a hundred times a second while a command is in force. When commands run out, when the process
-that sends them stalls or is killed, and when this one is killed, the last position stands: the arm stops,
-under power, and does not drop.
+The servos of LeRobot's arms know positions only, and stay at the last target. This process sends a new one a
+hundred times a second while a command is in force. When commands run out, when the commanding process stalls
+or is killed, and when this one is killed, the last target stands: the arm stops, under power, and does not
+drop.
 """
 
 import signal
@@ -26,37 +26,25 @@ from latentarm.core.errors import UserError
 from latentarm.core.punctuality import ask_for_priority, short_collections
 from latentarm.core.types import FloatArray
 
-PERIOD_S: Final = 0.01
-"""Of the targets."""
-
-_FAILURES: Final = 5
-"""After so many rounds in which the bus did not answer the arm has a fault."""
-
-_SILENT_PERIOD_S: Final = 0.2
-"""Of the rounds after that: each one waits for answers that do not come."""
-
-_TORQUE_ROUNDS: Final = 10
-"""In every so many rounds it is seen whether all motors are still under power."""
-
-_VELOCITY_ROUNDS: Final = 5
-"""Velocities are taken over so many rounds: an encoder step in one round is a large one."""
-
-_MOVING_RAD_S: Final = 0.05
-"""An arm that is slower is at rest, rad/s: less is not seen by its encoders in 50 ms."""
+PERIOD_S: Final = 0.01  # of the targets
+_FAILURES: Final = 5  # the arm has a fault after so many rounds without an answer
+_SILENT_PERIOD_S: Final = 0.2  # of later rounds: each waits for answers that do not come
+_TORQUE_ROUNDS: Final = 10  # between checks that all motors are under power
+_VELOCITY_ROUNDS: Final = 5  # span of a velocity: one encoder step in one round is a large one
+_MOVING_RAD_S: Final = 0.05  # slower motion is below the encoders' resolution over 50 ms
 
 
 def now_s() -> float:
-    """The clock that all processes of this machine share, and that goes on while it sleeps, s."""
+    """The clock that all processes of this machine share, and that goes on during suspend, s."""
     return time.clock_gettime(time.CLOCK_BOOTTIME)
 
 
 @final
 class Keeper:
-    """Keeps one arm.
+    """Keeps one arm, for the commanding process at the other end of ``port``.
 
     Args:
-        port: to the process that commands.
-        bus: the arm's, not open.
+        bus: not open
         setup: ``joints``, ``lower``, ``upper`` and ``speed`` (n each, rad, rad/s), and ``width_m`` of the
             gripper or None.
     """
@@ -75,7 +63,7 @@ class Keeper:
         self._read_s = now_s()
 
     def run(self) -> None:
-        """Keep the arm until the other process is gone; then leave it where it is, under power."""
+        """Keep the arm until the other process is gone; then leave it in place, under power."""
         due_s = now_s()
         try:
             while True:
@@ -127,7 +115,7 @@ class Keeper:
                 pass
 
     def _looked(self) -> dict[str, object]:
-        """What the arm is; its bus is as open as before."""
+        """Facts and refusals; leaves the bus as open as before."""
         begun = self._phase
         try:
             if begun == "off":
@@ -157,7 +145,7 @@ class Keeper:
         return {"connected": True, **self._state()}
 
     def _new_targets(self) -> Targets:
-        """Within the limits of both the model and the calibration."""
+        """Targets within the limits of both the model and the calibration."""
         ranges = self._bus.ranges()
         half = np.deg2rad([ranges[joint] for joint in self._joints])
         lower, upper = (np.array(self._setup[name], dtype=np.float64) for name in ("lower", "upper"))
@@ -208,7 +196,7 @@ class Keeper:
         self._phase, self._reason = "guided", ""
 
     def _hold(self) -> None:
-        """Where the arm is guided, or was: hold it where it is, under power."""
+        """Hold an arm in place, under power, if it is guided or was."""
         if self._phase == "guided":
             self._phase, self._reason = "disabled", ""
         if not self._released:
@@ -221,7 +209,6 @@ class Keeper:
         self._released = False
 
     def _round(self) -> None:
-        """Read the arm, tell it where to be, and say how it is."""
         before_s = self._read_s
         try:
             opening = self._read()
@@ -255,7 +242,7 @@ class Keeper:
             )
 
     def _read(self) -> float:
-        """Read the positions; the gripper's, from 0 to 100."""
+        """Read the positions; returns the gripper's, from 0 to 100."""
         positions = self._bus.positions()
         self._read_s = now_s()
         self._q = np.deg2rad([positions[joint] for joint in self._joints])
@@ -303,7 +290,7 @@ def _sentence(error: Exception) -> str:
 
 
 def main() -> None:
-    """Make the bus that the first message names, say what it is, and keep its arm."""
+    """Open the bus of the first message, describe it, and keep its arm."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     port = MessagePort.of_helper()
     setup = port.receive(wait_s=60.0)

@@ -1,4 +1,4 @@
-"""What the address of a LeRobot arm says: ``lerobot://TYPE?port=...&calibration=...``."""
+"""Options in the address of a LeRobot arm: ``lerobot://TYPE?port=...&calibration=...``."""
 
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -11,27 +11,16 @@ from latentarm.core.errors import UserError
 @final
 @dataclass(frozen=True)
 class Options:
-    """Where an arm is, and as what LeRobot knows it.
+    """The place of an arm, and LeRobot's names for it."""
 
-    Attributes:
-        kind: LeRobot's type of the robot, such as ``so101_follower``.
-        port: the serial port of its bus.
-        name: LeRobot's id of the robot: the name of its calibration file.
-        folder: that the calibration file is in; None for LeRobot's own.
-    """
-
-    kind: str
-    port: str
-    name: str
-    folder: str | None
+    kind: str  # LeRobot's type of the robot, such as ``so101_follower``
+    port: str  # serial port of its bus
+    name: str  # LeRobot's id of the robot, the name of its calibration file
+    folder: str | None  # of the calibration file; None for LeRobot's own
 
     @classmethod
     def of(cls, address: ArmAddress) -> Self:
-        """What an address says.
-
-        Raises:
-            UserError: an option is unknown or missing, or the address has a port number.
-        """
+        """Parse an address."""
         given = address.only("port", "id", "calibration")
         example = f"--arm lerobot://{address.host}?port=/dev/ttyACM0&calibration=FILE.json"
         if address.port is not None:
@@ -53,5 +42,5 @@ class Options:
         return cls(address.host, given["port"], file.stem, str(file.parent.resolve()))
 
     def message(self) -> dict[str, object]:
-        """In plain values."""
+        """Plain values, by name."""
         return asdict(self)

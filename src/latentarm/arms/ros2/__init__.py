@@ -1,1 +1,1 @@
-"""Arms behind ros2_control, driven over rosbridge and past a watchdog that runs next to the arm."""
+"""Arms behind ros2_control, driven over rosbridge through a watchdog that runs next to the arm."""

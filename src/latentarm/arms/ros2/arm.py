@@ -9,9 +9,8 @@ from typing import Final, final
 import numpy as np
 
 from latentarm.arms.address import ArmAddress
-from latentarm.arms.contract import ArmSpec, ArmStatus
-from latentarm.arms.guiding import GuidableArm
-from latentarm.arms.real import Findings
+from latentarm.arms.contract import ArmSpec, ArmStatus, finite_velocity
+from latentarm.arms.real import Findings, GuidableArm
 from latentarm.arms.ros2.feed import JointFeed
 from latentarm.arms.ros2.gripper import Ros2Gripper
 from latentarm.arms.ros2.inspection import inspect
@@ -24,27 +23,16 @@ from latentarm.core.types import Command, GripperCommand, GripperReading, Readin
 from latentarm.robots.kinematics.stillness import STILL_RAD_S
 from latentarm.robots.robot import Robot
 
-RATE_HZ: Final = 100.0
-"""The watchdog commands the controller so often."""
-
-STOPS_AFTER_S: Final = 0.09
-"""The watchdog brakes so soon after a command has run out; one that takes longer is refused, s."""
-
-LONGEST_S: Final = 0.5
-"""No command is sent for longer than this: the watchdog would cut it short, s."""
-
-HEARTBEAT_S: Final = 0.05
-"""The watchdog hears from us at least so often, s."""
-
-CLAIM_S: Final = 1.0
-"""For how long the watchdog may take to give us the arm, s."""
+RATE_HZ: Final = 100.0  # of the watchdog's commands to the controller
+STOPS_AFTER_S: Final = 0.09  # largest delay of the watchdog's braking after a command has run out
+LONGEST_S: Final = 0.5  # the watchdog would cut a longer command short
+HEARTBEAT_S: Final = 0.05  # largest gap between messages to the watchdog
+CLAIM_S: Final = 1.0  # for the watchdog to give us the arm
 
 
 @final
 @dataclass(frozen=True)
 class _Open:
-    """One connection, and everything that goes with it."""
-
     link: Link
     session: Session
     feed: JointFeed
@@ -60,17 +48,13 @@ class _Open:
 class Ros2Arm(GuidableArm):
     """The driver of an arm behind ros2_control, over rosbridge.
 
-    Commands go to the watchdog next to the arm, which passes them on to the controller and stops the arm
-    when they end. A thread keeps the watchdog informed that this process lives, and opens a lost connection
-    again once `recover` was called.
+    Commands go to the watchdog next to the arm, which passes them on to the controller and stops the arm when
+    they end. A thread tells the watchdog that this process lives, and after `recover` opens a lost connection
+    again.
 
     Args:
-        robot: what the arm is.
         address: of rosbridge, with the options of `Ros2Options`.
-        now_s: the clock that readings are timed by, s; never goes back.
-
-    Raises:
-        UserError: an option is unknown or wrong, or roslibpy is not installed.
+        now_s: the clock of readings, s; never goes back
     """
 
     def __init__(self, robot: Robot, address: ArmAddress, now_s: Callable[[], float]) -> None:
@@ -95,17 +79,13 @@ class Ros2Arm(GuidableArm):
 
     @property
     def spec(self) -> ArmSpec:
-        """See the base class."""
+        """The arm's fixed properties."""
         return self._spec
 
     def look(self) -> Findings:
-        """See the base class.
-
-        Raises:
-            RuntimeError: the arm is connected.
-        """
+        """Inspect the arm without moving it."""
         if self._open is not None:
-            raise RuntimeError("an arm is looked at before it is connected")
+            raise RuntimeError("the arm is connected; look before that")
         opened = self._opened()
         try:
             return inspect(opened.link, opened.session, opened.feed, self._options)
@@ -113,7 +93,7 @@ class Ros2Arm(GuidableArm):
             opened.link.close()
 
     def connect(self) -> None:
-        """See the base class."""
+        """Connect; the arm is then disabled."""
         if self._open is not None and not self._out_of_reach():
             return
         self.close()
@@ -124,7 +104,7 @@ class Ros2Arm(GuidableArm):
         self._heart.start()
 
     def close(self) -> None:
-        """See the base class."""
+        """Stop the arm and disconnect."""
         self._ended.set()
         self._arming = None
         if self._heart is not None:
@@ -136,14 +116,14 @@ class Ros2Arm(GuidableArm):
         self._reconnect.clear()
 
     def read(self) -> Reading:
-        """See the base class."""
+        """The newest reading."""
         self._take_reading()
         if self._reading is None:
             raise RuntimeError("an arm has no reading before it is connected")
         return self._reading
 
     def status(self) -> ArmStatus:
-        """See the base class."""
+        """Whether the arm can move, and if not, why."""
         opened = self._open
         if opened is None:
             return ArmStatus("off", "The arm is not connected.")
@@ -166,7 +146,7 @@ class Ros2Arm(GuidableArm):
         return ArmStatus("disabled", state.obstacle or "The arm is not enabled yet.")
 
     def enable(self) -> None:
-        """See the base class."""
+        """Ask to take commands."""
         if self._open is not None and self.status().phase == "disabled":
             if self._arming is None:
                 self._enablings += 1
@@ -174,31 +154,27 @@ class Ros2Arm(GuidableArm):
             self._open.session.tell("enable", arming=self._arming)
 
     def disable(self) -> None:
-        """See the base class."""
+        """Stop, and take no commands."""
         self._arming = None
         if self._open is not None:
             self._open.session.tell("disable")
             self._halt_gripper(self._open)
 
     def guide(self) -> None:
-        """Always refused: ros2_control has no common way to let go of an arm.
-
-        Raises:
-            UserError: it says so.
-        """
+        """Always refused: ros2_control has no common way to let go of an arm."""
         raise UserError(
             "This arm is not released over ROS 2: switch on its own mode for guiding by hand at the arm, such"
             " as freedrive, and record here while you move it."
         )
 
     def move_gripper(self, command: GripperCommand) -> None:
-        """See the base class."""
+        """Move the gripper of an arm that takes no commands."""
         opened, status = self._open, self.status()
         if opened is not None and opened.gripper is not None and not (status.lost or status.takes_commands):
             opened.gripper.command(command)
 
     def recover(self) -> None:
-        """See the base class."""
+        """Ask to end a recoverable fault."""
         opened = self._open
         if opened is None or self.status().phase != "fault":
             return
@@ -210,15 +186,8 @@ class Ros2Arm(GuidableArm):
         opened.session.tell("recover")
 
     def send(self, command: Command) -> None:
-        """See the base class.
-
-        Raises:
-            ValueError: the velocity has the wrong shape or is not finite, or there is a command for a gripper
-                that the arm does not have: no safety filter sends that.
-        """
-        velocity = np.array(command.velocity, dtype=np.float64)
-        if velocity.shape != (self._dof,) or not np.isfinite(velocity).all():
-            raise ValueError(f"a command needs {self._dof} finite joint velocities")
+        """Take a command; ignored unless enabled."""
+        velocity = finite_velocity(command, self._dof)
         if command.gripper is not None and self._gripper is None:
             raise ValueError("this arm has no gripper to command")
         opened = self._open
@@ -239,17 +208,12 @@ class Ros2Arm(GuidableArm):
             opened.gripper.command(command.gripper)
 
     def stop(self) -> None:
-        """See the base class."""
+        """Stop now, and stay enabled."""
         if self._open is not None:
             self._open.session.tell("stop")
             self._halt_gripper(self._open)
 
     def _opened(self) -> _Open:
-        """A new connection.
-
-        Raises:
-            UserError: nothing answers.
-        """
         link = Link(self._options.host, self._options.port)
         session = Session(link, self._options.watchdog, self._now_s)
         feed = JointFeed(link, self._options, self._now_s)
@@ -257,11 +221,7 @@ class Ros2Arm(GuidableArm):
         return _Open(link, session, feed, gripper)
 
     def _claimed(self) -> _Open:
-        """A new connection with an arm that is ours; it is disabled.
-
-        Raises:
-            UserError: nothing answers, or what answers is refused.
-        """
+        """A new connection that owns the arm, which is disabled."""
         opened = self._opened()
         refusals = inspect(opened.link, opened.session, opened.feed, self._options).refusals
         if not refusals:
@@ -277,7 +237,7 @@ class Ros2Arm(GuidableArm):
         return opened
 
     def _out_of_reach(self) -> str:
-        """Why the arm cannot be reached over this connection, as one sentence; "" where it can."""
+        """Why the arm cannot be reached over this connection, as one sentence, or ""."""
         opened = self._open
         if opened is None or not opened.link.connected:
             return "The connection to the arm's computer is lost."
@@ -288,7 +248,6 @@ class Ros2Arm(GuidableArm):
         return ""
 
     def _take_reading(self) -> None:
-        """Make a reading of what was measured since the last one, if anything was."""
         opened, before = self._open, self._reading
         newest = None if opened is None else opened.feed.newest
         if opened is None or newest is None or newest[0] is self._measured:
@@ -309,7 +268,7 @@ class Ros2Arm(GuidableArm):
             opened.gripper.halt()
 
     def _beat(self) -> None:
-        """In a thread of our own, until the arm is closed."""
+        """The heartbeat thread, until the arm is closed."""
         while not self._ended.wait(HEARTBEAT_S):
             opened = self._open
             if opened is None:

@@ -1,4 +1,4 @@
-"""The joint states of an arm as they come in, timed by our clock."""
+"""The incoming joint states of an arm, timed by our clock."""
 
 import time
 from collections.abc import Callable, Mapping
@@ -19,20 +19,15 @@ _KIND: Final = "sensor_msgs/msg/JointState"
 
 @final
 class JointFeed:
-    """Subscribes to the joint states; everything here is kept by roslibpy's thread and read by others.
-
-    Args:
-        link: the connection.
-        options: which joints, where.
-        now_s: our clock, s.
+    """Subscribes to the joint states; roslibpy's thread writes its attributes, others read them.
 
     Attributes:
-        newest: what was measured last, and when on our clock, s; None before there is anything.
-        count: how many were new.
-        repeats: how many had the stamp of the one before.
-        trouble: why the last message about the arm could not be used; "" where it could.
-        jumped: whether the clock of the stamps was set since somebody last made this False.
-        ahead_s: the newest stamp less the time of day on this computer when it came, s.
+        newest: the last measurement, and its time on our clock, s; None at first
+        count: number of new ones
+        repeats: number with the stamp of the one before
+        trouble: why the last message about the arm was unusable, or ""
+        jumped: whether the clock of the stamps was set; readers reset this
+        ahead_s: the newest stamp less this computer's time of day at arrival, s
     """
 
     def __init__(self, link: Link, options: Ros2Options, now_s: Callable[[], float]) -> None:
@@ -48,7 +43,7 @@ class JointFeed:
 
     @property
     def gripper(self) -> float | None:
-        """The newest position of the gripper's joint; None before there is one."""
+        """The newest position of the gripper's joint; None at first."""
         return self._states.gripper
 
     def _heard(self, message: Mapping[str, Any]) -> None:

@@ -12,26 +12,15 @@ from latentarm.robots.gripper import Gripper
 
 _ACTION: Final = "control_msgs/action/GripperCommand"
 
-_SUCCEEDED, _CANCELED = 4, 5
-"""Of ``action_msgs/GoalStatus``."""
+_SUCCEEDED, _CANCELED = 4, 5  # of ``action_msgs/GoalStatus``
 
 _SAME_M: Final = 5e-4
-_HOLDS_M: Final = 2e-3
-"""Fingers that stall this far before their goal hold something, m."""
+_HOLDS_M: Final = 2e-3  # fingers that stall this far before their goal hold something, m
 
 
 @final
 class Ros2Gripper:
-    """Sends a goal when one is new, and knows what became of it.
-
-    Args:
-        link: the connection.
-        options: where the action is, and what its positions mean.
-        gripper: what the manufacturer states.
-
-    Attributes:
-        failure: why the last goal came to nothing, in one sentence; "" where it did not.
-    """
+    """Sends new goals, and keeps their outcome; ``failure`` says why the last failed, or ""."""
 
     def __init__(self, link: Link, options: Ros2Options, gripper: Gripper) -> None:
         self._link, self._options, self._gripper = link, options, gripper
@@ -41,7 +30,7 @@ class Ros2Gripper:
         self.failure = ""
 
     def command(self, command: GripperCommand) -> None:
-        """Go somewhere, unless that was the last goal already. The action knows no speed but 0, which halts.
+        """Go to a width, unless it is the last goal already. The action has no speed; 0 halts.
 
         Raises:
             ValueError: a figure is not finite: no safety filter sends that.
@@ -67,14 +56,14 @@ class Ros2Gripper:
         self._goal = sent[0]
 
     def halt(self) -> None:
-        """Stay at the present opening; what is held is still held."""
+        """Stay at the present opening, and keep holding."""
         goal, self._goal = self._goal, None
         if goal is not None:
             self._link.cancel_goal(self._options.gripper, goal)
             self._told = None
 
     def measured(self, position: float) -> GripperReading:
-        """What a position of the gripper's joint means."""
+        """The reading for a position of the gripper's joint."""
         opened, closed = self._options.gripper_open, self._options.gripper_closed
         return GripperReading(self._gripper.width_m * (position - closed) / (opened - closed), self._holding)
 

@@ -1,4 +1,4 @@
-"""What is found out about an arm behind ROS 2 before anything moves, and why it may be refused."""
+"""Inspection of an arm behind ROS 2 before anything moves, and reasons to refuse it."""
 
 import time
 from collections.abc import Callable, Iterator, Mapping
@@ -13,20 +13,11 @@ from latentarm.arms.ros2.options import Ros2Options
 from latentarm.arms.ros2.session import Session
 from latentarm.arms.ros2.watchdog_state import VERSION, WatchdogState
 
-ANSWER_S: Final = 1.0
-"""For how long the watchdog, the controller manager and the joint states are waited for, s."""
-
-FREE_S: Final = 1.5
-"""For how long a client that has gone is waited for, s."""
-
-LISTEN_S: Final = 0.3
-"""Over this time joint states are counted, s."""
-
-LOWEST_HZ: Final = 40.0
-"""Joint states that come more slowly are refused."""
-
-LONGEST_TRIP_S: Final = 0.08
-"""A longer round trip is refused: commands would be too old when they arrive, s."""
+ANSWER_S: Final = 1.0  # wait for the watchdog, the controller manager and the joint states
+FREE_S: Final = 1.5  # wait for a client that has gone
+LISTEN_S: Final = 0.3  # span in which joint states are counted
+LOWEST_HZ: Final = 40.0  # slower joint states are refused
+LONGEST_TRIP_S: Final = 0.08  # a longer round trip is refused: commands would arrive too old
 
 _TRIPS: Final = 5
 _CHANCES: Final = 3
@@ -34,14 +25,7 @@ _LIST: Final = "controller_manager_msgs/srv/ListControllers"
 
 
 def inspect(link: Link, session: Session, feed: JointFeed, options: Ros2Options) -> Findings:
-    """Look at everything that is needed to drive, and change nothing.
-
-    Args:
-        link: the connection.
-        session: with the watchdog.
-        feed: of the joint states.
-        options: what the arm should be.
-    """
+    """Inspect everything needed for driving, and change nothing."""
     _wait(lambda: session.state is not None, ANSWER_S)
     _wait(lambda: feed.newest is not None, ANSWER_S)
     answer, trips = _controllers(link, options)
@@ -66,7 +50,7 @@ def inspect(link: Link, session: Session, feed: JointFeed, options: Ros2Options)
 
 
 def _controllers(link: Link, options: Ros2Options) -> tuple[dict[str, Mapping[str, Any]] | None, list[float]]:
-    """The controllers by name, None where nobody answers; and how long each answer took, s."""
+    """The controllers by name, None where nobody answers; and the time of each answer, s."""
     found: dict[str, Mapping[str, Any]] | None = None
     trips: list[float] = []
     for _ in range(_TRIPS):
@@ -81,10 +65,7 @@ def _controllers(link: Link, options: Ros2Options) -> tuple[dict[str, Mapping[st
 
 
 def _rate(feed: JointFeed) -> tuple[float, int]:
-    """How many joint states come per second, and how many repeated the one before.
-
-    What hesitates for a moment, as a busy computer does, gets a second and a third chance.
-    """
+    """Joint states per second, with chances for a busy computer, and how many repeated the one before."""
     rate_hz, before = 0.0, feed.repeats
     for _ in range(_CHANCES):
         count, began_s = feed.count, time.monotonic()

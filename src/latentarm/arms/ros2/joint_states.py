@@ -1,4 +1,4 @@
-"""Joint states as ROS tells them: in any order, of some joints, with the stamps of another clock."""
+"""Joint states from ROS: in any order, of some joints, stamped by another clock."""
 
 import math
 from collections import deque
@@ -10,11 +10,8 @@ import numpy as np
 
 from latentarm.core.types import FloatArray
 
-WINDOW: Final = 200
-"""Over so many joint states the difference of the clocks is reckoned."""
-
-JUMP_S: Final = 0.1
-"""A clock that runs ahead by this at once has been set, s."""
+WINDOW: Final = 200  # joint states from which the difference of the clocks is estimated
+JUMP_S: Final = 0.1  # a clock that jumps ahead by this has been set
 
 
 class ClockJumpedError(Exception):
@@ -22,36 +19,22 @@ class ClockJumpedError(Exception):
 
 
 class UnusableStatesError(Exception):
-    """Joint states cannot be used; the text is one sentence."""
+    """Joint states are unusable; the text is one sentence."""
 
 
 @final
 @dataclass(frozen=True, eq=False)
 class Measured:
-    """Joint states of one moment.
+    """Joint states of one moment."""
 
-    Attributes:
-        stamp_s: on the clock of ROS, s.
-        q: (n,), positions, rad.
-        dq: (n,), velocities, rad/s.
-    """
-
-    stamp_s: float
-    q: FloatArray
-    dq: FloatArray
+    stamp_s: float  # on the clock of ROS, s
+    q: FloatArray  # (n,), positions, rad
+    dq: FloatArray  # (n,), velocities, rad/s
 
 
 @final
 class JointStates:
-    """Picks the joints of an arm out of messages, by name.
-
-    Args:
-        joints: n names in ROS, in the order of the robot's joints.
-        gripper_joint: the gripper's joint, which may come in messages of its own; "" without a gripper.
-
-    Attributes:
-        gripper: the newest position of the gripper's joint; None before there is one.
-    """
+    """Picks an arm's joints out of messages by name; keeps the newest position of its ``gripper``."""
 
     def __init__(self, joints: tuple[str, ...], gripper_joint: str) -> None:
         self._joints = joints
@@ -59,10 +42,7 @@ class JointStates:
         self.gripper: float | None = None
 
     def take(self, message: Mapping[str, Any]) -> Measured | None:
-        """Read a ``sensor_msgs/JointState``.
-
-        Returns:
-            What the arm's joints did; None where the message is about others.
+        """The arm's joints in a ``sensor_msgs/JointState``; None where the message is about others.
 
         Raises:
             UnusableStatesError: it names some of the arm's joints, but cannot be used.
@@ -92,10 +72,10 @@ class JointStates:
 
 @final
 class StampClock:
-    """When joint states were measured, on our clock, by their stamps on another one.
+    """Converts stamps of joint states to our clock.
 
-    The smallest difference between arrival and stamp in the last `WINDOW` messages is taken for that of the
-    clocks: a message that the network held back is as old as it is.
+    The smallest difference between arrival and stamp in the last `WINDOW` messages counts as that of the
+    clocks: this reveals the age of messages that the network held back.
     """
 
     def __init__(self) -> None:
@@ -103,14 +83,7 @@ class StampClock:
         self._differences: deque[float] = deque(maxlen=WINDOW)
 
     def time_of(self, stamp_s: float, arrived_s: float) -> float | None:
-        """When it was measured, s.
-
-        Args:
-            stamp_s: on the clock of ROS, s.
-            arrived_s: on ours, s.
-
-        Returns:
-            On our clock, s; None where the stamp repeats, so that nothing new was measured.
+        """Time of measurement on our clock, s; None for a repeated stamp, where nothing is new.
 
         Raises:
             ClockJumpedError: the other clock was set; what comes next is reckoned anew.
@@ -142,7 +115,7 @@ def _stamp(message: Mapping[str, Any]) -> float:
 def _figures(
     message: Mapping[str, Any], entry: str, names: Sequence[str], wanted: tuple[str, ...]
 ) -> FloatArray:
-    """The figures of some joints, (len(wanted),); the caller must not change them."""
+    """Figures of some joints, (len(wanted),); the caller must not change them."""
     figures = message.get(entry)
     if not isinstance(figures, list) or len(figures) != len(names):
         raise UnusableStatesError(

@@ -1,4 +1,4 @@
-"""A connection to rosbridge that is opened once, and never waits once it is open."""
+"""A connection to rosbridge that opens once, and never waits once it is open."""
 
 import importlib.util
 import logging
@@ -8,33 +8,20 @@ from typing import Any, Final, final
 
 from latentarm.core.errors import UserError
 
-CONNECTING_S: Final = 3.0
-"""For how long rosbridge may take to answer, s."""
+CONNECTING_S: Final = 3.0  # for rosbridge to answer
 
 
 def check_installed() -> None:
-    """Check that roslibpy is there.
-
-    Raises:
-        UserError: it is not.
-    """
+    """Check that roslibpy is installed."""
     if importlib.util.find_spec("roslibpy") is None:
         raise UserError("--arm ros2 needs roslibpy: pip install 'latentarm[ros2]'.")
 
 
 @final
 class Link:
-    """A connection to rosbridge, in a thread of roslibpy.
+    """A connection to rosbridge, in a thread of roslibpy, which also runs callbacks.
 
-    It is never opened again by itself: roslibpy would then send what it could not send before. A lost link
-    is replaced by a new one. Callbacks run in roslibpy's thread.
-
-    Args:
-        host: where rosbridge is.
-        port: its port.
-
-    Raises:
-        UserError: nothing answers there, or something else than rosbridge.
+    It never reopens by itself: roslibpy would then send delayed messages. A new link replaces a lost one.
     """
 
     def __init__(self, host: str, port: int) -> None:
@@ -69,24 +56,24 @@ class Link:
         return bool(self._ros.is_connected)
 
     def advertise(self, topic: str, kind: str) -> None:
-        """Say that messages of a type will be published on a topic."""
+        """Announce messages of a type on a topic."""
         self._topics[topic] = self._lib.Topic(self._ros, topic, kind, reconnect_on_close=False)
         self._topics[topic].advertise()
 
     def publish(self, topic: str, message: Mapping[str, Any]) -> None:
-        """Send a message on a topic that is advertised; without a connection nothing is sent."""
+        """Send a message on an advertised topic; without a connection nothing is sent."""
         if self.connected:
             self._topics[topic].publish(message)
 
     def subscribe(self, topic: str, kind: str, heard: Callable[[Mapping[str, Any]], None]) -> None:
-        """Take the messages of a topic, the newest of which counts."""
+        """Take the messages of a topic; the newest replaces the rest."""
         self._topics[topic] = self._lib.Topic(
             self._ros, topic, kind, queue_length=1, reconnect_on_close=False
         )
         self._topics[topic].subscribe(heard)
 
     def call(self, service: str, kind: str, timeout_s: float) -> Mapping[str, Any] | None:
-        """Call a service without arguments and wait for its answer; None where none came in time."""
+        """Call a service without arguments; its answer, or None in case of a time-out."""
         from roslibpy.core import RosTimeoutError, ServiceException
 
         try:
@@ -106,11 +93,7 @@ class Link:
         succeeded: Callable[[Mapping[str, Any]], None],
         failed: Callable[[Mapping[str, Any]], None],
     ) -> str | None:
-        """Send a goal to an action server.
-
-        Returns:
-            Its id; None without a connection.
-        """
+        """Send a goal to an action server; its id, or None without a connection."""
         if not self.connected:
             return None
         if action not in self._actions:
@@ -132,4 +115,4 @@ class Link:
 
 
 def _ignore(_: object) -> None:
-    """Feedback of an action says nothing that the joint states do not say."""
+    """Feedback of an action adds nothing to the joint states."""

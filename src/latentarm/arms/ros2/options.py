@@ -1,4 +1,4 @@
-"""What the address of an arm behind ROS 2 says: ``ros2://HOST[:PORT]?controller=NAME&...``."""
+"""Options in the address of an arm behind ROS 2: ``ros2://HOST[:PORT]?controller=NAME&...``."""
 
 import math
 import re
@@ -10,8 +10,7 @@ from latentarm.arms.address import ArmAddress
 from latentarm.core.errors import UserError
 from latentarm.robots.robot import Robot
 
-PORT: Final = 9090
-"""The usual port of rosbridge."""
+PORT: Final = 9090  # the usual port of rosbridge
 
 Kind = Literal["velocity", "trajectory"]
 
@@ -22,52 +21,29 @@ _JOINT: Final = re.compile(r"[A-Za-z0-9_./-]{1,100}")
 @final
 @dataclass(frozen=True)
 class Ros2Options:
-    """An address that has been checked. Names of topics, services and actions begin with a slash.
+    """A checked address. Names of topics, services and actions begin with a slash."""
 
-    Attributes:
-        host: where rosbridge is.
-        port: of rosbridge.
-        controller: the controller of the arm.
-        kind: what the controller takes.
-        states: topic of the joint states.
-        watchdog: where the watchdog's topics are.
-        manager: where the controller manager's services are.
-        joints: the n joints' names in ROS, in the order of the robot's joints.
-        gripper: the action of the gripper.
-        gripper_joint: its joint in the joint states; "" without a gripper.
-        gripper_open: position of that joint, and of the action, with the gripper fully open.
-        gripper_closed: the same with the gripper closed.
-    """
-
-    host: str
-    port: int
+    host: str  # of rosbridge
+    port: int  # of rosbridge
     controller: str
-    kind: Kind
-    states: str
-    watchdog: str
-    manager: str
-    joints: tuple[str, ...]
-    gripper: str
-    gripper_joint: str
-    gripper_open: float
-    gripper_closed: float
+    kind: Kind  # of the controller's commands
+    states: str  # topic of the joint states
+    watchdog: str  # prefix of the watchdog's topics
+    manager: str  # prefix of the controller manager's services
+    joints: tuple[str, ...]  # n names in ROS, in the order of the robot's joints
+    gripper: str  # its action
+    gripper_joint: str  # in the joint states; "" without a gripper
+    gripper_open: float  # position of that joint, and of the action, with the gripper fully open
+    gripper_closed: float  # the same with the gripper closed
 
     @property
     def where(self) -> str:
-        """The host and port, for messages."""
+        """Host and port, for messages."""
         return f"{self.host}:{self.port}"
 
 
 def read_options(address: ArmAddress, robot: Robot) -> Ros2Options:
-    """Check an address.
-
-    Args:
-        address: what was given.
-        robot: what the arm is.
-
-    Raises:
-        UserError: an option is unknown, missing or not what it should be.
-    """
+    """Check an address for a robot."""
     given = address.only(
         "controller",
         "kind",

@@ -1,4 +1,4 @@
-"""What we say to the watchdog, and what it last said to us."""
+"""The exchange of messages with the watchdog."""
 
 import hashlib
 import json
@@ -12,21 +12,15 @@ from latentarm.arms.ros2.watchdog_state import WatchdogState, parse_state
 
 STRING: Final = "std_msgs/msg/String"
 
-SILENT_S: Final = 0.5
-"""A watchdog that has said nothing for so long is out of reach, s."""
+SILENT_S: Final = 0.5  # a watchdog that is silent for so long is out of reach
 
 
 @final
 class Session:
-    """One connection's talk with the watchdog, under a key that nobody else has.
+    """One connection's exchange with the watchdog, under a unique key.
 
-    Each message says which state of the watchdog we had seen last and how long ago, so that the watchdog
-    knows on its own clock how old the message is.
-
-    Args:
-        link: the connection.
-        name: where the watchdog's topics are.
-        now_s: our clock, s.
+    Each message names the watchdog's state that we saw last, and its age, so that the watchdog knows the
+    message's age on its own clock.
     """
 
     def __init__(self, link: Link, name: str, now_s: Callable[[], float]) -> None:
@@ -43,29 +37,24 @@ class Session:
 
     @property
     def state(self) -> WatchdogState | None:
-        """What it said last; None before it said anything that could be read."""
+        """The watchdog's last readable state; None at first."""
         newest = self._newest
         return None if newest is None else newest[0]
 
     @property
     def silent(self) -> bool:
-        """Whether it has said nothing for too long."""
+        """Whether the watchdog has been silent for too long."""
         newest = self._newest
         return newest is None or self._now_s() - newest[1] > SILENT_S
 
     @property
     def ours(self) -> bool:
-        """Whether the arm is ours, as it said last."""
+        """Whether the arm is ours by the last state."""
         state = self.state
         return state is not None and state.owner == self._owner
 
     def tell(self, op: str, **entries: object) -> None:
-        """Send a message; nothing is sent before the watchdog has said something.
-
-        Args:
-            op: what it is.
-            entries: its own entries.
-        """
+        """Send a message, once the watchdog has said something."""
         newest = self._newest
         if newest is None:
             return

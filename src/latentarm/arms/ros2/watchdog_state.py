@@ -1,4 +1,4 @@
-"""What the watchdog next to the arm tells its clients."""
+"""The messages of the watchdog next to the arm."""
 
 import math
 from collections.abc import Callable
@@ -8,8 +8,7 @@ from typing import Any, Final, Literal, cast, final, get_args
 from latentarm.core.errors import UserError
 from latentarm.core.untrusted.documents import parse_object
 
-VERSION: Final = 1
-"""Of the messages between the watchdog and us, as in ``docs/your-arm/latentarm_watchdog.py``."""
+VERSION: Final = 1  # of its messages, as in ``docs/your-arm/latentarm_watchdog.py``
 
 _LONGEST: Final = 65536
 
@@ -19,49 +18,27 @@ Phase = Literal["free", "disabled", "armed", "latched"]
 @final
 @dataclass(frozen=True)
 class WatchdogState:
-    """A state of the watchdog.
+    """A state of the watchdog."""
 
-    Attributes:
-        version: of its messages; where it is not ours, nothing else is known.
-        time_s: on its own clock, s.
-        controller: what it commands.
-        kind: what that controller takes.
-        joints: in the order of the controller.
-        speed: the largest that it lets through, rad/s.
-        stops_after_s: when a command has run out, it brakes within this time, s.
-        ramp_s: how long it brakes, s.
-        owner: digest of the session of its client; "" without one.
-        phase: of the arm.
-        reason: why it was latched or not armed, in one sentence; "" where there is nothing to say.
-        obstacle: why it could not be armed now, in one sentence; "" where it could.
-        arming: the number that its client enabled the arm with.
-        stop_topic: where it hears of the emergency stop; "" where nowhere.
-        stop_pressed: whether the emergency stop is pressed.
-    """
-
-    version: int
-    time_s: float = math.nan
-    controller: str = ""
-    kind: str = ""
-    joints: tuple[str, ...] = ()
-    speed: tuple[float, ...] = ()
-    stops_after_s: float = math.nan
-    ramp_s: float = math.nan
-    owner: str = ""
-    phase: Phase = "free"
-    reason: str = ""
-    obstacle: str = ""
-    arming: int = -1
-    stop_topic: str = ""
-    stop_pressed: bool = False
+    version: int  # of its messages; if it is not ours, nothing else is known
+    time_s: float = math.nan  # on its own clock, s
+    controller: str = ""  # that it commands
+    kind: str = ""  # of that controller's commands
+    joints: tuple[str, ...] = ()  # in the order of the controller
+    speed: tuple[float, ...] = ()  # largest that it passes on, rad/s
+    stops_after_s: float = math.nan  # it brakes within this time after a command has run out, s
+    ramp_s: float = math.nan  # duration of braking, s
+    owner: str = ""  # digest of its client's session; "" without one
+    phase: Phase = "free"  # of the arm
+    reason: str = ""  # why it was latched or not armed, in one sentence, or ""
+    obstacle: str = ""  # why it could not be armed now, in one sentence, or ""
+    arming: int = -1  # the number that its client enabled the arm with
+    stop_topic: str = ""  # topic of the emergency stop, or ""
+    stop_pressed: bool = False  # whether the emergency stop is pressed
 
 
 def parse_state(text: object) -> WatchdogState:
-    """Read a state.
-
-    Raises:
-        ValueError: it is not one.
-    """
+    """Parse a state; raises ValueError for anything else."""
     if not isinstance(text, str) or len(text) > _LONGEST:
         raise ValueError("not a text")
     try:

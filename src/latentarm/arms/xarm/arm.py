@@ -1,4 +1,4 @@
-"""A UFACTORY arm as `latentarm.arms.contract.Arm` wants one."""
+"""The driver of a UFACTORY arm."""
 
 import time
 from collections.abc import Callable
@@ -7,9 +7,8 @@ from typing import Final, final
 import numpy as np
 
 from latentarm.arms.address import ArmAddress
-from latentarm.arms.contract import ArmSpec, ArmStatus
-from latentarm.arms.guiding import GuidableArm
-from latentarm.arms.real import Findings
+from latentarm.arms.contract import ArmSpec, ArmStatus, finite_velocity
+from latentarm.arms.real import Findings, GuidableArm
 from latentarm.arms.xarm.controller import ANSWER_S, LinkLostError
 from latentarm.arms.xarm.driver import Driver
 from latentarm.arms.xarm.findings import basic_facts, find_out, too_different
@@ -24,8 +23,7 @@ from latentarm.robots.robot import Robot
 
 RATE_HZ: Final = 100.0
 
-_CYCLE_S: Final = 0.02
-"""Of the controller, with what it needs to act on the end of a command, s."""
+_CYCLE_S: Final = 0.02  # of the controller, including its reaction to the end of a command
 
 _JOIN_S: Final = 8.0
 
@@ -34,17 +32,14 @@ _JOIN_S: Final = 8.0
 class XArm(GuidableArm):
     """xArm 5, 6 and 7, 850 and Lite 6.
 
-    Each command leaves with the time that is left of its duration, counted from `send`; the controller ends
-    it by itself. What was not delivered within `latentarm.arms.xarm.controller.ANSWER_S` never is, so a
-    command ends at most that much later.
+    Each command leaves with the rest of its duration, counted from `send`; the controller ends it by itself.
+    Commands not delivered within `latentarm.arms.xarm.controller.ANSWER_S` are dropped, so a command ends at
+    most that much later.
 
     Args:
-        robot: what the arm is; its joints are J1, J2, ... in their order.
+        robot: its joints are J1, J2, ... in order
         address: ``xarm://HOST[:PORT]``; see `latentarm.arms.xarm.session.Options`.
-        now_s: the clock that readings are timed by, s.
-
-    Raises:
-        UserError: the library is missing, or an option is unknown.
+        now_s: the clock of readings, s
     """
 
     def __init__(self, robot: Robot, address: ArmAddress, now_s: Callable[[], float]) -> None:
@@ -62,11 +57,11 @@ class XArm(GuidableArm):
 
     @property
     def spec(self) -> ArmSpec:
-        """See the base class."""
+        """The arm's fixed properties."""
         return self._spec
 
     def look(self) -> Findings:
-        """See the base class."""
+        """Inspect the arm without moving it."""
         session: Session | None = None
         try:
             session = Session(self._sdk, self._host, self._options, self._robot, self._now_s)
@@ -81,7 +76,7 @@ class XArm(GuidableArm):
                 session.close()
 
     def connect(self) -> None:
-        """See the base class."""
+        """Connect; the arm is then disabled."""
         self.close()
         session = self._open(0 if self._last is None else self._last[0].number, clear=False)
         self._shared = Shared(condition="disabled")
@@ -89,7 +84,7 @@ class XArm(GuidableArm):
         self._driver.start()
 
     def close(self) -> None:
-        """See the base class."""
+        """Stop the arm and disconnect."""
         driver, self._driver = self._driver, None
         if driver is None:
             return
@@ -101,7 +96,7 @@ class XArm(GuidableArm):
         driver.join(_JOIN_S)
 
     def read(self) -> Reading:
-        """See the base class."""
+        """The newest reading."""
         if self._driver is not None:
             self._last = self._newest(self._driver)
         if self._last is None:
@@ -110,7 +105,7 @@ class XArm(GuidableArm):
         return Reading(report.q.copy(), report.dq.copy(), report.measured_s, report.number, gripper)
 
     def status(self) -> ArmStatus:
-        """See the base class."""
+        """Whether the arm can move, and if not, why."""
         with self._shared.changed:
             condition, reason = self._shared.condition, self._shared.reason
             recoverable = self._shared.recoverable
@@ -133,45 +128,43 @@ class XArm(GuidableArm):
                 return ArmStatus("emergency_stop", reason, recoverable)
 
     def enable(self) -> None:
-        """See the base class."""
+        """Ask to take commands."""
         with self._shared.changed:
             if self._shared.condition == "disabled":
                 self._shared.become("enabling")
                 self._shared.requests.add("enable")
 
     def disable(self) -> None:
-        """See the base class."""
+        """Stop, and take no commands."""
         with self._shared.changed:
             if self._shared.condition in (*TAKES_COMMANDS, "enabling", "releasing", "guided"):
                 self._shared.become("disabled")
                 self._shared.requests.add("halt")
 
     def guide(self) -> None:
-        """See the base class. Where this process is killed, the arm stays in its manual mode."""
+        """Ask to be moved by hand. If this process is killed, the arm stays in its manual mode."""
         with self._shared.changed:
             if self._shared.condition == "disabled":
                 self._shared.become("releasing")
                 self._shared.requests.add("guide")
 
     def move_gripper(self, command: GripperCommand) -> None:
-        """See the base class."""
+        """Move the gripper of an arm that takes no commands."""
         driver = self._driver
         takes_commands = self._shared.condition in TAKES_COMMANDS
         if driver is not None and driver.session.gripper is not None and not takes_commands:
             driver.session.gripper.send(command)
 
     def recover(self) -> None:
-        """See the base class."""
+        """Ask to end a recoverable fault."""
         with self._shared.changed:
             if self._shared.condition in ("fault", "lost") and self._shared.recoverable:
                 self._shared.requests.add("recover")
                 self._shared.changed.notify_all()
 
     def send(self, command: Command) -> None:
-        """See the base class."""
-        velocity = np.array(command.velocity, dtype=np.float64)
-        if velocity.shape != (self._robot.dof,) or not np.isfinite(velocity).all():
-            raise ValueError(f"a command needs {self._robot.dof} finite joint velocities, rad/s")
+        """Take a command; ignored unless enabled."""
+        velocity = finite_velocity(command, self._robot.dof)
         driver = self._driver
         with self._shared.changed:
             if driver is None or self._shared.condition not in TAKES_COMMANDS:
@@ -182,7 +175,7 @@ class XArm(GuidableArm):
             driver.session.gripper.send(command.gripper)
 
     def stop(self) -> None:
-        """See the base class."""
+        """Stop now, and stay enabled."""
         with self._shared.changed:
             self._shared.command = None
             if self._shared.condition in TAKES_COMMANDS:
@@ -200,15 +193,7 @@ class XArm(GuidableArm):
         return self._open(number, clear=True)
 
     def _open(self, number: int, *, clear: bool) -> Session:
-        """Another session.
-
-        Args:
-            number: that reports are numbered from.
-            clear: whether an error is cleared: somebody has asked for it.
-
-        Raises:
-            UserError: the arm does not answer, or is refused.
-        """
+        """Another session; ``clear`` clears an error at somebody's request."""
         session: Session | None = None
         try:
             session = Session(self._sdk, self._host, self._options, self._robot, self._now_s)

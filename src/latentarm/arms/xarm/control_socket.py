@@ -1,4 +1,4 @@
-"""The connection that requests go over."""
+"""The connection for requests."""
 
 import contextlib
 import socket
@@ -10,8 +10,7 @@ from latentarm.arms.xarm.sdk import Port
 
 _HEADER: Final = 6
 _LARGEST: Final = 1024
-_SMALLEST: Final = 8
-"""A shorter frame has no code, and the library cannot read it."""
+_SMALLEST: Final = 8  # shorter frames lack a code, and the library cannot read them
 
 
 @final
@@ -19,17 +18,8 @@ class ControlSocket(Port):
     """A TCP connection that never delivers a command late.
 
     The manufacturer's own port leaves unsent commands in the kernel's buffer, and TCP delivers them once a
-    cable is plugged in again. Here `abort` throws away what was not delivered, and the kernel does so by
-    itself (where it knows ``TCP_USER_TIMEOUT``) if the process has ended.
-
-    Args:
-        host: of the controller.
-        port: of the controller.
-        timeout_s: for connecting, s.
-        undelivered_s: what has not been delivered after this time never is, s.
-
-    Raises:
-        OSError: there is no connection.
+    cable is plugged in again. Here `abort` drops undelivered commands, and so does the kernel after
+    ``undelivered_s`` (where it knows ``TCP_USER_TIMEOUT``) if the process has ended.
     """
 
     def __init__(self, host: str, port: int, timeout_s: float, undelivered_s: float) -> None:
@@ -44,7 +34,7 @@ class ControlSocket(Port):
         self.connected = True
 
     def flush(self) -> int:
-        """See the base class."""
+        """Forget answers that nobody waits for."""
         with contextlib.suppress(BlockingIOError):
             while self.connected and self._receive():
                 pass
@@ -53,7 +43,7 @@ class ControlSocket(Port):
         return 0
 
     def write(self, data: bytes) -> int:
-        """See the base class."""
+        """Send a frame; 0, or -1 on failure."""
         if not self.connected:
             return -1
         try:
@@ -66,7 +56,7 @@ class ControlSocket(Port):
         return 0
 
     def read(self, timeout: float | None = None) -> bytes | int:
-        """See the base class."""
+        """The next frame, or -1 where none has come within the time, s."""
         until_s = time.monotonic() + (timeout or 0.0)
         while (frame := self._frame()) is None:
             if not self.connected:
@@ -81,7 +71,7 @@ class ControlSocket(Port):
         return frame
 
     def abort(self) -> None:
-        """End the connection; what has not been delivered never is."""
+        """End the connection and drop undelivered data."""
         with contextlib.suppress(OSError):
             self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
         self.close()
@@ -93,7 +83,7 @@ class ControlSocket(Port):
             self._socket.close()
 
     def _wait(self, span_s: float) -> None:
-        """Until there is something to read, or for this long, s."""
+        """Wait until there is something to read, or for this long, s."""
         try:
             self._socket.settimeout(span_s)
             self._socket.recv(1, socket.MSG_PEEK)
@@ -106,11 +96,7 @@ class ControlSocket(Port):
                 self._socket.settimeout(0.0)
 
     def _receive(self) -> bool:
-        """Take what has come; False where the connection has ended.
-
-        Raises:
-            BlockingIOError: nothing has come.
-        """
+        """Take incoming data; False where the connection has ended."""
         try:
             data = self._socket.recv(4096)
         except BlockingIOError:
@@ -124,7 +110,6 @@ class ControlSocket(Port):
         return True
 
     def _frame(self) -> bytes | None:
-        """The first frame of what was received, if it is complete."""
         if len(self._received) < _HEADER:
             return None
         size = int.from_bytes(self._received[4:6], "big") + _HEADER

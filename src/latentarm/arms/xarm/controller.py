@@ -1,4 +1,4 @@
-"""What the arm's controller is asked, and what it answers."""
+"""Requests to the arm's controller, and its answers."""
 
 import statistics
 import time
@@ -11,59 +11,39 @@ from latentarm.arms.xarm.control_socket import ControlSocket
 from latentarm.arms.xarm.sdk import Sdk
 from latentarm.core.types import FloatArray
 
-ANSWER_S: Final = 0.08
-"""If the answer to a motion takes longer, the connection ends, and with it what was not delivered, s."""
-
-_QUERY_S: Final = 0.5
-"""The same for what moves nothing, s."""
-
-_SLOW_S: Final = 5.0
-"""The same for changes, such as switching on the motors, s."""
+ANSWER_S: Final = 0.08  # a later answer to a motion ends the connection and drops undelivered data
+_QUERY_S: Final = 0.5  # the same for requests that move nothing
+_SLOW_S: Final = 5.0  # the same for changes, such as switching on the motors, s
 
 ALL_JOINTS: Final = 8
-JOINT_VELOCITY: Final = 4
-"""The mode that takes joint velocities."""
-
-MANUAL: Final = 2
-"""The mode in which a person moves the arm by hand."""
-
-STATES_THAT_MOVE: Final = (0, 1, 2)
-"""States of an arm that takes commands: ready or moving."""
+JOINT_VELOCITY: Final = 4  # the mode that takes joint velocities
+MANUAL: Final = 2  # the mode in which a person moves the arm by hand
+STATES_THAT_MOVE: Final = (0, 1, 2)  # states of an arm that takes commands: ready or moving
 
 _READY, _STOP = 0, 4
 _TIMEOUT, _INVALID = 3, 10
-_ANSWERED: Final = (0, 1, 2, 9)
-"""Codes of an answer that counts: fine, an error is set, a warning is set, not ready to move."""
+_ANSWERED: Final = (0, 1, 2, 9)  # valid codes: fine, an error is set, a warning is set, not ready to move
 
 
 T = TypeVar("T", int, float)
 
 
 class LinkLostError(Exception):
-    """The controller cannot be reached, or what it says is no answer.
-
-    The message is one sentence for the person.
-    """
+    """The controller is unreachable or answers nonsense; one sentence for the person."""
 
 
 class RefusedError(Exception):
-    """The controller did not do what it was asked; one sentence for the person."""
+    """The controller refused a request; one sentence for the person."""
 
 
 @final
 class Controller:
     """Requests to the controller, one at a time; for a single thread.
 
-    Args:
-        sdk: the manufacturer's library.
-        host: of the controller.
-        port: that takes commands.
+    ``has_error`` says whether the newest answer had an error or a warning set.
 
     Raises:
         LinkLostError: nobody answers there.
-
-    Attributes:
-        has_error: whether the newest answer said that an error or a warning is set.
     """
 
     def __init__(self, sdk: Sdk, host: str, port: int) -> None:
@@ -79,7 +59,7 @@ class Controller:
         self.has_error = False
 
     def close(self) -> None:
-        """End the connection; what was not delivered never is."""
+        """End the connection and drop undelivered requests."""
         self._socket.abort()
 
     def version(self) -> str:
@@ -92,12 +72,12 @@ class Controller:
         return self._ask(self._commands.get_state, 1)[1]
 
     def errors(self) -> tuple[int, int]:
-        """The error and the warning; 0 means no error or no warning."""
+        """The error and the warning; 0 for none."""
         answer = self._ask(self._commands.get_err_code, 2)
         return answer[1], answer[2]
 
     def joints(self, dof: int) -> FloatArray:
-        """(n,), joint angles as commands see them, rad."""
+        """(n,), joint angles in the frame of commands, rad."""
         return np.array(self._ask(self._commands.get_joint_pos, dof)[1 : dof + 1], dtype=np.float64)
 
     def switch_on_motors(self) -> None:
@@ -108,17 +88,17 @@ class Controller:
         )
 
     def set_mode(self, mode: int) -> None:
-        """Choose what kind of commands are taken."""
+        """Choose the kind of commands."""
         self._done(
             self._ask(lambda: self._commands.set_mode(mode), within_s=_SLOW_S), f"to go to mode {mode}"
         )
 
     def take_commands(self) -> None:
-        """Let the arm move when it is told to."""
+        """Let the arm take commands."""
         self._done(self._ask(lambda: self._commands.set_state(_READY), within_s=_SLOW_S), "to take commands")
 
     def stop(self) -> None:
-        """Stop the arm, and take no commands any more."""
+        """Stop the arm, and take no more commands."""
         self._ask(lambda: self._commands.set_state(_STOP))
 
     def clear(self) -> None:
@@ -127,19 +107,14 @@ class Controller:
         self._ask(self._commands.clean_war, within_s=_SLOW_S)
 
     def move(self, velocity: FloatArray, duration_s: float) -> None:
-        """Move at a velocity for a time.
-
-        Args:
-            velocity: (n,), rad/s.
-            duration_s: above zero, s: the controller takes 0 for no end.
-        """
+        """Move at a velocity (n,), rad/s, for a time above zero, s: 0 means forever to the controller."""
         if not duration_s > 0.0:
             raise ValueError(f"the duration {duration_s} s would mean no end")
         speeds = [*velocity.tolist(), *[0.0] * (7 - len(velocity))]
         self._ask(lambda: self._commands.vc_set_jointv(speeds, 1, duration_s), within_s=ANSWER_S)
 
     def round_trips(self, times: int = 20) -> tuple[float, float]:
-        """The median and the longest time from a request to its answer, s."""
+        """Median and longest time from a request to its answer, s."""
         spans: list[float] = []
         for _ in range(times):
             begun_s = time.monotonic()
@@ -150,12 +125,7 @@ class Controller:
     def _ask(
         self, request: Callable[[], list[T]], figures: int = 0, *, within_s: float = _QUERY_S
     ) -> list[T]:
-        """Ask, and check that the answer is one.
-
-        Args:
-            request: asks through the library.
-            figures: how many figures the answer has at least.
-            within_s: how long the answer may take, s.
+        """Ask, and check the answer, which has at least ``figures`` figures and comes within ``within_s``.
 
         Raises:
             LinkLostError: no answer in time, or one that cannot be read.

@@ -1,4 +1,4 @@
-"""The thread that talks to the arm, so that nothing else waits for it."""
+"""The thread that talks to the arm, so that no other thread waits for it."""
 
 import threading
 import time
@@ -26,17 +26,10 @@ from latentarm.robots.robot import Robot
 
 _ORDER: Final[tuple[Request, ...]] = ("halt", "stop", "recover", "guide", "enable")
 _LOOK_S: Final = 0.01
-_ERRORS_S: Final = 0.1
-"""How often the controller is asked for its error at most, s."""
-
-_RELEASED_S: Final = 0.3
-"""An error of an emergency stop that was cleared and has not come back for so long is over, s."""
-
-_SILENT_S: Final = 0.25
-"""Without a new report for so long, the connection counts as lost, s."""
-
-_SHORTEST_S: Final = 0.002
-"""A command that ends sooner is not worth sending, s."""
+_ERRORS_S: Final = 0.1  # least time between questions about errors
+_RELEASED_S: Final = 0.3  # a cleared emergency stop that does not come back for so long is over
+_SILENT_S: Final = 0.25  # without a new report for so long, the connection counts as lost, s
+_SHORTEST_S: Final = 0.002  # a command that ends sooner is not worth sending, s
 
 _READY_S: Final = 2.0
 _RESTING_S: Final = 1.0
@@ -44,26 +37,14 @@ _RESTING_S: Final = 1.0
 
 @final
 class Driver(threading.Thread):
-    """Carries out what is asked for in `Shared`, and looks at what the arm reports.
+    """Carries out the requests in `Shared`, and checks the arm's reports.
 
-    Args:
-        sdk: the manufacturer's library.
-        robot: what the arm is.
-        shared: what it is asked, and what it says.
-        session: open.
-        reopen: opens another session after a lost one, numbering reports from a number on.
-
-    Attributes:
-        session: the one in use.
+    ``session`` is the open one; ``reopen`` opens another after a lost one, numbering reports from a number
+    on.
     """
 
     def __init__(
-        self,
-        sdk: Sdk,
-        robot: Robot,
-        shared: Shared,
-        session: Session,
-        reopen: Callable[[int], Session],
+        self, sdk: Sdk, robot: Robot, shared: Shared, session: Session, reopen: Callable[[int], Session]
     ) -> None:
         super().__init__(name="xarm driver", daemon=True)
         self._sdk = sdk
@@ -78,7 +59,7 @@ class Driver(threading.Thread):
         self._asked_errors_s = 0.0
 
     def run(self) -> None:
-        """Until the arm is closed."""
+        """Run until the arm is closed."""
         try:
             while self._turn():
                 pass
@@ -148,15 +129,7 @@ class Driver(threading.Thread):
         self.session.controller.move(command.velocity, left_s)
 
     def _become_ready(self, mode: int, while_: Condition) -> bool:
-        """Switch the arm to a mode and wait until it is ready in it.
-
-        Args:
-            mode: of the controller.
-            while_: nobody has changed their mind as long as this is the condition.
-
-        Returns:
-            Whether it is.
-        """
+        """Switch the arm to a mode and wait until it is ready; False once ``while_`` has changed."""
         shared, controller = self._shared, self.session.controller
         if reason := unfit(self._sdk, self.session, self._robot):
             self._fault(reason)
@@ -256,8 +229,8 @@ class Driver(threading.Thread):
     def _await_release(self, now_s: float) -> None:
         """Whether the button is still pressed: an error that is cleared comes back as long as it is.
 
-        The controller keeps its error after the release, and does not tell one from the other. Clearing it
-        neither switches on the motors nor lets the arm take commands.
+        The controller keeps its error after the release. Clearing it neither switches on the motors nor lets
+        the arm take commands.
         """
         if now_s - self._asked_errors_s < _RELEASED_S:
             return
@@ -269,7 +242,7 @@ class Driver(threading.Thread):
             self._fault("The emergency stop was released: enable the arm again when it is safe.")
 
     def _error(self, code: int) -> bool:
-        """Whether the controller has an error; then the arm takes no commands any more."""
+        """Whether the controller has an error; then the arm takes no more commands."""
         if code == 0:
             return False
         if code in EMERGENCY_STOPS:
@@ -308,7 +281,7 @@ class Driver(threading.Thread):
         self._shared.become("lost", reason, recoverable=True)
 
     def _halt(self) -> None:
-        """Stop the arm for good, if it can be reached; else its last command ends by itself."""
+        """Stop the arm for good, if reachable; else its last command ends by itself."""
         if not self._drives:
             return
         self._drives = False

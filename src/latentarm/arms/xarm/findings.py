@@ -1,4 +1,4 @@
-"""What is found out about an arm before it is driven, and why it is refused."""
+"""Facts about an arm before it is driven, and reasons to refuse it."""
 
 import math
 import time
@@ -15,23 +15,21 @@ from latentarm.arms.xarm.words import EMERGENCY_STOPS, controller_error, emergen
 from latentarm.robots.kinematics.stillness import STILL_RAD_S
 from latentarm.robots.robot import Robot
 
-_SLOW_S: Final = 0.02
-"""An arm whose answers take longer at the median cannot be driven at 50 Hz, s."""
+_SLOW_S: Final = 0.02  # an arm with a longer median answer cannot be driven at 50 Hz
 
 _OUTSIDE_RAD: Final = 0.1
 _APART_RAD: Final = 0.02
 _RATE_OVER_S: Final = 0.1
-_SINGLE: Final = 1e-3
-"""Limits of the controller are single precision: a share by which they may be below the robot's."""
+_SINGLE: Final = 1e-3  # rounding of the controller's limits, in single precision
 
 
 def basic_facts(identity: Identity) -> tuple[Fact, ...]:
-    """What is known of an arm that is `too_different`."""
+    """Known facts of an arm that is `too_different`."""
     return (Fact("arm", identity.name), Fact("firmware", identity.version))
 
 
 def too_different(identity: Identity, robot: Robot) -> tuple[str, ...]:
-    """Why an arm is refused whatever state it is in."""
+    """Reasons to refuse an arm in any state."""
     refusals: list[str] = []
     if identity.firmware < BOUNDED_COMMANDS:
         refusals.append(
@@ -52,13 +50,7 @@ def too_different(identity: Identity, robot: Robot) -> tuple[str, ...]:
 
 
 def find_out(sdk: Sdk, session: Session, robot: Robot, *, bare: bool) -> Findings:
-    """Look at a connected arm that is not `too_different`.
-
-    Args:
-        sdk: the manufacturer's library.
-        session: connected.
-        robot: what the arm should be.
-        bare: whether somebody said that it carries nothing.
+    """Inspect a connected arm that is not `too_different`; ``bare`` states that it carries nothing.
 
     Raises:
         LinkLostError: the connection is lost meanwhile.
@@ -83,11 +75,7 @@ def find_out(sdk: Sdk, session: Session, robot: Robot, *, bare: bool) -> Finding
 
 
 def unfit(sdk: Sdk, session: Session, robot: Robot) -> str:
-    """Why a connected arm cannot be enabled now, one sentence; "" where it can.
-
-    Raises:
-        LinkLostError: the connection is lost meanwhile.
-    """
+    """Why a connected arm cannot be enabled now, one sentence, or ""."""
     report = session.report
     error, _ = session.controller.errors()
     if error in EMERGENCY_STOPS:

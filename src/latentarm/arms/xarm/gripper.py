@@ -1,4 +1,4 @@
-"""The manufacturer's gripper, over a connection of its own, so that it never holds up the arm's commands."""
+"""The manufacturer's gripper, over a separate connection, so that it never delays the arm's commands."""
 
 import threading
 import time
@@ -14,11 +14,8 @@ from latentarm.robots.gripper import Gripper
 
 PORT: Final = 503
 
-OPEN_UNITS: Final = 850
-"""The position at which the gripper is fully open, in the manufacturer's units; closed it is 0."""
-
-FASTEST_UNITS: Final = 5000
-"""The fastest speed, in the manufacturer's units."""
+OPEN_UNITS: Final = 850  # position of the open gripper; 0 is closed
+FASTEST_UNITS: Final = 5000  # its largest speed
 
 _SLOWEST_UNITS: Final = 300
 _ANSWER_S: Final = 0.5
@@ -39,23 +36,17 @@ def width_of(units: int, gripper: Gripper) -> float:
 
 @final
 class GripperLink:
-    """Drives and reads the gripper in a thread of its own.
+    """Drives and reads the gripper in a separate thread.
 
-    Between closed and fully open, its opening is taken to be proportional to its position, and its speed to
-    the manufacturer's fastest. How hard it presses cannot be set.
-
-    Args:
-        sdk: the manufacturer's library.
-        host: of the controller.
-        port: for devices at the tool.
-        gripper: what it is.
+    Its opening is assumed proportional to its position, and its speed to the manufacturer's fastest. Its
+    force cannot be set.
 
     Raises:
         LinkLostError: nobody answers there, or no gripper.
 
     Attributes:
-        reading: the newest.
-        fault: what is wrong with it, one sentence; "" where nothing is.
+        reading: the newest
+        fault: one sentence, or ""
     """
 
     def __init__(self, sdk: Sdk, host: str, port: int | None, gripper: Gripper) -> None:
@@ -84,14 +75,14 @@ class GripperLink:
         self._thread.start()
 
     def enable(self) -> None:
-        """Switch it on; it stays where it is."""
+        """Switch it on; it stays in place."""
         with self._lock:
             self._target = None
             self._enable = True
             self._lock.notify()
 
     def send(self, command: GripperCommand) -> None:
-        """Go to an opening, no slower than it can; the same again changes nothing."""
+        """Go to an opening, no slower than it can; repeating this changes nothing."""
         speed = round(FASTEST_UNITS * command.speed_m_s / self._gripper.speed_m_s)
         speed = min(max(speed, _SLOWEST_UNITS), FASTEST_UNITS) if command.speed_m_s > 0.0 else 0
         target = units_of(command.width_m, self._gripper), speed
@@ -101,7 +92,7 @@ class GripperLink:
                 self._lock.notify()
 
     def close(self) -> None:
-        """End the connection; what is held stays held."""
+        """End the connection; a hold persists."""
         with self._lock:
             self._ended = True
             self._lock.notify()
@@ -152,11 +143,6 @@ class GripperLink:
         return GripperReading(width_of(position, self._gripper), holding=status[6] & 3 == _HOLDS)
 
     def _ask(self, request: Callable[[], list[int]], figures: int = 0) -> list[int]:
-        """Ask, and check that the answer is one.
-
-        Raises:
-            LinkLostError: the gripper does not answer.
-        """
         begun_s = time.monotonic()
         try:
             answer = request()

@@ -1,4 +1,4 @@
-"""What an arm's controller says it is."""
+"""The controller's description of its arm."""
 
 import re
 from dataclasses import dataclass
@@ -11,34 +11,21 @@ _FIRMWARE: Final = re.compile(r"[vV]?(\d+)\.(\d+)\.(\d+)")
 
 _NAMES: Final = {9: "Lite 6", 12: "850"}
 
-BOUNDED_COMMANDS: Final = (1, 8, 0)
-"""Older firmware drops the duration of a velocity command without a word, and moves on for ever."""
-
-GRIPPER_PORT: Final = (1, 11, 0)
-"""From this firmware on, the gripper has a port of its own."""
-
-TIMED_REPORTS: Final = (2, 1, 0)
-"""From this firmware on, reports say when they were measured."""
+BOUNDED_COMMANDS: Final = (1, 8, 0)  # older firmware silently drops a velocity's duration, and moves for ever
+GRIPPER_PORT: Final = (1, 11, 0)  # from this firmware on, the gripper has its own port
+TIMED_REPORTS: Final = (2, 1, 0)  # from this firmware on, reports have a time of measurement
 
 
 @final
 @dataclass(frozen=True)
 class Identity:
-    """What the controller says of its arm.
+    """The controller's description of its arm."""
 
-    Attributes:
-        firmware: major, minor and patch.
-        axes: number of joints; None where the firmware is too old to say.
-        kind: the manufacturer's number of its type, or None.
-        arm_serial: serial number of the arm, or "".
-        box_serial: serial number of the control box, or "".
-    """
-
-    firmware: tuple[int, int, int]
-    axes: int | None = None
-    kind: int | None = None
-    arm_serial: str = ""
-    box_serial: str = ""
+    firmware: tuple[int, int, int]  # major, minor and patch
+    axes: int | None = None  # number of joints; None where the firmware is too old to say
+    kind: int | None = None  # the manufacturer's number of the type
+    arm_serial: str = ""  # or ""
+    box_serial: str = ""  # of the control box, or ""
 
     @property
     def version(self) -> str:
@@ -47,12 +34,12 @@ class Identity:
 
     @property
     def name(self) -> str:
-        """What the arm is sold as."""
+        """The arm's name on the market."""
         return _NAMES.get(self.kind or 0, f"xArm {self.axes}" if self.axes else "xArm")
 
 
 def read_identity(told: str) -> Identity:
-    """Read what the controller answers when asked for its version.
+    """Parse the controller's answer about its version.
 
     Raises:
         LinkLostError: it is no version.

@@ -1,28 +1,20 @@
-"""When the controller measured what it reports, on our clock."""
+"""Converts the times of the controller's reports to our clock."""
 
 from typing import Final, final
 
-_DRIFT: Final = 2e-4
-"""How much faster one clock may run than the other."""
-
-_AHEAD_S: Final = 0.05
-"""A report that left before it was measured, by more than this, says that a clock has jumped, s."""
-
-_BEHIND_S: Final = 0.5
-"""So late is no report by itself, s."""
+_DRIFT: Final = 2e-4  # largest relative drift between the clocks
+_AHEAD_S: Final = 0.05  # a report that arrives this long before its measurement shows that a clock jumped
+_BEHIND_S: Final = 0.5  # no report is so late without a fault
 
 _OWN_JUMP_S: Final = 0.05
 
 
 @final
 class ReportClock:
-    """Converts the controller's times, and finds clocks that jump.
+    """Converts the controller's times, and finds clocks that jump; ``fault`` is one sentence, or "".
 
-    A report takes some time to arrive, never less than the quickest of all so far; what it took longer than
-    that is its age when it arrives. So reports that were held up on the way are known to be old.
-
-    Attributes:
-        fault: what is wrong with a clock, one sentence; "" where nothing is.
+    The quickest report so far gives the least travel time; any further delay counts as the report's age. This
+    reveals reports that were held up on the way.
     """
 
     def __init__(self) -> None:
@@ -31,13 +23,7 @@ class ReportClock:
         self._before: tuple[float, float] | None = None
 
     def measured_s(self, arrived_s: float, monotonic_s: float, controller_s: float | None) -> float:
-        """When a report was measured, s on the driver's clock; when it arrived, where that is not told.
-
-        Args:
-            arrived_s: when it arrived, on the driver's clock, s.
-            monotonic_s: the same on the machine's monotonic clock, s.
-            controller_s: when it was measured on the controller's clock, s, or None.
-        """
+        """Time of measurement on the driver's clock, s; without ``controller_s`` that of arrival."""
         elapsed_s = 0.0
         if self._before is not None:
             elapsed_s = monotonic_s - self._before[1]

@@ -1,4 +1,4 @@
-"""What the controller reports by itself: joint angles many times per second, everything else now and then."""
+"""The controller's reports: joint angles many times per second, everything else now and then."""
 
 import contextlib
 import socket
@@ -16,102 +16,57 @@ from latentarm.arms.xarm.report_clock import ReportClock
 from latentarm.arms.xarm.sdk import Sdk
 from latentarm.core.types import FloatArray
 
-TIMED_PORT: Final = 30000
-"""Joint states with the controller's time, 200 per second; from firmware 2.1 on."""
-
-PLAIN_PORT: Final = 30003
-"""Joint angles without a time, 100 per second."""
-
-STATUS_PORT: Final = 30002
-"""Everything else, a few times per second."""
+TIMED_PORT: Final = 30000  # joint states with the controller's time, 200 per second; from firmware 2.1 on
+PLAIN_PORT: Final = 30003  # joint angles without a time, 100 per second
+STATUS_PORT: Final = 30002  # everything else, a few times per second
 
 _LEAST: Final[dict[int, int]] = {TIMED_PORT: 172, PLAIN_PORT: 87, STATUS_PORT: 245}
 """A frame with fewer bytes does not hold what is read from it."""
 
 _LARGEST: Final = 4096
-_DIFFERENCED_S: Final = 0.04
-"""Where velocities are not reported, they are the change of the angles over about this time, s."""
+_DIFFERENCED_S: Final = 0.04  # span of the angles' change where velocities are not reported
 
 
 @final
 @dataclass(frozen=True)
 class JointReport:
-    """One report of the joints.
+    """One report of the joints."""
 
-    Attributes:
-        q: (n,), joint angles, rad; as they came, NaN included.
-        dq: (n,), joint velocities, rad/s.
-        mode: what kind of commands the controller takes.
-        state: 0 to 2 take commands.
-        measured_s: when it was measured, on the driver's clock, s.
-        arrived_s: when it arrived, on the machine's monotonic clock, s.
-        controller_s: when it was measured, on the controller's clock, s; None where that is not told.
-        number: grows by one with every report.
-    """
-
-    q: FloatArray
-    dq: FloatArray
-    mode: int
-    state: int
-    measured_s: float
-    arrived_s: float
-    controller_s: float | None
-    number: int
+    q: FloatArray  # (n,), rad; as received, NaN included
+    dq: FloatArray  # (n,), rad/s
+    mode: int  # kind of commands that the controller takes
+    state: int  # 0 to 2 take commands
+    measured_s: float  # on the driver's clock
+    arrived_s: float  # on the machine's monotonic clock
+    controller_s: float | None  # time of measurement on the controller's clock, if reported
+    number: int  # grows by one with every report
 
 
 @final
 @dataclass(frozen=True)
 class StatusReport:
-    """One report of everything else.
+    """One report of everything else."""
 
-    Attributes:
-        axes: number of joints.
-        kind: the manufacturer's number of the type.
-        error: of the controller, 0 for none.
-        warning: of the controller, 0 for none.
-        mode: what kind of commands the controller takes.
-        state: 0 to 2 take commands.
-        load_kg: mass of what the arm carries, as the controller was told.
-        load_centre_mm: its centre of mass.
-        collision_sensitivity: 0 is off, 5 the most sensitive.
-        gravity: direction of gravity in the base frame.
-        speed_rad_s: fastest that joints may turn.
-        acceleration_rad_s2: fastest that they may accelerate.
-        reduced: whether the reduced mode limits speeds.
-        fenced: whether a safety boundary is set.
-        simulated: whether the controller simulates its arm.
-    """
-
-    axes: int
-    kind: int
-    error: int
-    warning: int
-    mode: int
-    state: int
-    load_kg: float
-    load_centre_mm: tuple[float, ...]
-    collision_sensitivity: int
-    gravity: tuple[float, ...]
-    speed_rad_s: float
-    acceleration_rad_s2: float
-    reduced: bool
-    fenced: bool
-    simulated: bool
+    axes: int  # number of joints
+    kind: int  # the manufacturer's number of the type
+    error: int  # of the controller, 0 for none
+    warning: int  # of the controller, 0 for none
+    mode: int  # kind of commands that the controller takes
+    state: int  # 0 to 2 take commands
+    load_kg: float  # set mass of the arm's load
+    load_centre_mm: tuple[float, ...]  # set centre of mass
+    collision_sensitivity: int  # 0 is off, 5 the most sensitive
+    gravity: tuple[float, ...]  # its direction in the base frame
+    speed_rad_s: float  # largest of the joints
+    acceleration_rad_s2: float  # largest of the joints
+    reduced: bool  # whether the reduced mode limits speeds
+    fenced: bool  # whether a safety boundary is set
+    simulated: bool  # whether the controller simulates its arm
 
 
 @final
 class ReportStream:
-    """Reads one of the controller's report ports in a thread of its own.
-
-    Args:
-        host: of the controller.
-        port: to connect to.
-        kind: which of the manufacturer's ports that is.
-        take: called with each frame, in the stream's thread.
-
-    Raises:
-        LinkLostError: nobody answers there.
-    """
+    """Reads one of the controller's report ports, and calls ``take`` with each frame in its own thread."""
 
     def __init__(
         self, host: str, port: int, kind: Literal[30000, 30002, 30003], take: Callable[[bytes], None]
@@ -175,23 +130,12 @@ class ReportStream:
 class JointReports:
     """The newest joint states.
 
-    Args:
-        sdk: the manufacturer's library.
-        host: of the controller.
-        port: to connect to; None for the manufacturer's.
-        dof: number of joints n.
-        timed: whether the firmware reports on the port with times.
-        now_s: the driver's clock, s.
-        number: of the last report of the connection before.
-
-    Raises:
-        LinkLostError: nobody answers there.
+    ``port`` None is the manufacturer's; ``timed`` says whether the firmware reports on the port with times;
+    ``number`` is that of the last report of the connection before.
 
     Attributes:
-        newest: the newest report, or None before the first. A report that repeats the
-            controller's time does not count.
-        came: notified when one comes.
-        clock: what is known of the clocks.
+        newest: None before the first; a report that repeats the controller's time does not count
+        came: notified at each report
     """
 
     def __init__(
@@ -249,19 +193,7 @@ class JointReports:
 
 @final
 class StatusReports:
-    """The newest of everything else.
-
-    Args:
-        sdk: the manufacturer's library.
-        host: of the controller.
-        port: to connect to; None for the manufacturer's.
-
-    Raises:
-        LinkLostError: nobody answers there.
-
-    Attributes:
-        newest: the newest report, or None before the first.
-    """
+    """The newest report of everything else, in ``newest``; None before the first."""
 
     def __init__(self, sdk: Sdk, host: str, port: int | None) -> None:
         self._report: Any = sdk.report(STATUS_PORT)

@@ -11,10 +11,10 @@ from latentarm.core.errors import UserError
 
 
 class Port(Protocol):
-    """What the library writes its requests to, and reads the answers from."""
+    """The port through which the library writes requests and reads answers."""
 
     def flush(self) -> int:
-        """Forget answers that nobody waits for any more."""
+        """Forget answers that nobody waits for."""
         ...
 
     def write(self, data: bytes) -> int:
@@ -27,10 +27,10 @@ class Port(Protocol):
 
 
 class Commands(Protocol):
-    """The library's ``UxbusCmdTcp``, as far as it is used. Each answer begins with a code."""
+    """The used part of the library's ``UxbusCmdTcp``. Each answer begins with a code."""
 
     def set_timeout(self, timeout: float) -> object:
-        """How long an answer may take, s."""
+        """Set the time-out of answers, s."""
         ...
 
     def get_version(self) -> list[int]:
@@ -54,7 +54,7 @@ class Commands(Protocol):
         ...
 
     def set_mode(self, mode: int) -> list[int]:
-        """Choose what kind of commands are taken."""
+        """Choose the kind of commands."""
         ...
 
     def set_state(self, value: int) -> list[int]:
@@ -82,7 +82,7 @@ class Commands(Protocol):
         ...
 
     def gripper_modbus_set_posspd(self, speed: int) -> list[int]:
-        """How fast it goes."""
+        """Set its speed."""
         ...
 
     def gripper_modbus_set_pos(self, pulse: int) -> list[int]:
@@ -105,21 +105,14 @@ class Commands(Protocol):
 @final
 @dataclass(frozen=True)
 class Sdk:
-    """What is used of the library.
-
-    Attributes:
-        version: of the library.
-        command_class: ``UxbusCmdTcp``.
-        report_class: ``ReportDataStructure``.
-        errors: the controller's errors by code: title and description by language.
-        gripper_errors: those of the gripper.
-    """
+    """The used part of the library."""
 
     version: str
-    command_class: Any
-    report_class: Any
+    command_class: Any  # ``UxbusCmdTcp``
+    report_class: Any  # ``ReportDataStructure``
+    # the controller's, by code: title and description by language
     errors: dict[object, dict[str, dict[str, str]]]
-    gripper_errors: dict[object, dict[str, dict[str, str]]]
+    gripper_errors: dict[object, dict[str, dict[str, str]]]  # the gripper's
 
     def commands(self, port: Port) -> Commands:
         """Requests over a port, in the manufacturer's private protocol."""
@@ -132,11 +125,7 @@ class Sdk:
 
 @cache
 def load_sdk() -> Sdk:
-    """Import the library.
-
-    Raises:
-        UserError: it is not installed, or cannot be imported.
-    """
+    """Import the library."""
     try:
         # It prints its version, and logs to what standard output is at this moment.
         with contextlib.redirect_stdout(sys.stderr):

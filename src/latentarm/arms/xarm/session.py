@@ -21,29 +21,17 @@ _FIRST_REPORT_S: Final = 2.0
 @final
 @dataclass(frozen=True)
 class Options:
-    """What an address may say.
+    """Options of an address; None is the manufacturer's port."""
 
-    Attributes:
-        command_port: that takes commands; ``PORT`` of the address.
-        gripper_port: for devices at the tool; None for the manufacturer's.
-        joints_port: that reports joint states; None for the manufacturer's.
-        status_port: that reports everything else; None for the manufacturer's.
-        bare: whether the arm carries nothing, not even a gripper.
-    """
-
-    command_port: int = COMMAND_PORT
-    gripper_port: int | None = None
-    joints_port: int | None = None
-    status_port: int | None = None
-    bare: bool = False
+    command_port: int = COMMAND_PORT  # ``PORT`` of the address
+    gripper_port: int | None = None  # for devices at the tool
+    joints_port: int | None = None  # reports joint states
+    status_port: int | None = None  # reports everything else
+    bare: bool = False  # whether the arm carries nothing, not even a gripper
 
 
 def read_options(address: ArmAddress) -> Options:
-    """Read the options of an address.
-
-    Raises:
-        UserError: one is unknown or out of range.
-    """
+    """Read the options of an address."""
     given = address.only("gripper_port", "joints_port", "load", "status_port")
     load = given.get("load")
     if load not in (None, "none"):
@@ -63,22 +51,10 @@ def _port(name: str, given: Mapping[str, str]) -> int | None:
 
 @final
 class Session:
-    """Everything of one connection; opening and closing it moves nothing.
-
-    Args:
-        sdk: the manufacturer's library.
-        host: of the controller.
-        options: of the address.
-        robot: what the arm should be.
-        now_s: the driver's clock, s.
-
-    Raises:
-        LinkLostError: the controller cannot be reached, or does not answer as one.
+    """One connection to an arm; opening and closing it moves nothing.
 
     Attributes:
-        controller: for requests.
-        identity: what the controller says it is.
-        gripper: None where the robot has none.
+        gripper: None where the robot has none
     """
 
     def __init__(
@@ -96,10 +72,7 @@ class Session:
             raise
 
     def listen(self, first_number: int = 0) -> None:
-        """Open everything but requests, which is open already, and wait for the first reports.
-
-        Args:
-            first_number: that reports of joints are numbered from.
+        """Open everything besides requests, and wait for the first reports, numbered from a number on.
 
         Raises:
             LinkLostError: a part of it cannot be reached, or does not answer as it should.
@@ -131,7 +104,7 @@ class Session:
 
     @property
     def status(self) -> StatusReport:
-        """The newest of everything else."""
+        """The newest report of everything else."""
         newest = None if self._status is None else self._status.newest
         if newest is None:
             raise RuntimeError("the session is not open")
@@ -139,13 +112,13 @@ class Session:
 
     @property
     def fault(self) -> str:
-        """Why the connection cannot be used any more, or the clocks cannot; "" where they can."""
+        """Why the connection or its clocks are unusable, or ""."""
         joints = self.joints
         streams = joints.stream.fault or ("" if self._status is None else self._status.stream.fault)
         return streams or joints.clock.fault or ("" if self.gripper is None else self.gripper.fault)
 
     def close(self) -> None:
-        """End it; closing twice is no error."""
+        """End it; closing twice is harmless."""
         self.controller.close()
         if self.gripper is not None:
             self.gripper.close()

@@ -1,4 +1,4 @@
-"""What the person's thread and the driver's thread both know."""
+"""State shared by the caller's thread and the driver's thread."""
 
 import threading
 from dataclasses import dataclass, field
@@ -29,41 +29,27 @@ TAKES_COMMANDS: tuple[Condition, ...] = ("enabled", "stopping")
 @final
 @dataclass(frozen=True)
 class Ordered:
-    """A command on its way.
+    """A command to send."""
 
-    Attributes:
-        velocity: (n,), rad/s.
-        ends_s: until when it counts, on the monotonic clock, s.
-    """
-
-    velocity: FloatArray
-    ends_s: float
+    velocity: FloatArray  # (n,), rad/s
+    ends_s: float  # its end on the monotonic clock, s
 
 
 @final
 @dataclass
 class Shared:
-    """Guarded by its condition variable, which is notified of every change the driver's thread must see.
+    """Guarded by its condition variable, which is notified of every change for the driver's thread."""
 
-    Attributes:
-        condition: of the driver.
-        reason: of a fault, one sentence.
-        recoverable: whether recovering can end the fault.
-        requests: what the driver's thread is asked to do.
-        command: the newest that was not sent yet.
-        ending: whether the driver's thread is to end.
-    """
-
-    condition: Condition = "off"
-    reason: str = ""
-    recoverable: bool = False
-    requests: set[Request] = field(default_factory=set[Request])
-    command: Ordered | None = None
-    ending: bool = False
+    condition: Condition = "off"  # of the driver
+    reason: str = ""  # of a fault, one sentence
+    recoverable: bool = False  # whether recovering can end the fault
+    requests: set[Request] = field(default_factory=set[Request])  # to the driver's thread
+    command: Ordered | None = None  # the newest unsent one
+    ending: bool = False  # whether the driver's thread is to end
     changed: threading.Condition = field(default_factory=threading.Condition)
 
     def become(self, condition: Condition, reason: str = "", *, recoverable: bool = False) -> None:
-        """Change; a command that was not sent is forgotten unless the arm goes on taking commands."""
+        """Change the condition; drops an unsent command unless the arm goes on taking commands."""
         with self.changed:
             self.condition, self.reason, self.recoverable = condition, reason, recoverable
             if condition not in TAKES_COMMANDS:

@@ -1,4 +1,4 @@
-"""What the joint reports say that they should not, while the arm is enabled."""
+"""Detects faults in the joint reports while the arm is enabled."""
 
 from typing import Final, final
 
@@ -9,14 +9,9 @@ from latentarm.arms.xarm.reports import JointReport
 from latentarm.core.types import FloatArray
 from latentarm.robots.kinematics.stillness import STILL_RAD_S
 
-_FROZEN_S: Final = 0.12
-"""A joint that was commanded for so long has begun to move, whatever its lag, s."""
-
-_COMMANDED_RAD_S: Final = 0.02
-"""Slower commands do not count for that, rad/s."""
-
-_SETTLED_S: Final = 0.5
-"""So long after its last command an arm stands still, s."""
+_FROZEN_S: Final = 0.12  # a joint moves after so long a command, whatever its lag
+_COMMANDED_RAD_S: Final = 0.02  # slower commands do not count for that
+_SETTLED_S: Final = 0.5  # an arm stands still so long after its last command
 
 _UNTOLD_RAD_S: Final = 5.0 * STILL_RAD_S
 
@@ -25,11 +20,7 @@ _AGAIN: Final = "then enable the arm again"
 
 @final
 class Watch:
-    """Compares what comes back with what was sent.
-
-    Args:
-        joint_names: n names.
-    """
+    """Compares reports with commands."""
 
     def __init__(self, joint_names: tuple[str, ...]) -> None:
         self._names = joint_names
@@ -39,28 +30,19 @@ class Watch:
         self._command_ends_s = 0.0
 
     def reset(self, now_s: float) -> None:
-        """Begin again: the arm has just been enabled; the monotonic clock, s."""
+        """Begin again for an arm that has just been enabled; the time is the monotonic clock's, s."""
         self._q = None
         self._command_ends_s = now_s
 
     def commanded(self, velocity: FloatArray, ends_s: float) -> None:
-        """A command was sent.
-
-        Args:
-            velocity: (n,), rad/s.
-            ends_s: until when it lasts on the monotonic clock, s.
-        """
+        """Note a command (n,), rad/s, and its end on the monotonic clock, s."""
         slow = np.abs(velocity) < _COMMANDED_RAD_S
         self._since_s[slow] = ends_s
         if np.abs(velocity).max() > 0.0:
             self._command_ends_s = ends_s
 
     def fault(self, report: JointReport) -> str:
-        """Why the arm may not be driven on, one sentence; "" where it may.
-
-        Args:
-            report: the newest.
-        """
+        """Why driving must end after the newest report, one sentence, or ""."""
         if not np.isfinite(report.q).all() or not np.isfinite(report.dq).all():
             return f"The arm reports joint angles that are no numbers: restart its controller, {_AGAIN}."
         if report.mode != JOINT_VELOCITY or report.state not in STATES_THAT_MOVE:

@@ -4,8 +4,7 @@ from typing import Final
 
 from latentarm.arms.xarm.sdk import Sdk
 
-EMERGENCY_STOPS: Final = (1, 2, 3)
-"""Errors of emergency stops: on the control box, on its inputs, on a three-state switch."""
+EMERGENCY_STOPS: Final = (1, 2, 3)  # codes: on the control box, on its inputs, on a three-state switch
 
 _BUTTONS: Final = {
     1: "The emergency stop button on the control box is pressed",
@@ -21,16 +20,16 @@ _OWN: Final = {
     31: "check what the arm has hit, its payload and its collision sensitivity",
     35: "move the arm back inside its safety boundary in UFACTORY Studio's manual mode",
 }
-"""What to do where the manufacturer's advice is about programs or paths."""
+"""Advice that replaces the manufacturer's, which is about programs or paths."""
 
 
 def emergency_stop(code: int) -> str:
-    """What to do about an emergency stop."""
+    """Advice about an emergency stop."""
     return f"{_BUTTONS[code]}: release it when it is safe, then enable the arm again."
 
 
 def controller_error(sdk: Sdk, code: int) -> str:
-    """What an error of the controller means, and what to do about it."""
+    """An error of the controller in words, and what to do about it."""
     known = sdk.errors.get(code)
     if known is None:
         return (
@@ -44,7 +43,7 @@ def controller_error(sdk: Sdk, code: int) -> str:
 
 
 def gripper_error(sdk: Sdk, code: int) -> str:
-    """What an error of the gripper means."""
+    """An error of the gripper in words."""
     known = sdk.gripper_errors.get(code)
     title = known["en"]["title"].rstrip(".") if known else "unknown"
     return f"The gripper reports error {code}, {title}: check what it holds, then enable the arm again."

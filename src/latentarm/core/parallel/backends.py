@@ -1,4 +1,4 @@
-"""Where the cells of a grid run: processes of this machine, or a cluster of machines.
+"""Backends for the cells of a grid: processes of this machine, or a cluster.
 
 joblib is the one interface; Ray and Dask are joblib's own backends. Each of the context managers here
 makes its backend the active one and ends what it has started, and nothing else.
@@ -20,20 +20,18 @@ if TYPE_CHECKING:
 
 EXTRA: Final = "pip install 'latentarm[cluster]'"
 
-ANSWER_S: Final = 10.0
-"""How long a cluster may take to answer at its address, s."""
+ANSWER_S: Final = 10.0  # for a cluster to answer at its address
 
 
 @contextmanager
 def _processes(jobs: int) -> Generator[int]:
-    """Processes of this machine."""
     with joblib.parallel_config("loky"):
         yield _available(jobs)
 
 
 @contextmanager
 def _ray(jobs: int) -> Generator[int]:
-    """A Ray cluster: that of ``RAY_ADDRESS``, or a new one on this machine."""
+    """A Ray cluster at ``RAY_ADDRESS``, or a new one on this machine."""
     os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")  # no usage statistics
     try:
         import ray
@@ -57,9 +55,6 @@ def _start_ray() -> None:
     """Join the cluster that the environment names, or else start one.
 
     Without an address Ray would look for a cluster on this machine, and wait for one that has ended.
-
-    Raises:
-        UserError: the cluster does not answer, or wants a token that the environment does not name.
     """
     import ray
 
@@ -83,7 +78,6 @@ def _start_ray() -> None:
 
 @contextmanager
 def _dask(jobs: int) -> Generator[int]:
-    """A Dask cluster: that of ``DASK_SCHEDULER_ADDRESS``, or a new one of processes on this machine."""
     try:
         import dask.config
     except ImportError as error:
@@ -96,7 +90,6 @@ def _dask(jobs: int) -> Generator[int]:
 
 @contextmanager
 def _dask_processes(jobs: int) -> Generator["Client"]:
-    """A client of a new Dask cluster on this machine, which ends with it."""
     from dask.distributed import Client, LocalCluster
 
     settings: dict[str, Any] = {"threads_per_worker": 1, "dashboard_address": None, "memory_limit": None}
@@ -109,11 +102,6 @@ def _dask_processes(jobs: int) -> Generator["Client"]:
 
 @contextmanager
 def _dask_cluster(address: str) -> Generator["Client"]:
-    """A client of the Dask cluster at an address.
-
-    Raises:
-        UserError: it does not answer, or has no workers.
-    """
     from dask.distributed import Client
 
     try:
@@ -129,7 +117,6 @@ def _dask_cluster(address: str) -> Generator["Client"]:
 
 
 def _available(jobs: int) -> int:
-    """How many processes the active backend has for a number of jobs."""
     return cast(int, joblib.effective_n_jobs(jobs))
 
 

@@ -1,7 +1,6 @@
 """A grid of independent cells, measured side by side.
 
-A cell carries everything that it depends on, its seeds too, so that where it runs and what else runs
-there change nothing of its result.
+A cell carries everything that it depends on, its seeds too: its result does not depend on where it runs.
 """
 
 import traceback
@@ -24,19 +23,11 @@ Result = TypeVar("Result")
 
 
 class CellError(Exception):
-    """A cell failed because of a bug; names the cell and holds the traceback."""
+    """A bug made a cell fail; names the cell and holds the traceback."""
 
 
 @dataclass(frozen=True)
 class _Measured(Generic[Result]):
-    """What comes back from wherever a cell was measured.
-
-    Attributes:
-        index: of the cell.
-        result: what the function returned.
-        warnings: category and text of what was warned of meanwhile.
-    """
-
     index: int
     result: Result
     warnings: tuple[tuple[type[Warning], str], ...]
@@ -55,20 +46,17 @@ def run_grid(
 ) -> list[Result]:
     """Measure every cell, each on one process.
 
-    Warnings given while a cell is measured are given again here, after its name, in the order of the cells.
+    Results come in the order of the cells. Warnings of a cell come again here, after its name.
 
     Args:
-        function: measures one cell; importable by name where it is to run in other processes.
+        function: measures one cell; importable by name for other processes.
         cells: picklable.
         jobs: processes side by side, as far as a cluster has them; -1 is one per core.
         backend: a name in `BACKENDS`.
-        label: what a cell is called when it fails or warns.
-        bars: show on standard error how far the grid is.
-        unit: what a cell is called on the bar.
-        keep: is given each cell with its result as soon as there is one, in any order; with Ray at the end.
-
-    Returns:
-        The results in the order of the cells.
+        label: names a cell in errors and warnings.
+        bars: show progress on standard error.
+        unit: word for a cell on the bar.
+        keep: called with each cell and its result as soon as there is one, in any order; with Ray at the end.
 
     Raises:
         UserError: jobs or backend are invalid, the backend is not available, one of joblib's processes was
@@ -107,11 +95,7 @@ def run_grid(
 
 
 def check_processes(jobs: int, backend: str) -> None:
-    """Check jobs and backend before any work is done.
-
-    Raises:
-        UserError: the number of jobs or the backend is invalid.
-    """
+    """Check jobs and backend before any work is done."""
     if jobs != -1 and jobs < 1:
         raise UserError(f"The number of jobs is {jobs}: it must be at least 1, or -1 for one per core.")
     if backend not in BACKENDS:
@@ -119,14 +103,7 @@ def check_processes(jobs: int, backend: str) -> None:
 
 
 def _measure(function: Callable[[Cell], Result], index: int, cell: Cell, name: str) -> _Measured[Result]:
-    """Measure one cell; runs in any process.
-
-    Errors are replaced by ones that hold only text, because others may not survive pickling.
-
-    Raises:
-        UserError: the cell raised one.
-        CellError: the cell raised anything else.
-    """
+    """Measure one cell in any process; errors hold only text, because others may not survive pickling."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", UserWarning)
         warnings.simplefilter("always", RuntimeWarning)
@@ -140,10 +117,7 @@ def _measure(function: Callable[[Cell], Result], index: int, cell: Cell, name: s
 
 
 def _watched(cells: Sequence[Cell], workers: int, bar: Progress, unit: str) -> Iterator[Cell]:
-    """The cells as they are begun.
-
-    Every backend asks for the next one when a process is free, but not all of them tell what is done.
-    """
+    """Every backend asks for the next cell when a process is free, but not all say which cell is done."""
     task = bar.add_task(unit, total=len(cells))
     for begun, cell in enumerate(cells, start=1):
         bar.update(task, completed=max(0, begun - workers))
@@ -151,11 +125,7 @@ def _watched(cells: Sequence[Cell], workers: int, bar: Progress, unit: str) -> I
 
 
 def counting_bar(shown: bool) -> Progress:
-    """A bar on standard error that counts and goes away when it is done.
-
-    Args:
-        shown: whether there is one at all.
-    """
+    """A progress bar on standard error that disappears when it is done."""
     return Progress(
         TextColumn("{task.description}"),
         BarColumn(),

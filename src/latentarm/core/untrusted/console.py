@@ -13,19 +13,12 @@ if TYPE_CHECKING:
 
 @final
 class VisibleConsole(Console):
-    """A rich console that shows every string as it is: no markup, no emoji codes, no escape sequences.
-
-    Rich takes ``[/nope]`` in a cell for markup and raises on it, and passes escape sequences on.
-
-    Args:
-        stderr: write to standard error.
-        quiet: write nothing.
-    """
+    """A rich console without markup, emoji codes or escape sequences, which untrusted text may hold."""
 
     def __init__(self, *, stderr: bool = False, quiet: bool = False) -> None:
         super().__init__(stderr=stderr, quiet=quiet, markup=False, emoji=False)
 
     def render_str(self, text: str, *, style: "str | Style" = "", **options: Any) -> Text:
-        """Called by rich for every string in a table, its heads and titles included."""
+        """Rich calls this for every string in a table, heads and titles included."""
         options |= {"markup": False, "emoji": False}
         return super().render_str(visible(text), style=style, **options)

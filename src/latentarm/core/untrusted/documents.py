@@ -15,20 +15,11 @@ from typing import Any, Final, cast
 from latentarm.core.errors import UserError
 from latentarm.core.untrusted.opening import read_bytes
 
-MOST_BYTES: Final = 1 << 24
-"""Largest document: 16 MiB."""
-
-MOST_VALUES: Final = 1_000_000
-"""Values in a document, containers included; at worst 100 MB as Python objects."""
-
-MOST_LEVELS: Final = 32
-"""Nesting depth of containers."""
-
-MOST_TEXT_BYTES: Final = 1 << 16
-"""Length of one string as written in the document."""
-
-MOST_DIGITS: Final = 20
-"""Digits of an integer; more than a 64-bit one can have."""
+MOST_BYTES: Final = 1 << 24  # largest document: 16 MiB
+MOST_VALUES: Final = 1_000_000  # values in a document, containers included; at worst 100 MB as Python objects
+MOST_LEVELS: Final = 32  # nesting depth of containers
+MOST_TEXT_BYTES: Final = 1 << 16  # length of one string as written in the document
+MOST_DIGITS: Final = 20  # digits of an integer; more than a 64-bit one can have
 
 _NO_BRACKETS: Final = bytes(set(range(256)) - set(b"[]{}"))
 _SURROGATE: Final = re.compile(rb"\\u[dD][89a-fA-F]")
@@ -39,29 +30,12 @@ class _FaultError(ValueError):
 
 
 def read_object(path: Path, limit: int = MOST_BYTES) -> dict[str, Any]:
-    """The JSON object that a file consists of.
-
-    Args:
-        path: the file.
-        limit: bytes that it may have.
-
-    Raises:
-        UserError: see `read_bytes` and `parse_object`.
-    """
+    """The JSON object in a file of at most ``limit`` bytes."""
     return parse_object(read_bytes(path, limit), str(path))
 
 
 def parse_object(document: bytes | str, where: str) -> dict[str, Any]:
-    """The JSON object that a document consists of.
-
-    Args:
-        document: UTF-8, or text.
-        where: what errors call it.
-
-    Raises:
-        UserError: it is not a JSON object, or holds what no document of ours does: values beyond the
-            limits above, NaN or infinity, a key twice, half a character.
-    """
+    """The JSON object in a document in UTF-8; ``where`` names the document in errors."""
     try:
         content = document.encode() if isinstance(document, str) else document
         _check_shape(content)
@@ -84,7 +58,7 @@ def parse_object(document: bytes | str, where: str) -> dict[str, Any]:
 
 
 def _check_shape(content: bytes) -> None:
-    """Bound what the parser would build, by cheap passes over the bytes."""
+    """Bound the parser's output by cheap passes over the bytes."""
     if len(content) > MOST_BYTES:
         raise _FaultError(f"has more than {MOST_BYTES:,} bytes")
     # Without escapes every quotation mark begins or ends a text.

@@ -1,4 +1,4 @@
-"""Tables that people write by hand: errors name the file and the key, and say what may stand there."""
+"""Tables that people write by hand: errors name the file and the key."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any, cast
@@ -7,49 +7,21 @@ from latentarm.core.errors import UserError
 
 
 def table_of(value: object, where: str, key: str) -> Mapping[str, Any]:
-    """The value as a table whose keys are names.
-
-    Args:
-        value: what stands under the key.
-        where: the file, for messages.
-        key: where in it; "" for the outermost level.
-
-    Raises:
-        UserError: it is something else.
-    """
+    """The value as a table with names as keys; ``key`` is "" for the outermost level."""
     if not isinstance(value, dict) or not all(isinstance(name, str) for name in cast(dict[Any, Any], value)):
         raise UserError(f"{where}: {key or 'the outermost level'} must be a table of names.")
     return cast(Mapping[str, Any], value)
 
 
 def check_keys(given: Mapping[str, Any], known: Sequence[str], where: str, prefix: str) -> None:
-    """Refuse keys that nothing reads.
-
-    Args:
-        given: a table.
-        known: the keys that it may have.
-        where: the file, for messages.
-        prefix: what stands before a key in messages, with a dot at its end; "" on the outermost level.
-
-    Raises:
-        UserError: a key is unknown.
-    """
+    """Refuse unknown keys; ``prefix`` ends in a dot, or is "" on the outermost level."""
     for name in given:
         if name not in known:
             raise UserError(f"{where}: there is no key {prefix}{name}; use {', '.join(known)}.")
 
 
 def number_of(value: object, where: str, key: str) -> float:
-    """The value as a finite number.
-
-    Args:
-        value: what stands under the key.
-        where: the file, for messages.
-        key: where in it.
-
-    Raises:
-        UserError: it is something else.
-    """
+    """The value as a finite number."""
     if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) < 1e9:
         raise UserError(f"{where}: {key} must be a finite number, not {str(value)[:40]!r}.")
     return float(value)

@@ -1,9 +1,8 @@
 """A bound on the memory that reading a file may take, for C parsers that have no limit of their own.
 
-A page of a Parquet file, a chunk of an HDF5 file or a texture of a robot model can unpack to a thousand
-times its size, and none of these libraries can be told to stop. On Linux the operating system can: while
-a file is read, the process may grow by so much and no more, and the library's own error for a failed
-allocation comes back. Elsewhere only the readers' own checks of declared sizes hold.
+A page of a Parquet file, a chunk of an HDF5 file or a texture of a robot model can unpack to a thousand times
+its size. On Linux the operating system limits how much the process may grow during the read, and the library
+then fails to allocate. Elsewhere only the readers' own checks of declared sizes hold.
 """
 
 import threading
@@ -19,33 +18,23 @@ try:
 except ImportError:  # Windows
     resource = None
 
-ALLOWANCE: Final = 256 << 20
-"""Memory that any file may take, bytes."""
-
-PER_BYTE: Final = 64
-"""Bytes beyond those for every byte of the file: numbers are packed well where an arm stands still."""
+ALLOWANCE: Final = 256 << 20  # memory that any file may take, bytes
+PER_BYTE: Final = 64  # of the file: numbers are packed well where an arm stands still
 
 _STATUS: Final = Path("/proc/self/status")
 _UNLIMITED: Final = 1 << 62
 _lock = threading.Lock()
-_bounds: list[int] = []
-"""Limits of all current readers, after the original limit; the smallest applies."""
+_bounds: list[int] = []  # limits of all current readers, after the original limit; the smallest applies
 
 
 @contextmanager
 def bounded_memory(what: str, size: int) -> Generator[None]:
-    """Limit how much the process may grow while something is read.
+    """Limit how much the process may grow during a read of ``size`` bytes; ``what`` names it in errors.
 
     The bound is the whole process's: another thread that needs more than remains meanwhile gets a
     `MemoryError` too.
 
-    Args:
-        what: what is read, for the message.
-        size: its bytes on disk.
-
-    Raises:
-        UserError: reading it takes more than `ALLOWANCE` and `PER_BYTE` allow; raised for any
-            `MemoryError` within.
+    The bound holds for the whole process: another thread that needs more also gets a `MemoryError`.
     """
     allowed = ALLOWANCE + PER_BYTE * size
     try:
@@ -85,7 +74,6 @@ def _bound(allowed: int) -> Generator[None]:
 
 
 def _used() -> int | None:
-    """Bytes of the process's data as the system counts them, or None where it does not say."""
     try:
         lines = _STATUS.read_text(encoding="ascii").splitlines()
     except OSError:

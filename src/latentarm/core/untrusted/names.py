@@ -1,4 +1,4 @@
-"""Names of people: any name in any script, in one form, and nothing that is no name."""
+"""Names of people, in any script, in one form."""
 
 import unicodedata
 from typing import Final
@@ -10,16 +10,7 @@ MOST_CHARACTERS: Final = 40
 
 
 def clean_name(text: str, most: int = MOST_CHARACTERS) -> str:
-    """The name as it is kept: composed (NFC), with single spaces inside and none around it.
-
-    Args:
-        text: as somebody typed it.
-        most: characters that it may have.
-
-    Raises:
-        UserError: it is empty or too long, has no letter, digit or symbol, or holds control characters,
-            ends of lines or characters that turn the direction of other text.
-    """
+    """The name in composed form (NFC), with single spaces inside and none around it."""
     if len(text) > 4 * most:
         raise _too_long(most)
     name = " ".join(part for part in unicodedata.normalize("NFC", text).split(" ") if part)

@@ -1,8 +1,7 @@
-"""Opening files that this program may not have written: regular files of bounded size, nothing else.
+"""Opening files that this program may not have written: regular files of bounded size only.
 
-Every reader of files in this package goes through here, so that a named pipe, a device or an endless
-file is refused with a sentence and never waited for. Symbolic links are followed; what they lead to is
-held to the same rules.
+Every reader of files goes through here, so that a named pipe, a device or an endless file is refused.
+Symbolic links are followed, and their targets obey the same rules.
 """
 
 import os
@@ -24,33 +23,14 @@ _KINDS = {
 
 
 def check_file(path: Path, limit: int) -> None:
-    """Refuse anything but a regular file of limited size, for libraries that open paths themselves.
-
-    Args:
-        path: the file.
-        limit: bytes that it may have.
-
-    Raises:
-        UserError: it is missing, unreadable, too large, or no regular file.
-    """
+    """Refuse anything but a readable regular file of limited size, for libraries that open paths."""
     with opened(path, limit):
         pass
 
 
 @contextmanager
 def opened(path: Path, limit: int) -> Generator[BinaryIO]:
-    """Open a file for reading, and turn any failure into a one-sentence error.
-
-    Args:
-        path: the file.
-        limit: bytes that it may have.
-
-    Yields:
-        The file, at its start.
-
-    Raises:
-        UserError: it is missing, unreadable, too large, or no regular file; also for an `OSError` within.
-    """
+    """Open a file for reading, and turn any failure into a one-sentence error."""
     try:
         # Check before opening: opening a device can have side effects.
         _check(path, path.stat(), limit)
@@ -68,15 +48,7 @@ def opened(path: Path, limit: int) -> Generator[BinaryIO]:
 
 
 def read_bytes(path: Path, limit: int) -> bytes:
-    """A file's whole content.
-
-    Args:
-        path: the file.
-        limit: bytes that it may have.
-
-    Raises:
-        UserError: see `opened`; also if the file grows past the limit while it is read.
-    """
+    """A file's whole content, of at most ``limit`` bytes."""
     with opened(path, limit) as stream:
         content = stream.read(limit + 1)
     if len(content) > limit:
@@ -85,7 +57,7 @@ def read_bytes(path: Path, limit: int) -> bytes:
 
 
 def is_missing(path: Path) -> bool:
-    """Whether nothing exists at ``path``, for callers with their own message."""
+    """Whether nothing exists at ``path``."""
     try:
         path.lstat()
     except (FileNotFoundError, NotADirectoryError):

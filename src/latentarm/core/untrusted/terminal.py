@@ -1,18 +1,14 @@
 """Text that this program may not have written, made safe to show in a terminal.
 
-A task's text or a file's name can hold escape sequences that recolour a terminal, change its title or
-write over what was there, and characters that reverse the text direction. They are displayed as escape
-sequences in Python's notation and have no effect.
+A file's name can hold escape sequences that recolour a terminal or write over earlier output, and characters
+that reverse the text direction. They appear as escapes in Python's notation and have no effect.
 """
 
 import unicodedata
 from typing import Final
 
-MOST_CHARACTERS: Final = 1000
-"""Length of a message; both ends of a longer one are shown."""
-
-_JOINERS: Final = "\u200c\u200d"
-"""Invisible, but Persian and emoji are not written without them."""
+MOST_CHARACTERS: Final = 1000  # length of a message; both ends of a longer one are shown
+_JOINERS: Final = "\u200c\u200d"  # invisible, but Persian and emoji are not written without them
 
 _HIDDEN: Final = frozenset({"Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp"})
 """Unicode's categories of controls, formats, halves of characters, private and unassigned ones, and ends
@@ -27,7 +23,7 @@ def visible(text: str) -> str:
 
 
 def one_line(sentence: str) -> str:
-    """As `visible`, on one line of bounded length: for errors, which quote what they refuse."""
+    """As `visible`, on one line of bounded length, for errors, which quote untrusted text."""
     line = visible(sentence).replace("\n", "\\n")
     if len(line) <= MOST_CHARACTERS:
         return line

@@ -34,16 +34,7 @@ _PlainLoader.add_implicit_resolver(
 
 
 def read_yaml(path: Path, limit: int, kind: str) -> object:
-    """The value that a file consists of; None where it is empty.
-
-    Args:
-        path: the file.
-        limit: bytes that it may have.
-        kind: what the file should be, for the message, such as ``a YAML file of options``.
-
-    Raises:
-        UserError: the file cannot be read, is too large, or is no plain YAML.
-    """
+    """The value in a file, None where it is empty; ``kind`` names what it should be in errors."""
     content = read_bytes(path, limit)
     loader: _PlainLoader | None = None
     try:
@@ -57,7 +48,6 @@ def read_yaml(path: Path, limit: int, kind: str) -> object:
 
 
 def _said(error: Exception) -> str:
-    """An error in one line."""
     if isinstance(error, yaml.MarkedYAMLError) and error.problem_mark is not None:
         return f"{error.problem} in line {error.problem_mark.line + 1}"
     if isinstance(error, RecursionError):

@@ -20,17 +20,11 @@ SKEW: FloatArray = np.array(
 
 @dataclass(frozen=True, eq=False)
 class Frame:
-    """A frame that rides on a link, such as a tool.
+    """A frame that rides on a link, such as a tool."""
 
-    Attributes:
-        name: the name of the site or body in the robot's model.
-        link: index of the link that carries it, -1 for the base.
-        transform: (4, 4), link frame -> this frame, m.
-    """
-
-    name: str
-    link: int
-    transform: FloatArray
+    name: str  # of the site or body in the robot's model
+    link: int  # index of its link, -1 for the base
+    transform: FloatArray  # (4, 4), link frame -> this frame, m
 
 
 @final
@@ -40,24 +34,15 @@ class Chain:
 
     Link i moves with joint i. At ``q = 0`` its frame is ``offset[i]`` in its parent link's frame.
     The base frame is the world frame of the model that the chain was read from.
-
-    Attributes:
-        joint_names: n names.
-        parent: (n,), index of the parent link, -1 for the base; parents come before children.
-        offset: (n, 4, 4), parent link -> joint frame at q = 0, m.
-        axis: (n, 3), unit axis in the joint frame.
-        anchor: (n, 3), the point the joint turns about, in the joint frame, m.
-        slide: (n,), True where the joint is prismatic (its q is in m), else it turns (rad).
-        tools: the end-effectors; the first is "the" tool.
     """
 
     joint_names: tuple[str, ...]
-    parent: IntArray
-    offset: FloatArray
-    axis: FloatArray
-    anchor: FloatArray
-    slide: BoolArray
-    tools: tuple[Frame, ...]
+    parent: IntArray  # (n,), index of the parent link, -1 for the base; parents come before children
+    offset: FloatArray  # (n, 4, 4), parent link -> joint frame at q = 0, m
+    axis: FloatArray  # (n, 3), unit axis in the joint frame
+    anchor: FloatArray  # (n, 3), the point the joint turns about, in the joint frame, m
+    slide: BoolArray  # (n,), True where the joint is prismatic (its q is in m)
+    tools: tuple[Frame, ...]  # the end-effectors; the first is "the" tool
 
     @property
     def dof(self) -> int:
@@ -74,14 +59,7 @@ class Chain:
         return moves
 
     def link_transforms(self, q: FloatArray) -> FloatArray:
-        """Pose of every link in the base frame.
-
-        Args:
-            q: (..., n), joint positions, rad (m for prismatic joints).
-
-        Returns:
-            (..., n, 4, 4), link frame -> base frame.
-        """
+        """Base-frame poses (..., n, 4, 4) of all links at positions (..., n), rad (m where prismatic)."""
         flat = q.reshape(-1, self.dof).T
         constants = self.motion_constants
         features = np.empty((*flat.shape, constants.shape[1]))
@@ -101,27 +79,11 @@ class Chain:
         return transforms.swapaxes(0, 1).reshape(*q.shape, 4, 4)
 
     def forward(self, q: FloatArray, tool: int = 0) -> Pose:
-        """Forward kinematics ``x = Psi(s)`` of a tool.
-
-        Args:
-            q: (..., n), joint positions, rad.
-            tool: index into `tools`.
-
-        Returns:
-            The tool's pose in the base frame, position (..., 3), m, and rotation (..., 3, 3).
-        """
+        """Forward kinematics ``x = Psi(s)`` of a tool, in the base frame, at positions (..., n), rad."""
         return self.tool_pose(self.link_transforms(q), tool)
 
     def tool_pose(self, transforms: FloatArray, tool: int = 0) -> Pose:
-        """Pose of a tool when the links' transforms are already known.
-
-        Args:
-            transforms: (..., n, 4, 4), from `link_transforms`.
-            tool: index into `tools`.
-
-        Returns:
-            The tool's pose in the base frame.
-        """
+        """Pose of a tool in the base frame, from the links' transforms (..., n, 4, 4)."""
         frame = self.tools[tool]
         if frame.link < 0:
             pose = np.broadcast_to(frame.transform, (*transforms.shape[:-3], 4, 4))
@@ -130,30 +92,16 @@ class Chain:
         return Pose(position=pose[..., :3, 3], rotation=pose[..., :3, :3])
 
     def jacobian(self, q: FloatArray, tool: int = 0) -> FloatArray:
-        """Geometric Jacobian of a tool, in the base frame.
+        """Geometric Jacobian (..., 6, n) of a tool in the base frame, at positions (..., n), rad.
 
-        Args:
-            q: (..., n), joint positions, rad.
-            tool: index into `tools`.
-
-        Returns:
-            (..., 6, n); rows 0-2 give the tool point's velocity in m/s, rows 3-5 its angular
-            velocity in rad/s, per rad/s of each joint (per m/s where prismatic).
+        Rows 0-2 give the tool point's velocity in m/s, rows 3-5 its angular velocity in rad/s, per rad/s of
+        each joint (per m/s where prismatic).
         """
         transforms = self.link_transforms(q)
         return self.jacobian_at(transforms, self.tool_pose(transforms, tool), tool)
 
     def jacobian_at(self, transforms: FloatArray, pose: Pose, tool: int = 0) -> FloatArray:
-        """`jacobian` when the links' transforms and the tool's pose are already known.
-
-        Args:
-            transforms: (..., n, 4, 4), from `link_transforms`.
-            pose: the tool's pose, from `tool_pose`.
-            tool: index into `tools`.
-
-        Returns:
-            (..., 6, n).
-        """
+        """`jacobian` from the links' transforms (..., n, 4, 4) and the tool's pose."""
         axes, origins = self.joint_axes(transforms)
         mask = self._tool_moves[tool]
         jacobian = np.empty((*transforms.shape[:-3], 6, self.dof))
@@ -167,28 +115,12 @@ class Chain:
         return jacobian
 
     def joint_axes(self, transforms: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Axes and anchors of all joints, in the base frame.
-
-        Args:
-            transforms: (..., n, 4, 4), from `link_transforms`.
-
-        Returns:
-            Unit axes (..., n, 3), and a point on each axis (..., n, 3), m.
-        """
+        """Unit axes and anchors, each (..., n, 3), of all joints in the base frame."""
         both = transforms[..., :3, :] @ self.axis_and_anchor
         return both[..., 0], both[..., 1]
 
     def points(self, transforms: FloatArray, link: IntArray, local: FloatArray) -> FloatArray:
-        """Points that ride on links, in the base frame.
-
-        Args:
-            transforms: (..., n, 4, 4), from `link_transforms`.
-            link: (K,), the link that carries each point, -1 for the base.
-            local: (K, 3), the points in their link's frame, m.
-
-        Returns:
-            (..., K, 3), m.
-        """
+        """Base-frame positions (..., K, 3), m, of points (K, 3) fixed to links (K,), -1 for the base."""
         carried = transforms.take(link, axis=-3, mode="wrap")
         moved = (carried[..., :3, :3] @ local[:, :, None])[..., 0] + carried[..., :3, 3]
         base = link < 0
@@ -200,9 +132,9 @@ class Chain:
     def motion_constants(self) -> FloatArray:
         """(n, 3 or 4, 16), each joint's transform as a linear map of [1, sin q, cos q, q].
 
-        A turn by q about a unit axis is K² + I + sin(q) K - cos(q) K² with K = [axis]x (Rodrigues),
-        about an anchor c it also shifts by c - R c. A slide by q shifts by q axis. The column for q
-        itself is there only where some joint slides.
+        A turn by q about a unit axis is K² + I + sin(q) K - cos(q) K² with K = [axis]x (Rodrigues); about an
+        anchor c it also shifts by c - R c. A slide by q shifts by q axis. The column for q exists only where
+        some joint slides.
         """
         constants = np.zeros((self.dof, 4, 4, 4))
         for joint in range(self.dof):
@@ -221,7 +153,6 @@ class Chain:
 
     @cached_property
     def _children(self) -> tuple[tuple[int, int], ...]:
-        """Links that another link carries, each with its parent, parents first."""
         return tuple((link, int(parent)) for link, parent in enumerate(self.parent) if parent >= 0)
 
     @cached_property
@@ -230,12 +161,12 @@ class Chain:
 
     @cached_property
     def _moves_or_base(self) -> FloatArray:
-        """(n + 1, n), `moves` as factors, with a last row of zeros that link -1 finds."""
+        """(n + 1, n), `moves` as factors, with a last row of zeros for link -1."""
         return np.vstack([self.moves, np.zeros((1, self.dof))]).astype(np.float64)
 
     @cached_property
     def _tool_moves(self) -> tuple[FloatArray | None, ...]:
-        """(n,) for each tool, which joints move it, as factors; None where all do."""
+        """(n,) for each tool, whether each joint moves it, as factors; None where all do."""
         moves = (self._moves_or_base[tool.link] for tool in self.tools)
         return tuple(None if row.all() else row for row in moves)
 
@@ -250,7 +181,7 @@ class Chain:
 
 
 def _column_velocity(axes: FloatArray, arms: FloatArray) -> FloatArray:
-    """Cross product axis × arm, several times faster than ``np.cross`` on small batches."""
+    """Cross product, several times faster than ``np.cross`` on small batches."""
     skew = (axes @ SKEW).reshape(*axes.shape[:-1], 3, 3)
     return (skew @ arms[..., None])[..., 0]
 
@@ -258,35 +189,19 @@ def _column_velocity(axes: FloatArray, arms: FloatArray) -> FloatArray:
 @final
 @dataclass(frozen=True, eq=False)
 class Capsules:
-    """The shape of a robot for distances: K segments with a radius, each fixed to a link.
+    """The shape of a robot for distances: K segments with a radius, each fixed to a link."""
 
-    Attributes:
-        name: K names, for the person ("link 5", "hand").
-        link: (K,), the link that carries each capsule, -1 for the base.
-        start: (K, 3), one end of the segment in its link's frame, m.
-        end: (K, 3), the other end, m; equal to ``start`` for a sphere.
-        radius: (K,), m.
-    """
-
-    name: tuple[str, ...]
-    link: IntArray
-    start: FloatArray
-    end: FloatArray
-    radius: FloatArray
+    name: tuple[str, ...]  # as a person would say it ("link 5", "hand")
+    link: IntArray  # (K,), -1 for the base
+    start: FloatArray  # (K, 3), one end of the segment in its link's frame, m
+    end: FloatArray  # (K, 3), the other end, m; equal to ``start`` for a sphere
+    radius: FloatArray  # (K,), m
 
     def __len__(self) -> int:
         return len(self.name)
 
     def placed(self, chain: Chain, transforms: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Ends of all segments in the base frame.
-
-        Args:
-            chain: the robot's chain.
-            transforms: (..., n, 4, 4), from its ``link_transforms``.
-
-        Returns:
-            Starts and ends, each (..., K, 3), m.
-        """
+        """Starts and ends of all segments in the base frame, each (..., K, 3), m."""
         both = chain.points(transforms, self._links_twice, self._starts_and_ends)
         return both[..., : len(self), :], both[..., len(self) :, :]
 

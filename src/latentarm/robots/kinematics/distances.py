@@ -1,4 +1,4 @@
-"""Exact distances between segments, and between segments and boxes."""
+"""Exact distances between segments, and their directions out of boxes."""
 
 import numpy as np
 
@@ -11,19 +11,10 @@ _POINT = 1e-30
 def segment_distance(
     p1: FloatArray, q1: FloatArray, p2: FloatArray, q2: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Shortest distance between segments p1-q1 and p2-q2, exact, also where a segment is a point.
+    """Distance (...), m, between segments p1-q1 and p2-q2, and the closest point (..., 3) on each.
 
-    Rounding errors are at most about 10 nm, where nearly parallel segments cross. After Ericson, Real-Time
-    Collision Detection (2005), section 5.1.9.
-
-    Args:
-        p1: (..., 3), m.
-        q1: (..., 3), m.
-        p2: (..., 3), m.
-        q2: (..., 3), m.
-
-    Returns:
-        Distance (...), m; the closest point on the first segment (..., 3); and on the second.
+    Exact up to about 10 nm, also where a segment is a point. After Ericson, Real-Time Collision Detection
+    (2005), section 5.1.9.
     """
     d1 = q1 - p1
     d2 = q2 - p2
@@ -52,22 +43,12 @@ def _clamped(value: FloatArray) -> FloatArray:
 def box_separation(
     start: FloatArray, end: FloatArray, centre: FloatArray, rotation: FloatArray, half_extents: FloatArray
 ) -> FloatArray:
-    """Direction in which segments are separated from boxes, for N segment-box pairs.
+    """Unit vectors (N, 3) that separate N segments from N boxes.
 
-    Along a segment the squared distance to a box is convex and piecewise quadratic, so its derivative
-    is piecewise linear and rises: the minimum is found exactly between the parameters at which the
-    segment crosses the planes of the box's faces. A segment that touches the box has no such
-    direction; the normal of the face with the least penetration is used instead, so the way out stays known.
-
-    Args:
-        start: (N, 3), m.
-        end: (N, 3), m.
-        centre: (N, 3), m.
-        rotation: (N, 3, 3), columns are the box's axes.
-        half_extents: (N, 3), m.
-
-    Returns:
-        (N, 3), unit vectors out of the box.
+    Along a segment the squared distance to a box is convex and piecewise quadratic, so its derivative is
+    piecewise linear and rises: the minimum lies exactly between the parameters at which the segment crosses
+    the planes of the box's faces. For a segment that touches the box this is the normal of the face with the
+    least penetration. The columns of ``rotation`` (N, 3, 3) are the box's axes.
     """
     p = np.vecdot(rotation.mT, (start - centre)[:, None, :])
     d = np.vecdot(rotation.mT, (end - start)[:, None, :])
@@ -94,12 +75,11 @@ def box_separation(
 
 
 def _outside(point: FloatArray, half_extents: FloatArray) -> FloatArray:
-    """Vector from the box's nearest point, in the box's frame; zero inside."""
     return point - np.clip(point, -half_extents, half_extents)
 
 
 def _face(start: FloatArray, end: FloatArray, half_extents: FloatArray) -> FloatArray:
-    """Normal of the face that the whole segment is nearest to having passed, (N, 3)."""
+    """Normal of the face with the least penetration by the whole segment, (N, 3)."""
     above = np.minimum(start, end) - half_extents
     below = np.minimum(-start, -end) - half_extents
     best = np.argmax(np.concatenate([above, below], axis=1), axis=1)

@@ -1,7 +1,4 @@
-"""Simple shapes that an arm must keep clear of, as plain data in the robot's base frame.
-
-A task lists them, the safety filters turn them into distances; neither needs the other.
-"""
+"""Shapes that an arm must keep clear of, as plain data in the robot's base frame; names are for people."""
 
 from dataclasses import dataclass
 
@@ -10,28 +7,16 @@ from latentarm.core.types import FloatArray
 
 @dataclass(frozen=True)
 class HalfSpace:
-    """Everything behind a plane: a table top, a floor, a wall.
-
-    Attributes:
-        name: what a person would call it.
-        point: (3,), any point on the plane, m.
-        normal: (3,), unit vector out of the solid, towards where the arm may be.
-    """
+    """Everything behind a plane: a table top, a floor, a wall."""
 
     name: str
-    point: FloatArray
-    normal: FloatArray
+    point: FloatArray  # (3,), any point of the plane, m
+    normal: FloatArray  # (3,), unit vector out of the solid
 
 
 @dataclass(frozen=True)
 class Sphere:
-    """A solid ball.
-
-    Attributes:
-        name: what a person would call it.
-        centre: (3,), m.
-        radius: m.
-    """
+    """A solid ball about ``centre`` (3,), m."""
 
     name: str
     centre: FloatArray
@@ -40,36 +25,22 @@ class Sphere:
 
 @dataclass(frozen=True)
 class Capsule:
-    """A solid rod with round ends: all points within ``radius`` of a segment.
-
-    Attributes:
-        name: what a person would call it.
-        start: (3,), one end of the segment, m.
-        end: (3,), the other end, m.
-        radius: m.
-    """
+    """A solid rod with round ends: all points within ``radius`` of a segment."""
 
     name: str
-    start: FloatArray
-    end: FloatArray
+    start: FloatArray  # (3,), one end of the segment, m
+    end: FloatArray  # (3,), the other end, m
     radius: float
 
 
 @dataclass(frozen=True)
 class Box:
-    """A solid box, turned as ``rotation`` says.
-
-    Attributes:
-        name: what a person would call it.
-        centre: (3,), m.
-        rotation: (3, 3), columns are the box's axes in the base frame.
-        half_extents: (3,), half of the length along each of the box's axes, m.
-    """
+    """A solid box."""
 
     name: str
-    centre: FloatArray
-    rotation: FloatArray
-    half_extents: FloatArray
+    centre: FloatArray  # (3,), m
+    rotation: FloatArray  # (3, 3), columns are the box's axes in the base frame
+    half_extents: FloatArray  # (3,), half of the length along each of the box's axes, m
 
 
 Obstacle = HalfSpace | Sphere | Capsule | Box

@@ -1,4 +1,4 @@
-"""Poses of things as rows of numbers: as decoders see them, and as datasets store them."""
+"""Poses of things as rows of numbers, in the form of decoders and in that of datasets."""
 
 from collections.abc import Mapping, Sequence
 from typing import Final
@@ -10,29 +10,17 @@ from latentarm.core.errors import UserError
 from latentarm.core.types import NO_THINGS, FloatArray, Pose
 from latentarm.robots.kinematics.rotations import quaternion
 
-STORED: Final = 7
-"""Position and quaternion (w, x, y, z)."""
+STORED: Final = 7  # position and quaternion (w, x, y, z)
 
 
 def pose_rows(pose: Pose) -> FloatArray:
-    """Poses as decoders see them, (..., 9): position, m, then the first two columns of the rotation.
-
-    The columns lie row by row, as in ``rotation[..., :2]``.
-    """
+    """Poses for decoders, (..., 9): position, m, then ``rotation[..., :2]`` row by row."""
     columns = pose.rotation[..., :2].reshape(*pose.position.shape[:-1], 6)
     return np.concatenate([pose.position, columns], axis=-1)
 
 
 def object_rows(poses: Mapping[str, Pose], names: Sequence[str]) -> FloatArray:
-    """Poses of named things as decoders see them, (K, 9), in the order of the names.
-
-    Args:
-        poses: in the base frame, by name, such as `SceneState.poses`.
-        names: K names, such as those that a model was trained with.
-
-    Raises:
-        UserError: there is no thing of a name.
-    """
+    """Poses of named things for decoders, (K, 9), in the order of the names, from base-frame poses."""
     for name in names:
         if name not in poses:
             there = ", ".join(poses) or "nothing"
@@ -41,16 +29,7 @@ def object_rows(poses: Mapping[str, Pose], names: Sequence[str]) -> FloatArray:
 
 
 def moved_along(rows: FloatArray, before: Pose, after: Pose) -> FloatArray:
-    """Poses of things that a tool takes along, as decoders see them.
-
-    Args:
-        rows: (..., K, 9), where they were.
-        before: pose of the tool then, (...,).
-        after: pose of the tool now, (...,); leading axes broadcast.
-
-    Returns:
-        (..., K, 9).
-    """
+    """Rows (..., K, 9) of things that moved with a tool from one pose to another; leading axes broadcast."""
     turn = (after.rotation @ before.rotation.mT)[..., None, :, :]
     away = rows[..., :3] - before.position[..., None, :]
     position = after.position[..., None, :] + (turn @ away[..., None])[..., 0]
@@ -59,17 +38,12 @@ def moved_along(rows: FloatArray, before: Pose, after: Pose) -> FloatArray:
 
 
 def stored_rows(pose: Pose) -> FloatArray:
-    """Poses as datasets store them, (..., 7): position, m, then the quaternion (w, x, y, z), w >= 0."""
+    """Poses for datasets, (..., 7): position, m, then the quaternion (w, x, y, z), w >= 0."""
     return np.concatenate([pose.position, quaternion(pose.rotation)], axis=-1)
 
 
 def thing_rows(poses: Mapping[str, Pose], names: Sequence[str]) -> FloatArray:
-    """Poses of named things as datasets store them, (K, 7), in the order of the names.
-
-    Args:
-        poses: in the base frame, by name, such as `SceneState.poses`.
-        names: K names that are all among them.
-    """
+    """Poses of named things for datasets, (K, 7), in the order of the names, from base-frame poses."""
     if not names:
         return NO_THINGS
     found = [poses[name] for name in names]
@@ -79,13 +53,7 @@ def thing_rows(poses: Mapping[str, Pose], names: Sequence[str]) -> FloatArray:
 
 
 def seen_rows(stored: FloatArray) -> FloatArray:
-    """From poses as datasets store them, (..., 7), to poses as decoders see them, (..., 9).
-
-    Quaternions need not have the length 1 exactly, since datasets are in single precision.
-
-    Raises:
-        UserError: a quaternion is zero, or nearly so, and stands for no rotation.
-    """
+    """Turn poses of datasets, (..., 7), with quaternions of any length, into decoders', (..., 9)."""
     w, x, y, z = np.moveaxis(stored[..., 3:], -1, 0)
     length = w * w + x * x + y * y + z * z
     if not (length > 1e-6).all():

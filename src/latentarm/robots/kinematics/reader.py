@@ -1,4 +1,4 @@
-"""Read a `Chain` from a MuJoCo model."""
+"""Reads a `Chain` from a MuJoCo model."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -22,39 +22,21 @@ _SITE = int(mujoco.mjtObj.mjOBJ_SITE)
 @final
 @dataclass(frozen=True, eq=False)
 class ModelChain:
-    """A chain together with where its parts are in the model.
-
-    Attributes:
-        chain: the chain.
-        joints: (n,), the model's joint id of each of the chain's joints.
-        body_link: (nbody,), the link that each body rides on, -1 for the base.
-        body_transform: (nbody, 4, 4), body frame -> its link's frame, m.
-        base_bodies: ids of the fixed bodies, without the world, that carry the first moving links.
-    """
+    """A chain, and its parts in the model."""
 
     chain: Chain
-    joints: IntArray
-    body_link: IntArray
-    body_transform: FloatArray
+    joints: IntArray  # (n,), the model's id of each joint of the chain
+    body_link: IntArray  # (nbody,), link of each body, -1 for the base
+    body_transform: FloatArray  # (nbody, 4, 4), body frame -> its link's frame, m
+    # ids of the fixed bodies, without the world, that carry the first moving links
     base_bodies: tuple[int, ...]
 
 
 def read(model: mujoco.MjModel, end_effectors: Sequence[str]) -> ModelChain:
-    """Read the joints between the world and the end-effectors.
+    """Read the joints between the world and the end-effectors, which are sites or bodies.
 
-    Joints off that path (fingers, say) are frozen where the model's "home" key frame has them, or
-    where the model starts if it has no such key frame. The base frame is the model's world frame.
-
-    Args:
-        model: a MuJoCo model.
-        end_effectors: names of sites or bodies.
-
-    Returns:
-        The chain and where its parts are in the model.
-
-    Raises:
-        UserError: an end-effector is unknown or does not move, or a joint on the way is neither
-            a hinge nor a slide, follows another joint, or is part of a closed chain.
+    Joints off that path (fingers, say) stay at the model's "home" key frame, or at its start if it has none.
+    The base frame is the model's world frame.
     """
     tools = [_find(model, name) for name in end_effectors]
     joints = _joints_on_the_way(model, [body for _, body, _ in tools])
@@ -119,7 +101,7 @@ def read(model: mujoco.MjModel, end_effectors: Sequence[str]) -> ModelChain:
 
 
 def reference_positions(model: mujoco.MjModel) -> FloatArray:
-    """(nq,), all positions of the model's "home" key frame, or where the model starts."""
+    """(nq,), the model's "home" key frame, or its start."""
     key = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_KEY, "home")
     return np.array(model.key_qpos[key] if key >= 0 else model.qpos0, dtype=np.float64)
 
@@ -147,7 +129,6 @@ def _joints_of(model: mujoco.MjModel, body: int) -> range:
 
 
 def _joints_on_the_way(model: mujoco.MjModel, bodies: Sequence[int]) -> IntArray:
-    """Ids of the joints between the world and the bodies, parents first."""
     found: set[int] = set()
     for body in bodies:
         mine = _joints_above(model, body)
@@ -165,11 +146,6 @@ def _joints_on_the_way(model: mujoco.MjModel, bodies: Sequence[int]) -> IntArray
 
 
 def _check_open(model: mujoco.MjModel, joints: IntArray) -> None:
-    """Refuse joints that cannot be driven each by itself.
-
-    Raises:
-        UserError: one follows another joint, or lies in a loop that the model closes.
-    """
     driven = {int(joint) for joint in joints}
     for i in np.flatnonzero(model.eq_active0):
         kind, first, second = int(model.eq_type[i]), int(model.eq_obj1id[i]), int(model.eq_obj2id[i])
@@ -193,7 +169,6 @@ def _check_open(model: mujoco.MjModel, joints: IntArray) -> None:
 
 
 def _joints_above(model: mujoco.MjModel, body: int) -> set[int]:
-    """Ids of the joints between the world and a body."""
     found: set[int] = set()
     while body > 0:
         found.update(_joints_of(model, body))
@@ -213,7 +188,6 @@ def _base_bodies(model: mujoco.MjModel, body_link: IntArray, tools: Sequence[int
 
 
 def _homogeneous(position: FloatArray, rotation: FloatArray) -> FloatArray:
-    """(K, 4, 4) from (K, 3) and (K, 9)."""
     frames = np.zeros((len(position), 4, 4))
     frames[:, :3, :3] = rotation.reshape(-1, 3, 3)
     frames[:, :3, 3] = position
@@ -222,7 +196,7 @@ def _homogeneous(position: FloatArray, rotation: FloatArray) -> FloatArray:
 
 
 def _displacement(axis: FloatArray, anchor: FloatArray, slide: BoolArray, by: FloatArray) -> FloatArray:
-    """(n, 4, 4), what each joint does to its link's frame when it moves by ``by``."""
+    """(n, 4, 4), motion of each link's frame when its joint moves by ``by``."""
     alone = Chain(
         joint_names=tuple(str(i) for i in range(len(by))),
         parent=np.full(len(by), -1, dtype=np.int64),

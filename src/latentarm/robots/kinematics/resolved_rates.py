@@ -1,4 +1,4 @@
-"""Resolved rates: joint velocities for a wanted twist, damped near singular configurations."""
+"""Resolved rates: joint velocities for a twist, damped near singular configurations."""
 
 from dataclasses import dataclass
 from typing import final
@@ -12,20 +12,16 @@ from latentarm.core.types import FloatArray
 @final
 @dataclass(frozen=True)
 class Damping:
-    """How resolved rates give way near singular configurations.
+    """Damping of resolved rates near singular configurations.
 
-    A singular value σ of the Jacobian is inverted as ``σ / (σ² + λ²)`` with
-    ``λ² = (1 - (σ / threshold)²) factor²`` below ``threshold`` and 0 above: Nakamura and Hanafusa's
-    variable damping, for each singular direction by itself as Chiaverini proposed, so that motions
-    which stay possible stay exact. Metres and radians count alike.
-
-    Attributes:
-        threshold: singular value below which damping sets in, m or rad per rad.
-        factor: damping at a singular configuration, same unit.
+    A singular value σ of the Jacobian is inverted as ``σ / (σ² + λ²)`` with ``λ² = (1 - (σ / threshold)²)
+    factor²`` below ``threshold`` and 0 above: Nakamura and Hanafusa's variable damping, for each singular
+    direction separately as Chiaverini proposed, so that possible motions stay exact. Metres and radians count
+    alike.
     """
 
-    threshold: float = 0.1
-    factor: float = 0.1
+    threshold: float = 0.1  # singular value below which damping begins, m or rad per rad
+    factor: float = 0.1  # damping at a singular configuration, same unit
 
     def __post_init__(self) -> None:
         for name, value in (("threshold", self.threshold), ("factor", self.factor)):
@@ -40,16 +36,7 @@ class Damping:
 
 
 def joint_velocities(twists: FloatArray, jacobian: FloatArray, damping: Damping) -> FloatArray:
-    """Of all joint velocities that give the wanted twists, the smallest.
-
-    Args:
-        twists: (..., K, 6), m/s and rad/s, in the base frame.
-        jacobian: (..., 6, n), as from ``Chain.jacobian``.
-        damping: behaviour near singular configurations.
-
-    Returns:
-        (..., K, n), rad/s.
-    """
+    """The smallest joint velocities (..., K, n), rad/s, for base-frame twists (..., K, 6), m/s and rad/s."""
     left, singular, right = np.linalg.svd(jacobian, full_matrices=False)
     inverse = damping.inverse(singular)[..., None, :]
     return twists @ (left * inverse) @ right

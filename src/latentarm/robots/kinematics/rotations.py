@@ -1,4 +1,4 @@
-"""Rotation vectors: the logarithm and exponential of rotation matrices, batched and fast."""
+"""Logarithms and quaternions of rotation matrices, batched and fast."""
 
 import numpy as np
 
@@ -8,7 +8,7 @@ _DIAGONAL = np.arange(4)
 
 
 def _outer_product_map() -> FloatArray:
-    """(9, 16), the linear map from a rotation matrix R to 4 q qᵀ - I, both flattened row by row."""
+    """(9, 16), the linear map from a rotation matrix R to 4 q qᵀ - I, both flattened by rows."""
     signs = {
         (0, 0): ((0, 0, 1), (1, 1, 1), (2, 2, 1)),
         (1, 1): ((0, 0, 1), (1, 1, -1), (2, 2, -1)),
@@ -33,17 +33,7 @@ _ONE = np.eye(4).ravel()
 
 
 def rotation_vector(rotation: FloatArray) -> FloatArray:
-    """Logarithm of rotation matrices, accurate at 0 and at pi alike.
-
-    Goes over the unit quaternion with its largest component found first (Shepperd's method), so
-    that nothing is divided by something small.
-
-    Args:
-        rotation: (..., 3, 3).
-
-    Returns:
-        (..., 3), axis times angle, rad, with the angle in [0, pi].
-    """
+    """Axis times angle in [0, pi], rad, (..., 3), accurate at 0 and at pi (Shepperd's method)."""
     turn = quaternion(rotation)
     vector = turn[..., 1:]
     sine = np.sqrt(np.vecdot(vector, vector))
@@ -54,29 +44,13 @@ def rotation_vector(rotation: FloatArray) -> FloatArray:
 
 
 def angle_between(first: FloatArray, second: FloatArray) -> FloatArray:
-    """Angle of the turn that takes one rotation to another.
-
-    Args:
-        first: (..., 3, 3).
-        second: (..., 3, 3).
-
-    Returns:
-        (...), rad, in [0, pi].
-    """
+    """Angle (...), in [0, pi], between rotation matrices."""
     vector = rotation_vector(second @ first.mT)
     return np.sqrt(np.vecdot(vector, vector))
 
 
 def pose_error(x_from: Pose, x_to: Pose) -> FloatArray:
-    """The twist that, held for one second, takes one pose to another.
-
-    Args:
-        x_from: where the frame is.
-        x_to: where it should be.
-
-    Returns:
-        (..., 6), m and rad, in the base frame: rows as in ``Chain.jacobian``.
-    """
+    """The base-frame twist (..., 6), m and rad, that takes one pose to another in one second."""
     turn = rotation_vector(x_to.rotation @ x_from.rotation.mT)
     return np.concatenate([x_to.position - x_from.position, turn], axis=-1)
 

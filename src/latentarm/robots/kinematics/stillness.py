@@ -1,4 +1,4 @@
-"""When an arm moves and when it stands still: one meaning for training, measuring and driving."""
+"""When an arm moves and when it stands still, for training, measuring and driving alike."""
 
 from typing import Final
 
@@ -6,20 +6,11 @@ import numpy as np
 
 from latentarm.core.types import FloatArray
 
-STILL_RAD_S: Final = 0.01
-"""A joint slower than this stands still. The same figure ends a stop of the real arm."""
+STILL_RAD_S: Final = 0.01  # a slower joint stands still; the same figure ends a stop of the real arm
 
 
 def moving_range(state: FloatArray, timestamp: FloatArray) -> tuple[int, int]:
-    """First and last sample of an episode's motion, from the still arm before it to the one after.
-
-    Args:
-        state: (T, n), rad.
-        timestamp: (T,), s.
-
-    Returns:
-        Half-open range of samples; empty where no joint ever exceeds `STILL_RAD_S`.
-    """
+    """Samples from the still arm before the motion to the one after; empty without any motion."""
     speed = np.abs(np.diff(state, axis=0)).max(axis=1) / np.diff(timestamp)
     steps = np.flatnonzero(speed > STILL_RAD_S)
     return (int(steps[0]), int(steps[-1]) + 2) if len(steps) else (0, 0)

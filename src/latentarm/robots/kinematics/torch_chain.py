@@ -1,4 +1,4 @@
-"""The chain in torch: the same forward kinematics, differentiable, for losses on poses."""
+"""Differentiable forward kinematics in torch, for losses on poses."""
 
 from typing import final
 
@@ -10,14 +10,7 @@ from latentarm.robots.kinematics.chain import Chain
 
 @final
 class TorchChain(torch.nn.Module):
-    """Differentiable forward kinematics of one tool; follows ``.to(device, dtype)`` like any module.
-
-    Built in double precision, as `Chain` is.
-
-    Args:
-        chain: the chain.
-        tool: index into its tools; the tool must ride on a moving link.
-    """
+    """Forward kinematics of one tool that rides on a moving link, in double precision like `Chain`."""
 
     constants: Tensor
     tool: Tensor
@@ -41,26 +34,12 @@ class TorchChain(torch.nn.Module):
         self.register_buffer("slide", torch.from_numpy(chain.slide[path].copy()))
 
     def forward(self, q: Tensor) -> tuple[Tensor, Tensor]:
-        """Forward kinematics ``x = Psi(s)``.
-
-        Args:
-            q: (..., n), joint positions, rad.
-
-        Returns:
-            The tool's position (..., 3), m, and rotation (..., 3, 3), in the base frame.
-        """
+        """The tool's position (..., 3), m, and rotation (..., 3, 3), in the base frame."""
         pose = self._links(q)[-1] @ self.tool
         return pose[..., :3, 3], pose[..., :3, :3]
 
     def jacobian(self, q: Tensor) -> Tensor:
-        """Geometric Jacobian of the tool, in the base frame.
-
-        Args:
-            q: (..., n), joint positions, rad.
-
-        Returns:
-            (..., 6, n), rows as in `Chain.jacobian`.
-        """
+        """Geometric Jacobian (..., 6, n) in the base frame; rows as in `Chain.jacobian`."""
         links = torch.stack(self._links(q), dim=-3)
         position = (links[..., -1, :, :] @ self.tool)[..., :3, 3]
         both = (links @ self.axis_and_anchor)[..., :3, :]

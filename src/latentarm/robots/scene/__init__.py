@@ -1,1 +1,1 @@
-"""What stands about the arm: things, food and grains, as plain data; no physics engine."""
+"""Things, food and grains about the arm, as plain data; no physics engine."""

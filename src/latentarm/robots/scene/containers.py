@@ -1,4 +1,4 @@
-"""Containers made of thin boxes, and grains that begin in them."""
+"""Containers made of thin boxes, and the grains in them."""
 
 from dataclasses import dataclass
 from typing import Final, final
@@ -8,16 +8,12 @@ from scipy.spatial.transform import Rotation
 
 from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray, Pose
-from latentarm.robots.scene.interior import Interior
-from latentarm.robots.scene.thing import Part
+from latentarm.robots.scene.thing import Interior, Part
 
 Colour = tuple[float, float, float, float]
 
-WALL_M: Final = 0.003
-"""Thickness of walls and floors: thick enough that no grain passes through one within a time step."""
-
-SIDES: Final = 12
-"""Walls of a round container; four of them stand across x and y, where a gripper takes hold."""
+WALL_M: Final = 0.003  # of walls and floors: no grain passes through one within a time step
+SIDES: Final = 12  # walls of a round container; four of them stand across x and y, where a gripper takes hold
 
 _CHINA: Final = (0.92, 0.93, 0.95, 1.0)
 _WOOD: Final = (0.76, 0.60, 0.42, 1.0)
@@ -28,12 +24,7 @@ _APART: Final = 1.02
 @final
 @dataclass(frozen=True)
 class Container:
-    """What a container is made of: its frame lies in the middle of its underside, z up.
-
-    Attributes:
-        parts: its floor and walls.
-        interior: the room in it.
-    """
+    """A container's parts and the room in it; its frame lies in the middle of its underside, z up."""
 
     parts: tuple[Part, ...]
     interior: Interior
@@ -42,46 +33,27 @@ class Container:
 def cup(
     radius_m: float = 0.032, height_m: float = 0.09, colour: Colour = _CHINA, floor_m: float = WALL_M
 ) -> Container:
-    """An upright cup.
+    """An upright cup; colours are red, green, blue, opacity.
 
-    Args:
-        radius_m: of the inside, m. A gripper must open by more than ``2 * (radius_m + WALL_M)`` to take it.
-        height_m: of the rim, m.
-        colour: red, green, blue, opacity.
-        floor_m: thickness of its floor, m: a thick one makes the room in it shallow.
+    A gripper must open by more than ``2 * (radius_m + WALL_M)`` to take it. A thick floor makes the room in
+    it shallow.
     """
     return _round(radius_m, height_m, 0.0, colour, floor_m)
 
 
 def bowl(radius_m: float = 0.06, height_m: float = 0.05, colour: Colour = _CHINA) -> Container:
-    """A bowl, wider at its rim.
-
-    Args:
-        radius_m: of the floor, m.
-        height_m: of the rim, m.
-        colour: red, green, blue, opacity.
-    """
+    """A bowl, wider at its rim; ``radius_m`` is the floor's."""
     return _round(radius_m, height_m, np.deg2rad(20.0), colour)
 
 
 def plate(radius_m: float = 0.1, colour: Colour = _CHINA) -> Container:
-    """A plate with a low rim; its interior is where things lie on it.
-
-    Args:
-        radius_m: of the floor, m.
-        colour: red, green, blue, opacity.
-    """
+    """A plate with a low rim; its interior is the room above it."""
     made = _round(radius_m, 0.012, np.deg2rad(50.0), colour)
     return Container(made.parts, Interior(radius_m, 0.0, WALL_M + _ROOM_ABOVE_PLATE_M))
 
 
 def box(half_m: tuple[float, float, float], colour: Colour = _WOOD) -> Container:
-    """A box without a lid. Its interior is the widest upright cylinder in it.
-
-    Args:
-        half_m: half lengths of the outside, along x, y, z, m.
-        colour: red, green, blue, opacity.
-    """
+    """A box without a lid, of half lengths outside; its interior is the widest upright cylinder in it."""
     x, y, z = half_m
     half = WALL_M / 2.0
     walls = [Part("box", (x, y, half), (0.0, 0.0, half), colour=colour)]
@@ -121,20 +93,7 @@ def _quaternion(turn: Rotation) -> tuple[float, float, float, float]:
 
 
 def packed(room: Interior, pose: Pose, count: int, radius_m: float) -> FloatArray:
-    """Where grains begin that fill a container from its floor up, without touching each other.
-
-    Args:
-        room: the room in the container; as wide at its floor as at its rim.
-        pose: of the container.
-        count: how many grains.
-        radius_m: of a grain, m.
-
-    Returns:
-        (count, 3), their middles, m.
-
-    Raises:
-        UserError: the room is too small for them.
-    """
+    """Middles (count, 3), m, of grains that fill an upright cylinder from its floor up without contact."""
     step = 2.0 * _APART * radius_m
     most = room.radius_m - _APART * radius_m
     layer = _rings(most, step) if most >= 0.0 else np.zeros((0, 2))
@@ -147,7 +106,7 @@ def packed(room: Interior, pose: Pose, count: int, radius_m: float) -> FloatArra
 
 
 def _rings(most_m: float, step_m: float) -> FloatArray:
-    """Places (K, 2) in a circle, at least a step apart: its middle and full rings about that."""
+    """Places (K, 2) in a circle, at least a step apart: its middle and full rings about it."""
     places = [np.zeros((1, 2))]
     for radius in np.arange(1, int(most_m / step_m) + 1) * step_m:
         count = int(np.pi / np.arcsin(0.5 * step_m / radius) + 1e-9)

@@ -1,4 +1,4 @@
-"""A scene: everything about the arm when a task begins, and how it stands later."""
+"""A scene about the arm: its beginning, and its state at a later moment."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -9,26 +9,22 @@ import numpy as np
 from latentarm.core.errors import UserError
 from latentarm.core.types import BoolArray, FloatArray, Pose
 from latentarm.robots.kinematics.obstacles import HalfSpace
-from latentarm.robots.scene.interior import Interior
-from latentarm.robots.scene.thing import Bond, Grains, Thing
+from latentarm.robots.scene.thing import Bond, Grains, Interior, Thing
 
-TABLE: Final = "table"
-"""Name of the table in `SceneState.force_n`."""
-
-TOOL: Final = "tool"
-"""Name of everything that the arm carries beyond its last joint, in `SceneState.force_n`."""
+TABLE: Final = "table"  # the table in `SceneState.force_n`
+TOOL: Final = "tool"  # everything beyond the arm's last joint, in `SceneState.force_n`
 
 
 @final
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """What stands about the arm when a task begins.
+    """Things about the arm when a task begins.
 
     Attributes:
         things: rigid things; later ones may stand on earlier ones.
         grains: loose grains.
-        bonds: things that are one until they are cut apart.
-        table_m: height of the table top in the base frame of the arm, m.
+        bonds: things that are one until a cut parts them.
+        table_m: height of the table top in the arm's base frame, m.
 
     Raises:
         UserError: two of its parts have one name, or a bond names a thing that is not there.
@@ -57,15 +53,11 @@ class Scene:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Of the things, in order."""
+        """Names of the things, in order."""
         return tuple(thing.name for thing in self.things)
 
     def thing(self, name: str) -> Thing:
-        """The thing of that name.
-
-        Raises:
-            UserError: the scene has no thing of that name.
-        """
+        """The thing of that name."""
         for thing in self.things:
             if thing.name == name:
                 return thing
@@ -75,16 +67,16 @@ class Scene:
 @final
 @dataclass(frozen=True, eq=False)
 class SceneState:
-    """How everything stands at one moment; truth, not a measurement.
+    """State of a scene at one moment; truth, not a measurement.
 
     Attributes:
         time_s: since the scene began, s.
         tool: pose of the arm's end-effector.
         poses: of every thing, by name.
         speed_m_s: of every thing's middle, by name, m/s.
-        stabbed: names of what is on the tines of the arm's attachment.
-        gripped: names of what both fingers touch.
-        bonds: pairs of names that have not been cut apart.
+        stabbed: names of things on the tines of the arm's attachment.
+        gripped: names of things that both fingers touch.
+        bonds: pairs of names that nothing has cut apart.
         grains: (K, 3), middles by the grains' name, m.
         force_n: largest normal force between two of the tool (`TOOL`), the table (`TABLE`) and the things
             since the state of an earlier moment, N; by pairs of names in alphabetical order, pairs without
@@ -102,13 +94,7 @@ class SceneState:
     force_n: Mapping[tuple[str, str], float]
 
     def inside(self, grains: str, container: str, interior: Interior) -> BoolArray:
-        """Which grains are in a container, (K,).
-
-        Args:
-            grains: their name.
-            container: its name.
-            interior: the room in it.
-        """
+        """Whether each grain lies in a container, (K,)."""
         pose = self.poses[container]
         local = (self.grains[grains] - pose.position) @ pose.rotation
         in_height = (local[:, 2] >= interior.bottom_m) & (local[:, 2] <= interior.top_m)

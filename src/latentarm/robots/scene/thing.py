@@ -5,43 +5,45 @@ from typing import Literal, final
 
 from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray, Pose
-from latentarm.robots.scene.interior import Interior
 
 Shape = Literal["box", "cylinder", "capsule", "sphere"]
 
-UPRIGHT = (1.0, 0.0, 0.0, 0.0)
-"""The quaternion of a part that is not turned."""
+UPRIGHT = (1.0, 0.0, 0.0, 0.0)  # the quaternion of a part that is not turned
 
 
 @final
 @dataclass(frozen=True)
 class Part:
-    """One convex solid of a thing.
-
-    Attributes:
-        shape: which one.
-        size: m. Of a box its three half lengths; of a cylinder or capsule, along z, its radius and half the
-            length (of a capsule without its caps); of a sphere its radius.
-        position: its middle in the thing's frame, m.
-        quaternion: how it is turned in the thing's frame, (w, x, y, z).
-        colour: red, green, blue, opacity, each in [0, 1].
-    """
+    """One convex solid of a thing."""
 
     shape: Shape
+    # m: a box's three half lengths; radius and half length of a cylinder or capsule along z (of a capsule
+    # without its caps); a sphere's radius
     size: tuple[float, ...]
-    position: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    quaternion: tuple[float, float, float, float] = UPRIGHT
+    position: tuple[float, float, float] = (0.0, 0.0, 0.0)  # its middle in the thing's frame, m
+    quaternion: tuple[float, float, float, float] = UPRIGHT  # in the thing's frame, (w, x, y, z)
+    # red, green, blue, opacity, each in [0, 1]
     colour: tuple[float, float, float, float] = (0.8, 0.8, 0.8, 1.0)
 
 
 @final
 @dataclass(frozen=True)
+class Interior:
+    """The room inside a container: an upright cylinder in its frame."""
+
+    radius_m: float
+    bottom_m: float  # lowest height in the thing's frame
+    top_m: float  # height of the rim in the thing's frame
+
+
+@final
+@dataclass(frozen=True)
 class Food:
-    """How food behaves under a fork.
+    """The behaviour of food under a fork.
 
     Attributes:
         pierce_n: force along the tines that makes them enter, N.
-        depth_m: how deep the tines must be for the food to stay on them, m.
+        depth_m: how deep the tines must enter for the food to stay on them, m.
         grip_n: pull that takes it off the tines again, N.
     """
 
@@ -56,15 +58,15 @@ class Thing:
     """A rigid thing.
 
     Attributes:
-        name: what a person would call it; unique in its scene.
-        parts: the solids that it is made of.
-        mass_kg: its mass, kg; of no account where it is fixed.
-        pose: where its frame is when the scene begins, in the base frame of the arm.
+        name: unique in its scene.
+        parts: its solids.
+        mass_kg: ignored where it is fixed.
+        pose: of its frame when the scene begins, in the arm's base frame.
         friction: sliding friction of its surface.
-        fixed: whether it stands where it is, whatever pushes it.
-        food: how it behaves under a fork; None where tines do not enter it.
-        interior: the room in it, for a container; None for anything else.
-        soft: what gives way to everything, such as icing: it is seen, and never felt.
+        fixed: whether nothing can push it.
+        food: its behaviour under a fork; None where tines do not enter it.
+        interior: room in a container, else None.
+        soft: solids that are visible and give way to everything, such as icing.
     """
 
     name: str
@@ -79,11 +81,7 @@ class Thing:
 
     @property
     def room(self) -> Interior:
-        """The room in it.
-
-        Raises:
-            UserError: it is no container.
-        """
+        """The room in it; only a container has one."""
         if self.interior is None:
             raise UserError(f"{self.name!r} is no container: nothing can be in it.")
         return self.interior
@@ -92,15 +90,15 @@ class Thing:
 @final
 @dataclass(frozen=True)
 class Bond:
-    """Two things that are one until they are cut apart, such as slices of tofu.
+    """Two things that are one until a cut parts them, such as slices of tofu.
 
     Attributes:
-        first: name of a thing; the cut lies in its frame.
-        second: name of the other.
+        first: the cut lies in this thing's frame.
+        second: the other thing.
         point: any point of the plane of the cut, m.
         normal: unit normal of that plane, from ``first`` to ``second``.
         depth_m: how far an edge must come through the plane, downwards from the top, m.
-        angle_rad: how far an edge may be turned out of the plane, rad.
+        angle_rad: largest turn of the edge out of the plane, rad.
     """
 
     first: str
@@ -117,10 +115,10 @@ class Grains:
     """Round grains: flour, eggs, coffee, rice.
 
     Attributes:
-        name: what a person would call them; unique in its scene.
+        name: unique in its scene.
         radius_m: of the largest grains, m.
         mass_kg: of a grain, kg.
-        positions: (K, 3), their middles when the scene begins, in the base frame of the arm, m.
+        positions: (K, 3), their middles when the scene begins, in the arm's base frame, m.
         colour: red, green, blue, opacity, each in [0, 1].
         sizes: radii of the grains as shares of the largest, in turn. Equal grains stand like a crystal and
             then leave a cup all at once.

@@ -7,72 +7,42 @@ from typing import Final, final
 import numpy as np
 
 from latentarm.robots.scene.containers import bowl, packed
-from latentarm.robots.scene.interior import Interior
 from latentarm.robots.scene.scene import Scene
-from latentarm.robots.scene.thing import Grains, Part, Thing
+from latentarm.robots.scene.thing import Grains, Interior, Part, Thing
 from latentarm.tasks.eating.fork_task import OFF_M, ForkTask, fallen
 from latentarm.tasks.eating.stabbing import above, carried_over, stab
-from latentarm.tasks.eating.table import (
-    MARSHMALLOW_HALF_M,
-    STAND_M,
-    at,
-    marshmallow,
-    plate,
-)
+from latentarm.tasks.eating.table import MARSHMALLOW_HALF_M, STAND_M, at, marshmallow, plate
 from latentarm.tasks.predicates import CarriedOver, Placed, Spilled, Swept, Within
 from latentarm.tasks.scene_task import Beginning
 from latentarm.tasks.steps import TaskStep, Waypoint
 
-MIDDLE_M: Final = (0.50, 0.0)
-"""x and y of the plate with the marshmallow."""
-
-ICING_M: Final = (0.47, -0.21)
-"""Of the dish with icing, on the right."""
-
-RICE_M: Final = (0.47, 0.21)
-"""Of the bowl with rice, on the left."""
-
-OWN_M: Final = (0.62, 0.0)
-"""Of the person's own plate."""
-
-SMALL_M: Final = 0.06
-"""Radius of the two plates."""
-
-SPREAD_M: Final = 0.02
-"""How far from its plate's middle the marshmallow stands along each axis, at most."""
-
-ICING_DEEP_M: Final = 0.035
-"""How high the icing stands over its dish; it gives way to everything."""
+MIDDLE_M: Final = (0.50, 0.0)  # x and y of the marshmallow's plate
+ICING_M: Final = (0.47, -0.21)  # of the icing, on the right
+RICE_M: Final = (0.47, 0.21)  # of the rice, on the left
+OWN_M: Final = (0.62, 0.0)  # of the person's own plate
+SMALL_M: Final = 0.06  # radius of the two plates
+SPREAD_M: Final = 0.02  # largest offset of the marshmallow along each axis
+ICING_DEEP_M: Final = 0.035  # height of the icing over its dish; it gives way to everything
 
 ICING_RADIUS_M: Final = 0.06
 
-SWEEP_M: Final = 0.04
-"""How far the marshmallow must be drawn through the icing."""
-
-SCOOP_RAD: Final = 0.5
-"""Tilt of the fork while it scoops."""
-
-RICE: Final = 40
-"""Grains of rice."""
+SWEEP_M: Final = 0.04  # way of the marshmallow through the icing
+SCOOP_RAD: Final = 0.5  # tilt of the fork while it scoops
+RICE: Final = 40  # grains of rice
 
 RICE_RADIUS_M: Final = 0.005
 
-SPILLED: Final = 0.5
-"""Share of it that may be spilled."""
+SPILLED: Final = 0.5  # largest share of spilled rice
 
 BOWL_RADIUS_M: Final = 0.045
 BOWL_HEIGHT_M: Final = 0.035
 
-WET: Final = Interior(ICING_RADIUS_M, 0.0, ICING_DEEP_M)
-"""Where the icing is, in the frame of its dish."""
-
-_ICING: Final = (0.93, 0.60, 0.70, 0.5)
-"""Its colour: what is drawn through it is seen."""
+WET: Final = Interior(ICING_RADIUS_M, 0.0, ICING_DEEP_M)  # the icing, in the frame of its dish
+_ICING: Final = (0.93, 0.60, 0.70, 0.5)  # translucent
 
 MARSHMALLOW: Final = "marshmallow"
 
-NAMES: Final = (MARSHMALLOW, "icing", "rice bowl", "own plate")
-"""What matters, in the order in which it is needed."""
+NAMES: Final = (MARSHMALLOW, "icing", "rice bowl", "own plate")  # relevant things, in the order of need
 
 
 @final
@@ -95,7 +65,7 @@ class Dessert(ForkTask):
         return 180.0
 
     def begin(self, choice: int, rng: np.random.Generator) -> Beginning:
-        """The marshmallow anywhere in the middle of its plate."""
+        """The marshmallow at random near the middle of its plate."""
         x, y = np.array(MIDDLE_M) + rng.uniform(-SPREAD_M, SPREAD_M, 2)
         made = bowl(BOWL_RADIUS_M, BOWL_HEIGHT_M)
         dish = Thing("rice bowl", made.parts, 0.5, at(*RICE_M, STAND_M), fixed=True, interior=made.interior)
@@ -119,10 +89,7 @@ class Dessert(ForkTask):
             state=self.start(rng),
             scene=scene,
             steps=_steps(room),
-            failures=(
-                *fallen(MARSHMALLOW),
-                Spilled("rice", OFF_M, (("rice bowl", room),), SPILLED),
-            ),
+            failures=(*fallen(MARSHMALLOW), Spilled("rice", OFF_M, (("rice bowl", room),), SPILLED)),
             goals=self.goals(scene.thing(name) for name in NAMES),
             objects=NAMES,
             text="dip the marshmallow in icing and rice",
@@ -130,7 +97,7 @@ class Dessert(ForkTask):
 
 
 def icing(name: str, x: float, y: float) -> Thing:
-    """Icing on a plate, its frame in the middle of the plate's top. Only the plate is solid."""
+    """Icing on a plate, with its frame in the middle of the plate's top. Only the plate is solid."""
     size, middle = (WET.radius_m, (WET.top_m - WET.bottom_m) / 2), (WET.top_m + WET.bottom_m) / 2
     soft = Part("cylinder", size, (0.0, 0.0, middle), colour=_ICING)
     return replace(plate(name, x, y, ICING_RADIUS_M), soft=(soft,))

@@ -15,29 +15,17 @@ from latentarm.tasks.predicates import Apart, CarriedOver, Placed
 from latentarm.tasks.scene_task import Beginning
 from latentarm.tasks.steps import TaskStep, Waypoint
 
-DISH_M: Final = (0.50, 0.14)
-"""x and y of the middle of the dish with the tofu."""
-
-OWN_M: Final = (0.50, -0.14)
-"""The same of the person's own plate."""
-
-SPREAD_M: Final = 0.02
-"""How far from the dish's middle the tofu lies along each axis, at most."""
-
-TURN_RAD: Final = 0.3
-"""How far it is turned to either side, at most."""
+DISH_M: Final = (0.50, 0.14)  # x and y of the dish with the tofu
+OWN_M: Final = (0.50, -0.14)  # of the person's own plate
+SPREAD_M: Final = 0.02  # largest offset of the tofu along each axis
+TURN_RAD: Final = 0.3  # largest turn to either side
 
 TOFU: Final = Food(pierce_n=0.6, depth_m=0.008, grip_n=2.5)
 """Chosen: firm tofu, softer than a marshmallow's skin."""
 
-HALF_M: Final = (0.018, 0.016, 0.012)
-"""Half lengths of the block."""
-
-SLICE_HALF_M: Final = 0.008
-"""Half the thickness of the slice, along the block's y axis."""
-
-EDGE_RAD: Final = float(np.deg2rad(25.0))
-"""How far the fork's edge may be turned out of the plane of the cut."""
+HALF_M: Final = (0.018, 0.016, 0.012)  # half lengths of the block
+SLICE_HALF_M: Final = 0.008  # half the thickness of the slice, along the block's y axis
+EDGE_RAD: Final = float(np.deg2rad(25.0))  # largest turn of the fork's edge out of the cut's plane
 
 _COLOUR: Final = (0.96, 0.93, 0.82, 1.0)
 
@@ -62,7 +50,7 @@ class Entree(ForkTask):
         return 120.0
 
     def begin(self, choice: int, rng: np.random.Generator) -> Beginning:
-        """Tofu anywhere in the middle of its dish, turned a little."""
+        """Tofu at random near the middle of its dish, turned a little."""
         turn = float(rng.uniform(-TURN_RAD, TURN_RAD))
         x, y = np.array(DISH_M) + rng.uniform(-SPREAD_M, SPREAD_M, 2)
         scene = Scene(
@@ -126,7 +114,7 @@ def tofu(x: float, y: float, turn_rad: float) -> tuple[Thing, Thing]:
 
 
 def cut_between() -> Bond:
-    """What holds the slice to the block."""
+    """The bond between slice and block."""
     return Bond(
         "tofu",
         "slice",
@@ -138,7 +126,6 @@ def cut_between() -> Bond:
 
 
 def _at_cut(state: SceneState, height_m: float, turn_rad: float) -> Pose:
-    """The fork's edge over the plane of the cut, at a height over the top of the tofu."""
     pose = state.poses["tofu"]
     place = pose.position + pose.rotation @ np.array([0.0, HALF_M[1], HALF_M[2]])
     return fork(place, height_m, turn_rad)

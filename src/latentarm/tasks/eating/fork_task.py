@@ -1,4 +1,4 @@
-"""What tasks at the table have in common: a Panda with a fork, its start, and a goal over each thing."""
+"""The base of tasks with a fork: a Panda, its start, and a goal over each thing."""
 
 from collections.abc import Iterable
 from typing import Final, final
@@ -20,12 +20,11 @@ from latentarm.tasks.scene_task import SceneTask
 START_SPREAD_RAD: Final = np.array([0.3, 0.05, 0.05, 0.05, 0.05, 0.05, 0.05])
 """How far each joint may start from the robot's home, at most: mostly turned about the base."""
 
-OFF_M: Final = STAND_M - 0.02
-"""Lower than this, food has fallen off its dish and rice is spilled."""
+OFF_M: Final = STAND_M - 0.02  # lower food has fallen off its dish, and lower rice is spilled
 
 
 class ForkTask(SceneTask):
-    """Something to be done with a fork, at a table with dishes on stands."""
+    """A task with a fork, at a table with dishes on stands."""
 
     @property
     @final
@@ -36,22 +35,17 @@ class ForkTask(SceneTask):
     @property
     @final
     def obstacles(self) -> tuple[Obstacle, ...]:
-        """The table; food and dishes may be touched."""
+        """The table; the arm may touch food and dishes."""
         return (Scene().table,)
 
     @final
     def start(self, rng: np.random.Generator) -> FloatArray:
-        """Where the arm starts, about its home, (n,), rad."""
+        """A start about home, (n,), rad."""
         return self.robot.home + rng.uniform(-START_SPREAD_RAD, START_SPREAD_RAD)
 
     @final
     def goals(self, things: Iterable[Thing], turn_rad: float | None = None) -> tuple[Goal, ...]:
-        """The fork over each of some things.
-
-        Args:
-            things: as they stand in the beginning.
-            turn_rad: see `latentarm.tasks.eating.table.fork`.
-        """
+        """The fork over each thing as it begins; ``turn_rad`` as in `latentarm.tasks.eating.table.fork`."""
         return tuple(self._over(thing, turn_rad) for thing in things)
 
     def _over(self, thing: Thing, turn_rad: float | None) -> Goal:
@@ -61,5 +55,5 @@ class ForkTask(SceneTask):
 
 
 def fallen(*food: str) -> tuple[Dropped, ...]:
-    """Food that fell off its dish ends the run."""
+    """Failures when food falls off its dish."""
     return tuple(Dropped(name, OFF_M) for name in food)

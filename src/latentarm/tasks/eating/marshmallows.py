@@ -10,34 +10,24 @@ from latentarm.robots.scene.scene import Scene
 from latentarm.tasks.eating.fork_task import ForkTask, fallen
 from latentarm.tasks.eating.stabbing import above, stab
 from latentarm.tasks.eating.table import marshmallow, plate
-from latentarm.tasks.region import Region, anywhere
-from latentarm.tasks.scene_task import Beginning
+from latentarm.tasks.scene_task import Beginning, Region, anywhere
 
 PLATE_AT_M: Final[Region] = ((0.5, 0.5), (0.0, 0.0))
 """x and y of the plate's middle: always the same, as in the paper."""
 
 NAMES: Final = ("left marshmallow", "middle marshmallow", "right marshmallow")
 
-BEARINGS_RAD: Final = (np.pi / 2, 0.0, -np.pi / 2)
-"""From the plate's middle to that of each marshmallow's sector."""
-
-SECTOR_RAD: Final = 0.6
-"""How far to either side of that bearing it lies, at most."""
-
-OUT_M: Final = (0.045, 0.075)
-"""How far from the plate's middle."""
+BEARINGS_RAD: Final = (np.pi / 2, 0.0, -np.pi / 2)  # of the sectors from the plate's middle
+SECTOR_RAD: Final = 0.6  # half the width of a sector
+OUT_M: Final = (0.045, 0.075)  # distance from the plate's middle
 
 
 @final
 @dataclass(frozen=True, eq=False)
 class Marshmallows(ForkTask):
-    """Bring the fork over the chosen marshmallow, stab it and lift it.
+    """Bring the fork over the chosen marshmallow, stab it and lift it."""
 
-    Attributes:
-        plate_at_m: where the middle of the plate may be, x and y, m.
-    """
-
-    plate_at_m: Region = PLATE_AT_M
+    plate_at_m: Region = PLATE_AT_M  # region of the plate's middle, x and y, m
 
     @property
     def name(self) -> str:
@@ -55,7 +45,7 @@ class Marshmallows(ForkTask):
         return 60.0
 
     def begin(self, choice: int, rng: np.random.Generator) -> Beginning:
-        """Marshmallows anywhere in their sectors, the arm about its home."""
+        """Marshmallows at random in their sectors, the arm about its home."""
         middle = anywhere(self.plate_at_m, rng)
         places = [_place(middle, index, rng) for index in range(len(NAMES))]
         food = [
@@ -76,7 +66,6 @@ class Marshmallows(ForkTask):
 
 
 def _place(plate: FloatArray, index: int, rng: np.random.Generator) -> tuple[float, float]:
-    """Somewhere in a marshmallow's sector of the plate."""
     bearing = BEARINGS_RAD[index] + rng.uniform(-SECTOR_RAD, SECTOR_RAD)
     out = rng.uniform(*OUT_M)
     return float(plate[0] + out * np.cos(bearing)), float(plate[1] + out * np.sin(bearing))

@@ -1,4 +1,4 @@
-"""What is on the table in the tasks with a fork, and how a fork is held over it."""
+"""Dishes and food on the table in the tasks with a fork, and the fork over them."""
 
 from typing import Final
 
@@ -7,12 +7,10 @@ import numpy as np
 from latentarm.core.types import FloatArray, Pose
 from latentarm.robots.scene.thing import Food, Part, Thing
 
-STAND_M: Final = 0.06
-"""Dishes stand this high over the table, on stands: the arm keeps clear of the table top."""
+STAND_M: Final = 0.06  # height of dishes over the table: the arm keeps clear of its top
 
 PLATE_RADIUS_M: Final = 0.10
-PLATE_M: Final = 0.012
-"""Thickness of a plate, m."""
+PLATE_M: Final = 0.012  # thickness of a plate, m
 
 MARSHMALLOW: Final = Food(pierce_n=1.0, depth_m=0.010, grip_n=4.0)
 """Chosen: it takes about a newton to enter soft food, and a pull of a few to take it off."""
@@ -31,7 +29,7 @@ def at(x: float, y: float, z: float, turn_rad: float = 0.0) -> Pose:
 
 
 def plate(name: str, x: float, y: float, radius_m: float = PLATE_RADIUS_M) -> Thing:
-    """A plate on a stand, its frame in the middle of its top; both stay where they are."""
+    """A fixed plate on a stand, with its frame in the middle of its top."""
     disc = Part("cylinder", (radius_m, PLATE_M / 2), (0.0, 0.0, -PLATE_M / 2), colour=_CHINA)
     half = (STAND_M - PLATE_M) / 2
     stand = Part("cylinder", (0.6 * radius_m, half), (0.0, 0.0, -PLATE_M - half), colour=_WOOD)
@@ -39,7 +37,7 @@ def plate(name: str, x: float, y: float, radius_m: float = PLATE_RADIUS_M) -> Th
 
 
 def marshmallow(name: str, x: float, y: float, turn_rad: float = 0.0) -> Thing:
-    """A marshmallow that stands on a plate, its frame in its middle."""
+    """A marshmallow that stands on a plate, with its frame in its middle."""
     body = Part("cylinder", (MARSHMALLOW_RADIUS_M, MARSHMALLOW_HALF_M), colour=(0.98, 0.93, 0.90, 1.0))
     pose = at(x, y, STAND_M + MARSHMALLOW_HALF_M, turn_rad)
     return Thing(name, (body,), mass_kg=0.007, pose=pose, friction=0.9, food=MARSHMALLOW)
@@ -49,11 +47,11 @@ def fork(place: FloatArray, height_m: float, turn_rad: float | None = None, tilt
     """A pose of a fork over a place.
 
     Args:
-        place: (3,), what it is over, m.
-        height_m: of its tip over that, m.
-        turn_rad: bearing in which its back faces; None faces away from the arm's base. Its tines stand in a
-            row across that.
-        tilt_rad: how far it is tilted from upright, its tip towards that bearing, rad.
+        place: (3,), m.
+        height_m: of its tip over that place, m.
+        turn_rad: bearing of its back; None faces away from the arm's base. Its tines stand in a row across
+            that.
+        tilt_rad: from upright, its tip towards that bearing, rad.
     """
     bearing = float(np.arctan2(place[1], place[0])) if turn_rad is None else turn_rad
     out = np.array([np.cos(bearing), np.sin(bearing), 0.0])

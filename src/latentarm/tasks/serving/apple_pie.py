@@ -8,13 +8,11 @@ import numpy as np
 
 from latentarm.core.types import FloatArray, Pose
 from latentarm.robots.scene.containers import bowl, cup
-from latentarm.robots.scene.interior import Interior
 from latentarm.robots.scene.scene import Scene, SceneState
-from latentarm.robots.scene.thing import Part, Thing
+from latentarm.robots.scene.thing import Interior, Part, Thing
 from latentarm.tasks.eating.table import at
 from latentarm.tasks.predicates import CarriedOver, KnockedOver, Placed, Stirred, Within
-from latentarm.tasks.region import Region, anywhere
-from latentarm.tasks.scene_task import Beginning
+from latentarm.tasks.scene_task import Beginning, Region, anywhere
 from latentarm.tasks.serving.counter import (
     BOWL_HEIGHT_M,
     FLOUR,
@@ -31,26 +29,13 @@ from latentarm.tasks.serving.counter_task import CounterTask, fallen, spilled
 from latentarm.tasks.serving.cup_steps import LIFT_M, POURED, at_place, over, pour, take
 from latentarm.tasks.steps import TaskStep, Waypoint
 
-SHELF_AT_M: Final[Region] = ((0.57, 0.61), (-0.27, -0.23))
-"""Where the middle of the shelf is, x and y."""
-
-BOWL_AT_M: Final[Region] = ((0.55, 0.60), (0.05, 0.09))
-"""Where the bowl stands."""
-
-MIXING_RADIUS_M: Final = 0.075
-"""Of the bowl's floor: an apple and a spoon fit side by side."""
-
-BIN_AT_M: Final[Region] = ((0.50, 0.54), (0.34, 0.38))
-"""Where the recycling bin stands."""
-
-SPOON_AT_M: Final = (0.72, -0.08)
-"""Where the spoon stands in its holder."""
-
-SHELF_M: Final = 0.02
-"""Height of the shelf over the counter."""
-
-APART_M: Final = 0.16
-"""From one thing on the shelf to the next."""
+SHELF_AT_M: Final[Region] = ((0.57, 0.61), (-0.27, -0.23))  # the shelf's middle, x and y
+BOWL_AT_M: Final[Region] = ((0.55, 0.60), (0.05, 0.09))  # the bowl
+MIXING_RADIUS_M: Final = 0.075  # of the bowl's floor: an apple and a spoon fit side by side
+BIN_AT_M: Final[Region] = ((0.50, 0.54), (0.34, 0.38))  # the recycling bin
+SPOON_AT_M: Final = (0.72, -0.08)  # the spoon in its holder
+SHELF_M: Final = 0.02  # height of the shelf over the counter
+APART_M: Final = 0.16  # between things on the shelf
 
 CHOICES: Final = ("eggs", "flour", "apple")
 
@@ -61,21 +46,16 @@ GRAINS: Final = 30
 
 APPLE_RADIUS_M: Final = 0.028
 
-STAND_M: Final = 0.05
-"""How high the apple stands over the shelf: the hand that takes it stays over the cups."""
-
-SPOON_M: Final = 0.17
-"""Length of the spoon."""
+STAND_M: Final = 0.05  # height of the apple over the shelf: the hand stays over the cups
+SPOON_M: Final = 0.17  # length of the spoon
 
 STIR_TURNS: Final = 1.5
 STIR_RADIUS_M: Final = 0.05
-STIR_RAD: Final = 0.9
-"""How far the spoon is led to either side, opposite the apple."""
+STIR_RAD: Final = 0.9  # sweep of the spoon to either side, opposite the apple
 
 STIR_STROKES: Final = 6
 
-STROKE_M: Final = 0.009
-"""How near the end of a stroke the spoon must come: there is 12 mm of room under it."""
+STROKE_M: Final = 0.009  # tolerance at the end of a stroke: there is 12 mm of room under the spoon
 
 
 @final
@@ -98,7 +78,7 @@ class ApplePie(CounterTask):
         return 180.0
 
     def begin(self, choice: int, rng: np.random.Generator) -> Beginning:
-        """Shelf, bowl and bin anywhere in their regions."""
+        """Shelf, bowl and bin at random in their regions."""
         shelf = np.append(anywhere(SHELF_AT_M, rng), TOP_M + SHELF_M)
         things = _things(shelf, anywhere(BOWL_AT_M, rng), anywhere(BIN_AT_M, rng))
         grains = (
@@ -129,10 +109,7 @@ def _things(shelf: FloatArray, bowl_at: FloatArray, bin_at: FloatArray) -> dict[
     half = (0.05, APART_M + 0.05, SHELF_M / 2)
     board = Part("box", half, (0.0, 0.0, -SHELF_M / 2), colour=(0.8, 0.7, 0.55, 1.0))
     stand = Part("cylinder", (0.02, STAND_M / 2), (0.0, -APART_M, STAND_M / 2), colour=(0.8, 0.7, 0.55, 1.0))
-    cups = {
-        "egg cup": (APART_M, (0.85, 0.85, 0.88, 1.0)),
-        "flour cup": (0.0, (0.45, 0.35, 0.6, 1.0)),
-    }
+    cups = {"egg cup": (APART_M, (0.85, 0.85, 0.88, 1.0)), "flour cup": (0.0, (0.45, 0.35, 0.6, 1.0))}
     things = [
         counter(),
         Thing("shelf", (board, stand), 2.0, at(*shelf), fixed=True),
@@ -149,20 +126,19 @@ def _things(shelf: FloatArray, bowl_at: FloatArray, bin_at: FloatArray) -> dict[
 
 
 def _bin(x: float, y: float) -> Thing:
-    """The recycling bin, which stays where it stands."""
     made = bowl(0.06, 0.09, (0.25, 0.45, 0.3, 1.0))
     return Thing("bin", made.parts, 0.5, at(x, y, TOP_M), fixed=True, interior=made.interior)
 
 
 def _apple(place: FloatArray) -> Thing:
-    """An apple that stands on its flat end, its frame in the middle of that."""
+    """An apple that stands on its flat end, with its frame in the middle of that."""
     flesh = Part("sphere", (APPLE_RADIUS_M,), (0.0, 0.0, APPLE_RADIUS_M), colour=(0.8, 0.15, 0.15, 1.0))
     end = Part("cylinder", (0.014, 0.004), (0.0, 0.0, 0.004), colour=(0.8, 0.15, 0.15, 1.0))
     return Thing("apple", (flesh, end), 0.10, Pose(place, np.eye(3)), friction=0.9)
 
 
 def _spoon(x: float, y: float) -> tuple[Thing, Thing]:
-    """A spoon that stands in a holder; its frame is in the middle of its lower end."""
+    """A spoon that stands in a holder, with its frame in the middle of its lower end."""
     made = cup(0.016, 0.06, (0.5, 0.5, 0.52, 1.0))
     holder = Thing("holder", made.parts, 0.3, at(x, y, TOP_M), fixed=True)
     steel = (0.7, 0.7, 0.72, 1.0)
@@ -217,7 +193,6 @@ def _apple_steps(things: Mapping[str, Thing], rooms: Mapping[str, Interior]) -> 
 
 
 def _away(cup: str, room: Interior) -> TaskStep:
-    """Drop a cup into the bin."""
     upright = Waypoint(partial(over, thing="bowl", height_m=0.20), within_rad=0.5)
     above = Waypoint(partial(over, thing="bin", height_m=0.22))
     let_go = Waypoint(partial(over, thing="bin", height_m=0.17), gripper="open", wait_s=0.8)
@@ -227,7 +202,6 @@ def _away(cup: str, room: Interior) -> TaskStep:
 
 
 def _back(cup: str, place: FloatArray) -> TaskStep:
-    """Put a cup back where it came from."""
     grip = place + np.array([0.0, 0.0, GRIP_M + 0.004])
     lift = np.array([0.0, 0.0, LIFT_M])
     upright = Waypoint(partial(over, thing="bowl", height_m=0.20), within_rad=0.5)
@@ -241,18 +215,14 @@ def _back(cup: str, place: FloatArray) -> TaskStep:
 
 @final
 class _Strokes:
-    """Where the hand leads the spoon: to and fro on the side of the bowl where the apple is not.
-
-    Args:
-        up_m: height of the hand over the bowl's underside, m.
-    """
+    """The hand's strokes with the spoon on the side of the bowl opposite the apple."""
 
     def __init__(self, up_m: float) -> None:
         self._up_m = up_m
         self._entered_rad = 0.0
 
     def pose(self, state: SceneState, index: int, up_m: float = 0.0) -> Pose:
-        """An end of a stroke, or over it; which side is settled while the spoon is over the bowl."""
+        """An end of a stroke, or over it; the side is fixed while the spoon is over the bowl."""
         middle = state.poses["bowl"].position
         if state.poses["spoon"].position[2] > middle[2] + BOWL_HEIGHT_M:
             apple = state.poses["apple"].position - middle

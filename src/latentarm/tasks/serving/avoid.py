@@ -10,30 +10,18 @@ from latentarm.robots.scene.scene import Scene, SceneState
 from latentarm.robots.scene.thing import Part, Thing
 from latentarm.tasks.eating.table import at
 from latentarm.tasks.predicates import KnockedOver, Pressed
-from latentarm.tasks.region import Region, anywhere
-from latentarm.tasks.scene_task import Beginning
+from latentarm.tasks.scene_task import Beginning, Region, anywhere
 from latentarm.tasks.serving.counter import TOP_M, bearing_of, counter, hand
 from latentarm.tasks.serving.counter_task import CounterTask
 from latentarm.tasks.serving.cup_steps import at_place
 from latentarm.tasks.steps import TaskStep, Waypoint
 
-BOTTLE_AT_M: Final[Region] = ((0.60, 0.66), (-0.05, 0.05))
-"""Where the bottle stands, x and y."""
-
-GOAL_AT_M: Final[Region] = ((0.56, 0.62), (0.24, 0.30))
-"""Where the hand is to go."""
-
-START_AT_M: Final[Region] = ((0.56, 0.62), (-0.30, -0.24))
-"""Where it begins."""
-
-PLANE_M: Final = TOP_M + 0.12
-"""Height of the plane in which the hand moves."""
-
-ROUND_M: Final = 0.16
-"""How far before the bottle's middle the hand goes round."""
-
-TOUCHED_N: Final = 0.5
-"""A touch harder than this has failed."""
+BOTTLE_AT_M: Final[Region] = ((0.60, 0.66), (-0.05, 0.05))  # the bottle, x and y
+GOAL_AT_M: Final[Region] = ((0.56, 0.62), (0.24, 0.30))  # the hand's goal
+START_AT_M: Final[Region] = ((0.56, 0.62), (-0.30, -0.24))  # its start
+PLANE_M: Final = TOP_M + 0.12  # height of the hand's plane
+ROUND_M: Final = 0.16  # distance of the hand's way before the bottle's middle
+TOUCHED_N: Final = 0.5  # a harder touch is a failure
 
 _HALF_M: Final = 0.11
 _RADIUS_M: Final = 0.03
@@ -59,7 +47,7 @@ class Avoid(CounterTask):
         return 60.0
 
     def begin(self, choice: int, rng: np.random.Generator) -> Beginning:
-        """Bottle, start and goal anywhere in their regions."""
+        """Bottle, start and goal at random in their regions."""
         bottle = _bottle(*anywhere(BOTTLE_AT_M, rng))
         goal = np.append(anywhere(GOAL_AT_M, rng), PLANE_M)
         place = np.append(anywhere(START_AT_M, rng), PLANE_M)
@@ -80,13 +68,11 @@ class Avoid(CounterTask):
 
 
 def _bottle(x: float, y: float) -> Thing:
-    """A bottle on the counter, its frame in the middle of its underside."""
     glass = Part("cylinder", (_RADIUS_M, _HALF_M), (0.0, 0.0, _HALF_M), colour=(0.25, 0.5, 0.35, 1.0))
     return Thing("bottle", (glass,), mass_kg=0.4, pose=at(x, y, TOP_M))
 
 
 def _past(state: SceneState) -> bool:
-    """Whether the hand is on the far side of the bottle."""
     return bool(state.tool.position[1] > state.poses["bottle"].position[1])
 
 

@@ -1,4 +1,4 @@
-"""The counter that cups and bowls stand on, and how a hand is held over it."""
+"""The counter with cups and bowls, and the hand over it."""
 
 from typing import Final
 
@@ -10,19 +10,13 @@ from latentarm.robots.scene.containers import WALL_M, Colour, bowl, cup, packed
 from latentarm.robots.scene.thing import Grains, Part, Thing
 from latentarm.tasks.eating.table import at
 
-TOP_M: Final = 0.28
-"""Height of the counter's top in the base frame of the arm: high enough for a Panda to tilt what it holds."""
-
-COUNTER_M: Final = ((0.44, 0.80), (-0.45, 0.45))
-"""Where the counter is, along x and along y."""
-
-PITCH_RAD: Final = -0.9
-"""Of the hand's pointing direction above the horizontal: from this side it can pour to either side."""
+TOP_M: Final = 0.28  # of the counter in the base frame: a Panda can tilt its load there
+COUNTER_M: Final = ((0.44, 0.80), (-0.45, 0.45))  # extent along x and y
+PITCH_RAD: Final = -0.9  # of the hand above the horizontal: it can pour to either side from here
 
 CUP_RADIUS_M: Final = 0.025
 CUP_HEIGHT_M: Final = 0.08
-GRIP_M: Final = 0.064
-"""Height over a cup's underside at which the fingers take it: the palm stays clear of its rim."""
+GRIP_M: Final = 0.064  # height of the fingers over a cup's underside: the palm stays clear of its rim
 
 BOWL_RADIUS_M: Final = 0.055
 BOWL_HEIGHT_M: Final = 0.05
@@ -31,7 +25,7 @@ GRAIN_RADIUS_M: Final = 0.005
 GRAIN_KG: Final = 4e-4
 
 POSTURE_RAD: Final = (0.0, -0.5, 0.0, -2.3, 0.0, 2.2, np.pi / 4)
-"""From where configurations are looked for, rad: the hand before the chest, pointing out and down."""
+"""Start of the search for configurations: the hand before the chest, pointing out and down."""
 
 FLOUR: Final = (0.9, 0.85, 0.7, 1.0)
 _BLUE: Final = (0.36, 0.55, 0.75, 1.0)
@@ -39,7 +33,7 @@ _WOOD: Final = (0.55, 0.42, 0.30, 1.0)
 
 
 def counter() -> Thing:
-    """The counter, its frame in the middle of its top."""
+    """The counter, with its frame in the middle of its top."""
     (x0, x1), (y0, y1) = COUNTER_M
     half = ((x1 - x0) / 2, (y1 - y0) / 2, TOP_M / 2)
     block = Part("box", half, (0.0, 0.0, -TOP_M / 2), colour=_WOOD)
@@ -55,7 +49,7 @@ def counter_cup(
 
 
 def counter_bowl(name: str, x: float, y: float, radius_m: float = BOWL_RADIUS_M) -> Thing:
-    """A bowl that stays where it stands on the counter; the radius is that of its floor, m."""
+    """A fixed bowl on the counter; the radius is its floor's, m."""
     made = bowl(radius_m, BOWL_HEIGHT_M)
     return Thing(name, made.parts, 0.5, at(x, y, TOP_M), fixed=True, interior=made.interior)
 
@@ -69,7 +63,7 @@ def filled(
     colour: Colour,
     sizes: tuple[float, ...] = (1.0,),
 ) -> Grains:
-    """Grains that begin in a container."""
+    """Grains that fill a container."""
     places = packed(container.room, container.pose, count, radius_m)
     return Grains(name, radius_m, grain_kg, places, colour, sizes)
 
@@ -80,12 +74,10 @@ def bearing_of(place: FloatArray) -> float:
 
 
 def hand(place: FloatArray, bearing_rad: float, tilt_rad: float = 0.0) -> Pose:
-    """A pose of the hand, its fingers closing sideways.
+    """A pose of the hand, whose fingers close sideways, with their tips at ``place``, (3,), m.
 
-    Args:
-        place: (3,), of the point between the fingertips, m.
-        bearing_rad: in which it points, as seen from above.
-        tilt_rad: how far what it holds leans to the left, about that bearing, rad.
+    ``bearing_rad`` is its horizontal direction. Its load leans to the left by ``tilt_rad``, about that
+    bearing.
     """
     out = np.array([np.cos(bearing_rad), np.sin(bearing_rad), 0.0])
     up = np.array([0.0, 0.0, 1.0])
@@ -98,12 +90,10 @@ def hand(place: FloatArray, bearing_rad: float, tilt_rad: float = 0.0) -> Pose:
 
 
 def pouring(bowl_at: FloatArray, tilt_rad: float, over_m: float) -> Pose:
-    """A hand that tilts a cup so that what it holds falls into the middle of a bowl.
+    """A hand that tilts a cup so that its load falls into the middle of a bowl.
 
-    Args:
-        bowl_at: (3,), middle of the bowl's underside, m.
-        tilt_rad: of the cup, to the left as seen from the base if positive, rad.
-        over_m: height of the fingertips over the bowl's rim, m.
+    ``bowl_at`` is the middle of the bowl's underside, (3,), m; the cup tilts to the left as seen from the
+    base if ``tilt_rad`` is positive; ``over_m`` is the height of the fingertips over the bowl's rim.
     """
     bearing = bearing_of(bowl_at)
     left = np.array([-np.sin(bearing), np.cos(bearing), 0.0])

@@ -1,4 +1,4 @@
-"""What tasks at the counter have in common: a Panda with its hand, its start, and what ends a run."""
+"""The base of tasks at the counter: a Panda with its hand, its start, and failures."""
 
 from typing import Final, final
 
@@ -15,17 +15,15 @@ from latentarm.tasks.predicates import Dropped, Spilled
 from latentarm.tasks.scene_task import SceneTask
 from latentarm.tasks.serving.counter import POSTURE_RAD, TOP_M, bearing_of, hand
 
-START_M: Final = (0.45, 0.0, 0.50)
-"""About where the hand starts before it takes something."""
+START_M: Final = (0.45, 0.0, 0.50)  # about the hand's start
 
 START_SPREAD_M: Final = 0.03
 
-SPILLED: Final = 0.25
-"""Share of the grains that may be spilled."""
+SPILLED: Final = 0.25  # largest share of spilled grains
 
 
 class CounterTask(SceneTask):
-    """Something to be done with the hand, at a counter."""
+    """A task for the hand, at a counter."""
 
     @property
     @final
@@ -36,25 +34,25 @@ class CounterTask(SceneTask):
     @property
     @final
     def obstacles(self) -> tuple[Obstacle, ...]:
-        """The table; the counter and what stands on it may be touched."""
+        """The table; the arm may touch the counter and things on it."""
         return (Scene().table,)
 
     @final
     def reaching(self, place: FloatArray) -> FloatArray:
-        """Joints (n,), rad, with which the fingertips are at a place (3,), m, away from the base."""
+        """Joints (n,), rad, that put the fingertips at a place (3,), m, pointing away from the base."""
         return solve(self.robot, hand(place, bearing_of(place)), np.array(POSTURE_RAD))
 
     @final
     def start(self, rng: np.random.Generator) -> FloatArray:
-        """Where the arm starts over the counter, (n,), rad."""
+        """A start over the counter, (n,), rad."""
         return self.reaching(np.array(START_M) + rng.uniform(-START_SPREAD_M, START_SPREAD_M, 3))
 
 
 def fallen(*names: str) -> tuple[Dropped, ...]:
-    """A thing that fell off the counter ends the run."""
+    """Failures when a thing falls off the counter."""
     return tuple(Dropped(name, TOP_M - 0.05) for name in names)
 
 
 def spilled(grains: str, *bowls: Thing) -> Spilled:
-    """Grains on the counter rather than in the bowls that they are for end the run."""
+    """The failure when grains lie on the counter rather than in the bowls."""
     return Spilled(grains, TOP_M - 0.02, tuple((bowl.name, bowl.room) for bowl in bowls), SPILLED)

@@ -1,4 +1,4 @@
-"""The steps that tasks with cups have in common: to take one, to pour it out, to put it down."""
+"""Steps of tasks with cups: take one and pour it out."""
 
 from functools import partial
 from typing import Final
@@ -6,39 +6,22 @@ from typing import Final
 import numpy as np
 
 from latentarm.core.types import FloatArray, Pose
-from latentarm.robots.scene.interior import Interior
 from latentarm.robots.scene.scene import SceneState
+from latentarm.robots.scene.thing import Interior
 from latentarm.tasks.predicates import CarriedOver, Holding, Poured, Taken
 from latentarm.tasks.serving.counter import GRIP_M, TOP_M, bearing_of, hand, pouring
 from latentarm.tasks.steps import TaskStep, Waypoint
 
-BEFORE_M: Final = 0.08
-"""How far before a cup the hand stops first."""
-
-LIFT_M: Final = 0.14
-"""How far a cup is lifted."""
-
-LIFTED_M: Final = 0.10
-"""So far over where it stood it counts as held: over whatever stands next to it."""
-
-POURING_M: Final = 0.14
-"""How far over a bowl's rim the fingers are while they pour."""
-
-POURED: Final = 0.8
-"""Share of what is in a cup that must end in the bowl, where it is to be emptied."""
-
-POUR_RAD: Final = 1.8
-"""How far a cup is tilted to be emptied."""
+BEFORE_M: Final = 0.08  # first stop before a cup
+LIFT_M: Final = 0.14  # lift of a cup
+LIFTED_M: Final = 0.10  # height at which it counts as held: over all things next to it
+POURING_M: Final = 0.14  # height of the fingers over a bowl's rim
+POURED: Final = 0.8  # share of a cup's grains that must end in the bowl
+POUR_RAD: Final = 1.8  # tilt that empties a cup
 
 
 def take(cup: str, stands_m: float = TOP_M, grip_m: float = GRIP_M) -> tuple[TaskStep, ...]:
-    """Reach for a cup, close the fingers about it, lift it.
-
-    Args:
-        cup: its name.
-        stands_m: height of its underside, m.
-        grip_m: height over its underside at which it is taken, m.
-    """
+    """Take a cup that stands at a height, ``grip_m`` above its underside, and lift it."""
     before = Waypoint(partial(_at, cup=cup, back_m=BEFORE_M, up_m=grip_m), gripper="open")
     about = Waypoint(
         partial(_at, cup=cup, back_m=0.0, up_m=grip_m),
@@ -67,17 +50,10 @@ def pour(
     tip_speed: float = 0.5,
     leaving: tuple[str, float] | None = None,
 ) -> tuple[TaskStep, ...]:
-    """Carry a cup over a bowl, and pour it out.
+    """Carry a cup over a bowl, and pour the given share of its grains into it.
 
-    Args:
-        cup: its name.
-        grains: what is in it.
-        bowl: where that goes.
-        interior: the room in the bowl.
-        share: of the grains that must be in the bowl, in (0, 1].
-        side: 1 to pour to the left, -1 to the right.
-        tip_speed: how fast the cup is tipped at last, as a share of the person's usual speed.
-        leaving: bowl and side that were poured to before: first the cup is set upright there.
+    ``side`` is 1 to pour to the left and -1 to the right; ``tip_speed`` is a share of the person's usual
+    speed. ``leaving`` is the bowl and side of a pour before this: the cup is first set upright there.
     """
     upright = Waypoint(partial(_over, bowl=bowl, tilt_rad=0.05 * side))
     half = Waypoint(partial(_over, bowl=bowl, tilt_rad=0.6 * POUR_RAD * side), speed=0.7)
@@ -103,7 +79,6 @@ def _at(state: SceneState, cup: str, back_m: float, up_m: float) -> Pose:
 
 
 def _lifted(state: SceneState, cup: str, height_m: float) -> Pose:
-    """The hand at a height over the base, wherever the cup is."""
     place = state.poses[cup].position.copy()
     place[2] = height_m
     return hand(place, bearing_of(place))

@@ -5,43 +5,26 @@ from typing import Final, final
 import numpy as np
 
 from latentarm.robots.scene.scene import Scene
-from latentarm.tasks.region import Region, anywhere
-from latentarm.tasks.scene_task import Beginning
-from latentarm.tasks.serving.counter import (
-    FLOUR,
-    GRAIN_KG,
-    counter,
-    counter_bowl,
-    counter_cup,
-    filled,
-)
+from latentarm.tasks.scene_task import Beginning, Region, anywhere
+from latentarm.tasks.serving.counter import FLOUR, GRAIN_KG, counter, counter_bowl, counter_cup, filled
 from latentarm.tasks.serving.counter_task import CounterTask, fallen, spilled
 from latentarm.tasks.serving.cup_steps import pour, take
 
-CUP_AT_M: Final[Region] = ((0.54, 0.58), (-0.02, 0.02))
-"""Where the cup stands, x and y."""
-
-LEFT_AT_M: Final[Region] = ((0.54, 0.58), (0.20, 0.24))
-"""Where the left bowl stands."""
-
-RIGHT_AT_M: Final[Region] = ((0.54, 0.58), (-0.24, -0.20))
-"""Where the right bowl stands."""
+CUP_AT_M: Final[Region] = ((0.54, 0.58), (-0.02, 0.02))  # the cup, x and y
+LEFT_AT_M: Final[Region] = ((0.54, 0.58), (0.20, 0.24))  # the left bowl
+RIGHT_AT_M: Final[Region] = ((0.54, 0.58), (-0.24, -0.20))  # the right bowl
 
 GRAINS: Final = 36
 
 GRAIN_M: Final = 0.0049
-SIZES: Final = (1.0, 0.96, 0.92, 0.88, 0.84)
-"""Radii of the grains, as shares of `GRAIN_M`, the largest."""
+SIZES: Final = (1.0, 0.96, 0.92, 0.88, 0.84)  # radii of the grains, as shares of `GRAIN_M`, the largest
 
 FLOOR_M: Final = 0.059
 """Thickness of the cup's floor: the cup is shallow and full, so that grains begin to leave it at a tilt of
 about 60 degrees, and more of them the farther it is tilted."""
 
-SHARE: Final = 0.2
-"""Share of the grains that must end in each bowl."""
-
-TIP_SPEED: Final = 0.12
-"""How fast the cup is tipped, as a share of the person's usual speed: some must stay in it."""
+SHARE: Final = 0.2  # of the grains that must end in each bowl
+TIP_SPEED: Final = 0.12  # of tipping, as a share of the person's usual speed: some must stay in the cup
 
 
 @final
@@ -64,7 +47,7 @@ class Pour(CounterTask):
         return 120.0
 
     def begin(self, choice: int, rng: np.random.Generator) -> Beginning:
-        """Cup and bowls anywhere in their regions of the counter."""
+        """Cup and bowls at random in their regions of the counter."""
         cup = counter_cup("cup", *anywhere(CUP_AT_M, rng), floor_m=FLOOR_M)
         left = counter_bowl("left bowl", *anywhere(LEFT_AT_M, rng))
         right = counter_bowl("right bowl", *anywhere(RIGHT_AT_M, rng))

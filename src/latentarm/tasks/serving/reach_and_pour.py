@@ -6,8 +6,7 @@ from typing import Final, final
 import numpy as np
 
 from latentarm.robots.scene.scene import Scene
-from latentarm.tasks.region import Region, anywhere
-from latentarm.tasks.scene_task import Beginning
+from latentarm.tasks.scene_task import Beginning, Region, anywhere
 from latentarm.tasks.serving.counter import (
     FLOUR,
     GRAIN_KG,
@@ -20,11 +19,8 @@ from latentarm.tasks.serving.counter import (
 from latentarm.tasks.serving.counter_task import CounterTask, fallen, spilled
 from latentarm.tasks.serving.cup_steps import POURED, pour, take
 
-CUP_AT_M: Final[Region] = ((0.53, 0.62), (-0.28, -0.10))
-"""Where the cup stands, x and y."""
-
-BOWL_AT_M: Final[Region] = ((0.54, 0.60), (0.12, 0.24))
-"""Where the bowl stands."""
+CUP_AT_M: Final[Region] = ((0.53, 0.62), (-0.28, -0.10))  # the cup, x and y
+BOWL_AT_M: Final[Region] = ((0.54, 0.60), (0.12, 0.24))  # the bowl
 
 GRAINS: Final = 24
 
@@ -32,14 +28,9 @@ GRAINS: Final = 24
 @final
 @dataclass(frozen=True, eq=False)
 class ReachAndPour(CounterTask):
-    """Take a cup, carry it over a bowl, and pour it out.
+    """Take a cup, carry it over a bowl, and pour it out."""
 
-    Attributes:
-        cup_at_m: where the cup may stand, x and y, m.
-        bowl_at_m: where the bowl may stand.
-    """
-
-    cup_at_m: Region = CUP_AT_M
+    cup_at_m: Region = CUP_AT_M  # region of the cup, x and y, m
     bowl_at_m: Region = BOWL_AT_M
 
     @property
@@ -58,7 +49,7 @@ class ReachAndPour(CounterTask):
         return 120.0
 
     def begin(self, choice: int, rng: np.random.Generator) -> Beginning:
-        """Cup and bowl anywhere in their regions of the counter."""
+        """Cup and bowl at random in their regions of the counter."""
         cup = counter_cup("cup", *anywhere(self.cup_at_m, rng))
         bowl = counter_bowl("bowl", *anywhere(self.bowl_at_m, rng))
         grains = filled("grains", cup, GRAINS, GRAIN_RADIUS_M, GRAIN_KG, FLOUR)

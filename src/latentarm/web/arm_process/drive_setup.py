@@ -31,8 +31,7 @@ from latentarm.runs.folder import Run, read_run, weights_fingerprint
 from latentarm.runs.tasks import usual_arm
 from latentarm.safety.config import SafetyConfig
 from latentarm.safety.zones import Zone
-from latentarm.tasks.place import Place, ScenePlace
-from latentarm.tasks.surroundings import surroundings_of, watched
+from latentarm.tasks.place import Place, ScenePlace, surroundings_of, watched
 from latentarm.tasks.task import Task
 from latentarm.web.arm_process.beginning import RobotOptions, begin, begin_real
 from latentarm.web.arm_process.help import Help

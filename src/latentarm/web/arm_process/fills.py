@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from typing import Final, final
 
-from latentarm.robots.scene.interior import Interior
 from latentarm.robots.scene.scene import SceneState
+from latentarm.robots.scene.thing import Interior
 from latentarm.tasks.predicates import Poured
 from latentarm.tasks.scene_task import Beginning
 from latentarm.web.protocol.report import Fill

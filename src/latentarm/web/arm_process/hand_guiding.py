@@ -4,7 +4,7 @@ import math
 from typing import Final, Literal, final
 
 from latentarm.arms.contract import Arm
-from latentarm.arms.guiding import GuidableArm
+from latentarm.arms.real import GuidableArm
 from latentarm.control.loop import ENABLING_S
 from latentarm.control.step import Step
 from latentarm.core.errors import UserError

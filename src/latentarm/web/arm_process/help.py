@@ -18,7 +18,7 @@ LEVELS: Final[dict[HelpLevel, Arbitration]] = {
 }
 """Help grows with the robot's confidence, and stays at zero until the robot can tell what the person wants.
 
-Measured by ``scripts/help_levels.py``: ``medium`` halves the mean time to what the robot knows of, and lets
+Measured by ``latentarm measure help``: ``medium`` halves the mean time to what the robot knows of, and lets
 as many reach something else as without help (14 of 15 simulated drives); ``high`` takes a little less time,
 and keeps most people from anything else."""
 

@@ -2,15 +2,15 @@
 
 import math
 from dataclasses import dataclass, replace
-from functools import partial
 from typing import Final, final
 
 from latentarm.arms.contract import Arm, SceneArm
-from latentarm.core.types import FloatArray, Pose
+from latentarm.core.types import FloatArray
 from latentarm.robots.kinematics.chain import Chain
 from latentarm.robots.scene.scene import SceneState
+from latentarm.tasks.goal_task import coming_to, without_things
 from latentarm.tasks.scene_task import Beginning, SceneTask
-from latentarm.tasks.steps import Failure, Progress, StepKind, TaskStep, Waypoint
+from latentarm.tasks.steps import Failure, Progress, StepKind, TaskStep
 from latentarm.tasks.task import Task
 from latentarm.web.arm_process.fills import Fills, Vessel, vessels
 from latentarm.web.arm_process.guide import Guide
@@ -70,7 +70,7 @@ def goal_to_reach(task: Task, choice: int) -> Todo:
     told = waypoints if len(waypoints) <= _FEW else waypoints[-1:]
     kinds: tuple[StepKind, ...] = ("approached", "reached")
     steps = [
-        _coming_to(task, kind, names[choice], waypoint)
+        coming_to(task, kind, names[choice], waypoint)
         for kind, waypoint in zip(kinds[-len(told) :], told, strict=True)
     ]
     return Todo(task.name, names, choice, tuple(steps))
@@ -164,28 +164,6 @@ class TaskRun:
         return bool(self._todo.steps) and self._progress.succeeded
 
     def _scene_state(self, q: FloatArray) -> SceneState:
-        return _alone(self._chain.forward(q), self._time_s) if self._arm is None else self._arm.scene_state()
-
-
-def _coming_to(task: Task, kind: StepKind, goal: str, waypoint: Pose) -> TaskStep:
-    done = partial(_reached, task=task, waypoint=waypoint)
-    return TaskStep(kind, goal, f"{kind} the {goal}", done, (Waypoint(lambda _: waypoint),))
-
-
-def _reached(state: SceneState, task: Task, waypoint: Pose) -> bool:
-    return task.reached(state.tool, waypoint)
-
-
-def _alone(tool: Pose, time_s: float) -> SceneState:
-    """The state of a scene without things."""
-    return SceneState(
-        time_s=time_s,
-        tool=tool,
-        poses={},
-        speed_m_s={},
-        stabbed=frozenset(),
-        gripped=frozenset(),
-        bonds=frozenset(),
-        grains={},
-        force_n={},
-    )
+        if self._arm is not None:
+            return self._arm.scene_state()
+        return without_things(self._chain.forward(q), self._time_s, {})

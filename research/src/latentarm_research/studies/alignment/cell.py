@@ -28,7 +28,7 @@ from latentarm_research.studies.alignment.scene import LearnedDecoder, Scene, sc
 
 
 @dataclass(frozen=True, eq=False)
-class Cell:
+class AlignmentCell:
     """What is to be measured.
 
     Attributes:
@@ -51,7 +51,7 @@ class Cell:
 
 
 @dataclass(frozen=True, eq=False)
-class CellResult:
+class AlignmentErrors:
     """What was measured.
 
     Attributes:
@@ -62,13 +62,13 @@ class CellResult:
         learn_s: condition -> how long all its runs took in one fit, s.
     """
 
-    cell: Cell
+    cell: AlignmentCell
     errors: Mapping[str, FloatArray]
     encoded: float
     learn_s: Mapping[str, float]
 
 
-def measure_cell(cell: Cell) -> CellResult:
+def measure_cell(cell: AlignmentCell) -> AlignmentErrors:
     """Ask, learn all runs of a condition in one fit, and measure the errors.
 
     The errors are the same to the last bit in every process. All models and noises get the same motions, so
@@ -81,7 +81,7 @@ def measure_cell(cell: Cell) -> CellResult:
         return _measure(cell, scene_of(cell.learned))
 
 
-def _measure(cell: Cell, scene: Scene) -> CellResult:
+def _measure(cell: AlignmentCell, scene: Scene) -> AlignmentErrors:
     preset = cell.learned.cell.preset
     runs = range(preset.runs)
 
@@ -117,7 +117,7 @@ def _measure(cell: Cell, scene: Scene) -> CellResult:
     )
     learn_s[IDEAL] = perf_counter() - began
     errors[IDEAL] = scene.errors(ideal.alignments)
-    return CellResult(cell, errors, scene.encoded(), learn_s)
+    return AlignmentErrors(cell, errors, scene.encoded(), learn_s)
 
 
 def ideal_config(preset: Preset) -> FitConfig:

@@ -18,12 +18,13 @@ from latentarm.assistance.blending import FixedAlpha
 from latentarm.assistance.controllers.latent import LatentController
 from latentarm.assistance.goal_blending import blending
 from latentarm.core.types import FloatArray, StepRecord
+from latentarm.tasks.goal_task import GoalTask
 from latentarm.tasks.table_top import TableTop
 from latentarm.tasks.task import Task
-from latentarm_research.drives.drive import RATE_HZ, Setup, simulate
-from latentarm_research.drives.drives import drive_plan
+from latentarm_research.drives.drive import RATE_HZ, Setup
+from latentarm_research.drives.drives import Planned, plan_drives
 from latentarm_research.people.person import Person
-from latentarm_research.studies.alignment.drives_learning import DriveCell, Learned, learn
+from latentarm_research.studies.alignment.drives_learning import AlignedDriveCell, Learned, learn
 from latentarm_research.studies.alignment.preset import (
     ALL_PRIORS,
     IDEAL,
@@ -43,7 +44,7 @@ PATH_HZ: Final = 10.0
 
 
 @dataclass(frozen=True, eq=False)
-class Driven:
+class AlignedDrive:
     """One drive.
 
     Attributes:
@@ -76,8 +77,8 @@ class DrivesResult:
         drive_s: how long the drives took, s.
     """
 
-    cell: DriveCell
-    drives: Mapping[str, tuple[Driven, ...]]
+    cell: AlignedDriveCell
+    drives: Mapping[str, tuple[AlignedDrive, ...]]
     errors: Mapping[str, FloatArray]
     directions: FloatArray
     speed_m_s: float
@@ -86,12 +87,12 @@ class DrivesResult:
     drive_s: float
 
 
-def drive_cells(preset: Preset, seed: int) -> list[DriveCell]:
+def drive_cells(preset: Preset, seed: int) -> list[AlignedDriveCell]:
     """One cell per kind of model."""
-    return [DriveCell(model, preset, seed) for model in preset.drives.models]
+    return [AlignedDriveCell(model, preset, seed) for model in preset.drives.models]
 
 
-def measure_drives(cell: DriveCell) -> DrivesResult:
+def measure_drives(cell: AlignedDriveCell) -> DrivesResult:
     """Learn, and drive in every condition.
 
     The figures are the same to the last bit in whatever process this runs.
@@ -115,37 +116,39 @@ def measure_drives(cell: DriveCell) -> DrivesResult:
         )
 
 
-def drive_all(cell: DriveCell, learned: Learned, condition: str) -> tuple[Driven, ...]:
+def drive_all(cell: AlignedDriveCell, learned: Learned, condition: str) -> tuple[AlignedDrive, ...]:
     """All drives of one condition of `DRIVEN`; models take turns.
 
     Starts and the simulated person's random choices depend only on the study's seed, the goal and the drive's
     number.
     """
     sizes, task = cell.preset.drives, TableTop()
-    setups = [_setup(task, learned, seed, condition, sizes.limit_s) for seed in range(sizes.seeds)]
-    plan = drive_plan(task, sizes.to_each_goal, cell.seed)
-    return tuple(
-        drive(setups[number % sizes.seeds], number % sizes.seeds, *call) for number, call in enumerate(plan)
-    )
+    setups = [
+        [
+            _setup(GoalTask(task, manner, sizes.limit_s), learned, seed, condition)
+            for seed in range(sizes.seeds)
+        ]
+        for manner in task.manners
+    ]
+    plan = plan_drives(setups, sizes.to_each_goal, cell.seed)
+    return tuple(drive(task, planned, number % sizes.seeds) for number, planned in enumerate(plan))
 
 
-def drive(setup: Setup, model_seed: int, goal: int, manner: str, rng: np.random.Generator) -> Driven:
+def drive(task: Task, planned: Planned, model_seed: int) -> AlignedDrive:
     """One drive: to the goal, and on to stab or scoop there.
 
     Args:
-        setup: who drives, with what.
-        model_seed: whose decoder that is.
-        goal: index into the task's goals.
-        manner: what is done at the goal.
-        rng: of the start and of the simulated person.
+        task: at whose goals.
+        planned: the drive.
+        model_seed: whose decoder steers.
     """
-    task, records = setup.task, list[StepRecord]()
-    trace = simulate(setup, goal, manner, rng, records.append)
+    goal, records = planned.choice, list[StepRecord]()
+    trace = planned.drive(record=lambda _: records.append)
     # A drive that ends at the goal has no record there.
     at_the_end = trace.figures.time_s if trace.figures.success else None
     reached_s = next((record.time_s for record in records if _there(task, goal, record)), at_the_end)
     until = trace.time_s <= (np.inf if reached_s is None else reached_s)
-    return Driven(
+    return AlignedDrive(
         goal=goal,
         model_seed=model_seed,
         reached_s=reached_s,
@@ -158,12 +161,11 @@ def _there(task: Task, goal: int, record: StepRecord) -> bool:
     return task.reached(task.robot.chain.forward(record.state), task.goals[goal].pose)
 
 
-def _setup(task: Task, learned: Learned, seed: int, condition: str, limit_s: float) -> Setup:
+def _setup(task: GoalTask, learned: Learned, seed: int, condition: str) -> Setup:
     alignment = {KNOWS: NO_ALIGN, HELPED: TOOL_SPACE}.get(condition, condition)
     return Setup(
         task,
         LatentController(learned.model.decoder(seed), learned.alignments[seed][alignment]),
-        blending(FixedAlpha()) if condition == HELPED else None,
         Person(imagines=None if condition == KNOWS else learned.person),
-        limit_s,
+        blending(FixedAlpha()) if condition == HELPED else None,
     )

@@ -55,7 +55,7 @@ EVERY: Final = 10**9
 
 
 @dataclass(frozen=True)
-class DriveCell:
+class AlignedDriveCell:
     """What is to be measured.
 
     Attributes:
@@ -90,7 +90,7 @@ class Learned:
     align_s: float
 
 
-def learn(cell: DriveCell) -> Learned:
+def learn(cell: AlignedDriveCell) -> Learned:
     """Demonstrate, fit all models in one fit, ask the person about each, and learn.
 
     Raises:
@@ -129,7 +129,7 @@ def turned_person(motions: Motions, chain: Chain) -> Expectation:
     return Expectation(chain, directions, speed).turned_and_mirrored(TURN_RAD)
 
 
-def _fit(cell: DriveCell, training: Demonstrations, chain: Chain) -> LatentActionModel:
+def _fit(cell: AlignedDriveCell, training: Demonstrations, chain: Chain) -> LatentActionModel:
     """The models, as the demo trains them."""
     return fit_model(
         cell.model,
@@ -145,7 +145,7 @@ def _fit(cell: DriveCell, training: Demonstrations, chain: Chain) -> LatentActio
 
 
 def _alignments(
-    cell: DriveCell,
+    cell: AlignedDriveCell,
     model: LatentActionModel,
     seed_index: int,
     training: Demonstrations,
@@ -192,7 +192,7 @@ def _errors(
     }
 
 
-def _generator(cell: DriveCell, *use: int) -> np.random.Generator:
+def _generator(cell: AlignedDriveCell, *use: int) -> np.random.Generator:
     """The same for every kind of model."""
     return generator(cell.seed, TASK, *use)
 

@@ -10,9 +10,9 @@ from latentarm.core.types import Goal
 from latentarm.evaluation.looks import look_of
 from latentarm.tasks.table_top import TableTop
 from latentarm_research.drives.drive_figures import GOAL_COLOURS, GOAL_MARKERS, OUTCOMES, outcome_lines
-from latentarm_research.studies.alignment.cell import CellResult
+from latentarm_research.studies.alignment.cell import AlignmentErrors
 from latentarm_research.studies.alignment.curves import CHOICES, PRIORS_AT_RANDOM, CurveResult
-from latentarm_research.studies.alignment.drives import DRIVEN, Driven, DrivesResult
+from latentarm_research.studies.alignment.drives import DRIVEN, AlignedDrive, DrivesResult
 from latentarm_research.studies.alignment.hypotheses import RANDOM_ANSWERS
 from latentarm_research.studies.alignment.preset import CHOSEN, CONDITIONS
 from latentarm_research.studies.alignment.rows import ENCODED
@@ -34,7 +34,7 @@ ROOM: Final = 1.6
 
 
 def conditions_figure(
-    results: Sequence[CellResult], models: Sequence[str], tasks: Sequence[str], noises: Sequence[float]
+    results: Sequence[AlignmentErrors], models: Sequence[str], tasks: Sequence[str], noises: Sequence[float]
 ) -> "Figure":
     """Means with 95 % intervals, a panel per task, a row per model, grouped by noise.
 
@@ -68,7 +68,7 @@ def conditions_figure(
     return figure
 
 
-def _draw_conditions(axes: "Axes", results: Sequence[CellResult]) -> None:
+def _draw_conditions(axes: "Axes", results: Sequence[AlignmentErrors]) -> None:
     """All conditions of one task and model, one group per noise, and the encoder's own choice."""
     width = GROUP / len(CONDITIONS)
     groups = np.arange(len(results))
@@ -99,7 +99,7 @@ def _draw_conditions(axes: "Axes", results: Sequence[CellResult]) -> None:
     axes.grid(False, axis="x")
 
 
-def _log_axis(axes: "Axes", results: Sequence[CellResult]) -> None:
+def _log_axis(axes: "Axes", results: Sequence[AlignmentErrors]) -> None:
     """A logarithmic axis around all intervals and the encoder's choice."""
     ends = [bootstrap_interval(values) for result in results for values in result.errors.values()]
     encoded = [result.encoded for result in results]
@@ -218,7 +218,7 @@ def drives_figure(results: Sequence[DrivesResult]) -> "Figure":
     return figure
 
 
-def _draw_drives(axes: "Axes", drives: Sequence[Driven], goals: Sequence[Goal]) -> None:
+def _draw_drives(axes: "Axes", drives: Sequence[AlignedDrive], goals: Sequence[Goal]) -> None:
     for one in drives:
         axes.plot(
             one.path[:, 1],

@@ -20,7 +20,7 @@ from typing import Final
 
 from latentarm.core.types import FloatArray
 from latentarm.evaluation.looks import look_of
-from latentarm_research.studies.alignment.cell import CellResult
+from latentarm_research.studies.alignment.cell import AlignmentErrors
 from latentarm_research.studies.alignment.curves import PRIORS_AT_RANDOM, CurveResult
 from latentarm_research.studies.alignment.preset import (
     ALL_PRIORS,
@@ -43,7 +43,7 @@ NEAR: Final = 1.25
 
 
 @dataclass(frozen=True)
-class Claim:
+class ConditionClaim:
     """One part of a hypothesis: a condition's error is lower than another's.
 
     Attributes:
@@ -60,19 +60,19 @@ class Claim:
 
 
 CLAIMS: Final = (
-    *(Claim("H1", one, other) for one in (IDEAL, ALL_PRIORS) for other in (NO_ALIGN, MANUAL)),
-    *(Claim("H2", one, WITHOUT_PRIORS) for one in (*SINGLE_PRIORS, ALL_PRIORS)),
-    *(Claim("H2", one, IDEAL, NEAR) for one in (ALL_PRIORS, TOOL_SPACE)),
-    *(Claim("H3", ALL_PRIORS, one) for one in SINGLE_PRIORS),
+    *(ConditionClaim("H1", one, other) for one in (IDEAL, ALL_PRIORS) for other in (NO_ALIGN, MANUAL)),
+    *(ConditionClaim("H2", one, WITHOUT_PRIORS) for one in (*SINGLE_PRIORS, ALL_PRIORS)),
+    *(ConditionClaim("H2", one, IDEAL, NEAR) for one in (ALL_PRIORS, TOOL_SPACE)),
+    *(ConditionClaim("H3", ALL_PRIORS, one) for one in SINGLE_PRIORS),
 )
 
 
-def compare_conditions(results: Sequence[CellResult]) -> list[Comparison]:
+def compare_conditions(results: Sequence[AlignmentErrors]) -> list[Comparison]:
     """Every test, by hypothesis, then by model, then in the order of the results."""
     return corrected([_test(claim, result) for result in results for claim in CLAIMS])
 
 
-def _test(claim: Claim, result: CellResult) -> Comparison:
+def _test(claim: ConditionClaim, result: AlignmentErrors) -> Comparison:
     """One test, without correction."""
     values, reference = result.errors[claim.condition], claim.times * result.errors[claim.against]
     return Comparison(
@@ -105,7 +105,7 @@ CHOSEN_ANSWERS: Final = 4
 
 
 @dataclass(frozen=True)
-class Target:
+class AlignmentTarget:
     """One target.
 
     Attributes:
@@ -124,10 +124,10 @@ class Target:
 
 
 def targets(
-    results: Sequence[CellResult], curves: Sequence[CurveResult], turning: Sequence[TurningResult]
-) -> list[Target]:
+    results: Sequence[AlignmentErrors], curves: Sequence[CurveResult], turning: Sequence[TurningResult]
+) -> list[AlignmentTarget]:
     """Every target that the results can decide, model by model."""
-    found: list[Target] = []
+    found: list[AlignmentTarget] = []
     for model in dict.fromkeys(result.cell.model for result in results):
         of_model = [result for result in results if result.cell.model == model]
         found += [
@@ -155,50 +155,52 @@ def answers_needed(curve: CurveResult) -> int | None:
     return next((count for count, errors in curve.errors[CHOSEN].items() if errors.mean() <= wanted), None)
 
 
-def _lowest(results: Sequence[CellResult], what: str, of: Callable[[FloatArray], float]) -> Target:
+def _lowest(
+    results: Sequence[AlignmentErrors], what: str, of: Callable[[FloatArray], float]
+) -> AlignmentTarget:
     missed: list[str] = []
     for result in results:
         figures = {name: of(result.errors[name]) for name in FEW_ANSWERS if name != TOOL_SPACE}
         best = min(figures, key=lambda name: figures[name])
         if figures[best] < figures[ALL_PRIORS]:
             missed.append(f"{_place(result)}: {figures[ALL_PRIORS]:.3g}, {best} {figures[best]:.3g}")
-    return Target(
+    return AlignmentTarget(
         f"{ALL_PRIORS} has the lowest {what} of the paper's conditions with few answers, {_model(results)}",
         not missed,
         _counted(len(results), missed),
     )
 
 
-def _single_priors(results: Sequence[CellResult]) -> Target:
+def _single_priors(results: Sequence[AlignmentErrors]) -> AlignmentTarget:
     ratios = {
         f"{_place(result)}: {name}": float(result.errors[name].mean() / result.errors[WITHOUT_PRIORS].mean())
         for result in results
         for name in SINGLE_PRIORS
     }
     missed = [f"{place} {ratio:.2f}" for place, ratio in ratios.items() if ratio > SINGLE_SHARE]
-    return Target(
+    return AlignmentTarget(
         f"each single prior has at most {SINGLE_SHARE:g} of the error of {WITHOUT_PRIORS}, {_model(results)}",
         not missed,
         f"{min(ratios.values()):.2f} to {max(ratios.values()):.2f}; {_counted(len(ratios), missed)}",
     )
 
 
-def _near_ideal(results: Sequence[CellResult], condition: str) -> Target:
+def _near_ideal(results: Sequence[AlignmentErrors], condition: str) -> AlignmentTarget:
     ratios = {
         _place(result): float(result.errors[condition].mean() / result.errors[IDEAL].mean())
         for result in results
     }
     missed = [f"{place} {ratio:.2f}" for place, ratio in ratios.items() if ratio > NEAR]
-    return Target(
+    return AlignmentTarget(
         f"{condition} has at most {NEAR:g} times the error of {IDEAL}, {_model(results)}",
         not missed,
         f"{min(ratios.values()):.2f} to {max(ratios.values()):.2f} times; {_counted(len(ratios), missed)}",
     )
 
 
-def _fewer_answers(curves: Sequence[CurveResult]) -> Target:
+def _fewer_answers(curves: Sequence[CurveResult]) -> AlignmentTarget:
     needed = {curve.cell.learned.cell.task: answers_needed(curve) for curve in curves}
-    return Target(
+    return AlignmentTarget(
         f"chosen questions in tool space reach the error of {RANDOM_ANSWERS} random ones of {ALL_PRIORS} with"
         f" at most {CHOSEN_ANSWERS}, noise {curves[0].cell.noise:g}",
         all(count is not None and count <= CHOSEN_ANSWERS for count in needed.values()),
@@ -209,19 +211,19 @@ def _fewer_answers(curves: Sequence[CurveResult]) -> Target:
     )
 
 
-def _turning(result: TurningResult) -> list[Target]:
+def _turning(result: TurningResult) -> list[AlignmentTarget]:
     """For people whose axes turn: as near to Ideal Align, and with as few answers."""
     mean = {name: float(errors.mean()) for name, errors in result.errors.items()}
     who = f"people whose axes turn, noise {result.cell.noise:g}"
     many = len(result.errors[IDEAL])
     ours, ideal = float(result.errors[CHOSEN][:many].mean()), mean[IDEAL]
     return [
-        Target(
+        AlignmentTarget(
             f"{CHOSEN}, has at most {NEAR:g} times the error of {IDEAL}, {who}",
             ours <= NEAR * ideal,
             f"{ours:.3g} against {ideal:.3g}, {ours / ideal:.2f} times, the same {many} people",
         ),
-        Target(
+        AlignmentTarget(
             f"{FEW}, have at most the error of {RANDOM_ANSWERS} random ones of {ALL_PRIORS}, {who}",
             mean[FEW] <= mean[PRIORS_AT_RANDOM],
             f"{mean[FEW]:.3g} against {mean[PRIORS_AT_RANDOM]:.3g}",
@@ -239,9 +241,9 @@ def _counted(many: int, missed: Sequence[str]) -> str:
     return f"{many - len(missed)} of {many}" + (f"; not {'; '.join(missed)}" if missed else "")
 
 
-def _place(result: CellResult) -> str:
+def _place(result: AlignmentErrors) -> str:
     return f"{look_of(result.cell.task).label}, noise {result.cell.noise:g}"
 
 
-def _model(results: Iterable[CellResult]) -> str:
+def _model(results: Iterable[AlignmentErrors]) -> str:
     return listed(look_of(result.cell.model).label for result in results)

@@ -11,7 +11,7 @@ from threadpoolctl import threadpool_limits
 from latentarm.core.types import FloatArray, Row
 from latentarm.evaluation.summary import Subject, summarise
 from latentarm_research.alignment.training import FitConfig
-from latentarm_research.studies.alignment.cell import CellResult
+from latentarm_research.studies.alignment.cell import AlignmentErrors
 from latentarm_research.studies.alignment.curves import CurveResult
 from latentarm_research.studies.alignment.drives import DrivesResult
 from latentarm_research.studies.alignment.preset import ALL_PRIORS, CHOSEN, CONDITIONS, LEARNED, Stream, under
@@ -30,7 +30,7 @@ ENCODED: Final = "the encoder's own choice"
 
 
 def rows_of(
-    results: Sequence[CellResult], curves: Sequence[CurveResult], turning: Sequence[TurningResult]
+    results: Sequence[AlignmentErrors], curves: Sequence[CurveResult], turning: Sequence[TurningResult]
 ) -> list[Row]:
     """Mean and SD of every figure: the tables, then the curves, then people whose axes turn."""
     rows: list[Row] = []
@@ -85,7 +85,7 @@ def asked(choice: str, count: int) -> str:
 
 
 @dataclass(frozen=True, eq=False)
-class Measured:
+class AlignmentResults:
     """All results, in the order of the tables.
 
     Attributes:
@@ -97,13 +97,13 @@ class Measured:
     """
 
     decoders: Sequence[LearnedDecoder]
-    results: Sequence[CellResult]
+    results: Sequence[AlignmentErrors]
     curves: Sequence[CurveResult]
     turning: Sequence[TurningResult]
     drives: Sequence[DrivesResult]
 
 
-def by_run(measured: Measured) -> list[dict[str, object]]:
+def by_run(measured: AlignmentResults) -> list[dict[str, object]]:
     """The figures of every run that rows are means of."""
     table = [
         (result.cell.task, result.cell.model, name, result.cell.noise, ERROR, values)
@@ -140,7 +140,7 @@ def by_run(measured: Measured) -> list[dict[str, object]]:
     ]
 
 
-def timings(measured: Measured) -> dict[str, object]:
+def timings(measured: AlignmentResults) -> dict[str, object]:
     """How long everything took, s; cells ran side by side."""
     return {
         "decoders": [

@@ -13,10 +13,10 @@ from latentarm.tasks.task import REACHED_ANGLE, REACHED_DISTANCE
 from latentarm_research.alignment.priors import Priors
 from latentarm_research.studies.alignment import curves, drives
 from latentarm_research.studies.alignment import preset as conditions
-from latentarm_research.studies.alignment.cell import Cell, CellResult, measure_cell
+from latentarm_research.studies.alignment.cell import AlignmentCell, AlignmentErrors, measure_cell
 from latentarm_research.studies.alignment.curves import CurveCell, CurveResult, measure_curve
 from latentarm_research.studies.alignment.drives import DrivesResult, drive_cells, measure_drives
-from latentarm_research.studies.alignment.drives_learning import TASK, TURN_RAD, DriveCell
+from latentarm_research.studies.alignment.drives_learning import TASK, TURN_RAD, AlignedDriveCell
 from latentarm_research.studies.alignment.drives_tables import (
     WORDS,
     compare_drives,
@@ -28,13 +28,19 @@ from latentarm_research.studies.alignment.figures import conditions_figure, curv
 from latentarm_research.studies.alignment.hypotheses import (
     NEAR,
     PAPER_MODEL,
-    Target,
+    AlignmentTarget,
     compare_conditions,
     targets,
 )
 from latentarm_research.studies.alignment.preset import PRESETS, Preset
 from latentarm_research.studies.alignment.rows import STUDY as NAME
-from latentarm_research.studies.alignment.rows import Measured, by_run, rows_of, time_alignment, timings
+from latentarm_research.studies.alignment.rows import (
+    AlignmentResults,
+    by_run,
+    rows_of,
+    time_alignment,
+    timings,
+)
 from latentarm_research.studies.alignment.scene import DecoderCell, LearnedDecoder, learn_decoder
 from latentarm_research.studies.alignment.tables import (
     condition_table,
@@ -59,11 +65,11 @@ if TYPE_CHECKING:
 TASKS: Final = (*POURING_TASKS, TASK)
 """The paper's tasks, and the demo's table, where goals are driven to."""
 
-AnyCell = Cell | CurveCell | TurningCell | DriveCell
-AnyResult = CellResult | CurveResult | TurningResult | DrivesResult
+AnyCell = AlignmentCell | CurveCell | TurningCell | AlignedDriveCell
+AnyResult = AlignmentErrors | CurveResult | TurningResult | DrivesResult
 
 
-def _measure(request: Request[Preset], grid: Grid) -> Measured:
+def _measure(request: Request[Preset], grid: Grid) -> AlignmentResults:
     wanted = [
         DecoderCell(task, model, request.preset, request.seed)
         for model in request.preset.models
@@ -73,9 +79,9 @@ def _measure(request: Request[Preset], grid: Grid) -> Measured:
     decoders = grid.run("Decoders", learn_decoder, wanted, _decoder_label)
     cells = _cells(request, decoders)
     found = grid.run("Alignments, learning curves and drives", measure, cells, _label)
-    return Measured(
+    return AlignmentResults(
         decoders,
-        results=sorted((one for one in found if isinstance(one, CellResult)), key=_place),
+        results=sorted((one for one in found if isinstance(one, AlignmentErrors)), key=_place),
         curves=[one for one in found if isinstance(one, CurveResult)],
         turning=[one for one in found if isinstance(one, TurningResult)],
         drives=[one for one in found if isinstance(one, DrivesResult)],
@@ -88,7 +94,7 @@ def measure(cell: AnyCell) -> AnyResult:
     Raises:
         UserError: it cannot be measured as asked.
     """
-    if isinstance(cell, Cell):
+    if isinstance(cell, AlignmentCell):
         return measure_cell(cell)
     if isinstance(cell, TurningCell):
         return measure_turning(cell)
@@ -111,11 +117,11 @@ def _cells(request: Request[Preset], decoders: Sequence[LearnedDecoder]) -> list
         for noise in preset.turning.noises
     ]
     drives = drive_cells(preset, request.seed) if TASK in request.tasks else []
-    table = [Cell(learned, noise) for learned in decoders for noise in preset.noises]
+    table = [AlignmentCell(learned, noise) for learned in decoders for noise in preset.noises]
     return [*drives, *turning, *curves, *table]
 
 
-def _place(result: CellResult) -> tuple[int, int, float]:
+def _place(result: AlignmentErrors) -> tuple[int, int, float]:
     """Where a cell stands in tables."""
     models = result.cell.learned.cell.preset.models
     return TASKS.index(result.cell.task), models.index(result.cell.model), result.cell.noise
@@ -126,7 +132,7 @@ def _decoder_label(cell: DecoderCell) -> str:
 
 
 def _label(cell: AnyCell) -> str:
-    if isinstance(cell, DriveCell):
+    if isinstance(cell, AlignedDriveCell):
         return f"{TASK}, {cell.model}, drives"
     if isinstance(cell, TurningCell):
         return f"{TURNING_TASK}, {cell.learned.cell.model}, noise {cell.noise:g}, axes turn"
@@ -134,7 +140,7 @@ def _label(cell: AnyCell) -> str:
     return f"{cell.learned.cell.task}, {cell.learned.cell.model}, noise {cell.noise:g}{what}"
 
 
-def _report(request: Request[Preset], measured: Measured) -> Report:
+def _report(request: Request[Preset], measured: AlignmentResults) -> Report:
     rows = [*rows_of(measured.results, measured.curves, measured.turning), *drives_rows(measured.drives)]
     tests, drive_tests = compare_conditions(measured.results), compare_drives(measured.drives)
     reached = targets(measured.results, measured.curves, measured.turning)
@@ -155,7 +161,7 @@ def _report(request: Request[Preset], measured: Measured) -> Report:
     )
 
 
-def _figures(measured: Measured) -> "dict[str, Figure]":
+def _figures(measured: AlignmentResults) -> "dict[str, Figure]":
     """Those of what was measured."""
     results, figures = measured.results, dict[str, "Figure"]()
     tasks = list(dict.fromkeys(result.cell.task for result in results))
@@ -176,13 +182,13 @@ def _figures(measured: Measured) -> "dict[str, Figure]":
 
 def _page(
     request: Request[Preset],
-    measured: Measured,
+    measured: AlignmentResults,
     tests: Sequence[Comparison],
     drive_tests: Sequence[Comparison],
-    reached: Sequence[Target],
+    reached: Sequence[AlignmentTarget],
     figures: "dict[str, Figure]",
 ) -> str:
-    by_task: dict[str, dict[str, list[CellResult]]] = {}
+    by_task: dict[str, dict[str, list[AlignmentErrors]]] = {}
     for result in measured.results:
         by_task.setdefault(result.cell.task, {}).setdefault(result.cell.model, []).append(result)
     return render_page(

@@ -8,19 +8,19 @@ from rich.table import Table
 from latentarm.core.types import FloatArray, Row
 from latentarm.evaluation.looks import look_of
 from latentarm.evaluation.table import ABSENT, format_figure, measure_name
-from latentarm_research.studies.alignment.cell import CellResult
+from latentarm_research.studies.alignment.cell import AlignmentErrors
 from latentarm_research.studies.alignment.curves import CHOICES, CurveResult
 from latentarm_research.studies.alignment.drives import DRIVEN
 from latentarm_research.studies.alignment.drives_learning import TASK
 from latentarm_research.studies.alignment.drives_tables import REACHED, TIME
-from latentarm_research.studies.alignment.hypotheses import PAPER_MODEL, Target
+from latentarm_research.studies.alignment.hypotheses import PAPER_MODEL, AlignmentTarget
 from latentarm_research.studies.alignment.preset import CONDITIONS, Preset, under
 from latentarm_research.studies.alignment.rows import ENCODED, ERROR
 from latentarm_research.studies.alignment.turning import TURNING, TurningResult
 from latentarm_research.studies.page import markdown_table
 
 
-def condition_table(results: Sequence[CellResult]) -> str:
+def condition_table(results: Sequence[AlignmentErrors]) -> str:
     """The relative errors of one task and model: conditions down, noises across."""
     lines = [[name, *(_mean_and_sd(result.errors[name]) for result in results)] for name in CONDITIONS]
     encoded = [ENCODED, *(format_figure(result.encoded, None) for result in results)]
@@ -74,7 +74,7 @@ def turning_table(results: Sequence[TurningResult]) -> str:
     )
 
 
-def target_table(found: Sequence[Target]) -> str:
+def target_table(found: Sequence[AlignmentTarget]) -> str:
     """Every target."""
     lines = [[one.name, "met" if one.met else "**missed**", one.figures] for one in found]
     return markdown_table(["target", "", "figures"], lines)

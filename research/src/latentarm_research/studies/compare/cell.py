@@ -44,7 +44,7 @@ class Place:
 
 
 @dataclass(frozen=True, eq=False)
-class Cell:
+class FoldCell:
     """What is to be measured.
 
     Attributes:
@@ -71,7 +71,7 @@ class Cell:
 
 
 @dataclass(frozen=True, eq=False)
-class CellResult:
+class FoldResult:
     """What was measured.
 
     Attributes:
@@ -91,7 +91,7 @@ class CellResult:
     plan_s: float
 
 
-def measure_cell(cell: Cell) -> CellResult:
+def measure_cell(cell: FoldCell) -> FoldResult:
     """Fit all seeds in one fit and measure them on the held-out episodes.
 
     The figures are the same to the last bit in whatever process this runs: one thread each for linear algebra
@@ -113,7 +113,7 @@ def measure_cell(cell: Cell) -> CellResult:
             cell.preset,
             np.random.default_rng(_stream(cell, Stream.TEST_NOISE)),
         )
-    return CellResult(
+    return FoldResult(
         place=cell.place,
         figures=measured.figures,
         decoder=model.decoder(0),
@@ -123,12 +123,12 @@ def measure_cell(cell: Cell) -> CellResult:
     )
 
 
-def _stream(cell: Cell, use: Stream) -> np.random.SeedSequence:
+def _stream(cell: FoldCell, use: Stream) -> np.random.SeedSequence:
     """Where one use of randomness begins in a cell."""
     return sequence(cell.seed, cell.dataset.name, use, cell.fold.index)
 
 
-def _fit(cell: Cell, robot: Robot) -> LatentActionModel:
+def _fit(cell: FoldCell, robot: Robot) -> LatentActionModel:
     fold, preset = cell.fold, cell.preset
     return fit_model(
         cell.model,

@@ -21,13 +21,14 @@ from latentarm.demonstrations.split import select_episodes
 from latentarm.evaluation.summary import Subject, summarise
 from latentarm.models.decoder import Decoder
 from latentarm.robots.catalogue import load_recorded_robot
+from latentarm.tasks.goal_task import GoalTask
 from latentarm.tasks.replay import Replay, routes_of
-from latentarm_research.drives.drive import Setup, simulate
-from latentarm_research.metrics.drives import GoalDrive, goal_drive_rows
+from latentarm_research.drives.drive import Setup, drive
+from latentarm_research.metrics.drives import Drive, drive_rows
 from latentarm_research.metrics.ending import Ending
 from latentarm_research.metrics.undone import undone_share
 from latentarm_research.people.catalogue import PEOPLE, usual_operator
-from latentarm_research.studies.compare.cell import CellResult
+from latentarm_research.studies.compare.cell import FoldResult
 from latentarm_research.studies.compare.datasets import Dataset
 from latentarm_research.studies.compare.preset import Stream
 from latentarm_research.studies.streams import sequence
@@ -40,7 +41,7 @@ MODES: Final = "end_effector"
 
 
 @dataclass(frozen=True, eq=False)
-class DriveCell:
+class ModelDriveCell:
     """One drive.
 
     Attributes:
@@ -79,7 +80,7 @@ class DriveResult:
     dataset: str
     controller: str
     episode: int
-    figures: GoalDrive
+    figures: Drive
     progress: float
     ending: Ending
     undone: float
@@ -89,13 +90,13 @@ class DriveResult:
 
 def drive_cells(
     datasets: Sequence[Dataset],
-    results: Sequence[CellResult],
+    results: Sequence[FoldResult],
     ours: str,
     noise_rad: float,
     drives: int | None,
     limit_s: float,
     seed: int,
-) -> list[DriveCell]:
+) -> list[ModelDriveCell]:
     """Every held-out episode once with each controller.
 
     Args:
@@ -114,7 +115,7 @@ def drive_cells(
     }
     models = [name for name in dict.fromkeys((ours, BESIDE)) if any(name == key[1] for key in decoders)]
     return [
-        DriveCell(
+        ModelDriveCell(
             dataset, episode, controller, decoders.get((dataset.name, controller, fold.index)), limit_s, seed
         )
         for dataset in datasets
@@ -124,7 +125,7 @@ def drive_cells(
     ]
 
 
-def measure_drive_cell(cell: DriveCell) -> DriveResult:
+def measure_drive_cell(cell: ModelDriveCell) -> DriveResult:
     """Drive once; the start and the operator's randomness depend on the episode, not on the controller."""
     with threadpool_limits(limits=1):
         began = perf_counter()
@@ -134,21 +135,19 @@ def measure_drive_cell(cell: DriveCell) -> DriveResult:
             EndEffectorController(robot) if cell.decoder is None else LatentController(cell.decoder)
         )
         setup = Setup(
-            task,
+            GoalTask(task, task.manners[0], cell.limit_s),
             controller,
-            assistance=None,
-            person=PEOPLE[usual_operator(task.name)],
-            time_limit_s=cell.limit_s,
+            PEOPLE[usual_operator(task.name)],
         )
         streams = sequence(cell.seed, cell.dataset.name, Stream.DRIVES, cell.episode)
-        trace = simulate(setup, 0, task.manners[0], np.random.default_rng(streams))
+        trace = drive(setup, 0, np.random.default_rng(streams))
         shown = robot.chain.forward(cell.dataset.demonstrations.episodes[cell.episode].state)
     return DriveResult(
         dataset=cell.dataset.name,
         controller=cell.controller,
         episode=cell.episode,
-        figures=trace.measured,
-        progress=trace.progress,
+        figures=trace.figures,
+        progress=trace.figures.steps_done,
         ending=trace.ending,
         undone=undone_share(trace.position),
         demonstrated_undone=undone_share(shown.position),
@@ -156,7 +155,7 @@ def measure_drive_cell(cell: DriveCell) -> DriveResult:
     )
 
 
-def drive_label(cell: DriveCell) -> str:
+def drive_label(cell: ModelDriveCell) -> str:
     """What a drive is called when it fails."""
     return f"{cell.dataset.name}, drive of episode {cell.episode} with {cell.controller}"
 
@@ -167,7 +166,7 @@ def rows_of_drives(study: str, condition: str, results: Sequence[DriveResult]) -
     for dataset, controller in dict.fromkeys((one.dataset, one.controller) for one in results):
         here = [one for one in results if (one.dataset, one.controller) == (dataset, controller)]
         subject = Subject(study, task=dataset, model=controller, condition=condition)
-        rows += goal_drive_rows(subject, [one.figures for one in here])
+        rows += drive_rows(subject, [one.figures for one in here])
         rows += [
             summarise(subject, "progress", [one.progress for one in here]),
             summarise(subject, "undone_share", [one.undone for one in here]),

@@ -13,7 +13,7 @@ import numpy as np
 
 from latentarm.core.types import FloatArray
 from latentarm.evaluation.measures import label_of
-from latentarm_research.studies.compare.cell import CellResult
+from latentarm_research.studies.compare.cell import FoldResult
 from latentarm_research.studies.compare.rows import condition
 from latentarm_research.studies.hypotheses import Comparison, corrected
 from latentarm_research.studies.statistics import paired
@@ -30,7 +30,7 @@ ENCODINGS: Final = {
 HYPOTHESIS: Final = "H1"
 
 
-def compared(results: Sequence[CellResult]) -> list[Comparison]:
+def compared(results: Sequence[FoldResult]) -> list[Comparison]:
     """Every test, after Holm's correction within its family.
 
     Args:
@@ -65,7 +65,7 @@ def compared(results: Sequence[CellResult]) -> list[Comparison]:
 
 
 def _over_folds(
-    results: Sequence[CellResult], dataset: str, noise_rad: float, model: str, measure: str
+    results: Sequence[FoldResult], dataset: str, noise_rad: float, model: str, measure: str
 ) -> FloatArray:
     """Means over seeds, (folds,), in the order of the folds."""
     cells = [

@@ -68,7 +68,7 @@ def meaning_of(name: str) -> str:
 
 
 @dataclass(frozen=True)
-class Measured:
+class MeasuredDecoder:
     """What was measured.
 
     Attributes:
@@ -89,7 +89,7 @@ def measure_model(
     robot: Robot,
     preset: Preset,
     rng: np.random.Generator,
-) -> Measured:
+) -> MeasuredDecoder:
     """Measure every seed of a model on held-out episodes.
 
     Args:
@@ -126,7 +126,7 @@ def measure_model(
         )
         figures["planned_reach_m"] = planned.mean(axis=1)
     plan_s = (perf_counter() - began) / max(seeds, 1)
-    return Measured({name: figures[name] for name in MEASURED if name in figures}, measure_s, plan_s)
+    return MeasuredDecoder({name: figures[name] for name in MEASURED if name in figures}, measure_s, plan_s)
 
 
 def _around_the_stick(model: LatentActionModel, contexts: FloatArray, robot: Robot) -> dict[str, FloatArray]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from latentarm.core.types import FloatArray, Row
 from latentarm.evaluation.summary import Subject, summarise
-from latentarm_research.studies.compare.cell import CellResult
+from latentarm_research.studies.compare.cell import FoldResult
 
 STUDY: Final = "compare"
 
@@ -25,7 +25,7 @@ def with_demonstrations(count: int) -> str:
     return f"{count} demonstration{'s' if count > 1 else ''}"
 
 
-def rows_of(results: Sequence[CellResult]) -> list[Row]:
+def rows_of(results: Sequence[FoldResult]) -> list[Row]:
     """Two rows per dataset, noise, model and measure.
 
     The first has mean and SD over the seeds of the mean over folds. The second, `OVER_FOLDS`, has the same
@@ -44,7 +44,7 @@ def rows_of(results: Sequence[CellResult]) -> list[Row]:
     return rows
 
 
-def rows_of_fewer(results: Sequence[CellResult], all_of: Mapping[str, int]) -> list[Row]:
+def rows_of_fewer(results: Sequence[FoldResult], all_of: Mapping[str, int]) -> list[Row]:
     """Mean and SD over seeds of the mean over folds, by the number of demonstrations, fewest first.
 
     Args:
@@ -64,14 +64,14 @@ def rows_of_fewer(results: Sequence[CellResult], all_of: Mapping[str, int]) -> l
     return rows
 
 
-def fit_times(results: Sequence[CellResult]) -> dict[tuple[str, float, str], float]:
+def fit_times(results: Sequence[FoldResult]) -> dict[tuple[str, float, str], float]:
     """Dataset, noise and model -> processor time of a fit of all seeds, mean over folds, s."""
     return {
         place: float(np.mean([cell.fit_s for cell in cells])) for place, cells in _grouped(results).items()
     }
 
 
-def seeds_of(results: Sequence[CellResult]) -> list[dict[str, object]]:
+def seeds_of(results: Sequence[FoldResult]) -> list[dict[str, object]]:
     """Every figure of every seed."""
     return [
         {
@@ -88,14 +88,14 @@ def seeds_of(results: Sequence[CellResult]) -> list[dict[str, object]]:
     ]
 
 
-def _grouped(results: Sequence[CellResult]) -> Mapping[tuple[str, float, str], list[CellResult]]:
-    groups: dict[tuple[str, float, str], list[CellResult]] = {}
+def _grouped(results: Sequence[FoldResult]) -> Mapping[tuple[str, float, str], list[FoldResult]]:
+    groups: dict[tuple[str, float, str], list[FoldResult]] = {}
     for one in results:
         groups.setdefault((one.place.dataset, one.place.noise_rad, one.place.model), []).append(one)
     return groups
 
 
-def _stacked(cells: Sequence[CellResult]) -> dict[str, FloatArray]:
+def _stacked(cells: Sequence[FoldResult]) -> dict[str, FloatArray]:
     """Measure -> (folds, seeds)."""
     return {measure: np.stack([cell.figures[measure] for cell in cells]) for measure in cells[0].figures}
 

@@ -16,7 +16,7 @@ from latentarm.models.estimators import MODELS
 from latentarm.runs.checks import check_seed
 from latentarm.runs.folder import fingerprint
 from latentarm_research.metrics.undone import NEAR_M
-from latentarm_research.studies.compare.cell import Cell, CellResult, measure_cell
+from latentarm_research.studies.compare.cell import FoldCell, FoldResult, measure_cell
 from latentarm_research.studies.compare.datasets import Dataset, read_datasets
 from latentarm_research.studies.compare.drives import (
     BESIDE,
@@ -82,7 +82,7 @@ class Asked:
 
 
 @dataclass(frozen=True, eq=False)
-class Measured:
+class CompareResults:
     """What was measured.
 
     Attributes:
@@ -91,14 +91,14 @@ class Measured:
         drives: along held-out episodes.
     """
 
-    results: Sequence[CellResult]
-    whole: Sequence[CellResult]
+    results: Sequence[FoldResult]
+    whole: Sequence[FoldResult]
     drives: Sequence[DriveResult]
 
 
 def compare_study(
     demonstrations: tuple[Path, ...], preset: Preset, ours: str = OURS, seed: int = 0
-) -> Study[Preset, Measured]:
+) -> Study[Preset, CompareResults]:
     """The comparison on some datasets.
 
     Args:
@@ -158,7 +158,7 @@ def _check(asked: Asked) -> None:
             raise UserError(f"Name at least one of the {what}, and none twice.")
 
 
-def _measure(asked: Asked, request: Request[Preset], grid: Grid) -> Measured:
+def _measure(asked: Asked, request: Request[Preset], grid: Grid) -> CompareResults:
     preset, cells = asked.preset, _cells(asked)
     results = grid.run("Models on folds", measure_cell, cells, _label)
     whole = [one for one, cell in zip(results, cells, strict=True) if cell.fold in cell.dataset.folds]
@@ -172,20 +172,20 @@ def _measure(asked: Asked, request: Request[Preset], grid: Grid) -> Measured:
         asked.seed,
     )
     drives = grid.run("Drives by a simulated operator", measure_drive_cell, to_drive, drive_label)
-    return Measured(results, whole, drives)
+    return CompareResults(results, whole, drives)
 
 
-def _cells(asked: Asked) -> list[Cell]:
+def _cells(asked: Asked) -> list[FoldCell]:
     """All models with all demonstrations, and some with fewer."""
     preset = asked.preset
     return [
-        Cell(dataset, noise_rad, model, fold, preset, asked.seed)
+        FoldCell(dataset, noise_rad, model, fold, preset, asked.seed)
         for dataset in asked.datasets
         for noise_rad in preset.noises_rad
         for model in preset.models
         for fold in dataset.folds
     ] + [
-        Cell(dataset, noise_rad, model, fold.with_only(count), without_planning(preset), asked.seed)
+        FoldCell(dataset, noise_rad, model, fold.with_only(count), without_planning(preset), asked.seed)
         for dataset in asked.datasets
         for noise_rad in preset.noises_rad
         for model in _given_fewer(asked)
@@ -200,7 +200,7 @@ def _given_fewer(asked: Asked) -> list[str]:
     return [name for name in wanted if name in asked.preset.models]
 
 
-def _label(cell: Cell) -> str:
+def _label(cell: FoldCell) -> str:
     place = cell.place
     return (
         f"{place.dataset}, {place.model}, {condition(place.noise_rad)}, fold {place.fold},"
@@ -208,7 +208,7 @@ def _label(cell: Cell) -> str:
     )
 
 
-def _report(asked: Asked, request: Request[Preset], measured: Measured) -> Report:
+def _report(asked: Asked, request: Request[Preset], measured: CompareResults) -> Report:
     preset, names = asked.preset, [one.name for one in asked.datasets]
     results, drives, fewer_models = measured.results, measured.drives, _given_fewer(asked)
     all_of = {one.name: one.left for one in asked.datasets}
@@ -236,7 +236,7 @@ def _report(asked: Asked, request: Request[Preset], measured: Measured) -> Repor
 
 def _page(
     asked: Asked,
-    whole: Sequence[CellResult],
+    whole: Sequence[FoldResult],
     main: Sequence[Row],
     tests: Sequence[Comparison],
     driven: Sequence[Row],
@@ -285,7 +285,7 @@ def _page(
     )
 
 
-def _timings(results: Sequence[CellResult], drives: Sequence[DriveResult]) -> dict[str, object]:
+def _timings(results: Sequence[FoldResult], drives: Sequence[DriveResult]) -> dict[str, object]:
     return {
         "cells": [
             {
@@ -301,7 +301,7 @@ def _timings(results: Sequence[CellResult], drives: Sequence[DriveResult]) -> di
                 "dataset": one.dataset,
                 "controller": one.controller,
                 "episode": one.episode,
-                "simulated_s": one.figures.drive.time_s,
+                "simulated_s": one.figures.time_s,
                 "took_s": one.took_s,
             }
             for one in drives

@@ -11,7 +11,7 @@ from latentarm.evaluation.looks import look_of
 from latentarm.evaluation.table import ABSENT, format_figure, measure_name, rich_figures
 from latentarm_research.studies.compare.measures import TABLES
 from latentarm_research.studies.compare.rows import OVER_FOLDS, condition
-from latentarm_research.studies.compare.targets import Verdict
+from latentarm_research.studies.compare.targets import TargetVerdict
 from latentarm_research.studies.page import markdown_table
 
 CORNER: Final = "mean ± SD over seeds [SD over folds]"
@@ -51,7 +51,7 @@ def page_table(rows: Sequence[Row], dataset: str, noise_rad: float, of: Sequence
     return markdown_table([CORNER, *models], lines)
 
 
-def target_table(verdicts: Sequence[Verdict]) -> str:
+def target_table(verdicts: Sequence[TargetVerdict]) -> str:
     """Targets down, datasets and noises across."""
     columns = list(dict.fromkeys((one.dataset, one.noise_rad) for one in verdicts))
     head = ["", *(f"{dataset}, {noise_rad:g} rad" for dataset, noise_rad in columns)]

@@ -20,7 +20,7 @@ FitTimes = Mapping[tuple[str, float, str], float]
 
 
 @dataclass(frozen=True)
-class Target:
+class ModelTarget:
     """One target of a model.
 
     Attributes:
@@ -42,7 +42,7 @@ class Target:
 
 
 @dataclass(frozen=True)
-class Verdict:
+class TargetVerdict:
     """The result of one target.
 
     Attributes:
@@ -60,16 +60,16 @@ class Verdict:
     said: str
 
 
-def _at_most(name: str, measure: str, limit: float, scale: float = 1.0, unit: str = "") -> Target:
-    return Target(name, (measure,), lambda ours, _: ours[measure] <= limit, scale=scale, unit=unit)
+def _at_most(name: str, measure: str, limit: float, scale: float = 1.0, unit: str = "") -> ModelTarget:
+    return ModelTarget(name, (measure,), lambda ours, _: ours[measure] <= limit, scale=scale, unit=unit)
 
 
 def _no_more_than(
     other: str, what: str, measure: str, scale: float = 1.0, unit: str = "", share: float = 1.0
-) -> Target:
+) -> ModelTarget:
     """At most the other model's figure, or a share of it."""
     asked = "" if share == 1.0 else f"{share:g} × "
-    return Target(
+    return ModelTarget(
         f"{what} ≤ {asked}{look_of(other).label}'s",
         (measure,),
         lambda ours, its: ours[measure] <= share * its[measure],
@@ -89,7 +89,7 @@ TARGETS: Final = (
     _no_more_than(REFERENCE, "noise-free error", CLEAN_ERROR, unit=" %"),
     _at_most("drift 0", "drift", 1e-9, 100.0, " %"),
     _at_most("reversal ≤ 5 %", "reversal", 0.05, 100.0, " %"),
-    Target(
+    ModelTarget(
         "local R² ≥ 0.97 on both axes",
         ("r2_local_axis_0", "r2_local_axis_1"),
         lambda ours, _: min(ours["r2_local_axis_0"], ours["r2_local_axis_1"]) >= 0.97,
@@ -107,7 +107,7 @@ def verdicts(
     datasets: Sequence[str],
     noises_rad: Sequence[float],
     fit_times: FitTimes,
-) -> list[Verdict]:
+) -> list[TargetVerdict]:
     """Every target on every dataset under every noise; means are compared.
 
     Args:
@@ -120,7 +120,7 @@ def verdicts(
     Returns:
         Target by target, without those that are relative to a model that was not compared, or to itself.
     """
-    found: list[Verdict] = []
+    found: list[TargetVerdict] = []
     for target in TARGETS:
         if target.other == ours:
             continue
@@ -134,7 +134,9 @@ def verdicts(
                     said = _said(target, mine)
                     if target.other is not None:
                         said += f" ({look_of(target.other).label} {_said(target, other)})"
-                    found.append(Verdict(target.name, dataset, noise_rad, target.met(mine, other), said))
+                    found.append(
+                        TargetVerdict(target.name, dataset, noise_rad, target.met(mine, other), said)
+                    )
     return found
 
 
@@ -151,5 +153,5 @@ def _means(
     return means if took is None else {**means, FIT_S: took}
 
 
-def _said(target: Target, means: Means) -> str:
+def _said(target: ModelTarget, means: Means) -> str:
     return ", ".join(f"{target.scale * means[measure]:.3g}{target.unit}" for measure in target.measures)

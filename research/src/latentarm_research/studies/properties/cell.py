@@ -47,7 +47,7 @@ class Stream(IntEnum):
 
 
 @dataclass(frozen=True)
-class Cell:
+class PropertiesCell:
     """What is to be measured.
 
     Attributes:
@@ -73,7 +73,7 @@ def condition(noise_rad: float) -> str:
 
 
 @dataclass(frozen=True, eq=False)
-class CellResult:
+class PropertiesResult:
     """What was measured.
 
     Attributes:
@@ -83,13 +83,13 @@ class CellResult:
         fit_s: how long the fit of all seeds took, s.
     """
 
-    cell: Cell
+    cell: PropertiesCell
     figures: Mapping[str, FloatArray]
     decoder: Decoder
     fit_s: float
 
 
-def measure_cell(cell: Cell) -> CellResult:
+def measure_cell(cell: PropertiesCell) -> PropertiesResult:
     """Demonstrate, fit all seeds in one fit, measure.
 
     The figures are the same to the last bit in whatever process this runs: one thread each for linear algebra
@@ -138,7 +138,7 @@ def demonstrated(
     )
 
 
-def _measure(cell: Cell) -> CellResult:
+def _measure(cell: PropertiesCell) -> PropertiesResult:
     preset = cell.preset
     motion = MOTIONS[cell.task](preset.design)
     sizes = preset.episodes, preset.test_episodes
@@ -151,7 +151,7 @@ def _measure(cell: Cell) -> CellResult:
         _figures(cell, motion, index, *of_seed)
         for index, of_seed in enumerate(zip(shown, models, baselines, strict=True))
     ]
-    return CellResult(
+    return PropertiesResult(
         cell=cell,
         figures={name: np.concatenate([figures[name] for figures in each]) for name in each[0]},
         decoder=models[0].decoder(),
@@ -160,7 +160,7 @@ def _measure(cell: Cell) -> CellResult:
 
 
 def _figures(
-    cell: Cell,
+    cell: PropertiesCell,
     motion: PlanarMotion,
     index: int,
     shown: Demonstrated,
@@ -189,7 +189,7 @@ def _figures(
     return figures
 
 
-def _fit(cell: Cell, kind: str, shown: tuple[Demonstrated, ...]) -> list[LatentActionModel]:
+def _fit(cell: PropertiesCell, kind: str, shown: tuple[Demonstrated, ...]) -> list[LatentActionModel]:
     preset = cell.preset
     return fit_each(
         kind,

@@ -21,7 +21,7 @@ HALF_A_DIGIT: Final = 0.005
 """What a figure that is printed with two decimals and without SD may be off."""
 
 
-class Verdict(StrEnum):
+class PaperVerdict(StrEnum):
     """How a cell compares with the paper's."""
 
     IN_FAVOUR = "in the method's favour"
@@ -31,7 +31,7 @@ class Verdict(StrEnum):
     @property
     def holds(self) -> bool:
         """Whether the cell holds."""
-        return self is not Verdict.MISSED
+        return self is not PaperVerdict.MISSED
 
 
 @dataclass(frozen=True)
@@ -44,10 +44,10 @@ class PaperCell:
     """
 
     row: Row
-    verdict: Verdict
+    verdict: PaperVerdict
 
 
-def judge(mean: float, paper: float, sd: float, better: str, sees_context: bool) -> Verdict:
+def judge(mean: float, paper: float, sd: float, better: str, sees_context: bool) -> PaperVerdict:
     """Compare one figure with the paper's.
 
     Args:
@@ -58,13 +58,13 @@ def judge(mean: float, paper: float, sd: float, better: str, sees_context: bool)
         sees_context: whether the model's decoder does.
 
     Returns:
-        `Verdict.IN_FAVOUR` where ours is the paper's mean or beyond it in the method's favour.
+        `PaperVerdict.IN_FAVOUR` where ours is the paper's mean or beyond it in the method's favour.
     """
     upward = (better == "higher") == sees_context
     ahead = mean - paper if upward else paper - mean
     if ahead >= 0:
-        return Verdict.IN_FAVOUR
-    return Verdict.WITHIN if -ahead <= sd else Verdict.MISSED
+        return PaperVerdict.IN_FAVOUR
+    return PaperVerdict.WITHIN if -ahead <= sd else PaperVerdict.MISSED
 
 
 def paper_cells(rows: Iterable[Row], *, means: bool = False) -> list[PaperCell]:

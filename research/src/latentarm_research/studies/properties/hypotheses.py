@@ -24,9 +24,10 @@ import numpy as np
 from latentarm.core.types import FloatArray
 from latentarm.models.catalogue import KINDS
 from latentarm_research.studies.hypotheses import Comparison, corrected
-from latentarm_research.studies.properties.cell import CellResult
+from latentarm_research.studies.means_test import Direction
+from latentarm_research.studies.properties.cell import PropertiesResult
 from latentarm_research.studies.properties.paper import MODELS_OF_THE_PAPER
-from latentarm_research.studies.statistics import Direction, Statistic, compare_means
+from latentarm_research.studies.statistics import Statistic, compare_means
 
 PAPERS_MODELS: Final = "the paper's models"
 FURTHER_MODELS: Final = "conditioned models that the paper does not have"
@@ -38,7 +39,7 @@ lowest that it prints; this is one SD below, where a line still explains nine te
 
 
 @dataclass(frozen=True)
-class Claim:
+class PropertyClaim:
     """One part of a hypothesis.
 
     Attributes:
@@ -58,11 +59,11 @@ class Claim:
 
 # Path length is no part of this: an arm that stops far from its goal has a short path.
 CLAIMS: Final = (
-    Claim("H1", "median_error_percent_of_pca", "less"),
-    Claim("H2", "controllability_m", "less", tasks=("sine", "rotate")),
-    Claim("H2", "final_distance", "less"),
-    Claim("H2", "r2", "greater", threshold=LINEAR, tasks=("sine", "rotate")),
-    Claim("H2", "disentanglement_deg", "greater"),
+    PropertyClaim("H1", "median_error_percent_of_pca", "less"),
+    PropertyClaim("H2", "controllability_m", "less", tasks=("sine", "rotate")),
+    PropertyClaim("H2", "final_distance", "less"),
+    PropertyClaim("H2", "r2", "greater", threshold=LINEAR, tasks=("sine", "rotate")),
+    PropertyClaim("H2", "disentanglement_deg", "greater"),
 )
 
 
@@ -71,7 +72,7 @@ def conditioned(model: str) -> bool:
     return KINDS[model].sees_context
 
 
-def compare_models(results: Sequence[CellResult]) -> list[Comparison]:
+def compare_models(results: Sequence[PropertiesResult]) -> list[Comparison]:
     """Every test of H1 and H2 that the results allow.
 
     Args:
@@ -93,7 +94,9 @@ def compare_models(results: Sequence[CellResult]) -> list[Comparison]:
     return corrected(sorted(comparisons, key=lambda one: one.family != PAPERS_MODELS))
 
 
-def _test_claim(claim: Claim, task: str, models: Mapping[str, Mapping[str, FloatArray]]) -> list[Comparison]:
+def _test_claim(
+    claim: PropertyClaim, task: str, models: Mapping[str, Mapping[str, FloatArray]]
+) -> list[Comparison]:
     """A claim on one task: each conditioned model against the threshold or each unconditioned model."""
     if claim.tasks is not None and task not in claim.tasks:
         return []
@@ -112,7 +115,12 @@ def _test_claim(claim: Claim, task: str, models: Mapping[str, Mapping[str, Float
 
 
 def _test(
-    claim: Claim, task: str, model: str, values: FloatArray, against: str | None, reference: FloatArray
+    claim: PropertyClaim,
+    task: str,
+    model: str,
+    values: FloatArray,
+    against: str | None,
+    reference: FloatArray,
 ) -> Comparison:
     """One test, without correction."""
     known, known_reference = values[np.isfinite(values)], reference[np.isfinite(reference)]

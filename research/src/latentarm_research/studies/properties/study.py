@@ -10,7 +10,12 @@ from latentarm.core.types import Row
 from latentarm.evaluation.summary import Subject, summarise
 from latentarm_research.studies.hypotheses import Comparison, comparison_table, verdicts
 from latentarm_research.studies.page import render_page
-from latentarm_research.studies.properties.cell import Cell, CellResult, condition, measure_cell
+from latentarm_research.studies.properties.cell import (
+    PropertiesCell,
+    PropertiesResult,
+    condition,
+    measure_cell,
+)
 from latentarm_research.studies.properties.cells import cells_table, count, paper_cells, sweep_table
 from latentarm_research.studies.properties.figures import (
     beside_paper_figure,
@@ -38,23 +43,23 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def _measure(request: Request[Preset], grid: Grid) -> list[CellResult]:
+def _measure(request: Request[Preset], grid: Grid) -> list[PropertiesResult]:
     # Without noise most is measured: these take longest, and begin first. The models of a task stand
     # together, so that one process demonstrates once for all of them.
     cells = [
-        Cell(task, model, noise_rad, preset, request.seed, design)
+        PropertiesCell(task, model, noise_rad, preset, request.seed, design)
         for (design, preset), noise_rad in product(designs(request.preset).items(), request.preset.noises_rad)
         for task, model in product(request.tasks, request.preset.models)
     ]
     return grid.run("Models on tasks", measure_cell, cells, _label)
 
 
-def _label(cell: Cell) -> str:
+def _label(cell: PropertiesCell) -> str:
     design = [cell.design] if cell.design != AS_CHOSEN else []
     return ", ".join([cell.task, cell.model, condition(cell.noise_rad), *design])
 
 
-def _report(request: Request[Preset], results: list[CellResult]) -> Report:
+def _report(request: Request[Preset], results: list[PropertiesResult]) -> Report:
     proper = [result for result in results if result.cell.design == AS_CHOSEN]
     rows = with_paper([row for task in request.tasks for row in _rows(proper, task)])
     tests = compare_models(proper)
@@ -80,7 +85,7 @@ def _report(request: Request[Preset], results: list[CellResult]) -> Report:
     )
 
 
-def _place(cell: Cell) -> dict[str, object]:
+def _place(cell: PropertiesCell) -> dict[str, object]:
     return {
         "task": cell.task,
         "model": cell.model,
@@ -89,7 +94,7 @@ def _place(cell: Cell) -> dict[str, object]:
     }
 
 
-def _swept(request: Request[Preset], results: Sequence[CellResult]) -> list[Row]:
+def _swept(request: Request[Preset], results: Sequence[PropertiesResult]) -> list[Row]:
     """Rows of every design, with its name as their condition; none where there is one design."""
     names = designs(request.preset)
     if len(names) < 2:
@@ -108,7 +113,7 @@ def _swept(request: Request[Preset], results: Sequence[CellResult]) -> list[Row]
     ]
 
 
-def _rows(results: Sequence[CellResult], task: str) -> list[Row]:
+def _rows(results: Sequence[PropertiesResult], task: str) -> list[Row]:
     """One task's rows: without noise everything, and in the sweep what is measured under every noise."""
     here = [result for result in results if result.cell.task == task]
     rows = [
@@ -130,7 +135,9 @@ def _rows(results: Sequence[CellResult], task: str) -> list[Row]:
     ]
 
 
-def _figures(results: Sequence[CellResult], rows: Sequence[Row], tasks: Sequence[str]) -> "dict[str, Figure]":
+def _figures(
+    results: Sequence[PropertiesResult], rows: Sequence[Row], tasks: Sequence[str]
+) -> "dict[str, Figure]":
     """Those over all tasks, and one for each task."""
     noises_rad = sorted({result.cell.noise_rad for result in results})
     figures = {

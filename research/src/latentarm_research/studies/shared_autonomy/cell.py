@@ -57,7 +57,7 @@ class Stream(IntEnum):
 
 
 @dataclass(frozen=True)
-class Cell:
+class AutonomyCell:
     """What is to be measured.
 
     Attributes:
@@ -106,7 +106,7 @@ class Outcome:
 
 
 @dataclass(frozen=True, eq=False)
-class CellResult:
+class AutonomyResult:
     """What was measured.
 
     Attributes:
@@ -117,14 +117,14 @@ class CellResult:
         drive_s: how long all drives took, s.
     """
 
-    cell: Cell
+    cell: AutonomyCell
     outcomes: tuple[Outcome, ...]
     reconstruction: FloatArray
     fit_s: float
     drive_s: float
 
 
-def measure_cell(cell: Cell) -> CellResult:
+def measure_cell(cell: AutonomyCell) -> AutonomyResult:
     """Demonstrate, fit all seeds in one fit, drive, measure.
 
     The figures are the same to the last bit in whatever process this runs: one thread each for linear algebra
@@ -137,7 +137,7 @@ def measure_cell(cell: Cell) -> CellResult:
         return _measure(cell)
 
 
-def _measure(cell: Cell) -> CellResult:
+def _measure(cell: AutonomyCell) -> AutonomyResult:
     task, preset = TASKS[cell.task](), cell.preset
     training = annotate(task.demonstrate(preset.demonstrations, _generator(cell, Stream.TRAINING)), RULE)
     test = annotate(task.demonstrate(preset.test_demonstrations, _generator(cell, Stream.TEST)), RULE)
@@ -152,7 +152,7 @@ def _measure(cell: Cell) -> CellResult:
         for people in _together(cell)
         for outcome in _outcomes(cell, task, scene, model, method, people)
     )
-    return CellResult(
+    return AutonomyResult(
         cell=cell,
         outcomes=outcomes,
         reconstruction=_reconstruction(model, recorded_pairs(chosen), recorded_pairs(test)),
@@ -172,7 +172,7 @@ def _scene(task: TwoCups, fitted: Pairs) -> Scene:
     return Scene(task.robot.chain, RULE(goals, period_s=STEP_S), speed)
 
 
-def _fit(cell: Cell, task: TwoCups, training: Demonstrations) -> LatentActionModel:
+def _fit(cell: AutonomyCell, task: TwoCups, training: Demonstrations) -> LatentActionModel:
     preset = cell.preset
     return fit_model(
         cell.model,
@@ -216,7 +216,7 @@ def _reconstruction(model: LatentActionModel, fitted: Pairs, pairs: Pairs) -> Fl
     return percent_of(pca_error(fitted.action, pairs.action, model.latent_dim), error)
 
 
-def _together(cell: Cell) -> list[list[Person]]:
+def _together(cell: AutonomyCell) -> list[list[Person]]:
     """The cell's people in groups that drive in one go: for the same time, and about `ROWS` drives."""
     groups: list[list[Person]] = []
     for person in cell.people:
@@ -230,7 +230,12 @@ def _together(cell: Cell) -> list[list[Person]]:
 
 
 def _outcomes(
-    cell: Cell, task: TwoCups, scene: Scene, model: LatentActionModel, method: str, people: Sequence[Person]
+    cell: AutonomyCell,
+    task: TwoCups,
+    scene: Scene,
+    model: LatentActionModel,
+    method: str,
+    people: Sequence[Person],
 ) -> list[Outcome]:
     """Results of people who drive in one batch."""
     target = np.arange(cell.drives) % len(scene.goals)
@@ -268,12 +273,12 @@ def _outcomes(
     return outcomes
 
 
-def _chances(cell: Cell, seed: int, person: Person) -> FloatArray:
+def _chances(cell: AutonomyCell, seed: int, person: Person) -> FloatArray:
     """Random numbers (P, T) for one person's drives with one seed, independent of who else drives."""
     chances = _generator(cell, Stream.CHANCES, seed, int.from_bytes(person.label.encode()))
     return chances.random((cell.drives, steps_of(person)))
 
 
-def _generator(cell: Cell, *use: int) -> np.random.Generator:
+def _generator(cell: AutonomyCell, *use: int) -> np.random.Generator:
     """The same for every model and method."""
     return np.random.default_rng(sequence(cell.seed, cell.task, *use))

@@ -14,7 +14,7 @@ from latentarm_research.drives.drive_figures import GOAL_COLOURS, GOAL_MARKERS
 from latentarm_research.studies.drawing import arm_line, draw_series, name_series, plane, title
 from latentarm_research.studies.drawing import draw_arm as draw_planar_arm
 from latentarm_research.studies.shared_autonomy.ablations import weight_label
-from latentarm_research.studies.shared_autonomy.cell import METHODS, CellResult, Outcome
+from latentarm_research.studies.shared_autonomy.cell import METHODS, AutonomyResult, Outcome
 from latentarm_research.studies.shared_autonomy.drive import STEP_S
 from latentarm_research.studies.shared_autonomy.hypotheses import MEASURE
 from latentarm_research.studies.shared_autonomy.intervals import Interval, band, interval
@@ -66,7 +66,7 @@ Outcomes = dict[tuple[str, str], Outcome]
 """Outcomes by method and person."""
 
 
-def expertise_figure(results: Sequence[CellResult], preset: Preset, tasks: Sequence[str]) -> "Drawing":
+def expertise_figure(results: Sequence[AutonomyResult], preset: Preset, tasks: Sequence[str]) -> "Drawing":
     """Final error and time over rationality, a column per arm, as in the paper's figure 9."""
     figure = _figure(EXPERTISE_MM, "Fixed expertise, mean with 95 % interval; simulated", wide=False)
     panels = figure.subplots(len(EXPERTISE_MEASURES), len(tasks), sharex=True, sharey="row", squeeze=False)
@@ -88,7 +88,7 @@ def expertise_figure(results: Sequence[CellResult], preset: Preset, tasks: Seque
     return figure
 
 
-def changes_figure(results: Sequence[CellResult], preset: Preset, tasks: Sequence[str]) -> "Drawing":
+def changes_figure(results: Sequence[AutonomyResult], preset: Preset, tasks: Sequence[str]) -> "Drawing":
     """Final error over the time of a change; belief over time for two, as in the paper's figure 10."""
     figure = _figure(
         CHANGES_ROW_MM * len(tasks) + FRAME_MM,
@@ -115,7 +115,7 @@ def changes_figure(results: Sequence[CellResult], preset: Preset, tasks: Sequenc
     return figure
 
 
-def learners_figure(results: Sequence[CellResult], preset: Preset, tasks: Sequence[str]) -> "Drawing":
+def learners_figure(results: Sequence[AutonomyResult], preset: Preset, tasks: Sequence[str]) -> "Drawing":
     """State error and belief of people who learn over time, a row per arm, as in the paper's figure 11."""
     figure = _figure(
         ROW_MM * len(tasks) + FRAME_MM,
@@ -140,7 +140,7 @@ def learners_figure(results: Sequence[CellResult], preset: Preset, tasks: Sequen
     return figure
 
 
-def slopes_figure(results: Sequence[CellResult], preset: Preset, tasks: Sequence[str]) -> "Drawing":
+def slopes_figure(results: Sequence[AutonomyResult], preset: Preset, tasks: Sequence[str]) -> "Drawing":
     """Final error over the slope of learning, a row per arm and a column per model."""
     figure = _figure(
         ROW_MM * len(tasks) + FRAME_MM,
@@ -164,7 +164,7 @@ def slopes_figure(results: Sequence[CellResult], preset: Preset, tasks: Sequence
     return figure
 
 
-def models_figure(results: Sequence[CellResult], preset: Preset, tasks: Sequence[str]) -> "Drawing":
+def models_figure(results: Sequence[AutonomyResult], preset: Preset, tasks: Sequence[str]) -> "Drawing":
     """Final error over the time of the change, a row per arm and a column per model."""
     figure = _figure(
         ROW_MM * len(tasks) + FRAME_MM,
@@ -260,7 +260,7 @@ def _draw_paths(axes: "Axes", task: TwoCups, paths: list[FloatArray], led_to: li
     )
 
 
-def outcomes_of(results: Sequence[CellResult], task: str, model: str) -> Outcomes:
+def outcomes_of(results: Sequence[AutonomyResult], task: str, model: str) -> Outcomes:
     """Outcomes of the study proper."""
     return {
         (one.method, one.person.label): one

@@ -21,11 +21,17 @@ import numpy as np
 
 from latentarm.core.types import FloatArray
 from latentarm_research.studies.hypotheses import Comparison, corrected
-from latentarm_research.studies.shared_autonomy.cell import WITH_ENTROPY, WITH_HELP, WITHOUT_HELP, CellResult
+from latentarm_research.studies.means_test import Direction
+from latentarm_research.studies.shared_autonomy.cell import (
+    WITH_ENTROPY,
+    WITH_HELP,
+    WITHOUT_HELP,
+    AutonomyResult,
+)
 from latentarm_research.studies.shared_autonomy.intervals import interval
 from latentarm_research.studies.shared_autonomy.measures import ARRIVED
 from latentarm_research.studies.shared_autonomy.preset import Person, Preset, learner, of_fixed_expertise
-from latentarm_research.studies.statistics import Direction, paired
+from latentarm_research.studies.statistics import paired
 
 MEASURE: Final = "final_state_error"
 
@@ -37,7 +43,7 @@ TRAPPED: Final = 1.0 - REACHED
 
 
 @dataclass(frozen=True)
-class Claim:
+class MethodClaim:
     """One part of a hypothesis: a method's error against another's or against a mark, for one person."""
 
     hypothesis: str
@@ -47,20 +53,20 @@ class Claim:
     direction: Direction = "less"
 
 
-def claims(preset: Preset) -> list[Claim]:
+def claims(preset: Preset) -> list[MethodClaim]:
     """All parts of H1, H2 and H3."""
     latest = preset.latest_change
     return [
         *(
-            Claim("H1", of_fixed_expertise(beta), method, WITHOUT_HELP)
+            MethodClaim("H1", of_fixed_expertise(beta), method, WITHOUT_HELP)
             for beta in preset.betas[1:-1]
             for method in (WITH_HELP, WITH_ENTROPY)
         ),
-        Claim("H2", latest, WITH_ENTROPY, WITH_HELP),
-        Claim("H2", latest, WITH_ENTROPY, REACHED),
-        Claim("H2", latest, WITH_HELP, TRAPPED, "greater"),
+        MethodClaim("H2", latest, WITH_ENTROPY, WITH_HELP),
+        MethodClaim("H2", latest, WITH_ENTROPY, REACHED),
+        MethodClaim("H2", latest, WITH_HELP, TRAPPED, "greater"),
         *(
-            Claim("H3", learner(name, slope), WITH_ENTROPY, WITH_HELP)
+            MethodClaim("H3", learner(name, slope), WITH_ENTROPY, WITH_HELP)
             for name, slope in preset.learners.items()
         ),
     ]
@@ -70,7 +76,7 @@ Errors = Mapping[tuple[str, str], FloatArray]
 """Errors of all drives (S, P) by method and person."""
 
 
-def compare_methods(results: Sequence[CellResult], preset: Preset) -> list[Comparison]:
+def compare_methods(results: Sequence[AutonomyResult], preset: Preset) -> list[Comparison]:
     """Every test that the results of the study proper allow, by hypothesis, then by model, then by task."""
     errors = _errors(results)
     return corrected(
@@ -84,7 +90,7 @@ def compare_methods(results: Sequence[CellResult], preset: Preset) -> list[Compa
     )
 
 
-def _errors(results: Iterable[CellResult]) -> dict[tuple[str, str], Errors]:
+def _errors(results: Iterable[AutonomyResult]) -> dict[tuple[str, str], Errors]:
     """Errors by task and model."""
     found: dict[tuple[str, str], dict[tuple[str, str], FloatArray]] = {}
     for result in results:
@@ -94,7 +100,7 @@ def _errors(results: Iterable[CellResult]) -> dict[tuple[str, str], Errors]:
     return dict(found)
 
 
-def _test(claim: Claim, task: str, model: str, errors: Errors) -> Comparison:
+def _test(claim: MethodClaim, task: str, model: str, errors: Errors) -> Comparison:
     """One test, without correction."""
     values = errors[claim.method, claim.person.label]
     mark = None if isinstance(claim.against, str) else np.full_like(values, claim.against)

@@ -10,7 +10,7 @@ from typing import Final, NamedTuple
 
 from latentarm.core.types import FloatArray, Row
 from latentarm.evaluation.measures import unit_of
-from latentarm_research.studies.shared_autonomy.cell import WITH_HELP, WITHOUT_HELP, CellResult, Outcome
+from latentarm_research.studies.shared_autonomy.cell import WITH_HELP, WITHOUT_HELP, AutonomyResult, Outcome
 from latentarm_research.studies.shared_autonomy.intervals import Interval, interval
 
 EXTRA_TIME: Final = "extra_time_percent"
@@ -63,7 +63,7 @@ class Figure(NamedTuple):
         return interval(self.values)
 
 
-def figures(results: Sequence[CellResult]) -> list[Figure]:
+def figures(results: Sequence[AutonomyResult]) -> list[Figure]:
     """Every figure: the study proper in its order, then the ablations."""
     return [
         *(figure for result in results if result.cell.variant is None for figure in _proper(result)),
@@ -97,7 +97,7 @@ def condition(outcome: Outcome) -> str:
     return f"{outcome.method}, {outcome.person.label}"
 
 
-def _proper(result: CellResult) -> Iterator[Figure]:
+def _proper(result: AutonomyResult) -> Iterator[Figure]:
     cell = result.cell
     trained = "without entropy" if cell.entropy is None else "with entropy"
     yield Figure(cell.task, cell.model, trained, RECONSTRUCTION, result.reconstruction[:, None])
@@ -107,7 +107,7 @@ def _proper(result: CellResult) -> Iterator[Figure]:
     yield from _extra_times(result)
 
 
-def _varied(result: CellResult) -> Iterator[Figure]:
+def _varied(result: AutonomyResult) -> Iterator[Figure]:
     cell, variant = result.cell, result.cell.variant
     yield Figure(cell.task, cell.model, str(variant), RECONSTRUCTION, result.reconstruction[:, None])
     for outcome in result.outcomes:
@@ -115,7 +115,7 @@ def _varied(result: CellResult) -> Iterator[Figure]:
             yield Figure(cell.task, cell.model, f"{variant}, {outcome.person.label}", measure, values)
 
 
-def _extra_times(result: CellResult) -> Iterator[Figure]:
+def _extra_times(result: AutonomyResult) -> Iterator[Figure]:
     """How much more time LA takes than LA+SA with the same model, seed by seed, for each person, %."""
     times = {(one.method, one.person.label): one.figures["time_s"].mean(axis=1) for one in result.outcomes}
     for method, person in times:

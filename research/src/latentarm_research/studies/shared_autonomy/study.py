@@ -14,8 +14,8 @@ from latentarm_research.studies.shared_autonomy.cell import (
     WITH_ENTROPY,
     WITH_HELP,
     WITHOUT_HELP,
-    Cell,
-    CellResult,
+    AutonomyCell,
+    AutonomyResult,
     measure_cell,
 )
 from latentarm_research.studies.shared_autonomy.figures import (
@@ -48,11 +48,11 @@ MAIN: Final = (MEASURE, "time_s")
 """Measures that are shown of the paper's model at once; the others are to be unfolded."""
 
 
-def cells_of(request: Request[Preset]) -> list[Cell]:
+def cells_of(request: Request[Preset]) -> list[AutonomyCell]:
     """The study proper, its longest cells first, and the ablations."""
     preset = request.preset
     proper = [
-        Cell(
+        AutonomyCell(
             task=task,
             model=model,
             entropy=entropy,
@@ -71,13 +71,13 @@ def cells_of(request: Request[Preset]) -> list[Cell]:
     return [*proper, *(cell for task in request.tasks for cell in _varied(request, task))]
 
 
-def _varied(request: Request[Preset], task: str) -> list[Cell]:
+def _varied(request: Request[Preset], task: str) -> list[AutonomyCell]:
     """The ablation of one arm."""
     preset, ablation = request.preset, request.preset.ablation
     if ablation is None:
         return []
     return [
-        Cell(
+        AutonomyCell(
             task=task,
             model=MODEL,
             entropy=entropy,
@@ -93,10 +93,10 @@ def _varied(request: Request[Preset], task: str) -> list[Cell]:
     ]
 
 
-def _measure(request: Request[Preset], grid: Grid) -> list[CellResult]:
+def _measure(request: Request[Preset], grid: Grid) -> list[AutonomyResult]:
     measured = grid.run("Models, with entropy and without", measure_cell, cells_of(request), _label)
 
-    def place(result: CellResult) -> tuple[int, int, bool, bool]:
+    def place(result: AutonomyResult) -> tuple[int, int, bool, bool]:
         """By arm, model, the study before its ablations, without entropy first."""
         cell = result.cell
         proper = cell.variant is None
@@ -110,12 +110,12 @@ def _measure(request: Request[Preset], grid: Grid) -> list[CellResult]:
     return sorted(measured, key=place)
 
 
-def _label(cell: Cell) -> str:
+def _label(cell: AutonomyCell) -> str:
     trained = "with entropy" if cell.entropy else "without entropy"
     return f"{cell.task}, {cell.model}, {cell.variant or trained}"
 
 
-def _report(request: Request[Preset], results: list[CellResult]) -> Report:
+def _report(request: Request[Preset], results: list[AutonomyResult]) -> Report:
     found = figures(results)
     rows, tests = rows_of(found), compare_methods(results, request.preset)
     drawings = _drawings(request, results, found)
@@ -138,7 +138,7 @@ def _report(request: Request[Preset], results: list[CellResult]) -> Report:
 
 
 def _drawings(
-    request: Request[Preset], results: Sequence[CellResult], found: Sequence[Figure]
+    request: Request[Preset], results: Sequence[AutonomyResult], found: Sequence[Figure]
 ) -> "dict[str, Drawing]":
     preset, tasks = request.preset, request.tasks
     drawings = {
@@ -205,7 +205,7 @@ def _by_seed(figure: Figure) -> dict[str, Any]:
     }
 
 
-def _courses(results: Sequence[CellResult], preset: Preset) -> list[dict[str, Any]]:
+def _courses(results: Sequence[AutonomyResult], preset: Preset) -> list[dict[str, Any]]:
     """What the figures show over time: state error and belief of the paper's model, mean and interval."""
     shown = {person.label for person in preset.drawn_people}
     return [

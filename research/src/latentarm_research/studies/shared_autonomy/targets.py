@@ -18,7 +18,7 @@ AT_MOST: Final = 0.1
 """The same with entropy: they are at theirs."""
 
 
-class Target(NamedTuple):
+class AutonomyTarget(NamedTuple):
     """One target with one model on one arm.
 
     Attributes:
@@ -36,7 +36,7 @@ class Target(NamedTuple):
     met: bool
 
 
-def targets(found: Sequence[Figure], preset: Preset) -> list[Target]:
+def targets(found: Sequence[Figure], preset: Preset) -> list[AutonomyTarget]:
     """Every target, by what is asked for, then by arm and model."""
     errors = {(one.task, one.model, one.condition): one.interval for one in found if one.measure == MEASURE}
     places = list(dict.fromkeys((task, model) for task, model, _ in errors))
@@ -51,12 +51,12 @@ def targets(found: Sequence[Figure], preset: Preset) -> list[Target]:
     ]
 
 
-def target_table(wanted: Sequence[Target]) -> str:
+def target_table(wanted: Sequence[AutonomyTarget]) -> str:
     """All targets, in Markdown."""
     return markdown_table(["target", "arm", "model", "found", ""], list(_lines(wanted)))
 
 
-def _lines(wanted: Sequence[Target]) -> Iterator[list[str]]:
+def _lines(wanted: Sequence[AutonomyTarget]) -> Iterator[list[str]]:
     for one in wanted:
         met = "met" if one.met else "**missed**"
         yield [one.said, look_of(one.task).label, look_of(one.model).label, one.found, met]
@@ -66,24 +66,24 @@ Errors = dict[tuple[str, str, str], Interval]
 """Final state errors by task, model and condition."""
 
 
-def _trapped(errors: Errors, person: Person, task: str, model: str) -> Target:
+def _trapped(errors: Errors, person: Person, task: str, model: str) -> AutonomyTarget:
     error = errors[task, model, f"{WITH_HELP}, {person.label}"]
     said = f"{person.label}: {WITH_HELP} at least {AT_LEAST:g}"
-    return Target(said, task, model, _written(error), error.mean >= AT_LEAST)
+    return AutonomyTarget(said, task, model, _written(error), error.mean >= AT_LEAST)
 
 
-def _free(errors: Errors, person: Person, task: str, model: str) -> Target:
+def _free(errors: Errors, person: Person, task: str, model: str) -> AutonomyTarget:
     error = errors[task, model, f"{WITH_ENTROPY}, {person.label}"]
     said = f"{person.label}: {WITH_ENTROPY} at most {AT_MOST:g}"
-    return Target(said, task, model, _written(error), error.mean <= AT_MOST)
+    return AutonomyTarget(said, task, model, _written(error), error.mean <= AT_MOST)
 
 
-def _apart(errors: Errors, person: Person, task: str, model: str) -> Target:
+def _apart(errors: Errors, person: Person, task: str, model: str) -> AutonomyTarget:
     helped, opened = (
         errors[task, model, f"{method}, {person.label}"] for method in (WITH_HELP, WITH_ENTROPY)
     )
     found = f"{_written(helped)} and {_written(opened)}"
-    return Target(f"{person.label}: intervals apart", task, model, found, opened.high < helped.low)
+    return AutonomyTarget(f"{person.label}: intervals apart", task, model, found, opened.high < helped.low)
 
 
 def _written(error: Interval) -> str:

@@ -11,8 +11,8 @@ from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations, Episode
 from latentarm.demonstrations.validation import validate
 from latentarm.models.kind import TrainedModel
+from latentarm_research.drives import drive as drives
 from latentarm_research.drives.demonstrate import dataset_of, demonstrate_once
-from latentarm_research.drives.task_drive import TaskSetup, drive_task
 from latentarm_research.people.catalogue import PEOPLE
 from latentarm_research.people.names import OperatorName
 from latentarm_research.studies.fitting import fit_model, validation_episodes
@@ -43,7 +43,7 @@ class ShownCell:
 
 @final
 @dataclass(frozen=True, eq=False)
-class Shown:
+class DemonstratedRun:
     """What came of a `ShownCell`.
 
     Attributes:
@@ -59,7 +59,7 @@ class Shown:
     objects: tuple[str, ...]
 
 
-def show(cell: ShownCell) -> Shown:
+def show(cell: ShownCell) -> DemonstratedRun:
     """Let the scripted demonstrator do the task.
 
     Raises:
@@ -70,12 +70,12 @@ def show(cell: ShownCell) -> Shown:
         rng = generator(cell.seed, cell.task, cell.stream, cell.number)
         shown = demonstrate_once(task, choice_of(task, cell.number), rng)
     run = shown_run(task, cell.number, shown)
-    return Shown(cell, run, shown.episode if run.success else None, shown.objects)
+    return DemonstratedRun(cell, run, shown.episode if run.success else None, shown.objects)
 
 
 @final
 @dataclass(frozen=True, eq=False)
-class TrainingCell:
+class ModelCell:
     """Models of one kind.
 
     Attributes:
@@ -95,12 +95,12 @@ class TrainingCell:
 
 @final
 @dataclass(frozen=True, eq=False)
-class Trained:
-    """What came of a `TrainingCell`.
+class FittedModel:
+    """What came of a `ModelCell`.
 
     Attributes:
         task: a name of `latentarm_research.studies.tasks.moved.TASKS`.
-        condition: see `TrainingCell`.
+        condition: see `ModelCell`.
         model: with all its seeds.
         fit_s: how long the fit took, s.
     """
@@ -121,7 +121,7 @@ class Trained:
         return self.condition.way_back and not self.model.dimensions.way_back
 
 
-def train(cell: TrainingCell) -> Trained:
+def train(cell: ModelCell) -> FittedModel:
     """Fit the models.
 
     Raises:
@@ -145,12 +145,12 @@ def train(cell: TrainingCell) -> Trained:
             state_noise_rad=preset.state_noise_rad,
             way_back_m=preset.way_back_m if condition.way_back else 0.0,
         )
-        return Trained(cell.task, condition, model.trained_, perf_counter() - began)
+        return FittedModel(cell.task, condition, model.trained_, perf_counter() - began)
 
 
 @final
 @dataclass(frozen=True, eq=False)
-class DriveCell:
+class TaskRunCell:
     """A run of a simulated person who drives.
 
     Attributes:
@@ -175,12 +175,12 @@ class DriveCell:
 
 @final
 @dataclass(frozen=True, eq=False)
-class Driven:
-    """What came of a `DriveCell`.
+class TaskRunResult:
+    """What came of a `TaskRunCell`.
 
     Attributes:
         task: a name of `latentarm_research.studies.tasks.moved.TASKS`.
-        condition: see `DriveCell`.
+        condition: see `TaskRunCell`.
         run: how it went.
         drive_s: how long the simulation took, s.
     """
@@ -191,7 +191,7 @@ class Driven:
     drive_s: float
 
 
-def drive(cell: DriveCell) -> Driven:
+def drive(cell: TaskRunCell) -> TaskRunResult:
     """Let the simulated person do the task.
 
     Raises:
@@ -200,15 +200,15 @@ def drive(cell: DriveCell) -> Driven:
     task = task_of(cell.task, Stream.RUNS)
     with threadpool_limits(limits=1):
         began = perf_counter()
-        setup = TaskSetup(task, cell.driver.controller(task.robot, cell.number), PEOPLE[cell.person])
+        setup = drives.Setup(task, cell.driver.controller(task.robot, cell.number), PEOPLE[cell.person])
         # The same number gives the same scene and start to the demonstrator and in every condition.
         rng = generator(cell.seed, cell.task, Stream.RUNS, cell.number)
-        trace = drive_task(setup, choice_of(task, cell.number), rng)
+        trace = drives.drive(setup, choice_of(task, cell.number), rng)
         run = driven_run(task, cell.number, trace)
-        return Driven(cell.task, cell.condition, run, perf_counter() - began)
+        return TaskRunResult(cell.task, cell.condition, run, perf_counter() - began)
 
 
-def training_set(task: str, shown: Sequence[Shown]) -> Demonstrations:
+def training_set(task: str, shown: Sequence[DemonstratedRun]) -> Demonstrations:
     """The demonstrations of a task that succeeded, as a dataset.
 
     Args:

@@ -21,9 +21,15 @@ from latentarm.models.saving import CONFIG_LIMIT, CONFIG_NAME, read_model, read_
 from latentarm.runs.results_folder import write_json
 from latentarm_research.baselines.learned_orientation import OrientationMap
 from latentarm_research.metrics.drives import Drive
-from latentarm_research.metrics.task_drives import TaskDrive
 from latentarm_research.studies.study import Keep
-from latentarm_research.studies.tasks.cell import DriveCell, Driven, Shown, ShownCell, Trained, TrainingCell
+from latentarm_research.studies.tasks.cell import (
+    DemonstratedRun,
+    FittedModel,
+    ModelCell,
+    ShownCell,
+    TaskRunCell,
+    TaskRunResult,
+)
 from latentarm_research.studies.tasks.condition import ORIENTED
 from latentarm_research.studies.tasks.orientation import OrientationCell, Oriented
 from latentarm_research.studies.tasks.runs import Run, kept_in
@@ -44,7 +50,7 @@ def _shown_path(out: Path, cell: ShownCell) -> Path:
     return out / RUNS / cell.task / cell.stream.name.lower() / f"{cell.number}.json"
 
 
-def _write_shown(out: Path, cell: ShownCell, shown: Shown) -> None:
+def _write_shown(out: Path, cell: ShownCell, shown: DemonstratedRun) -> None:
     path, episode = _shown_path(out, cell), shown.episode
     about: dict[str, object] = {}
     if episode is not None:
@@ -53,14 +59,14 @@ def _write_shown(out: Path, cell: ShownCell, shown: Shown) -> None:
     write_json(path, {**shown.run.as_json(), "objects": list(shown.objects), **about})
 
 
-def _read_shown(out: Path, cell: ShownCell) -> Shown | None:
+def _read_shown(out: Path, cell: ShownCell) -> DemonstratedRun | None:
     path = _shown_path(out, cell)
     if not path.exists():
         return None
     section = Section.of_file(path, LIMIT)
     run = _run(section, cell.number)
     objects = tuple(section.texts("objects"))
-    return Shown(cell, run, _episode(section, path) if run.success else None, objects)
+    return DemonstratedRun(cell, run, _episode(section, path) if run.success else None, objects)
 
 
 def _episode(section: Section, path: Path) -> Episode:
@@ -71,35 +77,36 @@ def _episode(section: Section, path: Path) -> Episode:
     return Episode(state, timestamp, task=section.text("text"), extras=arrays)
 
 
-def _drive_path(out: Path, cell: DriveCell) -> Path:
+def _drive_path(out: Path, cell: TaskRunCell) -> Path:
     return out / RUNS / cell.task / cell.person / cell.driver.condition.folder / f"{cell.number}.json"
 
 
-def _write_drive(out: Path, cell: DriveCell, driven: Driven) -> None:
+def _write_drive(out: Path, cell: TaskRunCell, driven: TaskRunResult) -> None:
     write_json(_drive_path(out, cell), {**driven.run.as_json(), "drive_s": driven.drive_s})
 
 
-def _read_drive(out: Path, cell: DriveCell) -> Driven | None:
+def _read_drive(out: Path, cell: TaskRunCell) -> TaskRunResult | None:
     path = _drive_path(out, cell)
     if not path.exists():
         return None
     section = Section.of_file(path, LIMIT)
-    drive = Drive(**_values(section, Drive))
-    figures = TaskDrive(drive, **_values(section, TaskDrive))
-    return Driven(cell.task, cell.condition, _run(section, cell.number, figures), section.number("drive_s"))
+    figures = Drive(**_values(section, Drive))
+    return TaskRunResult(
+        cell.task, cell.condition, _run(section, cell.number, figures), section.number("drive_s")
+    )
 
 
-def _write_model(out: Path, cell: TrainingCell, trained: Trained) -> None:
+def _write_model(out: Path, cell: ModelCell, trained: FittedModel) -> None:
     folder = out / MODELS / kept_in(cell.task, cell.condition)
     write_model(folder, trained.model, {"preset": asdict(cell.preset), "fit_s": trained.fit_s})
 
 
-def _read_model(out: Path, cell: TrainingCell) -> Trained | None:
+def _read_model(out: Path, cell: ModelCell) -> FittedModel | None:
     folder = out / MODELS / kept_in(cell.task, cell.condition)
     if not (folder / CONFIG_NAME).exists():
         return None
     fit_s = Section.of_file(folder / CONFIG_NAME, CONFIG_LIMIT).number("fit_s")
-    return Trained(cell.task, cell.condition, read_model(folder), fit_s)
+    return FittedModel(cell.task, cell.condition, read_model(folder), fit_s)
 
 
 def _orientation_path(out: Path, cell: OrientationCell) -> Path:
@@ -170,7 +177,7 @@ def _values(section: Section, record: type) -> dict[str, Any]:
     }
 
 
-def _run(section: Section, number: int, figures: TaskDrive | None = None) -> Run:
+def _run(section: Section, number: int, figures: Drive | None = None) -> Run:
     run = Run(**_values(section, Run), figures=figures)
     if run.number != number or run.done > len(run.steps):
         raise UserError(f"{section.where} is no run {number} of this study: remove it, and it is run again.")

@@ -6,8 +6,8 @@ from typing import Final, final
 
 from latentarm.core.types import Row
 from latentarm.evaluation.summary import Subject, summarise
-from latentarm_research.metrics.task_drives import task_drive_rows
-from latentarm_research.studies.tasks.cell import Driven, Shown, Trained
+from latentarm_research.metrics.drives import drive_rows
+from latentarm_research.studies.tasks.cell import DemonstratedRun, FittedModel, TaskRunResult
 from latentarm_research.studies.tasks.condition import DEMONSTRATOR, Condition
 from latentarm_research.studies.tasks.preset import Stream
 from latentarm_research.studies.tasks.runs import Run
@@ -17,7 +17,7 @@ STUDY: Final = "tasks"
 
 @final
 @dataclass(frozen=True, eq=False)
-class Measured:
+class TasksResults:
     """Everything that was measured.
 
     Attributes:
@@ -26,9 +26,9 @@ class Measured:
         driven: by simulated people.
     """
 
-    shown: Sequence[Shown]
-    trained: Sequence[Trained]
-    driven: Sequence[Driven]
+    shown: Sequence[DemonstratedRun]
+    trained: Sequence[FittedModel]
+    driven: Sequence[TaskRunResult]
 
     def runs(self, task: str) -> dict[Condition, tuple[Run, ...]]:
         """The runs of a task, by condition, each in the order of their numbers."""
@@ -91,7 +91,7 @@ def runs_as_json(by_task: Mapping[str, Mapping[Condition, Sequence[Run]]]) -> li
 def _rows(subject: Subject, runs: Sequence[Run]) -> list[Row]:
     drives = [run.figures for run in runs if run.figures is not None]
     if drives:
-        return task_drive_rows(subject, drives)
+        return drive_rows(subject, drives)
     return [
         summarise(subject, "success_rate", [float(run.success) for run in runs]),
         summarise(subject, "steps_done", [run.done / len(run.steps) for run in runs]),

@@ -57,7 +57,7 @@ class Standing:
 
 @final
 @dataclass(frozen=True)
-class Verdict:
+class DefaultVerdict:
     """What the rule says.
 
     Attributes:
@@ -92,7 +92,7 @@ class Verdict:
 
 def decide(
     by_task: ByTask, fit_s: Mapping[Condition, float], tasks: Sequence[str] = (*SCENE_TASKS,)
-) -> Verdict:
+) -> DefaultVerdict:
     """Apply the rule.
 
     Args:
@@ -105,15 +105,19 @@ def decide(
     task, what = fewest = min(cells, key=lambda cell: counts[cell])
     if not fit_s or counts[fewest] < LEAST:
         where = f"{task}, {what.person}, {what.label}"
-        return Verdict(f"not decided: {counts[fewest]} runs per cell ({where}), {LEAST} needed")
+        return DefaultVerdict(f"not decided: {counts[fewest]} runs per cell ({where}), {LEAST} needed")
     standings = tuple(_standing(by_task, what, tasks, fit_s[what], counts[fewest]) for what in fit_s)
     left = [one for one in standings if not one.worse_at]
     if not left:
-        return Verdict("not decided: every candidate makes a task worse than mode switching", None, standings)
+        return DefaultVerdict(
+            "not decided: every candidate makes a task worse than mode switching", None, standings
+        )
     most = max(one.succeeded for one in left)
     tied = [one for one in left if one.succeeded >= (1.0 - TIED) * most]
     best = min(tied, key=lambda one: (one.time_ratio is None, one.time_ratio, one.fit_s))
-    return Verdict(f"{best.name} ({len(tied)} of {len(standings)} candidates tied)", best.name, standings)
+    return DefaultVerdict(
+        f"{best.name} ({len(tied)} of {len(standings)} candidates tied)", best.name, standings
+    )
 
 
 def _standing(by_task: ByTask, what: Condition, tasks: Sequence[str], fit_s: float, runs: int) -> Standing:

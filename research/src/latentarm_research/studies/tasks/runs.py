@@ -15,8 +15,8 @@ from latentarm.tasks.scene_task import SceneTask
 from latentarm.tasks.steps import TaskStep
 from latentarm_research.baselines.learned_orientation import LearnedOrientationController, OrientationMap
 from latentarm_research.drives.demonstrate import Demonstration
-from latentarm_research.drives.task_drive import TaskTrace
-from latentarm_research.metrics.task_drives import TaskDrive
+from latentarm_research.drives.trace import Trace
+from latentarm_research.metrics.drives import Drive
 from latentarm_research.studies.tasks.condition import Condition
 
 
@@ -74,15 +74,15 @@ class Run:
     ended_in: str
     why: str
     time_s: float
-    figures: TaskDrive | None = None
+    figures: Drive | None = None
 
     def as_json(self) -> dict[str, object]:
         """Plain mapping; what has no value is None."""
         entries = asdict(self)
-        figures = entries.pop("figures") or {"drive": {}}
+        figures = entries.pop("figures") or {}
         return {
             name: None if isinstance(value, float) and not isfinite(value) else value
-            for name, value in (figures.pop("drive") | figures | entries).items()
+            for name, value in (figures | entries).items()
         }
 
 
@@ -122,7 +122,7 @@ def shown_run(task: SceneTask, number: int, shown: Demonstration) -> Run:
     )
 
 
-def driven_run(task: SceneTask, number: int, trace: TaskTrace) -> Run:
+def driven_run(task: SceneTask, number: int, trace: Trace) -> Run:
     """A run in which a simulated person drove."""
     return Run(
         number=number,
@@ -131,9 +131,9 @@ def driven_run(task: SceneTask, number: int, trace: TaskTrace) -> Run:
         done=len(trace.done_s),
         success=trace.figures.success,
         ended_in=trace.ended_in,
-        why=trace.why,
+        why=trace.ending.detail,
         time_s=trace.figures.time_s,
-        figures=trace.measured,
+        figures=trace.figures,
     )
 
 

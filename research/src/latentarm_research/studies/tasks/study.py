@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Final
 from latentarm.core.types import Row
 from latentarm.evaluation.looks import look_of
 from latentarm.runs.results_folder import package_versions
+from latentarm_research.drives.drive import REARM_S
 from latentarm_research.drives.guide import GuidingHand
-from latentarm_research.drives.task_drive import REARM_S, STUCK_S
+from latentarm_research.metrics.ending import STUCK_S
 from latentarm_research.studies import fitting, streams
 from latentarm_research.studies.page import render_page
 from latentarm_research.studies.source import source_digest
@@ -17,11 +18,11 @@ from latentarm_research.studies.tasks import cell as measuring
 from latentarm_research.studies.tasks import moved, orientation, runs
 from latentarm_research.studies.tasks import preset as presets
 from latentarm_research.studies.tasks.cell import (
-    DriveCell,
-    Shown,
+    DemonstratedRun,
+    FittedModel,
+    ModelCell,
     ShownCell,
-    Trained,
-    TrainingCell,
+    TaskRunCell,
     drive,
     show,
     train,
@@ -41,8 +42,8 @@ from latentarm_research.studies.tasks.moved import MOVED, TASKS, task_of
 from latentarm_research.studies.tasks.orientation import OrientationCell, Oriented, orient
 from latentarm_research.studies.tasks.preset import PRESETS, Preset, Stream
 from latentarm_research.studies.tasks.rows import STUDY as NAME
-from latentarm_research.studies.tasks.rows import Measured, rows_of, runs_as_json
-from latentarm_research.studies.tasks.rule import Verdict, decide
+from latentarm_research.studies.tasks.rows import TasksResults, rows_of, runs_as_json
+from latentarm_research.studies.tasks.rule import DefaultVerdict, decide
 from latentarm_research.studies.tasks.runs import Driver, Run
 from latentarm_research.studies.tasks.tables import (
     failure_table,
@@ -56,12 +57,12 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def _measure(request: Request[Preset], grid: Grid) -> Measured:
+def _measure(request: Request[Preset], grid: Grid) -> TasksResults:
     preset, seed = request.preset, request.seed
     shown = grid.run("Demonstrations", show, _shown_cells(request), _shown_label, KEEP_SHOWN)
     sets = {task: training_set(task, _trains(shown, task)) for task in request.tasks}
     training = [
-        TrainingCell(task, Condition(context, model, way_back), demonstrations, preset, seed)
+        ModelCell(task, Condition(context, model, way_back), demonstrations, preset, seed)
         for task, demonstrations in sets.items()
         for model in preset.models
         for context in (preset.moved_contexts if task in MOVED else (preset.context,))
@@ -74,7 +75,7 @@ def _measure(request: Request[Preset], grid: Grid) -> Measured:
     oriented = grid.run("Orientations", orient, orienting, lambda cell: cell.task, KEEP_ORIENTATIONS)
     cells = _drive_cells(request, (*oriented, *trained))
     driven = grid.run("Drives", drive, cells, _drive_label, KEEP_DRIVES)
-    return Measured(shown, trained, driven)
+    return TasksResults(shown, trained, driven)
 
 
 def _shown_cells(request: Request[Preset]) -> list[ShownCell]:
@@ -90,15 +91,15 @@ def _shown_cells(request: Request[Preset]) -> list[ShownCell]:
     ]
 
 
-def _trains(shown: Sequence[Shown], task: str) -> list[Shown]:
+def _trains(shown: Sequence[DemonstratedRun], task: str) -> list[DemonstratedRun]:
     return [one for one in shown if (one.cell.task, one.cell.stream) == (task, Stream.DEMONSTRATIONS)]
 
 
-def _drive_cells(request: Request[Preset], learned: Sequence[Trained | Oriented]) -> list[DriveCell]:
+def _drive_cells(request: Request[Preset], learned: Sequence[FittedModel | Oriented]) -> list[TaskRunCell]:
     """Number by number, so that a study that was stopped has as many runs of each condition."""
     preset = request.preset
     return [
-        DriveCell(task, driver, person, number, request.seed)
+        TaskRunCell(task, driver, person, number, request.seed)
         for number in range(preset.runs)
         for task in request.tasks
         for driver in (
@@ -114,11 +115,11 @@ def _shown_label(cell: ShownCell) -> str:
     return f"{cell.task}, {DEMONSTRATOR}, {cell.stream.name.lower()} {cell.number}"
 
 
-def _drive_label(cell: DriveCell) -> str:
+def _drive_label(cell: TaskRunCell) -> str:
     return f"{cell.task}, {cell.driver.condition.label}, {cell.person}, run {cell.number}"
 
 
-def _report(request: Request[Preset], measured: Measured) -> Report:
+def _report(request: Request[Preset], measured: TasksResults) -> Report:
     by_task = {task: measured.runs(task) for task in request.tasks}
     verdict = decide(by_task, measured.fit_s(request.preset.context))
     rows = rows_of(by_task)
@@ -135,11 +136,11 @@ def _report(request: Request[Preset], measured: Measured) -> Report:
 
 def _page(
     request: Request[Preset],
-    measured: Measured,
+    measured: TasksResults,
     by_task: Mapping[str, Mapping[Condition, Sequence[Run]]],
     rows: Sequence[Row],
     figures: "Mapping[str, Figure]",
-    verdict: Verdict,
+    verdict: DefaultVerdict,
 ) -> str:
     tasks = {name: task_of(name, Stream.RUNS) for name in by_task}
     return render_page(
@@ -164,7 +165,7 @@ def _page(
     )
 
 
-def _timings(measured: Measured) -> dict[str, object]:
+def _timings(measured: TasksResults) -> dict[str, object]:
     """How long models were fitted and each condition was driven, s."""
     drives: dict[tuple[str, str], float] = {}
     for one in measured.driven:
@@ -204,4 +205,5 @@ STUDY: Final = Study(
     depends_on=_depends_on,
     kept=(RUNS, MODELS),
     options=("people", "runs"),
+    grows=("people", "runs"),
 )

@@ -24,23 +24,31 @@ class Modelled:
     Attributes:
         mixed: the linear mixed model; None where it could not be fitted.
         p: of the randomisation test; None where it could not be made.
-        low: lower end of the 95 % interval of the effect size; None where there is no test.
-        high: upper end.
     """
 
     mixed: Mixed | None
     p: float | None
-    low: float | None
-    high: float | None
 
-    def as_json(self, effect_key: str) -> dict[str, object]:
-        """Plain mapping, in which the effect size has its name."""
-        return {
-            "mixed": None if self.mixed is None else asdict(self.mixed),
-            "p": self.p,
-            f"{effect_key}_low": self.low,
-            f"{effect_key}_high": self.high,
-        }
+
+@final
+@dataclass(frozen=True)
+class TestedClaim:
+    """A claim, tested on people's means and in a model of all trials.
+
+    Attributes:
+        tested: on people's means.
+        modelled: in a model of all trials.
+    """
+
+    tested: Tested
+    modelled: Modelled
+
+    def as_json(self) -> dict[str, object]:
+        """Plain mapping."""
+        test = self.tested.test
+        low, high = (None, None) if test is None else test.effect_interval
+        model = {**asdict(self.modelled), "d_low": low, "d_high": high}
+        return {**self.tested.as_json(), "model": model}
 
 
 @final
@@ -49,37 +57,26 @@ class Analysis:
     """What a study says.
 
     Attributes:
-        design: of the study.
         trials: that count.
         excluded: what does not.
-        tested: every claim.
-        modelled: every claim in a model of all trials, in the same order.
+        claims: every claim, tested.
         verdicts: on every hypothesis.
         effects: of a factorial design, by measure; empty without factors.
         as_printed: the paper's statistics with ours.
     """
 
-    design: StudyDesign
     trials: tuple[Trial, ...]
     excluded: Excluded
-    tested: tuple[Tested, ...]
-    modelled: tuple[Modelled, ...]
+    claims: tuple[TestedClaim, ...]
     verdicts: tuple[Verdict, ...]
     effects: dict[str, list[Effect]]
     as_printed: tuple[AsPrinted, ...]
 
     def as_json(self) -> dict[str, object]:
-        """Plain mapping."""
+        """Plain mapping of everything but the claims."""
         return {
             "excluded_trials": [{"trial": index, "why": why} for index, why in self.excluded.trials],
             "excluded_people": list(self.excluded.people),
-            "claims": [
-                {
-                    **tested.as_json(self.design.test_key),
-                    "model": modelled.as_json(self.design.effect_key),
-                }
-                for tested, modelled in zip(self.tested, self.modelled, strict=True)
-            ],
             "hypotheses": [
                 {"name": one.hypothesis.name, "text": one.hypothesis.text, "says": one.says, "why": one.why}
                 for one in self.verdicts
@@ -111,11 +108,12 @@ def analyse(
     if not_judged:
         tested = [replace(one, test=None, p=None, p_holm=None, why_not=not_judged) for one in tested]
     return Analysis(
-        design=design,
         trials=tuple(kept),
         excluded=out,
-        tested=tuple(tested),
-        modelled=tuple(_modelled(design, one, sides, every) for one, sides in zip(tested, both, strict=True)),
+        claims=tuple(
+            TestedClaim(one, _modelled(design, one, sides, every))
+            for one, sides in zip(tested, both, strict=True)
+        ),
         verdicts=tuple(verdicts(definition, tested)),
         effects={} if not_judged else _effects(definition, every),
         as_printed=() if not_judged else tuple(as_printed(one, every) for one in definition.printed),
@@ -124,8 +122,7 @@ def analyse(
 
 def _modelled(design: StudyDesign, tested: Tested, both: Sides, trials: Sequence[Trial]) -> Modelled:
     table = design.table(trials, tested.claim)
-    low, high = (None, None) if tested.test is None else design.effect_interval(both)
-    return Modelled(mixed_model(table), design.randomisation_p(both, table), low, high)
+    return Modelled(mixed_model(table), design.randomisation_p(both, table))
 
 
 def _effects(definition: Definition, trials: Sequence[Trial]) -> dict[str, list[Effect]]:

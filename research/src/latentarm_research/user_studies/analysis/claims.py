@@ -4,14 +4,13 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Final, Literal, final
 
-import numpy as np
-
 from latentarm.core.types import FloatArray
+from latentarm_research.studies.means_test import MeansTest
 from latentarm_research.studies.statistics import LEVEL, holm
 from latentarm_research.user_studies.analysis.means import Sides
 from latentarm_research.user_studies.definition import Definition
 from latentarm_research.user_studies.designs.catalogue import design_of
-from latentarm_research.user_studies.designs.design import MeansTest, StudyDesign
+from latentarm_research.user_studies.designs.design import StudyDesign
 from latentarm_research.user_studies.hypothesis import Claim, Hypothesis
 from latentarm_research.user_studies.record import Trial
 
@@ -61,13 +60,10 @@ class Tested:
         its_way = direction == "equal" or (self.test.difference < 0.0) == (direction == "less")
         return "held" if its_way and self.p_holm < LEVEL else "not held"
 
-    def as_json(self, test_key: str) -> dict[str, object]:
-        """Plain mapping, in which the test has a name of its own."""
-        entries = asdict(self)
-        if self.test is not None and np.isnan(self.test.g):
-            entries["test"]["g"] = None
-        named = {test_key if name == "test" else name: value for name, value in entries.items()}
-        return {**named, "says": self.says}
+    def as_json(self) -> dict[str, object]:
+        """Plain mapping."""
+        test = None if self.test is None else self.test.as_json()
+        return {**asdict(self), "test": test, "says": self.says}
 
 
 @final
@@ -135,7 +131,7 @@ def _tested(design: StudyDesign, hypothesis: str, claim: Claim, both: Sides) -> 
     test = None if too_few else design.test(both)
     p = None if test is None else test.p
     if test is not None and claim.margin is not None:
-        p = design.equivalence(both, claim.margin)
+        p = test.p_of_equality(claim.margin)
     why_not = "" if p is not None else NOT_MEASURED if n == 0 else too_few or NO_SPREAD
     (mean, sd), (mean_against, sd_against) = (_spread(side) for side in (both.subject, both.against))
     return Tested(

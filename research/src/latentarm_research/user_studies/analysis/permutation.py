@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 
 from latentarm.core.types import BoolArray, FloatArray
-from latentarm_research.studies.statistics import spreads
+from latentarm_research.studies.means_test import spreads
 from latentarm_research.user_studies.analysis.randomisation import DRAWS, ROUNDING, SEED
 
 MOST_EXACT: Final = 20_000

@@ -11,7 +11,7 @@ from typing import Final
 import numpy as np
 
 from latentarm.core.types import FloatArray
-from latentarm_research.studies.statistics import spreads
+from latentarm_research.studies.means_test import spreads
 from latentarm_research.user_studies.analysis.long_table import LongTable
 
 MOST_EXACT: Final = 13

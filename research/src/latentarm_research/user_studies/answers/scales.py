@@ -8,7 +8,7 @@ from typing import Final, final
 import numpy as np
 
 from latentarm.core.types import FloatArray
-from latentarm_research.user_studies.analysis.paired import TAIL
+from latentarm_research.studies.means_test import TAIL
 from latentarm_research.user_studies.answers.items import items_of
 from latentarm_research.user_studies.answers.reading import Answer
 from latentarm_research.user_studies.definition import Definition

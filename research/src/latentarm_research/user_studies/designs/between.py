@@ -6,16 +6,11 @@ from typing import Final, final
 import numpy as np
 
 from latentarm.core.types import FloatArray, IntArray
+from latentarm_research.studies.means_test import MeansTest, welch_test
 from latentarm_research.user_studies.analysis.anova import Effect, between_people
 from latentarm_research.user_studies.analysis.long_table import LongTable, long_table
 from latentarm_research.user_studies.analysis.means import Sides, groups
 from latentarm_research.user_studies.analysis.permutation import permutation_p
-from latentarm_research.user_studies.analysis.welch import (
-    Welch,
-    group_effect_interval,
-    welch_equivalence,
-    welch_test,
-)
 from latentarm_research.user_studies.definition import Definition, Factor
 from latentarm_research.user_studies.designs.design import StudyDesign
 from latentarm_research.user_studies.hypothesis import Claim
@@ -29,9 +24,6 @@ TOO_FEW: Final = "fewer than two people on a side"
 class Between(StudyDesign):
     """Welch's t, Hedges' g, and permutations of people between conditions."""
 
-    test_key = "welch"
-    effect_key = "d"
-
     def orders(self, definition: Definition, people: int, rng: np.random.Generator) -> list[tuple[str, ...]]:
         """One condition for each."""
         return [(name,) for name in assigned([one.name for one in definition.conditions], people, rng)]
@@ -40,17 +32,9 @@ class Between(StudyDesign):
         """Different people on either side."""
         return groups(trials, claim)
 
-    def test(self, both: Sides) -> Welch | None:
+    def test(self, both: Sides) -> MeansTest | None:
         """Welch's t-test."""
         return welch_test(both.subject, both.against)
-
-    def equivalence(self, both: Sides, margin: float) -> float | None:
-        """TOST by Welch's t."""
-        return welch_equivalence(both.subject, both.against, margin)
-
-    def effect_interval(self, both: Sides) -> tuple[float, float]:
-        """Of the standardised difference that d and g estimate."""
-        return group_effect_interval(both.subject, both.against)
 
     def too_few(self, both: Sides) -> str:
         """For fewer than two people on either side."""

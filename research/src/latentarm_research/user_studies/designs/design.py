@@ -6,27 +6,17 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from latentarm.core.types import IntArray
+from latentarm_research.studies.means_test import MeansTest
 from latentarm_research.user_studies.analysis.anova import Effect
 from latentarm_research.user_studies.analysis.long_table import LongTable
 from latentarm_research.user_studies.analysis.means import Sides
-from latentarm_research.user_studies.analysis.paired import Paired
-from latentarm_research.user_studies.analysis.welch import Welch
 from latentarm_research.user_studies.definition import Definition, Factor
 from latentarm_research.user_studies.hypothesis import Claim
 from latentarm_research.user_studies.record import Trial
 
-MeansTest = Paired | Welch
-"""A two-sided test of people's means."""
-
 
 class StudyDesign(ABC):
     """How a study assigns conditions to people, and how it compares them."""
-
-    test_key: str
-    """What documents call its test."""
-
-    effect_key: str
-    """What documents call the effect size that has an interval."""
 
     @abstractmethod
     def orders(self, definition: Definition, people: int, rng: np.random.Generator) -> list[tuple[str, ...]]:
@@ -49,15 +39,7 @@ class StudyDesign(ABC):
 
     @abstractmethod
     def test(self, both: Sides) -> MeansTest | None:
-        """The two-sided test of the difference; None for too few people, or without spread."""
-
-    @abstractmethod
-    def equivalence(self, both: Sides, margin: float) -> float | None:
-        """The larger p of two one-sided tests of a difference within ±margin; None where there is no test."""
-
-    @abstractmethod
-    def effect_interval(self, both: Sides) -> tuple[float, float]:
-        """The 95 % interval of the effect size of a comparison that has a test."""
+        """The test of the difference; None for too few people, or without spread."""
 
     @abstractmethod
     def too_few(self, both: Sides) -> str:

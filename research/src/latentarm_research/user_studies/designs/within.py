@@ -6,11 +6,10 @@ from typing import Final, final
 import numpy as np
 
 from latentarm.core.types import IntArray
+from latentarm_research.studies.means_test import MeansTest, one_sample_test
 from latentarm_research.user_studies.analysis.anova import Effect, repeated_measures
-from latentarm_research.user_studies.analysis.equivalence import equivalence
 from latentarm_research.user_studies.analysis.long_table import LongTable, long_table
 from latentarm_research.user_studies.analysis.means import Sides, sides
-from latentarm_research.user_studies.analysis.paired import Paired, effect_interval, paired_test
 from latentarm_research.user_studies.analysis.randomisation import randomisation_p
 from latentarm_research.user_studies.definition import Definition, Factor
 from latentarm_research.user_studies.designs.design import StudyDesign
@@ -25,9 +24,6 @@ TOO_FEW: Final = "fewer than two people have both sides"
 class Within(StudyDesign):
     """Paired t, dz, and swaps of each person's two conditions."""
 
-    test_key = "paired"
-    effect_key = "dz"
-
     def orders(self, definition: Definition, people: int, rng: np.random.Generator) -> list[tuple[str, ...]]:
         """Those of the definition in turn, or Williams designs."""
         fixed = definition.orders
@@ -39,18 +35,9 @@ class Within(StudyDesign):
         """Of everybody who has both sides."""
         return sides(trials, claim)
 
-    def test(self, both: Sides) -> Paired | None:
+    def test(self, both: Sides) -> MeansTest | None:
         """The paired t-test."""
-        return paired_test(both.differences)
-
-    def equivalence(self, both: Sides, margin: float) -> float | None:
-        """TOST of the differences."""
-        return equivalence(both.differences, margin)
-
-    def effect_interval(self, both: Sides) -> tuple[float, float]:
-        """Of dz."""
-        differences = both.differences
-        return effect_interval(float(differences.mean() / differences.std(ddof=1)), len(differences))
+        return one_sample_test(both.differences)
 
     def too_few(self, both: Sides) -> str:
         """For fewer than two pairs."""

@@ -11,9 +11,27 @@ from latentarm.core.context import feature_names
 from latentarm.core.errors import UserError
 from latentarm.models.catalogue import KINDS
 from latentarm_research.user_studies.definition import Definition, StudyTask
-from latentarm_research.user_studies.measured import MEASURED, MEASURED_AT_PLATES
 from latentarm_research.user_studies.report.looks import MOST_CONDITIONS
 from latentarm_research.user_studies.scenes import scene_of
+
+MEASURED: Final = (
+    "success_rate",
+    "steps_done",
+    "time_s",
+    "idle_s",
+    "input_magnitude",
+    "turned_round",
+    "mode_switches",
+    "path_length",
+    "stops",
+    "preference_alignment",
+    "attempts",
+)
+"""Figures of every trial that has a value for them."""
+
+MEASURED_AT_PLATES: Final = ("goal_error_m_s", "goal_error_m")
+"""Figures of drives at tasks with plates."""
+
 
 NAME: Final = re.compile(r"[a-z][a-z0-9_]{0,39}")
 """Names that files are called by."""

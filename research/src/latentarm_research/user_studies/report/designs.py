@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final, final
 
-from latentarm_research.studies.statistics import CONFIDENCE
+from latentarm_research.studies.means_test import CONFIDENCE
 from latentarm_research.user_studies.definition import Definition, Design
 
 _CLAIMS: Final = (

@@ -1,28 +1,24 @@
-"""The report as one HTML page, which holds everything that it shows."""
+"""The report's page."""
 
-import base64
 from collections.abc import Sequence
 from dataclasses import dataclass
-from io import BytesIO
-from pathlib import Path
-from typing import TYPE_CHECKING, Final, final
+from typing import Final, final
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
-
-from latentarm.core.style import FIGURE_DPI
 from latentarm.core.types import Row
 from latentarm.evaluation.measures import unit_of
 from latentarm.evaluation.table import ABSENT, format_figure
-from latentarm_research.studies.page import listed
+from latentarm_research.studies.page import listed, render_page
 from latentarm_research.studies.statistics import format_p
 from latentarm_research.user_studies.analysis.analysis import Analysis
 from latentarm_research.user_studies.answers.scales import Ratings
 from latentarm_research.user_studies.definition import Definition
 from latentarm_research.user_studies.printed import WRONG
+from latentarm_research.user_studies.recorded import Recorded
 from latentarm_research.user_studies.report.designs import WORDS, claim_head, order_words
 from latentarm_research.user_studies.report.figures import Drawn
 from latentarm_research.user_studies.report.people import HEAD as PEOPLE_HEAD
-from latentarm_research.user_studies.report.whose import QUOTED, PeopleWords
+from latentarm_research.user_studies.report.people import people_lines
+from latentarm_research.user_studies.report.whose import QUOTED, REAL, SIMULATED, PeopleWords
 from latentarm_research.user_studies.report.words import (
     claim_line,
     condition_parts,
@@ -30,10 +26,6 @@ from latentarm_research.user_studies.report.words import (
     task_words,
     yes_no,
 )
-from latentarm_research.user_studies.sizes import Sizes
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 RATED_HEAD: Final = ("scale", "condition", "people", "score, mean ± SD", "Cronbach's α [95 %]")
 
@@ -44,45 +36,40 @@ class Content:
     """What a report is about.
 
     Attributes:
-        definition: of the study.
-        sizes: of the run.
-        analysis: of its trials.
+        recorded: the trials, and whose they are.
+        analysis: of the trials.
         rows: of ``results.json``.
-        people: what the people are like, lines below `latentarm_research.user_studies.report.people.HEAD`.
         figures: to show.
-        who: the people, in words, such as ``12 simulated people``.
-        words: of these people.
         command: that repeats the run.
         ratings: of people's answers, if there are any.
     """
 
-    definition: Definition
-    sizes: Sizes
+    recorded: Recorded
     analysis: Analysis
     rows: Sequence[Row]
-    people: Sequence[tuple[str, ...]]
     figures: Sequence[Drawn]
-    who: str
-    words: PeopleWords
     command: str
     ratings: Ratings | None = None
 
+    @property
+    def definition(self) -> Definition:
+        """Of the study."""
+        return self.recorded.definition
+
+    @property
+    def words(self) -> PeopleWords:
+        """Of the people."""
+        return SIMULATED if self.recorded.people_are == "simulated" else REAL
+
 
 def report_page(content: Content) -> str:
-    """The page."""
-    environment = Environment(
-        loader=FileSystemLoader(Path(__file__).parent, encoding="utf-8"),
-        undefined=StrictUndefined,
-        autoescape=True,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-    )
-    definition, analysis = content.definition, content.analysis
-    return environment.get_template("page.html").render(
+    """The page, Markdown."""
+    definition, analysis, recorded = content.definition, content.analysis, content.recorded
+    return render_page(
+        "user_studies/report/page.md",
+        recorded.sizes,
         definition=definition,
-        sizes=content.sizes,
-        who=content.who,
+        who=recorded.who,
         command=content.command,
         notice=f"{content.words.notice} {QUOTED}" if definition.printed else content.words.notice,
         design=WORDS[definition.design],
@@ -92,20 +79,16 @@ def report_page(content: Content) -> str:
             (one.hypothesis.name, one.hypothesis.text, one.says, one.why) for one in analysis.verdicts
         ],
         condition_lines=[(one.name, one.about, *condition_parts(one)) for one in definition.conditions],
-        task_lines=[task_words(content.sizes.as_run(task)) for task in definition.tasks],
+        task_lines=[task_words(recorded.sizes.as_run(task)) for task in definition.tasks],
         exclusion_lines=exclusion_words(definition),
-        excluded_words=_excluded_words(analysis, content.who),
-        departures=definition.departures,
+        excluded_words=_excluded_words(analysis, recorded.who),
         people_head=PEOPLE_HEAD,
-        people_lines=content.people,
+        people_lines=people_lines(recorded.simulated) if recorded.simulated else [],
         result_head=["task", "measure", *(one.name for one in definition.conditions)],
         result_lines=_result_lines(definition, content.rows),
-        figures=[{"caption": one.caption, "data": _encoded(one.figure)} for one in content.figures],
+        figures=content.figures,
         claim_head=claim_head(definition),
-        claim_lines=[
-            claim_line(definition, tested, modelled)
-            for tested, modelled in zip(analysis.tested, analysis.modelled, strict=True)
-        ],
+        claim_lines=[claim_line(definition, one.tested, one.modelled) for one in analysis.claims],
         anova_lines=_anova_lines(definition, analysis),
         printed_lines=_printed_lines(definition, analysis),
         wrong_lines=_wrong_lines(analysis),
@@ -213,12 +196,3 @@ def _item_lines(definition: Definition) -> list[tuple[str, str]]:
         (scale.label, " · ".join(f"{item.text}{' (r)' if item.reversed else ''}" for item in scale.items))
         for scale in definition.questionnaire
     ]
-
-
-def _encoded(figure: "Figure") -> str:
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-
-    FigureCanvasAgg(figure)
-    buffer = BytesIO()
-    figure.savefig(buffer, format="png", dpi=FIGURE_DPI)
-    return base64.b64encode(buffer.getvalue()).decode()

@@ -1,106 +1,67 @@
-"""The report of a study: figures, one HTML page, and a PDF of it."""
+"""The report of a study that people went through, simulated or real ones."""
 
-from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from collections.abc import Sequence
+from typing import Final
 
-from latentarm.core.files import write_text
-from latentarm.core.style import save_figure
+from rich.table import Table
+
 from latentarm.core.types import Row
-from latentarm_research.user_studies.analysis.analysis import Analysis
+from latentarm.evaluation.summary import Subject, summarise
+from latentarm_research.studies.study import Report
+from latentarm_research.user_studies.analysis.analysis import analyse
+from latentarm_research.user_studies.analysis.means import person_mean
 from latentarm_research.user_studies.answers.scales import Ratings
 from latentarm_research.user_studies.definition import Definition
-from latentarm_research.user_studies.report.figures import draw, figure_names
+from latentarm_research.user_studies.record import Trial
+from latentarm_research.user_studies.recorded import Recorded
+from latentarm_research.user_studies.report.figures import draw
 from latentarm_research.user_studies.report.page import Content, report_page
-from latentarm_research.user_studies.report.pdf import WITHOUT, find_browser, print_page
-from latentarm_research.user_studies.report.people import people_lines
-from latentarm_research.user_studies.report.whose import REAL, SIMULATED
 
-if TYPE_CHECKING:
-    from latentarm_research.user_studies.recorded import Recorded
-    from latentarm_research.user_studies.run import Ran
-
-PAGE: Final = "report.html"
-PDF: Final = "report.pdf"
-
-NOT_PRINTED: Final = "Chromium could not print the page, so there is no PDF: open report.html in a browser."
+ANALYSIS: Final = "analysis.json"
+RATINGS: Final = "ratings.json"
 
 
-def report_files(definition: Definition) -> tuple[str, ...]:
-    """Every file that the report of a study may have."""
-    return (PAGE, PDF, *(f"{name}.png" for name in figure_names(definition)))
-
-
-def write_report(out: Path, ran: "Ran", rows: list[Row], command: str) -> str:
-    """Draw and write the report of a run with simulated people.
+def report_of(recorded: Recorded, command: str, ratings: Ratings | None = None) -> Report:
+    """Analyse trials, and report them.
 
     Args:
-        out: the folder of the run.
-        ran: what came of it.
-        rows: of its ``results.json``.
-        command: that repeats it.
-
-    Returns:
-        Why there is no PDF, in a sentence; empty where there is one.
-
-    Raises:
-        UserError: a file cannot be written.
-    """
-    who, people = ran.sizes.people(len(ran.people)), people_lines(ran.people)
-    figures = draw(ran.definition, ran.analysis.trials, ran.traces, who)
-    return write_content(
-        out, Content(ran.definition, ran.sizes, ran.analysis, rows, people, figures, who, SIMULATED, command)
-    )
-
-
-def write_report_of(
-    out: Path,
-    recorded: "Recorded",
-    analysis: Analysis,
-    rows: list[Row],
-    ratings: Ratings | None,
-    command: str,
-) -> str:
-    """Draw and write the report of recorded trials.
-
-    Args:
-        out: a folder.
         recorded: the trials, and whose they are.
-        analysis: of them.
-        rows: of ``results.json``.
-        ratings: of people's answers, if there are any.
         command: that repeats it.
-
-    Returns:
-        Why there is no PDF, in a sentence; empty where there is one.
-
-    Raises:
-        UserError: a file cannot be written.
+        ratings: of people's answers, if there are any.
     """
-    who = recorded.who
-    people = people_lines(recorded.simulated) if recorded.simulated else []
-    figures = draw(recorded.definition, analysis.trials, recorded.traces, who, ratings)
-    words = SIMULATED if recorded.people_are == "simulated" else REAL
-    return write_content(
-        out,
-        Content(
-            recorded.definition, recorded.sizes, analysis, rows, people, figures, who, words, command, ratings
-        ),
+    definition = recorded.definition
+    scores = () if ratings is None else ratings.scores
+    analysis = analyse(definition, recorded.trials, scores, recorded.sizes.not_judged)
+    rows = rows_of(definition, analysis.trials)
+    figures = draw(definition, analysis.trials, recorded.traces, recorded.who, ratings)
+    verdicts = Table("", "says", "why", title=f"{definition.title}: {recorded.who}")
+    for one in analysis.verdicts:
+        verdicts.add_row(one.hypothesis.name, one.says, one.why)
+    return Report(
+        rows=rows,
+        page=report_page(Content(recorded, analysis, rows, figures, command, ratings)),
+        figures={one.name: one.figure for one in figures},
+        tests=analysis.claims,
+        documents={
+            ANALYSIS: analysis.as_json(),
+            **({} if ratings is None else {RATINGS: ratings.as_json()}),
+        },
+        tables=[verdicts],
     )
 
 
-def write_content(out: Path, content: Content) -> str:
-    """Write figures, page and PDF.
-
-    Returns:
-        Why there is no PDF, in a sentence; empty where there is one.
-
-    Raises:
-        UserError: a file cannot be written.
-    """
-    for one in content.figures:
-        save_figure(one.figure, out / f"{one.name}.png")
-    write_text(out / PAGE, report_page(content))
-    browser = find_browser()
-    if browser is None:
-        return WITHOUT
-    return "" if print_page(browser, out / PAGE, out / PDF) else NOT_PRINTED
+def rows_of(definition: Definition, trials: Sequence[Trial]) -> list[Row]:
+    """Mean and SD over people of their means, for every task, condition and measure that has figures."""
+    people = sorted({trial.person for trial in trials})
+    rows: list[Row] = []
+    for task in definition.tasks:
+        for condition in definition.conditions:
+            subject = Subject(definition.study, task=task.name, condition=condition.name)
+            for measure in definition.measures:
+                means = [
+                    person_mean(trials, person, measure, (condition.name,), (task.name,)) for person in people
+                ]
+                row = summarise(subject, measure, means)
+                if row.n:
+                    rows.append(row)
+    return rows

@@ -3,13 +3,12 @@
 from typing import Final
 
 from latentarm.evaluation.table import ABSENT, format_figure
+from latentarm_research.studies.means_test import MeansTest
 from latentarm_research.studies.page import listed
 from latentarm_research.studies.statistics import format_p
 from latentarm_research.user_studies.analysis.analysis import Modelled
 from latentarm_research.user_studies.analysis.claims import Tested, worded
-from latentarm_research.user_studies.analysis.welch import Welch
 from latentarm_research.user_studies.definition import Condition, Definition, StudyTask
-from latentarm_research.user_studies.designs.design import MeansTest
 
 CONTROLS: Final = {
     "modes": "two axes of the end-effector at a time; a button switches which",
@@ -71,29 +70,30 @@ def exclusion_words(definition: Definition) -> list[str]:
 def claim_line(definition: Definition, tested: Tested, modelled: Modelled) -> list[str]:
     """One claim as a line of a table."""
     test, mixed = tested.test, modelled.mixed
-    people = f"{test.n} + {test.n_against}" if isinstance(test, Welch) else str(tested.n)
+    people = f"{test.n} + {test.n_against}" if test is not None and test.n_against else str(tested.n)
     head = [tested.hypothesis, worded(definition, tested.claim), people]
     means = [format_figure(tested.mean, tested.sd), format_figure(tested.mean_against, tested.sd_against)]
     if test is None:
         return [*head, *means, *[ABSENT] * 6, f"{tested.says} ({tested.why_not})"]
+    low, high = test.interval
     p = f"{format_p(tested.p)} / {format_p(tested.p_holm)}"
     return [
         *head,
         *means,
-        f"{test.difference:.3g} [{test.low:.3g}, {test.high:.3g}]",
+        f"{test.difference:.3g} [{low:.3g}, {high:.3g}]",
         f"{'TOST' if tested.claim.margin else f't({test.dof:.3g}) = {test.t:.2f}'}",
         p,
-        _effect_words(test, f"[{_two(modelled.low)}, {_two(modelled.high)}]"),
+        _effect_words(test),
         ABSENT if mixed is None else f"{mixed.estimate:.3g} ± {mixed.se:.2g}",
         format_p(modelled.p),
         tested.says,
     ]
 
 
-def _effect_words(test: MeansTest, interval: str) -> str:
-    if isinstance(test, Welch):
-        return f"{test.g:.2f} {interval}"
-    return f"{test.dz:.2f} {interval}; g {test.g:.2f}"
+def _effect_words(test: MeansTest) -> str:
+    low, high = test.effect_interval
+    g, interval = _two(test.g), f"[{low:.2f}, {high:.2f}]"
+    return f"{g} {interval}" if test.n_against else f"{test.d:.2f} {interval}; g {g}"
 
 
 def yes_no(value: bool | None) -> str:

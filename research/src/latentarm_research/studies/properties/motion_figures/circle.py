@@ -12,7 +12,7 @@ from latentarm_research.studies.properties.figures import beside, draw_losses, d
 from latentarm_research.studies.properties.motion_figures.shown import (
     CONTRASTED,
     Decoders,
-    Shown,
+    DrawnModel,
     as_trained,
     draw_guides,
     passed_states,
@@ -67,7 +67,7 @@ def _around(motion: Circle, states: FloatArray) -> FloatArray:
     return states[np.argmin(distance, axis=1)]
 
 
-def _draw_arrows(axes: "Axes", motion: Circle, model: Shown, starts: FloatArray) -> None:
+def _draw_arrows(axes: "Axes", motion: Circle, model: DrawnModel, starts: FloatArray) -> None:
     """Where the tool gets from each start (dots) while one axis is held at +1 and the other at 0."""
     draw_guides(axes, motion)
     place = plane_point(motion.robot, starts)

@@ -13,7 +13,7 @@ from latentarm_research.studies.properties.figures import draw_losses, draw_poin
 from latentarm_research.studies.properties.motion_figures.shown import (
     CONTRASTED,
     Decoders,
-    Shown,
+    DrawnModel,
     passed_states,
     turned,
 )
@@ -62,7 +62,7 @@ def _middle_start(motion: ReachRegion, states: FloatArray) -> FloatArray:
     return states[np.argmin(np.linalg.norm(plane_point(motion.robot, states) - wanted, axis=-1))]
 
 
-def _draw_reach_paths(axes: "Axes", motion: ReachRegion, model: Shown, start: FloatArray) -> None:
+def _draw_reach_paths(axes: "Axes", motion: ReachRegion, model: DrawnModel, start: FloatArray) -> None:
     """The arm at the start, the goal region, and the tool's path for each value of z."""
     (outline,) = motion.guides
     axes.fill(*outline.T, facecolor=REGION_COLOUR, edgecolor="black", linewidth=0.8, zorder=1)

@@ -22,7 +22,7 @@ from latentarm_research.studies.properties.motion_figures.shown import (
     CONTRASTED,
     GRID,
     Decoders,
-    Shown,
+    DrawnModel,
     draw_losses_and_effects,
     draw_states,
     passed_states,
@@ -83,7 +83,7 @@ def rotate_figure(decoders: Decoders, rows: Sequence[Row]) -> "Figure":
     return figure
 
 
-def _turn_deg(motion: Rotate, model: Shown, states: FloatArray) -> FloatArray:
+def _turn_deg(motion: Rotate, model: DrawnModel, states: FloatArray) -> FloatArray:
     """How far the grippers turn from each state, on average of the two, counterclockwise: (K, N), deg."""
     ends = model.hold(states, GRID[:, None], HOLD_S)[:, :, -1]
     return np.degrees(motion.headings(ends) - motion.headings(states)).mean(axis=-1)
@@ -108,7 +108,7 @@ def _draw_box(axes: "Axes", motion: Rotate, state: FloatArray, colour: str, fill
     axes.fill(*corners.T, facecolor=fill or "none", edgecolor=colour, linewidth=1.0, zorder=2.5)
 
 
-def _draw_turns(motion: Rotate, axes: "Axes", model: Shown, state: FloatArray) -> None:
+def _draw_turns(motion: Rotate, axes: "Axes", model: DrawnModel, state: FloatArray) -> None:
     """The box in one state, and where z = -1 (pale) and z = +1 (dark) turn it."""
     ends = model.hold(state[None], np.array(POSES)[:, None], HOLD_S)[:, 0, -1]
     _draw_box(axes, motion, state, BOX_EDGE, BOX_COLOUR)
@@ -119,7 +119,7 @@ def _draw_turns(motion: Rotate, axes: "Axes", model: Shown, state: FloatArray) -
     axes.plot(*_middle(motion, state), "+", color="black", markersize=6, zorder=7)
 
 
-def _draw_rotate_rollout(axes: "Axes", motion: Rotate, model: Shown, start: FloatArray) -> None:
+def _draw_rotate_rollout(axes: "Axes", motion: Rotate, model: DrawnModel, start: FloatArray) -> None:
     """Both arms and the box while z = +1 is held: pale at first, then darker."""
     passed = model.hold(start[None], np.ones((1, 1)), ROLLOUT_S)[0, 0]
     _draw_box(axes, motion, start, BOX_EDGE, BOX_COLOUR)

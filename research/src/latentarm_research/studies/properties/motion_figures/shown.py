@@ -38,7 +38,7 @@ Decoders = Mapping[str, DecodesActions]
 
 
 @dataclass(frozen=True)
-class Shown:
+class DrawnModel:
     """One model as it is drawn on one task.
 
     Attributes:
@@ -75,14 +75,14 @@ class Shown:
         return np.stack(passed, axis=2)
 
 
-def as_trained(decoders: Decoders, models: Sequence[str]) -> list[Shown]:
+def as_trained(decoders: Decoders, models: Sequence[str]) -> list[DrawnModel]:
     """Those of the models that there are, in the order asked for, with z as it was learned."""
-    return [Shown(model, decoders[model], 1.0) for model in models if model in decoders]
+    return [DrawnModel(model, decoders[model], 1.0) for model in models if model in decoders]
 
 
 def turned(
     decoders: Decoders, models: Sequence[str], states: FloatArray, rising: Callable[[FloatArray], FloatArray]
-) -> list[Shown]:
+) -> list[DrawnModel]:
     """The same, with a 1-D z turned so that positive z, on the whole, raises a quantity.
 
     Args:
@@ -92,10 +92,10 @@ def turned(
         rising: from states (..., n) to the quantity (...).
     """
     ends = np.array([[-1.0], [1.0]])
-    shown: list[Shown] = []
+    shown: list[DrawnModel] = []
     for plain in as_trained(decoders, models):
         backward, forward = rising(plain.hold(states, ends, STEP_S)[:, :, -1])
-        shown.append(Shown(plain.model, plain.decoder, 1.0 if np.sum(forward - backward) >= 0 else -1.0))
+        shown.append(DrawnModel(plain.model, plain.decoder, 1.0 if np.sum(forward - backward) >= 0 else -1.0))
     return shown
 
 
@@ -165,8 +165,8 @@ def draw_losses_and_effects(
     part: "SubFigure",
     rows: Sequence[Row],
     task: str,
-    models: Sequence[Shown],
-    effect_of: Callable[[Shown], FloatArray],
+    models: Sequence[DrawnModel],
+    effect_of: Callable[[DrawnModel], FloatArray],
     effect: str,
     unit: str,
 ) -> None:
@@ -191,9 +191,9 @@ def draw_losses_and_effects(
 
 def draw_states(
     part: "SubFigure",
-    models: Sequence[Shown],
+    models: Sequence[DrawnModel],
     states: FloatArray,
-    draw: Callable[["Axes", Shown, FloatArray], None],
+    draw: Callable[["Axes", DrawnModel, FloatArray], None],
     view: View,
 ) -> None:
     """Draw what some models do in each of a few states (K, n), a panel for each."""

@@ -15,7 +15,7 @@ from latentarm_research.studies.properties.motion_figures.shown import (
     CONTRASTED,
     GRID,
     Decoders,
-    Shown,
+    DrawnModel,
     draw_guides,
     draw_losses_and_effects,
     draw_states,
@@ -81,14 +81,14 @@ def sine_figure(decoders: Decoders, rows: Sequence[Row]) -> "Figure":
     return figure
 
 
-def _signed_distance_mm(motion: Sine, model: Shown, states: FloatArray) -> FloatArray:
+def _signed_distance_mm(motion: Sine, model: DrawnModel, states: FloatArray) -> FloatArray:
     """How far the tool gets from each state, to the right positive: (K, N), mm."""
     ends = model.hold(states, GRID[:, None], HOLD_S)[:, :, -1]
     moved = plane_point(motion.robot, ends) - plane_point(motion.robot, states)
     return 1000.0 * np.sign(moved[..., 0]) * np.linalg.norm(moved, axis=-1)
 
 
-def _draw_poses(motion: Sine, axes: "Axes", model: Shown, state: FloatArray) -> None:
+def _draw_poses(motion: Sine, axes: "Axes", model: DrawnModel, state: FloatArray) -> None:
     """The arm in one state, and where z takes it: pale for z < 0, dark for z > 0."""
     draw_guides(axes, motion)
     ends = model.hold(state[None], POSES[:, None], HOLD_S)[:, 0, -1]
@@ -97,7 +97,7 @@ def _draw_poses(motion: Sine, axes: "Axes", model: Shown, state: FloatArray) -> 
     draw_arm(axes, motion.robot, state)
 
 
-def _draw_sine_rollout(axes: "Axes", motion: Sine, model: Shown, start: FloatArray) -> None:
+def _draw_sine_rollout(axes: "Axes", motion: Sine, model: DrawnModel, start: FloatArray) -> None:
     """The tool's path while z = +1 is held, and the arm on the way: pale at first, then darker."""
     draw_guides(axes, motion)
     passed = model.hold(start[None], np.ones((1, 1)), ROLLOUT_S)[0, 0]
@@ -108,7 +108,7 @@ def _draw_sine_rollout(axes: "Axes", motion: Sine, model: Shown, start: FloatArr
     axes.plot(*plane_point(motion.robot, passed).T, color=model.look.colour, linewidth=1.6, zorder=5)
 
 
-def _draw_sine_paths(axes: "Axes", motion: Sine, model: Shown, starts: FloatArray) -> None:
+def _draw_sine_paths(axes: "Axes", motion: Sine, model: DrawnModel, starts: FloatArray) -> None:
     """Paths of the tool from several states (dots) while z = +1 (solid) and z = -1 (dashed) are held."""
     draw_guides(axes, motion)
     both = model.hold(starts, np.array([[1.0], [-1.0]]), ROLLOUT_S)

@@ -1,0 +1,107 @@
+"""What every measurement is given and returns."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Final, TypeVar, final
+
+from latentarm.core.types import Row
+
+Cell = TypeVar("Cell")
+Result = TypeVar("Result")
+
+UNITS: Final = {
+    "_rad_s": "rad/s",
+    "_m_s": "m/s",
+    "_n_mm": "N/mm",
+    "_n_m": "N·m",
+    "_mm": "mm",
+    "_ms": "ms",
+    "_nats": "nats",
+    "_percent": "%",
+    "_rad": "rad",
+    "_m": "m",
+    "_n": "N",
+    "_s": "s",
+}
+"""Units by the ending of a measure's name."""
+
+
+@final
+@dataclass(frozen=True)
+class Measurement:
+    """A measurement as the command line lists it.
+
+    Attributes:
+        summary: the first line of its help.
+        options: a frozen dataclass, its own options.
+        smoke: values of options that only show that it runs.
+    """
+
+    summary: str
+    options: type[Any]
+    smoke: Mapping[str, object]
+
+
+@final
+@dataclass(frozen=True)
+class Work:
+    """How a measurement works.
+
+    Attributes:
+        seed: of everything random.
+        jobs: processes side by side; -1 is one per core.
+        bars: show progress on standard error.
+    """
+
+    seed: int = 0
+    jobs: int = 1
+    bars: bool = False
+
+    def each(self, function: Callable[[Cell], Result], cells: Sequence[Cell]) -> list[Result]:
+        """Results of a function of picklable cells, in their order."""
+        from latentarm.core.parallel.grid import run_grid  # brings joblib, which no help needs
+
+        return run_grid(function, cells, jobs=self.jobs, backend="joblib", label=str, bars=self.bars)
+
+
+@final
+@dataclass(frozen=True)
+class Outcome:
+    """What a measurement found.
+
+    Attributes:
+        rows: its figures. A task is a table of its own, a condition a line, a measure a column.
+        broken: a sentence for each stated limit that was not kept.
+        note: Markdown above the tables.
+        documents: further JSON files by name.
+    """
+
+    rows: Sequence[Row]
+    broken: Sequence[str] = ()
+    note: str = ""
+    documents: Mapping[str, object] = field(default_factory=dict[str, object])
+
+
+def line(
+    study: str, condition: str | None, n: int, figures: Mapping[str, Any], task: str | None = None
+) -> list[Row]:
+    """Rows of one condition.
+
+    Args:
+        study: name of the measurement.
+        condition: what was measured; None where there is one condition.
+        n: number of runs.
+        figures: by measure; a figure, a mean with its SD, or None where it could not be measured.
+        task: table that the line belongs to.
+    """
+    rows: list[Row] = []
+    for measure, figure in figures.items():
+        mean, sd = figure if isinstance(figure, tuple) else (figure, None)
+        plain = [None if one is None else float(one) for one in (mean, sd)]
+        rows.append(Row(study, measure, unit_of(measure), plain[0], plain[1], n, task, condition=condition))
+    return rows
+
+
+def unit_of(measure: str) -> str:
+    """Unit of a measure; "1" for a number."""
+    return next((unit for ending, unit in UNITS.items() if measure.endswith(ending)), "1")

@@ -1,0 +1,55 @@
+"""*Preference Alignment* of the paper's third user study: how the tool points, compared with the need."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import final
+
+import numpy as np
+
+from latentarm.core.types import FloatArray, IntArray
+
+
+def preference_alignment(points: FloatArray, needed: FloatArray) -> float:
+    """The mean dot product of how the tool points and how it should, in [-1, 1]; NaN for no moments.
+
+    Args:
+        points: (T, 3), unit vectors along which the tool points.
+        needed: (T, 3), unit vectors along which it should.
+    """
+    return float(np.vecdot(points, needed).mean()) if len(points) else np.nan
+
+
+@final
+@dataclass(frozen=True)
+class StepAlignment:
+    """*Preference Alignment* while one step of a task was under way.
+
+    Attributes:
+        step: what was to be done, in words.
+        alignment: mean dot product, as `preference_alignment`.
+        ticks: of the loop that it took.
+    """
+
+    step: str
+    alignment: float
+    ticks: int
+
+
+def alignment_by_step(
+    steps: Sequence[str], under_way: IntArray, points: FloatArray, needed: FloatArray
+) -> tuple[StepAlignment, ...]:
+    """*Preference Alignment* in each step that was begun, in order.
+
+    Args:
+        steps: all steps in words.
+        under_way: (T,), index of the step that was under way.
+        points: (T, 3), see `preference_alignment`.
+        needed: (T, 3), as there.
+    """
+    found: list[StepAlignment] = []
+    for index, step in enumerate(steps):
+        here = under_way == index
+        if here.any():
+            mean = preference_alignment(points[here], needed[here])
+            found.append(StepAlignment(step, mean, int(here.sum())))
+    return tuple(found)

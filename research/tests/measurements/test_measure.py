@@ -1,0 +1,89 @@
+"""Every measurement runs in its smallest size, and its page can be repeated."""
+
+import json
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from documentation import ROOT
+from latentarm_research.measurements import catalogue
+from latentarm_research.measurements.calibration import traits
+from latentarm_research.measurements.catalogue import MEASUREMENTS, load_measurement
+from latentarm_research.measurements.measurement import Outcome, line
+
+Run = Callable[..., tuple[int, str, str]]
+
+ARM = """<mujoco><worldbody><body><joint name="hinge" axis="0 1 0" range="-1 1"/>
+<geom size="0.05" pos="0 0 0.4" mass="1"/></body></worldbody></mujoco>"""
+LIMITS = """[joints.hinge]
+velocity_rad_per_s = 1.0
+acceleration_rad_per_s2 = 2.0
+jerk_rad_per_s3 = 10.0
+"""
+
+
+def required(name: str, tmp_path: Path) -> list[object]:
+    """Options without a default."""
+    if name == "torque":
+        (model := tmp_path / "arm.xml").write_text(ARM)
+        (limits := tmp_path / "limits.toml").write_text(LIMITS)
+        return ["--model", model, "--limits", limits]
+    return []
+
+
+SLOW = {"clearance", "zones", "help", "published-help", "way-back", "calibration"}
+# One needs a trained run and a Chromium (tests/web/browser/test_fault_times.py), one a log that is not ours.
+ELSEWHERE = {"page-stops", "people"}
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=pytest.mark.slow) if name in SLOW else name
+        for name in MEASUREMENTS
+        if name not in ELSEWHERE
+    ],
+)
+def test_every_measurement_runs_and_its_page_names_the_command(
+    run: Run, workplace: Path, tmp_path: Path, name: str
+) -> None:
+    code, out, err = run("measure", name, "--smoke", "--seed", 1, *required(name, tmp_path))
+    assert code == 0, err
+    folder = Path("measured") / name
+    page = (folder / "results.md").read_text(encoding="utf-8")
+    assert page in out
+    rows = json.loads((folder / "results.json").read_text(encoding="utf-8"))["rows"]
+    assert {row["study"] for row in rows} == {name}
+    (command,) = re.findall(r"`(latentarm measure .*)`, commit [0-9a-z]+, \d{4}-\d\d-\d\d\.", page)
+    assert f" {name} " in command
+    assert command.endswith("--seed 1")
+
+
+def test_a_broken_limit_is_an_exit_code(run: Run, workplace: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    rows = line("zones", "exact", 3, {"fastest_m_s": 0.2, "time_s": (1.0, 0.5), "gone_mm": None})
+    monkeypatch.setattr(
+        "latentarm_research.commands.measure.load_measurement",
+        lambda name: lambda options, work: Outcome(rows, ["too fast"]),
+    )
+    code, out, err = run("measure", "zones", "--drives", 7, "--json")
+    assert code == 1
+    assert json.loads(out) == [row.as_json() for row in rows]
+    assert "too fast" in err
+    page = Path("measured/zones/results.md").read_text(encoding="utf-8")
+    assert "|  | n | fastest (m/s) | time (s) | gone (mm) |" in page
+    assert "| exact | 3 | 0.2 | 1.00 ± 0.50 | – |" in page
+    assert "**Limit broken**: too fast" in page
+    assert "`latentarm measure zones --drives 7 --seed 0`" in page
+
+
+def test_the_catalogue_has_every_module_with_a_measurement() -> None:
+    folder = Path(catalogue.__file__).parent
+    modules = {path.stem for path in folder.glob("*.py") if "\ndef measure(" in path.read_text("utf-8")}
+    assert modules == {name.replace("-", "_") for name in MEASUREMENTS}
+    assert all(callable(load_measurement(name)) for name in MEASUREMENTS if name not in ELSEWHERE)
+
+
+def test_the_evidence_has_the_traits_that_simulated_people_have() -> None:
+    assert traits() in (ROOT / "docs/evidence/simulated_people.md").read_text(encoding="utf-8")

@@ -1,0 +1,119 @@
+"""A task at goals as one with things: every waypoint is a step, and nothing can go wrong."""
+
+from collections.abc import Mapping
+from functools import partial
+from typing import final
+
+import numpy as np
+
+from latentarm.core.types import Goal, Pose
+from latentarm.robots.kinematics.obstacles import Obstacle
+from latentarm.robots.robot import Robot
+from latentarm.robots.scene.scene import Scene, SceneState
+from latentarm.tasks.scene_task import Beginning, SceneTask
+from latentarm.tasks.steps import StepKind, TaskStep, Waypoint
+from latentarm.tasks.task import GripperTask, Task, check_not_done
+
+
+@final
+class GoalTask(SceneTask):
+    """A task at goals, done in one manner. Its choices are the goals.
+
+    Args:
+        task: the task.
+        manner: one of its manners.
+        time_limit_s: a run that takes longer has failed, s.
+    """
+
+    def __init__(self, task: Task, manner: str, time_limit_s: float) -> None:
+        self._task, self._manner, self._time_limit_s = task, manner, time_limit_s
+
+    @property
+    def name(self) -> str:
+        """That of the task."""
+        return self._task.name
+
+    @property
+    def robot(self) -> Robot:
+        """That of the task."""
+        return self._task.robot
+
+    @property
+    def choices(self) -> tuple[str, ...]:
+        """Names of the goals."""
+        return tuple(goal.name for goal in self._task.goals)
+
+    @property
+    def goals(self) -> tuple[Goal, ...]:
+        """Those of the task."""
+        return self._task.goals
+
+    @property
+    def obstacles(self) -> tuple[Obstacle, ...]:
+        """Those of the task."""
+        return tuple(self._task.obstacles)
+
+    @property
+    def time_limit_s(self) -> float:
+        """As it was given."""
+        return self._time_limit_s
+
+    def begin(self, choice: int, rng: np.random.Generator) -> Beginning:
+        """Draw where the arm starts.
+
+        Raises:
+            UserError: there is no such goal or manner, or nothing is left to do where the arm starts.
+        """
+        task, manner, goal = self._task, self._manner, self._task.goals[choice].name
+        start = task.sample_start(choice, rng)
+        waypoints = task.waypoints(choice, manner)
+        check_not_done(task, start, waypoints)
+        return Beginning(
+            state=start,
+            scene=Scene(),
+            steps=tuple(coming_to(task, "reached", goal, waypoint) for waypoint in waypoints),
+            failures=(),
+            goals=task.goals,
+            objects=(),
+            text=f"{manner} {goal}",
+            asks=task.asks(choice, manner) if isinstance(task, GripperTask) else (),
+            patient=True,
+        )
+
+
+def coming_to(task: Task, kind: StepKind, goal: str, waypoint: Pose) -> TaskStep:
+    """The step that is done once the tool is at a waypoint.
+
+    Args:
+        task: says when that is.
+        kind: of the step.
+        goal: name of the goal.
+        waypoint: one of its waypoints.
+    """
+    done = partial(_reached, task=task, waypoint=waypoint)
+    return TaskStep(kind, goal, f"{kind} the {goal}", done, (Waypoint(lambda _: waypoint),))
+
+
+def without_things(tool: Pose, time_s: float, poses: Mapping[str, Pose]) -> SceneState:
+    """How everything stands where nothing can be touched.
+
+    Args:
+        tool: pose of the arm's end-effector.
+        time_s: the clock, s.
+        poses: of what stays where it is, by name.
+    """
+    return SceneState(
+        time_s=time_s,
+        tool=tool,
+        poses=poses,
+        speed_m_s={},
+        stabbed=frozenset(),
+        gripped=frozenset(),
+        bonds=frozenset(),
+        grains={},
+        force_n={},
+    )
+
+
+def _reached(state: SceneState, task: Task, waypoint: Pose) -> bool:
+    return task.reached(state.tool, waypoint)
