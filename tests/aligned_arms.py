@@ -7,7 +7,7 @@ import pytest
 
 from latentarm.alignment.answers import Answers, Motions
 from latentarm.core.types import Demonstrations, Episode
-from latentarm.models.catalogue import MODELS
+from latentarm.models.estimators import MODELS
 from latentarm.models.pca.training import PCA
 from latentarm.robots.assemble import assemble
 from latentarm.robots.limits import JointLimits

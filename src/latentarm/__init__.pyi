@@ -35,9 +35,9 @@ from .demonstrations.import_options import ImportOptions as ImportOptions
 from .demonstrations.importing import import_demonstrations as import_demonstrations
 from .models.autoencoders.training import CAE as CAE
 from .models.autoencoders.training import CVAE as CVAE
+from .models.estimators import load_model as load_model
 from .models.homogeneous.training import Homogeneous as Homogeneous
 from .models.saving import load_decoder as load_decoder
-from .models.saving import load_model as load_model
 from .models.scl.training import SCL as SCL
 from .robots.attachment import Attachment as Attachment
 from .robots.attachments import attach as attach

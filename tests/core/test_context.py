@@ -18,7 +18,7 @@ from latentarm.demonstrations.dataset import read_dataset, write_dataset
 from latentarm.demonstrations.gripper import ACTION_GRIPPER, GRIPPER_WIDTH, told_by
 from latentarm.demonstrations.pairs import make_pairs
 from latentarm.demonstrations.things import ENVIRONMENT
-from latentarm.models.catalogue import MODELS
+from latentarm.models.estimators import MODELS
 from latentarm.models.pca.training import PCA
 from latentarm.models.scaling import feature_normaliser
 from latentarm.models.tool_frame import ToolFrame

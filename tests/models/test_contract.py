@@ -7,8 +7,8 @@ import pytest
 from sklearn.base import clone
 
 from latentarm.core.errors import UserError
-from latentarm.models.catalogue import MODELS
-from latentarm.models.saving import load_decoder, load_model
+from latentarm.models.estimators import MODELS, load_model
+from latentarm.models.saving import load_decoder
 from latentarm.testing.models import SMALL, ModelContract
 
 

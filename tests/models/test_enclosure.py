@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from latentarm.models.catalogue import MODELS
 from latentarm.models.enclosure import Enclosure, curvature, linear_enclosure, network_enclosure
+from latentarm.models.estimators import MODELS
 from latentarm.models.numpy_networks import halve_hidden, propagate
 from latentarm.testing.models import JOINTS, SMALL
 

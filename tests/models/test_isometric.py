@@ -13,7 +13,7 @@ from safetensors.numpy import load, save
 
 from latentarm.core.errors import UserError
 from latentarm.models.batches import Batch
-from latentarm.models.catalogue import MODELS
+from latentarm.models.estimators import MODELS
 from latentarm.models.isometric.runtime import DAMPING_M2
 from latentarm.models.isometric.training import Isometric, _geometry
 from latentarm.models.networks import group_layers

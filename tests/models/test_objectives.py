@@ -7,7 +7,7 @@ import pytest
 import torch
 
 from latentarm.demonstrations.pairs import make_pairs
-from latentarm.models.catalogue import MODELS
+from latentarm.models.estimators import MODELS
 from latentarm.models.objectives import kl_divergence, reconstruction_error, sample_latent
 from latentarm.models.scaling import find_collapsed
 

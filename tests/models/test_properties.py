@@ -13,7 +13,7 @@ from sklearn import decomposition
 from latentarm.core.types import Demonstrations, Episode
 from latentarm.demonstrations.pairs import make_pairs
 from latentarm.demonstrations.split import select_episodes
-from latentarm.models.catalogue import MODELS
+from latentarm.models.estimators import MODELS
 from latentarm.models.scaling import CollapseWarning, action_normaliser, context_normaliser
 
 TRAINED = {"seeds": 2, "epochs": 5, "hidden": (24, 24), "window": 2}

@@ -11,8 +11,8 @@ import pytest
 from safetensors.numpy import load, save
 
 from latentarm.core.errors import UserError
-from latentarm.models.catalogue import MODELS
-from latentarm.models.saving import load_decoder, load_model, write_model
+from latentarm.models.estimators import MODELS, load_model
+from latentarm.models.saving import load_decoder, write_model
 
 CONFIG, WEIGHTS = "config.json", "model.safetensors"
 

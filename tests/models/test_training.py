@@ -18,8 +18,8 @@ from torch.optim.adam import adam
 from latentarm.core.errors import UserError
 from latentarm.models import training
 from latentarm.models.batches import seed_generator
-from latentarm.models.catalogue import MODELS
 from latentarm.models.checkpoint import TrainingState
+from latentarm.models.estimators import MODELS
 from latentarm.models.optimiser import FlatAdam
 from latentarm.models.replay import Replay
 from latentarm.models.training import epoch_bar
@@ -107,7 +107,7 @@ import pickle, sys, time
 from pathlib import Path
 import torch
 torch.set_num_threads(1)
-from latentarm.models.catalogue import MODELS
+from latentarm.models.estimators import MODELS
 demonstrations = pickle.load(sys.stdin.buffer)
 # A moment between epochs: it must not be over before it is killed.
 MODELS["cvae"](epochs={epochs}, hidden=(8, 8), window=2, checkpoint_interval_s=0.0, patience=1000).fit(

@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from latentarm.core.errors import UserError
-from latentarm.models.catalogue import MODELS
 from latentarm.models.decoder import Decoder
+from latentarm.models.estimators import MODELS
 from latentarm.models.saved_chain import chain_of_tensors
 from latentarm.models.saving import load_decoder, read_model
 from latentarm.models.tool_contexts import places_and_jacobian

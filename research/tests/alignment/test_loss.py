@@ -9,7 +9,7 @@ import torch
 
 from latentarm.alignment.runtime import layer_shapes
 from latentarm.core.errors import UserError
-from latentarm.models.catalogue import MODELS
+from latentarm.models.estimators import MODELS
 from latentarm.models.networks import group_layers
 from latentarm_research.alignment.loss import ANSWERS_AT_ONCE, AlignmentLoss, Draw
 from latentarm_research.alignment.priors import NO_PRIORS, Priors

@@ -17,7 +17,7 @@ from latentarm.alignment.preference import ToolAxes
 from latentarm.core.errors import UserError
 from latentarm.core.types import Pose
 from latentarm.robots.planar import planar
-from latentarm.runs.asking import CELLS, PersonAtTerminal, SimulatedPerson, draw, moved, said
+from latentarm.runs.asking import CELLS, PersonAtTerminal, SimulatedPerson, describe, draw, moved
 from latentarm.runs.person import Question
 from latentarm.runs.stick_line import parse, read_line
 
@@ -135,9 +135,9 @@ def pose(x=0.0, y=0.0, z=0.0, turn=(0.0, 0.0, 0.0)):
 
 
 def test_a_motion_in_words():
-    words = said("fork", pose(0.5), pose(0.531, -0.027, 0.0041))
+    words = describe("fork", pose(0.5), pose(0.531, -0.027, 0.0041))
     assert words == "fork moves x +31, y -27, z +4 mm and does not turn"
-    turned = said("fork", pose(turn=(0, 0, 1.0)), pose(turn=(0, 0, 1.0 + np.pi / 6)))
+    turned = describe("fork", pose(turn=(0, 0, 1.0)), pose(turn=(0, 0, 1.0 + np.pi / 6)))
     assert turned == "fork moves x +0, y +0, z +0 mm and turns by 30° about (+0.0, +0.0, +1.0)"
 
 

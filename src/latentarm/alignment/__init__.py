@@ -1,1 +1,1 @@
-"""What a person means by their input: the alignment z = f(u, c), its priors, and the choice of questions."""
+"""The person's meaning of an input: the alignment z = f(u, c), its priors, and the choice of questions."""

@@ -13,15 +13,10 @@ from latentarm.models.model import LatentActionModel
 @final
 @dataclass(frozen=True, eq=False)
 class AffineAlignment:
-    """``z = A u + b``, the same in every context.
+    """``z = A u + b``, the same in every context."""
 
-    Attributes:
-        matrix: (d, d), A.
-        offset: (d,), b.
-    """
-
-    matrix: FloatArray
-    offset: FloatArray
+    matrix: FloatArray  # (d, d), A
+    offset: FloatArray  # (d,), b
 
     def __call__(self, u: FloatArray, context: FloatArray) -> FloatArray:
         """Latent actions (..., d) of inputs (..., d); the context does not count."""
@@ -29,17 +24,9 @@ class AffineAlignment:
 
 
 def fit_affine(model: LatentActionModel, answers: Answers, seed_index: int = 0) -> AffineAlignment:
-    """The affine map that best fits the answers to the encoded motions.
+    """The affine map that best fits the answers to the encoded motions; the smallest of several.
 
-    If several fit equally well, as with fewer answers than d + 1, the smallest.
-
-    Args:
-        model: a fitted model.
-        answers: motions, and the inputs that were meant for them.
-        seed_index: which of the model's seeds encodes.
-
-    Raises:
-        UserError: the model is not fitted, has no such seed, or the answers do not fit it.
+    Raises UserError where the model is not fitted, has no such seed, or the answers do not fit it.
     """
     model.decoder(seed_index)  # refuses a seed that is not there
     z = model.encode(answers.motions.context, answers.motions.action)[seed_index]

@@ -1,4 +1,4 @@
-"""Motions shown to a person, and the inputs with which they would ask for them."""
+"""Motions shown to a person, and the inputs with which the person would ask for them."""
 
 from dataclasses import dataclass, field
 from typing import Self, final
@@ -12,23 +12,17 @@ from latentarm.core.types import FloatArray, IntArray
 @final
 @dataclass(frozen=True, eq=False)
 class Motions:
-    """N motions ``(s, s*)`` of one arm.
-
-    Attributes:
-        start: (N, n), states before, rad.
-        end: (N, n), states ``s*`` after, rad.
-        duration_s: how long each takes, s.
-        rest: (N, c - n), what decoders see at the start besides the state (beliefs, poses of things, ...);
-            (N, 0) for those that see the state alone.
+    """N motions ``(s, s*)`` of one arm, in ``duration_s`` each.
 
     Raises:
         UserError: sizes do not fit each other, there is no motion, or a number is not finite.
     """
 
-    start: FloatArray
-    end: FloatArray
+    start: FloatArray  # (N, n), states before, rad
+    end: FloatArray  # (N, n), states ``s*`` after, rad
     duration_s: float
     rest: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
+    """(N, c - n), the context at the start besides the state (beliefs, poses of things); (N, 0) without."""
 
     def __post_init__(self) -> None:
         if self.start.ndim != 2 or len(self.start) == 0 or self.start.shape != self.end.shape:
@@ -67,18 +61,14 @@ class Motions:
 @final
 @dataclass(frozen=True, eq=False)
 class Answers:
-    """A person's answers: the input ``u`` with which they would ask for each of N motions.
-
-    Attributes:
-        motions: N motions.
-        u: (N, d), each entry in [-1, 1].
+    """A person's answers: the input with which they would ask for each of N motions.
 
     Raises:
         UserError: sizes do not match, or an input is invalid.
     """
 
     motions: Motions
-    u: FloatArray
+    u: FloatArray  # (N, d), each entry in [-1, 1]
 
     def __post_init__(self) -> None:
         if self.u.ndim != 2 or len(self.u) != len(self.motions) or self.u.shape[1] == 0:

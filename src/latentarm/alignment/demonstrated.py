@@ -20,7 +20,7 @@ CANDIDATES: Final = 100
 """Motions that may be asked about."""
 
 KEPT: Final = 1000
-"""Motions that say which directions a place has; those that may be asked about are the first of them."""
+"""Motions that show the directions of a place; the first of them may be asked about."""
 
 
 def demonstrated_motions(
@@ -33,17 +33,10 @@ def demonstrated_motions(
 ) -> Motions:
     """Motions that were demonstrated, drawn at random from all samples while an arm moves.
 
-    A motion ends where the demonstration was ``duration_s`` later, between samples if need be.
+    A motion ends where the demonstration was ``duration_s`` later, between samples if need be. There are
+    ``count`` of them, or all where there are fewer.
 
-    Args:
-        demonstrations: whole episodes.
-        count: N; all that there are where there are fewer.
-        rng: decides which.
-        context: the features that the decoder sees.
-        duration_s: how long a motion takes, s.
-
-    Raises:
-        UserError: no motion is that long, or a feature is asked for and missing.
+    Raises UserError where no motion is that long, or a feature of the context is missing.
     """
     every = [_motions(episode, duration_s, context) for episode in demonstrations.episodes]
     start, end, rest = (np.concatenate(parts) for parts in zip(*every, strict=True))
@@ -54,27 +47,17 @@ def demonstrated_motions(
 
 
 def noticeable(motions: Motions, chain: Chain) -> BoolArray:
-    """Which motions (N,) a person can tell from standing still: at least half as long as half of all are."""
+    """Which motions (N,) a person can tell from standing still: those at least half as long as the median."""
     length = lengths(chain, motions)
     return length >= 0.5 * np.median(length)
 
 
-def shown(
-    demonstrations: Demonstrations,
-    context: Named,
-    chain: Chain,
-    rng: np.random.Generator,
-) -> Motions:
+def shown(demonstrations: Demonstrations, context: Named, chain: Chain, rng: np.random.Generator) -> Motions:
     """Motions that a person can tell from standing still; the first `CANDIDATES` may be asked about.
 
-    Args:
-        demonstrations: those that trained the model, so that others can still judge it.
-        context: what the model's decoder sees.
-        chain: the arm.
-        rng: decides which.
+    They come from the demonstrations that trained the model, so that others can still judge it.
 
-    Raises:
-        UserError: no demonstration moves for long enough, or a feature is asked for and missing.
+    Raises UserError where no demonstration moves for long enough, or a feature of the context is missing.
     """
     many = demonstrated_motions(demonstrations, KEPT, rng, context=context)
     return many[np.flatnonzero(noticeable(many, chain))]

@@ -1,4 +1,4 @@
-"""The error of an alignment relative to what a person meant."""
+"""The error of an alignment relative to the person's meaning."""
 
 import numpy as np
 
@@ -13,17 +13,9 @@ from latentarm.robots.kinematics.chain import Chain
 def outcome(
     alignment: Alignment, decoder: Decoder, chain: Chain, motions: Motions, u: FloatArray
 ) -> FloatArray:
-    """Poses ``Psi(T(s, u))`` that inputs lead to from the starts of motions, in as much time.
+    """Poses ``Psi(T(s, u))`` (..., N, 12 k), m, that inputs (..., N, d) lead to from the starts of motions.
 
-    Args:
-        alignment: f.
-        decoder: phi.
-        chain: the arm.
-        motions: N motions; only their starts count.
-        u: (..., N, d).
-
-    Returns:
-        (..., N, 12 k), see `pose_vectors`, m.
+    See `pose_vectors`. The inputs are held for as long as the motions take.
     """
     context = motions.context
     action = decoder.decode(alignment(u, context), context)
@@ -31,7 +23,7 @@ def outcome(
 
 
 def lengths(chain: Chain, motions: Motions) -> FloatArray:
-    """How far each motion takes the tools, (N,), m; turns are counted, see `pose_vectors`."""
+    """The distance of each motion (N,), m; turns of the tools count, see `pose_vectors`."""
     step = pose_vectors(chain, motions.end) - pose_vectors(chain, motions.start)
     return np.linalg.norm(step, axis=-1)
 
@@ -39,16 +31,8 @@ def lengths(chain: Chain, motions: Motions) -> FloatArray:
 def relative_alignment_error(alignment: Alignment, decoder: Decoder, chain: Chain, answers: Answers) -> float:
     """``‖x* - x^(t+1)‖^2 / ‖x* - x^t‖^2`` (section 8.3), each averaged over all motions.
 
-    A mean of ratios would be that of the few motions that hardly move.
-
-    Args:
-        alignment: f.
-        decoder: phi.
-        chain: the arm.
-        answers: motions, and the inputs that were meant for them.
-
-    Returns:
-        0 where every motion is met, 1 for an arm that does not move.
+    0 where every motion is met, 1 for an arm that does not move. A mean of ratios would be that of the few
+    motions that hardly move.
     """
     reached = outcome(alignment, decoder, chain, answers.motions, answers.u)
     missed = reached - pose_vectors(chain, answers.motions.end)

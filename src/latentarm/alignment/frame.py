@@ -1,7 +1,7 @@
-"""The stick's frame before anybody has answered: on the page, Right leads right and Up leads up or away.
+"""The stick's frame before any answer: on the page, Right leads right and Up leads up or away.
 
 ``z = R(theta(x)) M u``: the stick turns smoothly with the place, and may be mirrored everywhere. Rest, half a
-push and the opposite push stay what the decoder makes of them.
+push and the opposite push keep their meaning for the decoder.
 """
 
 from dataclasses import dataclass
@@ -9,9 +9,9 @@ from typing import Final, final
 
 import numpy as np
 
+from latentarm.alignment.contract import Seat
 from latentarm.alignment.meaning import Meaning, rotations
 from latentarm.alignment.poses import pose_vectors, pose_vectors_at
-from latentarm.alignment.seat import Seat
 from latentarm.alignment.twists import tool_jacobian
 from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray
@@ -22,19 +22,19 @@ CAMERAS: Final[dict[Seat, tuple[float, float, float]]] = {
     "facing": (1.0, 0.0, 0.42),
     "behind": (-1.0, -0.55, 0.75),
 }
-"""Where the page's first view looks from, in the base frame."""
+"""The camera of the page's first view, in the base frame."""
 
 FLAT: Final = (0.0, -0.01, 1.0)
 """The same where the whole arm moves in one plane."""
 
 FLAT_SHARE: Final = 0.1
-"""How high an arm reaches at most, as a share of how far it does, that is shown like that."""
+"""An arm whose height is below this share of its reach is shown like that."""
 
 STEEPEST_RAD_M: Final = 5.0
 """The most that the stick turns per distance between poses, see `pose_vectors`, rad/m."""
 
 LENGTH_M: Final = 0.3
-"""Over which distance between poses the turn changes."""
+"""Distance between poses over which the turn changes."""
 
 ROUGHNESS: Final = 0.01
 """Weight of the turn's roughness at first, where perfect agreement weighs 2."""
@@ -49,20 +49,16 @@ STEPS: Final = 20
 @final
 @dataclass(frozen=True, eq=False)
 class StickFrame:
-    """An alignment that turns the stick with the place, as long as nothing is known of the person.
+    """An alignment that turns the stick with the place, for a person without a profile.
 
     While the tools move by a distance e between poses, a held push u turns by `STEEPEST_RAD_M` e at most, and
     z changes by at most ``max(‖u‖, ‖u‖^2)`` times that.
-
-    Attributes:
-        turning: ``R(theta(x)) M``, (2, 2) by place.
-        chain: the arm.
 
     Raises:
         UserError: the stick would turn more steeply, or it is not a turned and perhaps mirrored one.
     """
 
-    turning: Meaning
+    turning: Meaning  # ``R(theta(x)) M``, (2, 2) by place
     chain: Chain
 
     def __post_init__(self) -> None:
@@ -73,14 +69,9 @@ class StickFrame:
             raise UserError("The stick turns more steeply than a frame may, or is stretched.")
 
     def __call__(self, u: FloatArray, context: FloatArray) -> FloatArray:
-        """Latent actions.
+        """Latent actions (..., 2) of inputs (..., 2) in contexts (..., c), whose leading axes broadcast.
 
-        Args:
-            u: (..., 2), each entry in [-1, 1].
-            context: (..., c); leading axes broadcast against those of ``u``.
-
-        Returns:
-            (..., 2), as long as ``u``, but shortened where it would leave [-1, 1]^2.
+        They are as long as the inputs, but shortened where they would leave [-1, 1]^2.
         """
         z = np.matvec(self.turning(pose_vectors(self.chain, context[..., : self.chain.dof])), u)
         return z / np.maximum(np.abs(z).max(axis=-1, keepdims=True), 1.0)
@@ -93,11 +84,7 @@ def fit_frame(decoder: Decoder, chain: Chain, contexts: FloatArray, seat: Seat) 
     mean square speed there. The turn and the mirror maximise the mean of ``v(R M u) · u`` over all directions
     of u and all contexts, so places count little where the decoder hardly moves the tool along either.
 
-    Args:
-        decoder: phi, of two axes.
-        chain: the arm; only its first tool counts.
-        contexts: (N, c), demonstrated; the first `CONTEXTS` count.
-        seat: where the person sits.
+    Contexts are (N, c); the first `CONTEXTS` count, and of the arm the first tool.
     """
     contexts = contexts[:CONTEXTS]
     transforms = chain.link_transforms(contexts[:, : chain.dof])
@@ -119,14 +106,10 @@ def fit_frame(decoder: Decoder, chain: Chain, contexts: FloatArray, seat: Seat) 
 
 
 def right_and_up(velocity: FloatArray, view: FloatArray) -> FloatArray:
-    """Directions that the axes of the stick should follow, (2, 3), unit vectors of the base frame.
+    """Directions (2, 3), unit vectors of the base frame, that the axes of the stick should follow.
 
-    The first is right. The second is that direction across it along which a tool moves most, be it up or
-    away, with the sign that is up in the view.
-
-    Args:
-        velocity: (N, 3), of a tool.
-        view: see `view`.
+    The first is right. The second is that direction across it along which the tool, with velocities (N, 3),
+    moves most, be it up or away, with the sign that is up in the `view`.
     """
     across = np.stack([view[1], np.cross(*view)])
     up = np.linalg.svd(velocity @ across.T, full_matrices=False)[2][0] @ across
@@ -136,9 +119,7 @@ def right_and_up(velocity: FloatArray, view: FloatArray) -> FloatArray:
 def view(transforms: FloatArray, seat: Seat) -> FloatArray:
     """Right and up of the page's first view, (2, 3), unit vectors of the base frame.
 
-    Args:
-        transforms: (N, n, 4, 4), of the arm's links in some of its states.
-        seat: where the person sits.
+    ``transforms`` (N, n, 4, 4) are those of the arm's links in some of its states.
     """
     across, along, height = np.ptp(transforms[..., :3, 3], axis=(0, 1))
     camera = np.array(FLAT if height < FLAT_SHARE * max(across, along) else CAMERAS[seat])
@@ -177,7 +158,7 @@ def _kernel(place: FloatArray, centres: FloatArray) -> FloatArray:
 
 
 def _apart(place: FloatArray) -> list[int]:
-    """Which places lie far apart: each next one is the farthest from all before."""
+    """Indices of places that lie far apart: each next one is the farthest from all before."""
     chosen = [0]
     near = np.square(place - place[0]).sum(axis=-1)
     while len(chosen) < min(CENTRES, len(place)):

@@ -8,10 +8,10 @@ from typing import Final, get_args
 import numpy as np
 from safetensors.numpy import save
 
+from latentarm.alignment.contract import Seat
 from latentarm.alignment.frame import CENTRES, LENGTH_M, StickFrame, fit_frame
 from latentarm.alignment.meaning import Meaning
 from latentarm.alignment.poses import POSE_SIZE
-from latentarm.alignment.seat import Seat
 from latentarm.core.errors import UserError
 from latentarm.core.files import written_whole
 from latentarm.core.types import FloatArray
@@ -27,19 +27,9 @@ SEATS: Final[tuple[Seat, ...]] = get_args(Seat)
 def save_frames(
     folder: Path, decoders: Sequence[Decoder], chain: Chain, contexts: FloatArray
 ) -> Mapping[str, object]:
-    """Fit the frames of a run and write them to its folder.
+    """Fit the frames of a run for each seed's decoder and write them to its folder.
 
-    Args:
-        folder: of the run.
-        decoders: of its S seeds, with two axes.
-        chain: the arm.
-        contexts: (N, c), demonstrated.
-
-    Returns:
-        What `load_frame` needs, for the key ``frame`` of the run's ``config.json``.
-
-    Raises:
-        UserError: the file cannot be written.
+    Returns the key ``frame`` of the run's ``config.json``. Raises UserError where the file cannot be written.
     """
     tensors: dict[str, FloatArray] = {}
     for seat in SEATS:
@@ -58,16 +48,9 @@ def save_frames(
 
 
 def load_frame(folder: Path, seed_index: int, seat: Seat, chain: Chain) -> StickFrame | None:
-    """Read and check a run's frame; None where it keeps none, as older runs and those without two axes.
+    """Read and check a run's frame; None in older runs and those without two axes.
 
-    Args:
-        folder: of the run.
-        seed_index: which of its seeds decodes.
-        seat: where the person sits.
-        chain: the arm.
-
-    Raises:
-        UserError: a file is missing or damaged.
+    Raises UserError where a file is missing or damaged.
     """
     config = Section.of_file(folder / CONFIG_NAME, CONFIG_LIMIT)
     if config.plain().get("frame") is None:

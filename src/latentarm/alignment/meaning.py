@@ -1,4 +1,4 @@
-"""What a person means by their input, in the space of the tools: u = Q(c) dx. NumPy alone."""
+"""A person's meaning of an input, in the space of the tools: u = Q(c) dx. NumPy alone."""
 
 from dataclasses import dataclass
 from typing import final
@@ -13,18 +13,13 @@ from latentarm.core.types import FloatArray
 class Meaning:
     """``Q(c) = R(theta(x)) Q_0``: a fixed map from twists to inputs, and a stick that turns with the place.
 
-    Attributes:
-        matrix: (d, 6 k), Q_0, inputs per twist of `motion_twists`, s/m.
-        place: (N, 12 k), places x of the answers, m.
-        turn_rad: (N,), weights of the turn theta(x) = sum_i turn_i exp(-‖x - x_i‖^2 / 2 l^2); only a stick of
-            two axes turns.
-        length_m: l.
+    theta(x) = sum_i turn_i exp(-‖x - x_i‖^2 / 2 l^2); only a stick of two axes turns.
     """
 
-    matrix: FloatArray
-    place: FloatArray
-    turn_rad: FloatArray
-    length_m: float
+    matrix: FloatArray  # (d, 6 k), Q_0, inputs per twist of `motion_twists`, s/m
+    place: FloatArray  # (N, 12 k), places x_i of the answers, m
+    turn_rad: FloatArray  # (N,), turn_i
+    length_m: float  # l
 
     def __call__(self, place: FloatArray) -> FloatArray:
         """Q (..., d, 6 k) at places (..., 12 k)."""

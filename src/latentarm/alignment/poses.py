@@ -9,30 +9,22 @@ from latentarm.core.types import FloatArray
 from latentarm.robots.kinematics.chain import Chain
 
 ROTATION_WEIGHT_M: Final = 0.2
-"""What a turn of a tool by 1 rad counts beside a motion by 1 m: as much as the motion of a point of the hand
-this far from the tool point."""
+"""A turn of a tool by 1 rad counts like the motion of a point of the hand this far from the tool point, m."""
 
 POSE_SIZE: Final = 12
 """Entries for each tool: its position, and its weighted rotation matrix row by row."""
 
 
 def pose_weights(tools: int) -> tuple[float, float]:
-    """What positions, and what entries of rotation matrices, are multiplied by."""
+    """Weights of positions and of entries of rotation matrices."""
     return 1 / math.sqrt(tools), ROTATION_WEIGHT_M / math.sqrt(2 * tools)
 
 
 def pose_vectors(chain: Chain, state: FloatArray) -> FloatArray:
-    """``Psi(s)`` as a vector: positions and rotations of all k tools.
+    """``Psi(s)`` of states (..., n), rad, as vectors (..., 12 k), m: positions and rotations of all k tools.
 
     The squared distance between two such vectors is the mean over tools of ``‖Δp‖^2 + w^2 ‖ΔR‖_F^2 / 2``. The
     latter is ``2 (1 - cos θ)`` for a turn by θ, so about ``θ^2``, and has no seam at half a turn.
-
-    Args:
-        chain: the arm.
-        state: (..., n), rad.
-
-    Returns:
-        (..., 12 k), m.
     """
     return pose_vectors_at(chain, chain.link_transforms(state))
 

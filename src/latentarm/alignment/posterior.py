@@ -1,9 +1,9 @@
-"""Learning what a person means from their answers: a Gaussian process on Q in ``u = Q(c) dx``.
+"""Learning a person's meaning from answers: a Gaussian process on Q in ``u = Q(c) dx``.
 
 The prior: Q_0 is anything, but in each place where the demonstrations move in d directions, the axes of
 the stick are probably at right angles and equally fast, and a full push is about the fastest motion. A stick
 of two axes may turn with the place, ``Q = R(theta) Q_0``, theta a Gaussian process. The noise of an answer is
-multiplicative: its SD is a share of what is meant (the coefficient of variation). An answer at the edge of
+multiplicative: its SD is a share of the meant input (the coefficient of variation). An answer at the edge of
 the stick may have been meant to be larger.
 
 The posterior is found by Gauss-Newton steps and Laplace's approximation (MacKay 2003, chapter 27), for all
@@ -27,13 +27,13 @@ from latentarm.core.types import BoolArray, FloatArray
 from latentarm.robots.kinematics.chain import Chain
 
 RESOLUTION: Final = 0.02
-"""SD of an answer that means nothing: as finely as a stick is held."""
+"""SD of an answer of zero: a stick is held no more finely."""
 
 LOOSE: Final = 10.0
 """SD of an entry of Q_0, in full pushes per fastest motion."""
 
 GAIN: Final = 0.5
-"""SD of the logarithm of how fast a full push is, relative to the fastest demonstrated motions."""
+"""SD of the logarithm of a full push's speed, relative to the fastest demonstrated motions."""
 
 STEPS: Final = 25
 """Gauss-Newton steps."""
@@ -42,36 +42,29 @@ MIRRORED: Final = 4
 """Directions, at most, that a second start is mirrored in."""
 
 LARGEST_STEP_RAD: Final = 0.5
-"""Most that one step turns the stick anywhere."""
+"""Largest turn of the stick in one step."""
 
 
 VARIATIONS: Final = (0.0, 0.1, 0.3, 0.5)
 """Coefficients of variation of answers that are considered, equally probable."""
 
 UNEVEN: Final = 0.1
-"""SD of how far the axes are from right angles and from equal speeds; precise answers outweigh it."""
+"""SD of the axes' deviation from right angles and from equal speeds; precise answers outweigh it."""
 
 
 @final
 @dataclass(frozen=True)
 class Setting:
-    """Hyper-parameters.
+    """Hyper-parameters."""
 
-    Attributes:
-        turn_rad: SD of how far the stick turns from place to place, rad; 0 for a stick that does not.
-        length_m: over which distance that changes, m.
-        variation: coefficient of variation of the answers.
-        weight: of this setting before any answer.
-    """
-
-    turn_rad: float
-    length_m: float
+    turn_rad: float  # SD of the stick's turn from place to place, rad; 0 for a stick that does not turn
+    length_m: float  # distance over which the turn changes, m
     variation: float
     weight: float
 
 
 def settings(axes: int) -> tuple[Setting, ...]:
-    """The settings that are weighed, for a stick of some axes; only one of two axes turns."""
+    """The settings for a stick of some axes, each with its weight; only one of two axes turns."""
     turns = [(0.0, 1.0, 1.0)]
     if axes == 2:
         lengths = (0.2, 0.4, 0.8, 1.6)
@@ -85,29 +78,16 @@ def settings(axes: int) -> tuple[Setting, ...]:
 @final
 @dataclass(frozen=True, eq=False)
 class Posterior:
-    """What the answers say of a person.
+    """A person's meaning, learned from the answers."""
 
-    Attributes:
-        meaning: the most probable one, under the most probable setting.
-        setting: that setting.
-        share: root mean square SD of the input for a motion that might be asked about, as a share of the root
-            mean square input: what is still unknown.
-    """
-
-    meaning: Meaning
+    meaning: Meaning  # the most probable one, under the most probable setting
     setting: Setting
     share: float
+    """Unknown: RMS of the input's SD for motions that might be asked about, over RMS of the input."""
 
 
 def fit_meaning(answers: Answers, chain: Chain, surroundings: Surroundings, motions: Motions) -> Posterior:
-    """Learn a person's meaning.
-
-    Args:
-        answers: theirs.
-        chain: the arm.
-        surroundings: of the demonstrations.
-        motions: that might be asked about, on which what is unknown is judged.
-    """
+    """Learn a person's meaning; its uncertainty is judged on the motions that might be asked about."""
     every = settings(answers.u.shape[1])
     fits = _Fits(answers, chain, surroundings, every, *_starts(answers, chain, surroundings, every))
     fits.run()
@@ -127,9 +107,9 @@ def fit_meaning(answers: Answers, chain: Chain, surroundings: Surroundings, moti
 def _starts(
     answers: Answers, chain: Chain, surroundings: Surroundings, every: Sequence[Setting]
 ) -> list[FloatArray]:
-    """Where to begin: the least squares fit, shrunk a little, and one that mirrors a direction of it.
+    """The first fit by least squares, shrunk a little, and one with a direction of it mirrored.
 
-    Noise may mirror what is meant in one direction, and no small steps lead back from there. So each of the
+    Noise may mirror the meaning of one direction, and no small steps lead back from there. So each of the
     main directions of the answered motions is mirrored, and the most probable result is kept.
     """
     twist = motion_twists(chain, answers.motions) / surroundings.fast_m_s
@@ -174,7 +154,7 @@ class _Fits:
         self._w = np.zeros((len(settings), many))
 
     def run(self) -> None:
-        """To the most probable parameters."""
+        """Step to the most probable parameters."""
         size = self._q[0].size
         for step in range(STEPS):
             hessian, gradient = self._normal()
@@ -188,7 +168,7 @@ class _Fits:
     def evidence(self) -> tuple[FloatArray, FloatArray]:
         """Log marginal likelihoods (H,), up to a constant, and the posterior covariances (H, P, P)."""
         hessian, _ = self._normal()
-        mean, sd, edge = self._said()
+        mean, sd, edge = self._predicted()
         beyond = log_ndtr(-(1.0 - np.sign(self._u) * mean) / sd)
         off = (self._u - mean) / sd
         log_likelihood = np.where(edge, beyond, -0.5 * off**2 - np.log(sd)).sum(axis=(1, 2))
@@ -213,7 +193,7 @@ class _Fits:
         return mean, variance + unknown[..., None] * across
 
     def meaning(self, setting: int) -> Meaning:
-        """The most probable one under one setting."""
+        """The most probable meaning under one setting."""
         turn = self._turn[setting] * np.linalg.solve(self._factor[setting].T, self._w[setting])
         return Meaning(self._q[setting] / self._fast, self._place, turn, float(self._length[setting]))
 
@@ -236,7 +216,7 @@ class _Fits:
         sideways = np.stack([-mean[..., 1], mean[..., 0]], axis=-1)
         return mean, np.concatenate([flat, sideways[..., None] * root[:, :, None]], axis=-1)
 
-    def _said(self) -> tuple[FloatArray, FloatArray, BoolArray]:
+    def _predicted(self) -> tuple[FloatArray, FloatArray, BoolArray]:
         """Mean and SD (H, N, d) of the answers, and which are at the edge of the stick."""
         mean, _ = self._inputs(self._twist, self._root)
         sd = np.sqrt(np.square(self._variation[:, None, None] * mean) + RESOLUTION**2)
@@ -245,7 +225,7 @@ class _Fits:
     def _normal(self) -> tuple[FloatArray, FloatArray]:
         """Hessian (H, P, P) and gradient (H, P) of the log posterior's quadratic approximation."""
         _, slope = self._inputs(self._twist, self._root)
-        mean, sd, edge = self._said()
+        mean, sd, edge = self._predicted()
         side = np.sign(self._u)
         # An answer at the edge says only that at least as much was meant (Tobin 1958).
         short = (1.0 - side * mean) / sd
@@ -269,7 +249,7 @@ class _Fits:
         return hessian, gradient
 
     def _priors(self) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Of what people tend to mean: derivatives (H, C, D), residuals (H, C) and their weights (H, C)."""
+        """The priors' derivatives (H, C, D), residuals (H, C) and weights (H, C)."""
         planes = self._planes
         regions, axes = len(planes), self._axes
         gains = np.einsum("hij,kjl->hkil", self._q, planes)

@@ -1,4 +1,4 @@
-"""What a simulated person means by the axes of the stick."""
+"""Simulated people's meanings of the axes of the stick."""
 
 import math
 from collections.abc import Callable
@@ -31,18 +31,13 @@ class ToolAxes:
 
     They consider where the tool goes and ignore how it turns.
 
-    Attributes:
-        chain: the arm; its first tool is looked at.
-        axes: d, of the stick, 1 to 3.
-        speed_m_s: of the tool along an axis, for which they would push all the way, m/s.
-
     Raises:
         UserError: there are more axes than directions, or the speed is not positive.
     """
 
-    chain: Chain
-    axes: int
-    speed_m_s: float
+    chain: Chain  # the arm, of which the first tool counts
+    axes: int  # d, of the stick, 1 to 3
+    speed_m_s: float  # of the tool along an axis, for which they would push all the way, m/s
 
     def __post_init__(self) -> None:
         if not 1 <= self.axes <= len(AXES):
@@ -65,25 +60,20 @@ class HeightAndTilt:
 
     They ignore all other motion of the tool.
 
-    Attributes:
-        chain: the arm; its first tool is looked at.
-        speed_m_s: up, for which they would push all the way, m/s.
-        turn_rad_s: the same of the tilt, rad/s.
-
     Raises:
         UserError: a speed is not positive.
     """
 
-    chain: Chain
-    speed_m_s: float
-    turn_rad_s: float
+    chain: Chain  # the arm, of which the first tool counts
+    speed_m_s: float  # up, for which they would push all the way, m/s
+    turn_rad_s: float  # the same of the tilt, rad/s
 
     def __post_init__(self) -> None:
         _check_speed(self.speed_m_s, "m/s")
         _check_speed(self.turn_rad_s, "rad/s")
 
     def inputs(self, motions: Motions) -> FloatArray:
-        """The inputs (N, 2) by which they would ask for N motions."""
+        """The inputs (N, d) by which they would ask for N motions."""
         change = pose_error(self.chain.forward(motions.start), self.chain.forward(motions.end))
         wanted = change[:, [2, 3]] / (np.array([self.speed_m_s, self.turn_rad_s]) * motions.duration_s)
         return np.clip(wanted, -1.0, 1.0)
@@ -92,18 +82,11 @@ class HeightAndTilt:
 @final
 @dataclass(frozen=True, eq=False)
 class ByPlace:
-    """A simulated person whose preference depends on the place.
+    """A simulated person whose preference depends on the place."""
 
-    Attributes:
-        chain: the arm; its first tool is looked at.
-        is_there: whether places (N, 3), m, are the place, (N,).
-        there: what they mean where a motion begins there.
-        elsewhere: what they mean where it does not.
-    """
-
-    chain: Chain
-    is_there: Callable[[FloatArray], BoolArray]
-    there: Preference
+    chain: Chain  # the arm, of which the first tool counts
+    is_there: Callable[[FloatArray], BoolArray]  # whether places (N, 3), m, are the place, (N,)
+    there: Preference  # for motions that begin there
     elsewhere: Preference
 
     def inputs(self, motions: Motions) -> FloatArray:
@@ -117,18 +100,13 @@ class ByPlace:
 class Imprecise:
     """A simulated person whose deflection of each axis varies randomly.
 
-    Attributes:
-        preference: what they mean.
-        variation: coefficient of variation, the SD of an answer as a share of it.
-        rng: source of the chances; each call draws anew.
-
     Raises:
         UserError: the variation is negative or not finite.
     """
 
     preference: Preference
-    variation: float
-    rng: np.random.Generator
+    variation: float  # coefficient of variation, the SD of an answer as a share of it
+    rng: np.random.Generator  # source of the chances; each call draws anew
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.variation) and self.variation >= 0):
@@ -137,17 +115,12 @@ class Imprecise:
             )
 
     def inputs(self, motions: Motions) -> FloatArray:
-        """The inputs (N, d) by which they ask for N motions this time."""
+        """The inputs (N, d) by which they would ask for N motions."""
         meant = self.preference.inputs(motions)
         pushed = meant * (1.0 + self.variation * self.rng.normal(size=meant.shape))
         return np.clip(pushed, -1.0, 1.0)
 
 
 def _check_speed(speed: float, unit: str) -> None:
-    """Check a speed.
-
-    Raises:
-        UserError: it is not positive or not finite.
-    """
     if not (math.isfinite(speed) and speed > 0):
         raise UserError(f"The simulated person's speed must be positive, not {speed:g} {unit}.")

@@ -44,16 +44,15 @@ FOLDER: Final = "profiles"
 ALIGNMENT_NAME: Final = "alignment.safetensors"
 SCHEMA: Final = 2
 NETWORK_SCHEMA: Final = 1
-"""Of the profiles that held a network; they are still read."""
+"""Older profiles hold a network; they are still read."""
 
 MOST_PLACES: Final = 10_000
-"""Of answers and of regions; a profile of ours keeps some tens."""
+"""Most answers and most regions; a profile of ours keeps some tens."""
 
 NAMED: Final = re.compile(r"\w[\w-]{0,63}")
 """Names that are also the name of their folder."""
 
 MOST_CHARACTERS: Final = 64
-"""Of a profile's name."""
 
 _DIGEST: Final = re.compile(r"\+[0-9a-f]{24}")
 """Folders of all other names; the name itself is in ``config.json``."""
@@ -68,46 +67,28 @@ TRIAL: Final = ".trial"
 @final
 @dataclass(frozen=True, eq=False)
 class Profile:
-    """What one person means by their input, under one seed of one model.
+    """One person's meaning of an input, under one seed of one model."""
 
-    Attributes:
-        known: what is known of the person; of an older profile the network f.
-        fingerprint: of the model and the seed, see `model_fingerprint`.
-        seed_index: which of the model's seeds decodes.
-    """
-
-    known: ToolSpace | LearnedAlignment
-    fingerprint: str
-    seed_index: int
+    known: ToolSpace | LearnedAlignment  # of an older profile the network f
+    fingerprint: str  # of the model and the seed, see `model_fingerprint`
+    seed_index: int  # which of the model's seeds decodes
 
     def alignment(self, decoder: Decoder, chain: Chain) -> Alignment:
-        """``z = f(u, c)`` with the model's decoder and the arm.
-
-        Raises:
-            UserError: the profile is not for this arm.
-        """
+        """``z = f(u, c)`` with the model's decoder; UserError where the profile is for another arm."""
         if isinstance(self.known, LearnedAlignment):
             return self.known
         return self.known.with_arm(decoder, chain)
 
 
 def model_fingerprint(run: Path, seed_index: int) -> str:
-    """SHA-256 of a saved model's weights and the seed, so that no profile is taken for another model's.
-
-    Raises:
-        UserError: the run has no model.
-    """
+    """SHA-256 of a saved model's weights and the seed, so that no other model gets the profile."""
     path = run / WEIGHTS_NAME
     content = read_bytes(path, WEIGHTS_LIMIT)
     return hashlib.sha256(content + f"seed {seed_index}".encode()).hexdigest()
 
 
 def profile_folder(run: Path, name: str) -> Path:
-    """Where a run keeps a person's profile: any name in any script has its folder.
-
-    Raises:
-        UserError: it is no name.
-    """
+    """The folder of a person's profile in a run, for any name in any script; UserError where it is none."""
     return run / FOLDER / _folder_name(name)
 
 
@@ -121,11 +102,7 @@ def _folder_name(name: str) -> str:
 
 
 def new_profile_folder(run: Path, name: str) -> Path:
-    """Where a run will keep a new profile.
-
-    Raises:
-        UserError: it is no name, or has been given already.
-    """
+    """The folder of a new profile; UserError where its name is none or has been given already."""
     folder = profile_folder(run, name)
     check_vacant(folder)
     return folder
@@ -157,16 +134,12 @@ def _written_name(config: Path, changed_ns: int) -> str:
 
 
 def trial_folder(run: Path) -> Path:
-    """Where a run holds a profile on trial."""
+    """The folder of a run's profile on trial."""
     return run / FOLDER / TRIAL
 
 
 def folder_of(run: Path, name: str) -> Path:
-    """Where a run has the profile of a name, which may be on trial.
-
-    Raises:
-        UserError: it is no name.
-    """
+    """The folder of the profile of a name, which may be on trial; UserError where it is no name."""
     return trial_folder(run) if name == TRIAL else profile_folder(run, name)
 
 
@@ -185,11 +158,7 @@ def keep_trial(run: Path, name: str) -> None:
 
 
 def discard_trial(run: Path) -> None:
-    """Delete the profile on trial, if there is one.
-
-    Raises:
-        UserError: it cannot be deleted.
-    """
+    """Delete the profile on trial, if there is one; UserError where it cannot be deleted."""
     folder = trial_folder(run)
     try:
         if folder.exists():
@@ -201,17 +170,11 @@ def discard_trial(run: Path) -> None:
 def save_profile(
     known: ToolSpace, fingerprint: str, seed_index: int, folder: Path, about: Mapping[str, object]
 ) -> None:
-    """Write a profile to a new folder, which appears whole or not at all.
+    """Write a profile to a new folder, from `new_profile_folder`, which appears whole or not at all.
 
-    Args:
-        known: what is known of the person.
-        fingerprint: see `Profile`.
-        seed_index: see `Profile`.
-        folder: from `new_profile_folder`.
-        about: further keys for its ``config.json`` (who answered what, how well it is met, ...).
+    ``about`` has further keys for its ``config.json`` (who answered what, how well it is met).
 
-    Raises:
-        UserError: the folder is there already, or cannot be written.
+    Raises UserError where the folder is there already, or cannot be written.
     """
     tensors = _tensors(known)
     content = save({name: np.ascontiguousarray(tensors[name]) for name in sorted(tensors)})

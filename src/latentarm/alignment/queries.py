@@ -1,4 +1,4 @@
-"""Which motion to ask about next, and when to stop.
+"""The choice of the next motion to ask about, and of the end of asking.
 
 A person's meaning is a Gaussian process on ``u = Q(c) dx`` with the kernel ``dx . dx' [1 + RBF(x, x')]``. Its
 variance does not depend on the answers: it says before the first one which motion teaches most.
@@ -29,12 +29,7 @@ VARIATION: Final = 0.1
 
 @final
 class Design:
-    """How much each motion would teach.
-
-    Args:
-        chain: the arm.
-        motions: N, that may be asked about.
-    """
+    """The value of an answer about each of N motions."""
 
     def __init__(self, chain: Chain, motions: Motions) -> None:
         place, twist = pose_vectors(chain, motions.start), motion_twists(chain, motions)
@@ -43,15 +38,9 @@ class Design:
         self._prior = prior / max(float(np.diag(prior).mean()), 1e-12)
 
     def worth(self, asked: Sequence[int]) -> FloatArray:
-        """By how much an answer about each motion lowers the mean variance over all.
+        """The share (N,) of the mean variance over all motions that an answer about each would take away.
 
-        Active learning by expected variance (Cohn 1996).
-
-        Args:
-            asked: rows of those that were asked about.
-
-        Returns:
-            (N,), as a share of the mean variance before the first answer.
+        Active learning by expected variance (Cohn 1996), relative to the variance before the first answer.
         """
         variance = self._prior
         noise = VARIATION**2 * (np.diag(self._prior) + 1.0)
@@ -62,11 +51,7 @@ class Design:
 
 
 def next_motion(worth: FloatArray, asked: Sequence[int]) -> int:
-    """The motion that is worth most (N,), of those not yet asked about.
-
-    Raises:
-        UserError: all have been asked about.
-    """
+    """The motion of the largest worth (N,) not yet asked about; UserError where none is left."""
     if len(set(asked)) >= len(worth):
         raise UserError(f"All {len(worth)} motions have been asked about.")
     left = worth.copy()
@@ -77,19 +62,14 @@ def next_motion(worth: FloatArray, asked: Sequence[int]) -> int:
 @final
 @dataclass(frozen=True)
 class StoppingRule:
-    """When to stop asking.
-
-    Attributes:
-        share: enough is known where less than this share of the inputs is unknown (`Posterior.share`).
-        fall: nor is anything learned where ``patience`` answers have not lowered it by this share.
-        patience: answers.
+    """A rule for when to stop asking.
 
     Raises:
         UserError: a figure is out of its range.
     """
 
-    share: float = 0.1
-    fall: float = 0.05
+    share: float = 0.1  # enough is known below this share of unknown inputs (`Posterior.share`)
+    fall: float = 0.05  # or where ``patience`` answers have not lowered it by this share
     patience: int = 3
 
     def __post_init__(self) -> None:
@@ -100,11 +80,7 @@ class StoppingRule:
             raise UserError("The stopping rule waits for at least one answer.")
 
     def enough(self, history: Sequence[float]) -> bool:
-        """Whether to stop asking.
-
-        Args:
-            history: the share that was unknown after each answer so far.
-        """
+        """Whether to stop asking, by the unknown share after each answer so far."""
         if history and history[-1] < self.share:
             return True
         earlier, recent = history[: -self.patience], history[-self.patience :]
@@ -112,13 +88,7 @@ class StoppingRule:
 
 
 def order_of_questions(chain: Chain, motions: Motions, most: int) -> list[int]:
-    """Rows of the motions to ask about, in the order of asking; no answer changes it.
-
-    Args:
-        chain: the arm.
-        motions: that may be asked about.
-        most: how many, at most as many as there are motions.
-    """
+    """Rows of at most ``most`` motions in the order of asking; no answer changes it."""
     design, asked = Design(chain, motions), list[int]()
     while len(asked) < most:
         asked.append(next_motion(design.worth(asked), asked))

@@ -13,13 +13,7 @@ NETWORK: Final = "alignment"
 
 
 def layer_shapes(latent: int, context: int, hidden: tuple[int, ...]) -> dict[str, Shape]:
-    """Shape of every weight of f by name: a perceptron from (u, normalised c) to z.
-
-    Args:
-        latent: d.
-        context: c.
-        hidden: units of each hidden layer.
-    """
+    """Shape of every weight of f by name: a perceptron from (u, normalised c) to z, with hidden layers."""
     shapes: dict[str, Shape] = {}
     for layer, (inputs, outputs) in enumerate(pairwise((latent + context, *hidden, latent))):
         shapes[f"{NETWORK}.{layer}.weight"] = (inputs, outputs)
@@ -41,12 +35,6 @@ class LearnedAlignment:
     """``z = f(u, c)`` of one person (equation 4).
 
     The call does not validate: the control loop has checked its input, and NumPy raises on a wrong shape.
-
-    Attributes:
-        tensors: float64 arrays by name, as `tensor_shapes` lists them.
-        latent_dim: d.
-        context_dim: c.
-        hidden: units of each hidden layer.
     """
 
     def __init__(self, tensors: Mapping[str, FloatArray]) -> None:
@@ -62,15 +50,7 @@ class LearnedAlignment:
         self._bias: FloatArray = bias - tensors["context.centre"] @ self._from_context
 
     def __call__(self, u: FloatArray, context: FloatArray) -> FloatArray:
-        """Latent actions of inputs.
-
-        Args:
-            u: (..., d), each entry in [-1, 1].
-            context: (..., c); leading axes broadcast against those of ``u``.
-
-        Returns:
-            (..., d), in input units.
-        """
+        """Latent actions (..., d) of inputs (..., d) in contexts (..., c), whose leading axes broadcast."""
         return propagate(u @ self._from_input + (context @ self._from_context + self._bias), self._rest)
 
     def _layers(self) -> list[Layer]:

@@ -1,4 +1,4 @@
-"""What the demonstrations do in each place: the directions that a motion there should keep to."""
+"""The demonstrated directions in each place, which a motion there should keep to."""
 
 from dataclasses import dataclass
 from typing import Final, Self, final
@@ -15,36 +15,24 @@ REGIONS: Final = 24
 """Regions that the demonstrated places are divided into, at most."""
 
 FASTEST: Final = 0.99
-"""Share of the demonstrated motions that are slower than what counts as fast."""
+"""This share of the demonstrated motions is slower than a fast one."""
 
 
 @final
 @dataclass(frozen=True, eq=False)
 class Surroundings:
-    """Directions of demonstrated motions by place.
+    """Directions of demonstrated motions by place."""
 
-    Attributes:
-        place: (K, 12 k), the middles of regions, as `pose_vectors` has them, m.
-        outside: (K, 6 k, 6 k), symmetric; takes out of a twist what was demonstrated there.
-        width_m: how far a region reaches.
-        fast_m_s: the speed that hardly any demonstrated motion exceeds, m/s.
-    """
-
-    place: FloatArray
-    outside: FloatArray
+    place: FloatArray  # (K, 12 k), the middles of regions, see `pose_vectors`, m
+    outside: FloatArray  # (K, 6 k, 6 k), symmetric; removes the demonstrated directions from a twist
     width_m: float
-    fast_m_s: float
+    fast_m_s: float  # the speed that hardly any demonstrated motion exceeds, m/s
 
     @classmethod
     def of_motions(cls, motions: Motions, chain: Chain, latent: int) -> Self:
-        """Divide the places into regions (k-means), and take the main directions in each.
+        """Divide the places into regions (k-means), and take the d main directions in each.
 
         A direction counts as outside by how much less it was demonstrated than the d-th most.
-
-        Args:
-            motions: demonstrated.
-            chain: the arm.
-            latent: d, how many directions an input can have.
         """
         from sklearn.cluster import KMeans  # takes a second, and only learning needs it
 
@@ -59,7 +47,7 @@ class Surroundings:
         return cls(middles, outside, max(width, 1e-3), max(speed, 1e-6))
 
     def __call__(self, place: FloatArray) -> FloatArray:
-        """What takes the demonstrated out of twists at places (..., 12 k): (..., 6 k, 6 k)."""
+        """Maps (..., 6 k, 6 k) that remove the demonstrated directions from twists at places (..., 12 k)."""
         near = np.square(place[..., None, :] - self.place).sum(axis=-1)
         weight = np.exp(-0.5 * (near - near.min(axis=-1, keepdims=True)) / self.width_m**2)
         weight /= weight.sum(axis=-1, keepdims=True)
@@ -72,7 +60,7 @@ class Surroundings:
 
 
 def _outside(twist: FloatArray, latent: int) -> FloatArray:
-    """(6 k, 6 k) of the motions (N, 6 k) of one region."""
+    """The map (6 k, 6 k) of one region with motions (N, 6 k)."""
     spread, directions = np.linalg.eigh(twist.T @ twist)
     least = max(float(spread[-latent]), 1e-12)
     return (directions * (1.0 - np.minimum(spread / least, 1.0))) @ directions.T

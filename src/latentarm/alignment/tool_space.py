@@ -1,4 +1,4 @@
-"""The alignment z = f(u, c) that makes the tools do what a person means, by inverting the decoder."""
+"""The alignment z = f(u, c) that makes the tools follow a person's meaning, by inverting the decoder."""
 
 from dataclasses import dataclass
 from typing import Final, final
@@ -22,7 +22,7 @@ RIDGES: Final = (1.0, 0.3, 0.1, 0.03, 0.01, 0.01, 0.01)
 
 SECANTS: Final = ((0.05,) * len(RIDGES), (0.4, 0.4, 0.3, 0.2, 0.1, 0.1, 0.05))
 """(paths, steps), half the distance in z over which the decoder's derivative is taken. The first path follows
-the decoder from rest. Where it is folded there, that leads away from what is meant; the second path sees the
+the decoder from rest. Where it is folded there, that leads away from the meaning; the second path sees the
 decoder more broadly at first."""
 
 ACROSS: Final = (0.1, 0.15)
@@ -36,28 +36,14 @@ REACH: Final = 0.5
 @final
 @dataclass(frozen=True, eq=False)
 class ToolSpace:
-    """What is known of a person, without the decoder and the arm that it is used with.
-
-    Attributes:
-        meaning: Q.
-        surroundings: of the demonstrations that the person was asked about.
-        duration_s: of the motions that they were asked about, s.
-    """
+    """A person's meaning, without the decoder and the arm that it is used with."""
 
     meaning: Meaning
-    surroundings: Surroundings
-    duration_s: float
+    surroundings: Surroundings  # of the demonstrations that the person was asked about
+    duration_s: float  # of the motions that they were asked about, s
 
     def with_arm(self, decoder: Decoder, chain: Chain) -> "ToolSpaceAlignment":
-        """The person's alignment.
-
-        Args:
-            decoder: phi.
-            chain: the arm.
-
-        Raises:
-            UserError: they were asked about another arm or another number of inputs.
-        """
+        """The person's alignment; UserError for another arm or another number of inputs than when asked."""
         inputs, twist = self.meaning.matrix.shape
         if twist != 6 * len(chain.tools) or inputs != decoder.latent_dim or chain.dof != decoder.action_dim:
             raise UserError(
@@ -71,16 +57,11 @@ class ToolSpace:
 class ToolSpaceAlignment:
     """``z = argmin ‖Q(c) J phi(z, c) - u‖^2 + ‖N(c) J phi(z, c)‖^2 + r ‖z‖^2``.
 
-    The first term is what the person means (`Meaning`), the second keeps to what the demonstrations do in the
+    The first term is the person's meaning (`Meaning`), the second keeps to the demonstrated directions in the
     place (`Surroundings`, N in full pushes), and J is the Jacobian of the tools half way through a motion as
     long as those that were asked about. The minimum is sought on two paths of a fixed number of damped
     Gauss-Newton steps from z = 0, so the time is bounded, nothing is remembered between calls, and z is
     bounded.
-
-    Args:
-        known: Q, N and the length of a motion.
-        decoder: phi.
-        chain: the arm.
     """
 
     def __init__(self, known: ToolSpace, decoder: Decoder, chain: Chain) -> None:
@@ -94,15 +75,7 @@ class ToolSpaceAlignment:
         self._penalty = OUTSIDE / known.surroundings.fast_m_s
 
     def __call__(self, u: FloatArray, context: FloatArray) -> FloatArray:
-        """Latent actions.
-
-        Args:
-            u: (..., d), each entry in [-1, 1].
-            context: (..., c); leading axes broadcast against those of ``u``.
-
-        Returns:
-            (..., d), in input units.
-        """
+        """Latent actions (..., d) of inputs (..., d) in contexts (..., c), whose leading axes broadcast."""
         state = context[..., : self._chain.dof]
         transforms = self._chain.link_transforms(state)
         place = pose_vectors_at(self._chain, transforms)

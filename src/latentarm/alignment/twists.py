@@ -23,15 +23,7 @@ def motion_twists(chain: Chain, motions: Motions) -> FloatArray:
 
 
 def tool_jacobian(chain: Chain, transforms: FloatArray) -> FloatArray:
-    """The Jacobian of `motion_twists`: joint velocities to twists.
-
-    Args:
-        chain: the arm.
-        transforms: (..., n, 4, 4), of its links.
-
-    Returns:
-        (..., 6 k, n), m/s per rad/s.
-    """
+    """The Jacobian (..., 6 k, n) of `motion_twists`, m/s per rad/s, for link transforms (..., n, 4, 4)."""
     parts = [
         chain.jacobian_at(transforms, chain.tool_pose(transforms, tool), tool)
         for tool in range(len(chain.tools))

@@ -16,23 +16,14 @@ _STANDSTILL = 0.02
 
 
 def annotate(demonstrations: Demonstrations, rule: Rule = BoltzmannBelief) -> Demonstrations:
-    """Add the belief over the demonstrations' own goals to every episode as ``extras["belief"]``.
+    """Add the belief over the demonstrations' own goals to every episode as ``extras["belief"]`` (T, G).
 
-    The update is equation 9 as the rule has it when a person drives; only the choice ``U`` differs,
-    because a demonstration has no inputs: besides the demonstrated action it contains motions at the same
-    speed straight towards each goal, which stop at the goal. The belief at a sample depends only on earlier
+    The rule updates the belief by equation 9, as when a person drives; only the choice ``U`` differs, because
+    a demonstration has no inputs: besides the demonstrated action it contains motions at the same speed
+    straight towards each goal, which stop at the goal. The belief at a sample depends only on earlier
     samples.
 
-    Args:
-        demonstrations: with at least one goal; no episode is changed in place.
-        rule: makes the belief, as ``rule(goals, period_s=...)``: a class of beliefs, or a function that
-            chooses its parameters.
-
-    Returns:
-        The same demonstrations with beliefs (T, G).
-
-    Raises:
-        UserError: the demonstrations name no goals.
+    Raises UserError where the demonstrations name no goals.
     """
     if not demonstrations.goals:
         raise UserError("The demonstrations name no goals, so there is no belief to compute along them.")

@@ -1,4 +1,4 @@
-"""How the robot helps: the base class of every kind, and what makes one for given goals."""
+"""Help by the robot: the base class of every kind, and its factory."""
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
@@ -12,18 +12,13 @@ from latentarm.core.types import FloatArray
 class Contribution:
     """The robot's part of the motion at one moment: ``a = (1 - alpha) a_h + (alpha + added) a_r``.
 
-    Attributes:
-        action: (n,), the assistive action ``a_r``, rad/s.
-        alpha: how much of it takes the place of the person's action, in [0, 1]: the alpha of equation 2.
-        added: how much of it is added to the person's action, in [0, 1].
-
     Raises:
         ValueError: a share is not in [0, 1].
     """
 
-    action: FloatArray
-    alpha: float
-    added: float = 0.0
+    action: FloatArray  # (n,), the assistive action ``a_r``, rad/s
+    alpha: float  # how much of it takes the place of the person's action, in [0, 1]: the alpha of equation 2
+    added: float = 0.0  # how much of it is added to the person's action, in [0, 1]
 
     def __post_init__(self) -> None:
         for share in (self.alpha, self.added):
@@ -51,32 +46,23 @@ class Assistance(ABC):
     def contribution(
         self, u: FloatArray, action_human: FloatArray, state: FloatArray, belief: FloatArray
     ) -> Contribution:
-        """What the robot does now.
+        """The robot's action now.
 
-        Args:
-            u: (d,), the person's input.
-            action_human: (n,), ``a_h``, rad/s; zero where the input is.
-            state: (n,), rad.
-            belief: (G,), probability over goals.
+        The person's input ``u`` is (d,), their action ``a_h`` (n,), rad/s (zero where the input is), the
+        state (n,), rad, and the belief over goals (G,).
         """
 
     @abstractmethod
     def bound_rad(self, given: Contribution, state: FloatArray, belief: FloatArray, sigma_h: float) -> float:
         """Radius of the ball about the likeliest goal that the help keeps the arm near (equation 14).
 
-        Args:
-            given: the robot's contribution, with ``alpha`` above 0.
-            state: (n,), rad.
-            belief: (G,), probability over goals.
-            sigma_h: what no input of the person exceeds, rad/s.
-
-        Returns:
-            rad; NaN where no bound is known.
+        ``given.alpha`` is above 0, and no input of the person exceeds ``sigma_h``, rad/s. NaN where no bound
+        is known.
         """
 
 
 class AssistanceRule(Protocol):
-    """What makes an `Assistance` for given goals, such as a class of them with its parameters bound."""
+    """Makes an `Assistance` for given goals, such as a class of them with its parameters bound."""
 
     def __call__(self, goals: FloatArray) -> Assistance:
         """Help towards goals (G, n), rad."""

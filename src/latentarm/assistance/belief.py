@@ -1,4 +1,4 @@
-"""Belief over goals (equation 9): the base class of all rules, and the inputs that a choice is one of."""
+"""Belief over goals (equation 9): the base class of all rules, and the inputs that form a choice."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
@@ -17,7 +17,7 @@ _LEAST = 1e-300
 
 
 class Rule(Protocol):
-    """What makes a belief over given goals; every class of beliefs does."""
+    """Makes a belief over given goals; every class of beliefs does."""
 
     def __call__(self, goals: FloatArray, *, period_s: float) -> "Belief":
         """A belief over goals (G, n), rad, that is updated every ``period_s``."""
@@ -25,7 +25,7 @@ class Rule(Protocol):
 
 
 class BeliefOptions(TypedDict, total=False):
-    """What every belief can be made with besides its rule's own parameters; see `Belief`."""
+    """Parameters of every belief besides its rule's own; see `Belief`."""
 
     period_s: float
     prior: FloatArray | None
@@ -51,13 +51,6 @@ class Belief(ABC):
         floor: smallest probability of any goal, in [0, 1/G).
         most: largest probability of any goal, in (1/G, 1]; what is over is shared evenly among the others.
             A single goal keeps its whole belief.
-
-    Attributes:
-        goals: (G, n), rad.
-        horizon_s: tau, s.
-        period_s: s.
-        floor: smallest probability of any goal.
-        most: largest probability of any goal.
 
     Raises:
         UserError: a parameter is not finite or out of its range.
@@ -90,14 +83,10 @@ class Belief(ABC):
 
     @abstractmethod
     def log_likelihood(self, state: FloatArray, actions: FloatArray) -> FloatArray:
-        """``log P(u | s, g)`` of one decision, up to what is the same for all goals.
+        """``log P(u | s, g)`` of one decision, (..., G), up to a term that all goals share.
 
-        Args:
-            state: (..., n), rad.
-            actions: (..., K, n), rad/s: the chosen one first, then what else could have been chosen.
-
-        Returns:
-            (..., G).
+        The state is (..., n), rad; actions are (..., K, n), rad/s: the chosen one first, then its
+        alternatives.
         """
 
     @final
@@ -107,18 +96,11 @@ class Belief(ABC):
 
     @final
     def update(self, belief: FloatArray, u: FloatArray, state: FloatArray, action_of: ActionOf) -> FloatArray:
-        """The belief after one input (equation 9).
+        """The belief (..., G) after one input ``u`` (..., d) in a state (..., n), rad (equation 9).
 
-        Args:
-            belief: (..., G), the belief so far.
-            u: (..., d), the input.
-            state: (..., n), rad.
-            action_of: what inputs (..., K, d) would command in these states, (..., K, n), rad/s; inputs
-                that are not finite are shown to it as zero.
-
-        Returns:
-            (..., G), each sums to one; as it was where the input is zero or not finite, or an action is
-            not finite.
+        ``action_of`` maps inputs (..., K, d) in these states to actions (..., K, n), rad/s; inputs that are
+        not finite reach it as zero. The belief stays where the input is zero or not finite, or an action is
+        not finite.
         """
         with np.errstate(over="ignore", invalid="ignore"):
             size = np.vecdot(u, u)
@@ -136,15 +118,9 @@ class Belief(ABC):
 
     @final
     def observe(self, belief: FloatArray, state: FloatArray, actions: FloatArray) -> FloatArray:
-        """The belief after the person chose ``actions[..., 0, :]`` where they could have chosen any of them.
+        """The belief (..., G) after the choice of ``actions[..., 0, :]`` among actions (..., K, n), rad/s.
 
-        Args:
-            belief: (..., G), the belief so far.
-            state: (..., n), rad.
-            actions: (..., K, n), rad/s.
-
-        Returns:
-            (..., G), each sums to one; as it was where an action is not finite.
+        It stays where an action is not finite.
         """
         with np.errstate(over="ignore", invalid="ignore"):
             return self._posterior(belief, state, actions)
@@ -186,13 +162,10 @@ class Belief(ABC):
 
 
 def log_choice(better: FloatArray) -> FloatArray:
-    """``log P`` of a Boltzmann-rational person's choice, from how much better each alternative is than it.
+    """``-log Σ_K exp(better)`` (..., G), log probability of a Boltzmann-rational person's choice.
 
-    Args:
-        better: (..., K, G), in units of log probability; the choice itself, 0, among them.
-
-    Returns:
-        (..., G), ``-log Σ_K exp(better)``.
+    ``better`` (..., K, G) is the log probability of each alternative relative to the choice, which is among
+    them.
     """
     # Shifted by its largest term, so that nothing overflows.
     largest = np.maximum.reduce(better, axis=-2, keepdims=True)
@@ -219,23 +192,17 @@ _TURNS = np.stack([np.stack([_COS, -_SIN], -1), np.stack([_SIN, _COS], -1)], -2)
 """(8, 2, 2), rotations by equal angles, no turn first."""
 
 _LEVELS = np.array([[-1.0], [-0.6], [-0.2], [0.2], [0.6], [1.0]])
-"""(6, 1), how far a person with one axis is taken to press it."""
+"""(6, 1), how far a person with one axis may press it."""
 
 
 def alternatives(u: FloatArray) -> FloatArray:
-    """The inputs that the person could have given, ``u`` first.
+    """The inputs (..., K, d) that the person could have given, ``u`` (..., d) first.
 
     - Two axes: ``u`` turned through eight equal angles.
     - One axis: ``u`` and six levels from -1 to 1. A nonlinear decoder need not do the opposite at
       ``-u``, so ``{u, -u}`` would represent the rejected alternatives poorly. Pressing gently is no
       evidence against a goal: such alternatives are compared `at_one_speed`.
     - More axes: ``u`` and ``±‖u‖`` along every axis.
-
-    Args:
-        u: (..., d), the input.
-
-    Returns:
-        (..., K, d).
     """
     d = u.shape[-1]
     if d == 2:
@@ -248,13 +215,9 @@ def alternatives(u: FloatArray) -> FloatArray:
 
 
 def at_one_speed(actions: FloatArray) -> FloatArray:
-    """The alternatives, scaled to the speed of the chosen action, so that only directions are compared.
+    """Actions (..., K, n) at the speed of the chosen one, the first, so that only directions are compared.
 
-    Args:
-        actions: (..., K, n), rad/s, the chosen one first.
-
-    Returns:
-        (..., K, n), rad/s; an action of zero stays zero.
+    An action of zero stays zero.
     """
     speed = np.sqrt(np.vecdot(actions, actions))[..., None]
     return actions * (speed[..., :1, :] / np.where(speed > 0.0, speed, 1.0))

@@ -13,13 +13,7 @@ from latentarm.core.types import FloatArray
 def blend(action_human: FloatArray, action_assist: FloatArray, alpha: float | FloatArray) -> FloatArray:
     """``a = (1 - alpha) a_h + alpha a_r`` (equation 2; with equation 3 it is equation 10).
 
-    Args:
-        action_human: (..., m), ``a_h``, rad/s.
-        action_assist: (..., m), ``a_r``, rad/s.
-        alpha: (...,), 0 leaves all to the person, 1 all to the robot.
-
-    Returns:
-        (..., m), rad/s.
+    Actions are (..., m), rad/s; an alpha (...,) of 0 leaves all to the person, of 1 all to the robot.
     """
     share = np.asarray(alpha)[..., None]
     return (1.0 - share) * action_human + share * action_assist
@@ -35,14 +29,9 @@ class Arbitration(ABC):
 
     @abstractmethod
     def alpha(self, u: FloatArray, belief: FloatArray) -> FloatArray:
-        """The arbitration of equation 2.
+        """The arbitration of equation 2 (...,), in [0, 1]; zero for an input that is not finite.
 
-        Args:
-            u: (..., d), the person's input.
-            belief: (..., G), probability over goals.
-
-        Returns:
-            (...,), alpha in [0, 1]; zero for an input that is not finite.
+        The person's input is (..., d), the belief (..., G).
         """
 
 
@@ -126,11 +115,7 @@ class ConfidenceAlpha(Arbitration):
 @final
 @dataclass(frozen=True)
 class Unprompted(Arbitration):
-    """Help even without an input, for people who ask for it: the arm then moves by itself.
-
-    Attributes:
-        inner: says how much, as at full input.
-    """
+    """Help even without an input, for people who ask for it: the arm then moves by itself."""
 
     inner: Arbitration
 
@@ -140,19 +125,12 @@ class Unprompted(Arbitration):
         return True
 
     def alpha(self, u: FloatArray, belief: FloatArray) -> FloatArray:
-        """What ``inner`` says of a full input; see `Arbitration.alpha`."""
+        """The alpha of ``inner`` for a full input; see `Arbitration.alpha`."""
         return np.isfinite(u).all(axis=-1) * self.inner.alpha(np.ones_like(u), belief)
 
 
 def confidence(belief: FloatArray) -> FloatArray:
-    """How sure the robot is, ``(max b - 1/G) / (1 - 1/G)``.
-
-    Args:
-        belief: (..., G), probability over goals.
-
-    Returns:
-        (...,), in [0, 1]; 1 where there is one goal only.
-    """
+    """How sure the robot is, ``(max b - 1/G) / (1 - 1/G)`` (...,); 1 where there is one goal only."""
     count = belief.shape[-1]
     if count == 1:
         return np.ones(belief.shape[:-1])
@@ -180,17 +158,8 @@ def _check_full_at(full_at: float) -> None:
 def assistive_action(
     state: FloatArray, belief: FloatArray, goals: FloatArray, gain_per_s: float = 1.0
 ) -> FloatArray:
-    """``a_r = k Σ_g b(g) (g - s)`` (equation 3): towards the goals, each by how likely it is.
+    """``a_r = k Σ_g b(g) (g - s)`` (..., n), rad/s (equation 3): towards goals (G, n) by their probability.
 
-    The paper's ``g - s`` is a displacement; the gain k makes it a velocity.
-
-    Args:
-        state: (..., n), rad.
-        belief: (..., G), probabilities.
-        goals: (G, n), configurations, rad.
-        gain_per_s: k, 1/s.
-
-    Returns:
-        (..., n), rad/s.
+    The paper's ``g - s`` is a displacement; the gain k, 1/s, makes it a velocity.
     """
     return gain_per_s * (belief @ goals - state * belief.sum(axis=-1, keepdims=True))

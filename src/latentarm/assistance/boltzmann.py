@@ -24,10 +24,8 @@ class BoltzmannBelief(Belief):
     goal alike, does not seem to have changed their mind.
 
     Args:
-        goals: (G, n), the goals' configurations, rad.
         beta: rationality, 1/rad²; 0 learns nothing.
         horizon_s: the look-ahead tau, s.
-        options: see `Belief`.
 
     Raises:
         UserError: a parameter is not finite or out of its range.

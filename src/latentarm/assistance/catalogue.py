@@ -13,9 +13,6 @@ def _rule(name: str, thing: object) -> Rule:
 
 
 BELIEFS: Final = Catalogue(
-    "latentarm.beliefs",
-    "belief",
-    {"boltzmann": "latentarm.assistance.boltzmann:BoltzmannBelief"},
-    _rule,
+    "latentarm.beliefs", "belief", {"boltzmann": "latentarm.assistance.boltzmann:BoltzmannBelief"}, _rule
 )
 """Each is made with ``goals``, and if wanted ``period_s``, ``prior`` and ``floor``."""

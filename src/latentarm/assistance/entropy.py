@@ -34,7 +34,7 @@ Where = Literal["demonstrated", "any_belief", "anywhere"]
 
 
 def goal_probabilities(progress: Tensor, sharpness: float = 4.0, least_progress: float = 0.5) -> Tensor:
-    """``p_c(g)``: how much of what a person can do conveys each goal (equation 15).
+    """``p_c(g)``: how much of a person's possible actions conveys each goal (equation 15).
 
     The paper leaves the score open. Here it is::
 
@@ -45,13 +45,8 @@ def goal_probabilities(progress: Tensor, sharpness: float = 4.0, least_progress:
     input makes more progress towards it than rho_0. Without it (rho_0 = -inf; equation 15 to the letter) a
     decoder that hardly moves towards any goal has the highest entropy of all.
 
-    Args:
-        progress: (..., K, G), speed towards each goal for K inputs, in units of the demonstrated speed.
-        sharpness: kappa.
-        least_progress: rho_0, of the demonstrated speed.
-
-    Returns:
-        (..., G), at least 0; with what conveys no goal they sum to one.
+    ``progress`` (..., K, G) is the speed towards each goal for K inputs, and ``least_progress`` is rho_0,
+    both in units of the demonstrated speed; ``sharpness`` is kappa.
     """
     return _log_probabilities(progress, sharpness, least_progress).exp()
 
@@ -64,21 +59,12 @@ def entropy_over_goals(probabilities: Tensor) -> Tensor:
 def goal_progress(
     state: Tensor, actions: Tensor, goals: Tensor, speed: float, chain: TorchChain | None = None
 ) -> Tensor:
-    """Progress towards each goal, in units of the demonstrated speed.
+    """Progress (..., K, G) towards goals (G, n), rad, in units of the demonstrated speed, rad/s.
 
-    That of the joints or, where the arm is known, of joints or tool, whichever is less: people see the
-    tool (equation 24), and a redundant arm can bring its joints nearer to a goal while the tool goes away.
-    The tool's is in units of the speed that it has when the joints go straight to the goal.
-
-    Args:
-        state: (..., n), rad.
-        actions: (..., K, n), rad/s.
-        goals: (G, n), rad.
-        speed: the demonstrated ‖a‖, rad/s.
-        chain: the arm's kinematics.
-
-    Returns:
-        (..., K, G).
+    Actions are (..., K, n), rad/s, in states (..., n), rad. Progress is that of the joints or, where the arm
+    is known, of joints or tool, whichever is less: people see the tool (equation 24), and a redundant arm can
+    bring its joints nearer to a goal while the tool goes away. The tool's is in units of the speed that it
+    has when the joints go straight to the goal.
     """
     towards = _direction(goals - state[..., None, :], NEAR_RAD)
     progress = actions @ towards.mT / speed
@@ -100,27 +86,18 @@ class GoalEntropy(LossTerm):
     Contexts are those in which a person may want to turn back, not only the demonstrated ones:
     between any two demonstrated states, with any demonstrated belief. The term needs no actions there.
 
-    Attributes:
-        goals: (G, n), the goals' configurations, rad.
-        weight: lambda_2.
-        sharpness: kappa of `goal_probabilities`.
-        least_progress: rho_0 of `goal_probabilities`, of the demonstrated speed.
-        per_axis: evenly spaced inputs in [-1, 1] on each axis, over which z is summed.
-        where: contexts: ``demonstrated`` ones, demonstrated states with ``any_belief``, or ``anywhere``
-            between demonstrated states as well.
-        chain: the arm's kinematics, for progress as people see it; without it the joints alone count.
-
     Raises:
         UserError: a parameter is out of its range.
     """
 
-    goals: FloatArray
-    weight: float = 2.0
-    sharpness: float = 4.0
-    least_progress: float = 0.5
-    per_axis: int = 7
+    goals: FloatArray  # (G, n), configurations, rad
+    weight: float = 2.0  # lambda_2
+    sharpness: float = 4.0  # kappa of `goal_probabilities`
+    least_progress: float = 0.5  # rho_0 of `goal_probabilities`, of the demonstrated speed
+    per_axis: int = 7  # evenly spaced inputs in [-1, 1] on each axis, over which z is summed
     where: Where = "anywhere"
-    chain: Chain | None = None
+    """``demonstrated`` contexts, their states with ``any_belief``, or ``anywhere`` between these states."""
+    chain: Chain | None = None  # for progress of the tool; without it the joints alone count
 
     def __post_init__(self) -> None:
         if self.goals.ndim != 2 or len(self.goals) < 2 or not np.isfinite(self.goals).all():

@@ -13,12 +13,7 @@ from latentarm.core.types import FloatArray
 
 @final
 class GoalBlending(Assistance):
-    """``a = (1 - alpha) a_h + alpha Σ_g b(g) (g - s)`` (equation 10).
-
-    Args:
-        goals: (G, n), configurations, rad.
-        arbitration: how much the robot helps.
-    """
+    """``a = (1 - alpha) a_h + alpha Σ_g b(g) (g - s)`` (equation 10), with goals (G, n), rad."""
 
     def __init__(self, goals: FloatArray, arbitration: Arbitration) -> None:
         self._goals = goals

@@ -1,1 +1,1 @@
-"""One module for each command of `latentarm`: its options, and what it calls and prints."""
+"""One module for each command of `latentarm`, with its options, calls and messages."""

@@ -50,15 +50,9 @@ class AlignOptions:
 def align_run(config: AlignOptions, say: Say) -> list[Row]:
     """Ask, learn, and write the profile to ``profiles/<name>`` of the run. Nothing is written before the end.
 
-    Args:
-        config: what is asked for.
-        say: shows text to the person.
+    Returns the error on the answers themselves: with the profile, with an affine map, and with z = u.
 
-    Returns:
-        The error on the answers themselves: with the profile, with an affine map, and with z = u.
-
-    Raises:
-        UserError: the run cannot be aligned, the name is taken, or nobody answers.
+    Raises UserError where the run cannot be aligned, the name is taken, or nobody answers.
     """
     from latentarm.alignment.profile import new_profile_folder
     from latentarm.runs.aligning import alignable, learn
@@ -75,7 +69,7 @@ def align_run(config: AlignOptions, say: Say) -> list[Row]:
 
 
 def _person(config: AlignOptions, scene: "Scene", say: Say) -> Person:
-    """Whom to ask."""
+    """The person to ask."""
     if not config.simulated:
         return PersonAtTerminal(say, read_line)
     chain, motions, axes = scene.chain, scene.motions, scene.model.latent_dim

@@ -1,4 +1,4 @@
-"""`latentarm arms`: what arms there are, and what is known of a real one before it moves."""
+"""`latentarm arms`: the arms that there are, and checks of a real one before it moves."""
 
 import json as json_format
 from pathlib import Path
@@ -28,17 +28,10 @@ FIRST_M_PER_S: Final = 0.05
 
 
 def check_arm_at(address: str, run: Path | None, robot: "RobotOptions", speeds: Speeds) -> Findings:
-    """What there is to know of a real arm before it is driven from the page; nothing moves.
+    """Check a real arm, such as ``franka://172.16.0.2``, before it is driven from the page; nothing moves.
 
-    Args:
-        address: of the arm, such as ``franka://172.16.0.2``.
-        run: what it is to be driven with, or None.
-        robot: what the arm is, where the run is not to say.
-        speeds: how fast it is to be driven.
-
-    Raises:
-        UserError: the address, the run or the robot cannot be used. Why the arm is refused, or does
-            not answer, is among the findings instead.
+    ``robot`` describes the arm where there is no run. Raises UserError where the address, the run or the
+    robot cannot be used; a refusal by the arm is among the findings instead.
     """
     from latentarm.web.arm_process.drive_setup import PERIOD_S, Spec, load_setup
 

@@ -16,14 +16,9 @@ from latentarm.core.plugins import Catalogue
 @final
 @dataclass(frozen=True)
 class Entry:
-    """A command as the command line lists it.
+    """A command as the command line lists it."""
 
-    Attributes:
-        place: its function, as ``package.module:function``.
-        summary: the first line of its help.
-    """
-
-    place: str
+    place: str  # its function, as ``package.module:function``
     summary: str
 
     def load(self) -> Command:
@@ -34,15 +29,10 @@ class Entry:
 @final
 @dataclass(frozen=True)
 class CommandSet:
-    """Commands of one distribution.
+    """Commands of one distribution."""
 
-    Attributes:
-        commands: by the words that run each, in the order of the help.
-        groups: words that have commands under them, and their help.
-    """
-
-    commands: Mapping[str, Entry]
-    groups: Mapping[str, str]
+    commands: Mapping[str, Entry]  # by the words that run each, in the order of the help
+    groups: Mapping[str, str]  # words that have commands under them, and their help
 
 
 def _ours(module: str, summary: str) -> Entry:

@@ -32,19 +32,16 @@ ConfigFile = Annotated[
 OPTION: Final = "config"
 
 NOT_KEPT: Final = (OPTION, "json", "resume")
-"""Options that change how a run is reported or resumed, not what it does; they are not written."""
+"""Options of reporting and resuming, which do not change results; they are not written."""
 
 _ASKED: ContextVar[tuple[str, Mapping[str, object]] | None] = ContextVar("asked", default=None)
 """Name and options of the command that is running."""
 
 
 def configurable(command: Command, name: str, defaults: Mapping[str, object]) -> Command:
-    """A command with ``--config``, whose defaults may come from the file.
+    """A command with ``--config``, whose defaults, by parameter, may come from the file.
 
-    Args:
-        command: its parameters are its options.
-        name: the words that run it, such as ``reproduce properties``.
-        defaults: by parameter, of the parameter's type.
+    ``name`` is the words that run it, such as ``reproduce properties``.
     """
     known = options_of(command)
     groups = _groups(command)
@@ -78,7 +75,7 @@ def options_of(command: Command) -> dict[str, inspect.Parameter]:
 
 
 def _groups(command: Command) -> dict[str, type[Any]]:
-    """Those of a command's parameters that are dataclasses of options."""
+    """The parameters of a command that are dataclasses of options."""
     return {name: hint for name, hint in get_type_hints(command).items() if is_dataclass(hint)}  # pyright: ignore[reportReturnType]
 
 
@@ -94,19 +91,10 @@ def file_named_in(words: Sequence[str]) -> Path | None:
 
 
 def read_options(path: Path, command: Command, name: str) -> dict[str, object]:
-    """Options of a command from a YAML file.
+    """Options of a command, by parameter, from a YAML file.
 
-    Args:
-        path: the file: one mapping from option names to values.
-        command: whose options these are.
-        name: the words that run it.
-
-    Returns:
-        Values by parameter, of the parameters' types.
-
-    Raises:
-        UserError: the file cannot be read, is not such a mapping, or has an option that the command lacks or
-            whose value has another type.
+    Raises UserError where the file cannot be read, is no mapping from option names to values, or has an
+    option that the command lacks or whose value has another type.
     """
     from pydantic import TypeAdapter, ValidationError
 
@@ -144,12 +132,8 @@ def _is_tuple(annotation: object) -> bool:
 def write_options(folder: Path, name: str, **resolved: object) -> None:
     """Write the options of the running command next to its results, so that ``--config`` can run it again.
 
-    The file is ``<command>-options.yaml``. A command that another one calls writes nothing.
-
-    Args:
-        folder: where the results are; also what ``out`` is written as.
-        name: the command that calls this.
-        resolved: values of options that were chosen automatically.
+    The file is ``<command>-options.yaml``. A command that another one calls writes nothing. ``out`` is
+    written as the folder of the results; ``resolved`` has values that were chosen automatically.
 
     Raises:
         UserError: the file cannot be written.

@@ -27,16 +27,10 @@ UNKNOWN = "–"
 def choose(
     recordings: "Sequence[Recording]", ranges: Sequence[str], source: Path, *, incomplete: bool
 ) -> "list[Recording]":
-    """The episodes that somebody asked for by number.
+    """The episodes of some numbers; all complete ones without ranges such as ``3`` and ``5-8``.
 
-    Args:
-        recordings: all there are.
-        ranges: numbers such as ``3`` and ranges such as ``5-8``; empty for all.
-        source: where they are, for the message.
-        incomplete: take episodes that were cut short too.
-
-    Raises:
-        UserError: a range is invalid, an episode does not exist, or it was cut short and was not asked for.
+    Raises UserError where a range is invalid, an episode does not exist, or it was cut short and
+    ``incomplete`` is False.
     """
     numbers = [number for text in ranges for number in _numbers(text, len(recordings), source)]
     if not ranges:
@@ -51,7 +45,7 @@ def choose(
 
 
 def describe(recordings: "Sequence[Recording]") -> list[dict[str, object]]:
-    """The list as plain data; what is unknown is None."""
+    """The list as plain data; unknown values are None."""
     described: list[dict[str, object]] = []
     for recording in recordings:
         entry = recording.entry

@@ -1,4 +1,4 @@
-"""`latentarm inspect`: what a dataset holds."""
+"""`latentarm inspect`: the content of a dataset."""
 
 from collections.abc import Mapping
 from dataclasses import fields
@@ -66,7 +66,7 @@ def summary_tables(demonstrations: Demonstrations) -> list[Table]:
 
 
 def import_table(record: Mapping[str, str]) -> Table:
-    """What importing decided, subject by subject."""
+    """The decisions of an import, subject by subject."""
     table = Table(title="Import", title_justify="left", box=SIMPLE_HEAD, padding=0, show_header=False)
     for subject, decision in record.items():
         table.add_row(Text(visible(subject)), Text(visible(decision)))
@@ -74,7 +74,7 @@ def import_table(record: Mapping[str, str]) -> Table:
 
 
 def _origin_tables(demonstrations: Demonstrations) -> list[Table]:
-    """Where a dataset comes from, as far as is recorded."""
+    """The recorded origin of a dataset."""
     tables: list[Table] = []
     if demonstrations.import_record:
         tables.append(import_table(demonstrations.import_record))
@@ -100,14 +100,7 @@ def _told(value: object) -> str:
 
 
 def draw(demonstrations: Demonstrations, folder: Path) -> Path:
-    """Draw the joints over time.
-
-    Returns:
-        The figure's path.
-
-    Raises:
-        UserError: the folder cannot be written.
-    """
+    """Draw the joints over time; the figure's path. UserError where the folder cannot be written."""
     from latentarm.demonstrations.figure import draw_trajectories
 
     robot = known_robot(demonstrations)

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from tyro.conf import arg
 
-from latentarm.alignment.seat import Seat
+from latentarm.alignment.contract import Seat
 from latentarm.arms.catalogue import ARMS
 from latentarm.runs.options import EndEffector as EndEffector
 from latentarm.runs.options import Jobs as Jobs
@@ -34,8 +34,7 @@ RobotName = Annotated[
     str, arg(help="A robot's name (see `latentarm robots`) or the path of an MJCF or URDF file.")
 ]
 JointSpeed = Annotated[
-    float | None,
-    arg(metavar="RAD_PER_S", help="Fastest that a joint may turn: 0.5 at most, and by default."),
+    float | None, arg(metavar="RAD_PER_S", help="Fastest that a joint may turn: 0.5 at most, and by default.")
 ]
 LinkSpeed = Annotated[
     float | None,
@@ -63,14 +62,7 @@ Backend = Annotated[
 
 @dataclass(frozen=True)
 class StudyOptions:
-    """What every study is asked for; the command line says the same of each field.
-
-    Attributes:
-        seed: of everything random.
-        jobs: processes side by side.
-        backend: where they run.
-        json: print one JSON document.
-    """
+    """Options of every study."""
 
     seed: Seed = 0
     jobs: Jobs = -1

@@ -1,4 +1,4 @@
-"""`latentarm robots`: what is known of a robot."""
+"""`latentarm robots`: the properties of a robot."""
 
 import json as json_format
 from pathlib import Path
@@ -26,15 +26,9 @@ _SOURCES: dict[Source, str] = {
 def describe(
     name: str | None, end_effector: str | None = None, limits: Path | None = None
 ) -> list[dict[str, object]]:
-    """Robots as plain data.
+    """Robots, one by name or model file or all built-in ones, as plain data.
 
-    Args:
-        name: a robot's name or model file, or None for all built-in ones.
-        end_effector: site, body or link of the model file that is the end-effector.
-        limits: a limits file.
-
-    Raises:
-        UserError: no such robot, or its model cannot be used.
+    Raises UserError where there is no such robot, or its model cannot be used.
     """
     return [_facts(robot) for robot in _robots(name, end_effector, limits)]
 
@@ -126,7 +120,7 @@ def _sheet(robot: Robot) -> Table:
 
 
 def _known_from(robot: Robot) -> str:
-    """How the limits are known, such as "position: from the model; jerk: assumed"."""
+    """The sources of the limits, such as "position: from the model; jerk: assumed"."""
     texts: dict[str, list[str]] = {}
     for quantity in QUANTITIES:
         sources = dict.fromkeys(robot.limits.sources.of(quantity))

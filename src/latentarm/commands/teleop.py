@@ -21,7 +21,7 @@ from latentarm.commands.options import (
 )
 from latentarm.commands.output import draws_blocks, say
 from latentarm.core.errors import UserError
-from latentarm.runs.choices import TaskName
+from latentarm.runs.options import TaskName
 
 
 def teleop(

@@ -7,15 +7,10 @@ from latentarm.core.errors import UserError
 from latentarm.core.untrusted.yaml_file import read_yaml
 
 MOST_BYTES: Final = 1 << 16
-"""Of a file of options."""
 
 
 def read_mapping(path: Path) -> dict[str, Any]:
-    """The mapping from names to numbers, texts and lists of these that a file consists of.
-
-    Raises:
-        UserError: the file cannot be read, is too large, is no YAML, or is no such mapping.
-    """
+    """The mapping from names to numbers, texts and lists of these in a YAML file; UserError for any other."""
     value = read_yaml(path, MOST_BYTES, "a YAML file of options")
     if value is None:
         return {}

@@ -5,6 +5,8 @@ import time
 from abc import ABC, abstractmethod
 from typing import final
 
+from typing_extensions import override
+
 
 class Clock(ABC):
     """A monotonic clock that can wait."""
@@ -26,12 +28,12 @@ class MonotonicClock(Clock):
     that wakes up sees that its last command has expired.
     """
 
+    @override
     def now_s(self) -> float:
-        """See the base class."""
         return _monotonic_s()
 
+    @override
     def wait_until(self, time_s: float) -> None:
-        """See the base class."""
         left = time_s - _monotonic_s()
         if left > 0.0:
             time.sleep(left)
@@ -50,10 +52,10 @@ class SimulatedClock(Clock):
     def __init__(self) -> None:
         self._now_s = 0.0
 
+    @override
     def now_s(self) -> float:
-        """See the base class."""
         return self._now_s
 
+    @override
     def wait_until(self, time_s: float) -> None:
-        """See the base class."""
         self._now_s = max(self._now_s, time_s)

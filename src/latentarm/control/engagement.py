@@ -1,8 +1,22 @@
 """Whether the arm may move: it starts disengaged, and every stop disengages it again."""
 
-from typing import final
+from typing import Final, final
 
-from latentarm.core.types import Stop
+from latentarm.arms.contract import ArmPhase, ArmStatus
+from latentarm.core.types import Stop, StopCode
+
+_CODES: Final[dict[ArmPhase, StopCode]] = {
+    "off": "arm_off",
+    "disabled": "not_enabled",
+    "fault": "arm_fault",
+    "emergency_stop": "arm_emergency_stop",
+}
+
+
+def stop_of(status: ArmStatus) -> Stop:
+    """Why an arm that takes no commands may not move."""
+    text = {"text": status.reason} if status.phase == "fault" else {}
+    return Stop(status.reason, code=_CODES.get(status.phase), parameters=text)
 
 
 @final
@@ -37,11 +51,7 @@ class Engagement:
         self._neutral = neutral
 
     def enable(self) -> Stop | None:
-        """Engage if the newest input is neutral.
-
-        Returns:
-            None if the arm is now engaged, otherwise the reason why it is not.
-        """
+        """Engage if the newest input is neutral; why not, or None."""
         if self._stopped is None:
             return None
         if not self._neutral:

@@ -1,4 +1,4 @@
-"""From a journal to the native dataset."""
+"""Export of a journal to the native dataset."""
 
 import warnings
 from collections.abc import Sequence
@@ -32,8 +32,8 @@ class ImplausibleWarning(UserWarning):
 
     Args:
         message: one sentence.
-        task: what was done in the episode.
-        kept_s: how long is what was exported of it, s; 0 where it was left out.
+        task: the episode's task.
+        kept_s: duration of the exported part, s; 0 where it was left out.
     """
 
     def __init__(self, message: str, task: str, kept_s: float) -> None:
@@ -45,23 +45,22 @@ class ImplausibleWarning(UserWarning):
 def demonstrations_of(
     episodes: Sequence[JournalEpisode], *, source: str, incomplete: bool = False
 ) -> Demonstrations:
-    """Recorded episodes as a dataset, with everything that a step decided as further features.
+    """Recorded episodes as a dataset, with every decision of a step as further features.
 
-    The command is the action; where the arm was guided by hand, the velocity of the joints is. Further
+    The command is the action; where the arm was guided by hand, it is the velocity of the joints. Further
     features: ``input.u``, ``latent.z``, ``action.human``, ``action.assist``, ``assist.alpha``, ``mode``,
     where there are goals ``belief`` and ``assist.bound`` (rad; -1 where nothing helps or no bound is known),
     and ``assist.added`` where help was ever added to the person's action (see `StepRecord.added`).
-    ``observation.environment_state`` has the poses of the things that matter or, where no things were seen,
-    of the goals; these are the dataset's objects. An arm with a gripper adds ``observation.gripper_width``
-    (m; a reading below zero counts as zero), ``observation.gripper_holding`` (0 or 1) and ``action.gripper``
-    (m): the width that was commanded last, or until something is commanded the one that it has (0 where it
-    holds something).
-    Time starts at each episode's first sample. Incomplete episodes are skipped unless asked for. An episode
-    is cut before its first impossible sample (see `first_implausible`).
+    ``observation.environment_state`` has the poses of the things that matter or, where no things were
+    recorded, of the goals; these are the dataset's objects. An arm with a gripper adds
+    ``observation.gripper_width`` (m; a reading below zero counts as zero), ``observation.gripper_holding``
+    (0 or 1) and ``action.gripper`` (m): the width commanded last, or until a command the measured one (0
+    where it holds something). Time starts at each episode's first sample. Incomplete episodes are skipped
+    unless asked for. An episode is cut before its first impossible sample (see `first_implausible`).
 
     Args:
-        episodes: what `read_journal` returned.
-        source: what errors name, such as the journal's path.
+        episodes: from `read_journal`.
+        source: the name in errors, such as the journal's path.
         incomplete: take episodes that were cut short too.
 
     Warns:
@@ -116,15 +115,8 @@ def _with_added(kept: Sequence[JournalEpisode], episodes: tuple[Episode, ...]) -
 def export_journal(journal: Path, dataset: Path) -> int:
     """Write a journal's complete episodes to a new dataset, which appears whole or not at all.
 
-    Args:
-        journal: what a `Recorder` wrote.
-        dataset: a folder that does not exist yet.
-
-    Returns:
-        How many episodes were left out because they were cut short.
-
-    Raises:
-        UserError: see `read_journal`, `demonstrations_of` and `write_dataset`.
+    Returns the number of episodes left out because they were cut short. Raises UserError as `read_journal`,
+    `demonstrations_of` and `write_dataset` do.
     """
     # pyarrow is slow to load, and driving does not need it.
     from latentarm.demonstrations.dataset import write_dataset
@@ -203,7 +195,7 @@ def _poses(recorded: JournalEpisode, objects: Sequence[str]) -> FloatArray:
 
 
 def _action(recorded: JournalEpisode) -> FloatArray:
-    """What moved the arm, (T, n), rad/s: its commands, or a person's hand."""
+    """The joint velocities that moved the arm, (T, n), rad/s: its commands, or a person's hand."""
     records = recorded.records
     if recorded.header.provenance.controller != BY_HAND:
         return np.stack([record.command.velocity for record in records])

@@ -8,6 +8,7 @@ from collections import OrderedDict
 from typing import final
 
 import numpy as np
+from typing_extensions import override
 
 from latentarm.control.clock import Clock
 from latentarm.core.types import FloatArray, GripperAsk, Input
@@ -23,14 +24,7 @@ class InputSource(ABC):
 
     @abstractmethod
     def latest(self, now_s: float) -> tuple[Input, float]:
-        """The newest input and its age, s.
-
-        Args:
-            now_s: the loop's clock.
-
-        Returns:
-            The input, and for how long it has been the newest; infinite where there is none.
-        """
+        """The newest input, and for how long it has been the newest, s; infinite where there is none."""
 
 
 @final
@@ -39,9 +33,8 @@ class InputPort(InputSource):
 
     The loop's side issues nonces. The sender of inputs echoes the newest nonce that it has seen, with a
     sequence number that grows. A message that was delayed in either direction is thus detected without
-    trusting the sender's clock. At most one input is kept. A press of the
-    mode switch, and what is asked of the gripper, is not lost when a later input replaces it before the loop
-    has looked.
+    trusting the sender's clock. At most one input is kept. A press of the mode switch, or a request to the
+    gripper, is not lost when a later input replaces it before the loop has looked.
 
     Args:
         input_dim: number of axes d.
@@ -77,15 +70,12 @@ class InputPort(InputSource):
         return age_s if age_s >= 0.0 else math.inf
 
     def offer(self, given: Input, nonce: str, sequence: int) -> bool:
-        """Hand in an input.
+        """Hand in an input; whether it was accepted.
 
         Args:
             given: what the person does.
-            nonce: the newest nonce that the sender has seen.
+            nonce: the newest nonce that the sender has seen; a stale or unknown one is refused.
             sequence: number of this input; must grow.
-
-        Returns:
-            Whether it was accepted; False if it is stale, or its nonce or number is invalid.
         """
         # Comparisons with NaN are false, so every later number would seem to be larger.
         if not _is_stamp(nonce, sequence):
@@ -109,11 +99,9 @@ class InputPort(InputSource):
             self._issued_s, self._received_s = issued_s, now_s
             return True
 
+    @override
     def latest(self, now_s: float) -> tuple[Input, float]:
-        """See the base class. An input whose nonce has grown too old in the meantime is infinitely old.
-
-        So is one that arrived in the future: the clock has gone back.
-        """
+        # Infinitely old where the nonce has grown too old in the meantime, or where the clock has gone back.
         with self._lock:
             switch = self._switch or self._pressed
             self._pressed = False

@@ -35,48 +35,31 @@ _MOST_BYTES = 1 << 38
 @final
 @dataclass(frozen=True)
 class JournalEpisode:
-    """One recorded episode.
-
-    Attributes:
-        header: what its samples share.
-        records: its steps, in order.
-        complete: whether the recording was ended, rather than cut short.
-    """
+    """One recorded episode."""
 
     header: EpisodeHeader
     records: tuple[StepRecord, ...]
-    complete: bool
+    complete: bool  # whether the recording was ended, rather than cut short
 
 
 @final
 @dataclass(frozen=True)
 class JournalEntry:
-    """One recorded episode in a journal's table of contents.
+    """One recorded episode in a journal's table of contents."""
 
-    Attributes:
-        number: its own, for `read_journal`.
-        header: what its samples share.
-        samples: how many it has.
-        duration_s: from its first sample to its last, s.
-        complete: whether the recording was ended, rather than cut short.
-    """
-
-    number: int
+    number: int  # for `read_journal`
     header: EpisodeHeader
     samples: int
-    duration_s: float
-    complete: bool
+    duration_s: float  # from its first sample to its last, s
+    complete: bool  # whether the recording was ended, rather than cut short
 
 
 def read_journal(path: Path, only: Collection[int] | None = None) -> list[JournalEpisode]:
-    """The episodes of a journal, with every acknowledged sample; the file is not changed.
+    """The episodes of a journal, oldest first, with every acknowledged sample; the file is not changed.
 
     Args:
-        path: what a `Recorder` wrote. Its ``-wal`` file, where one is left, belongs to it.
+        path: of a journal. Its ``-wal`` file, where one is left, belongs to it.
         only: numbers of the episodes to read, from `list_journal`; all where None.
-
-    Returns:
-        The episodes, oldest first; those cut short by a kill have ``complete`` False.
 
     Raises:
         UserError: there is no such file, it is damaged, or it is no journal.
@@ -91,9 +74,6 @@ def read_journal(path: Path, only: Collection[int] | None = None) -> list[Journa
 
 def list_journal(path: Path) -> list[JournalEntry]:
     """A journal's table of contents, oldest episode first; quick, however long the episodes are.
-
-    Args:
-        path: what a `Recorder` wrote, or still writes.
 
     Raises:
         UserError: there is no such file, it is damaged, or it is no journal.
@@ -117,11 +97,7 @@ def list_journal(path: Path) -> list[JournalEntry]:
 
 @contextmanager
 def _opened(path: Path) -> Generator[sqlite3.Connection]:
-    """The database, to be read only.
-
-    Raises:
-        UserError: there is no such file, it is damaged, or it is no journal; also for what fails within.
-    """
+    """The database, to be read only; any error within becomes a `UserError`."""
     if is_missing(path):
         raise UserError(f"There is no journal {path}.")
     check_file(path, _MOST_BYTES)
@@ -129,12 +105,15 @@ def _opened(path: Path) -> Generator[sqlite3.Connection]:
     for file in beside:
         if not is_missing(file):
             check_file(file, _MOST_BYTES)
-    # A journal that is being written has a log beside it. Without one SQLite is told that nobody writes, or
-    # it would leave a log of its own beside a damaged file.
+    # A journal that is being written has a log beside it. Without one, SQLite must know that
+    # nobody writes, or it would leave a log of its own beside a damaged file.
     mode = "mode=ro&immutable=1" if is_missing(beside[0]) else "mode=ro"
     try:
         with (
-            bounded_memory(f"The journal {path}", path.stat().st_size + _size(beside[0])),
+            bounded_memory(
+                f"The journal {path}",
+                sum(one.stat().st_size for one in (path, beside[0]) if not is_missing(one)),
+            ),
             closing(sqlite3.connect(f"file:{_quoted(path)}?{mode}", uri=True)) as database,
         ):
             database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, _MOST_CELL_BYTES)
@@ -159,10 +138,6 @@ def _duration_s(database: sqlite3.Connection, path: Path, number: int) -> float:
         return _record(*ends[-1]).time_s - _record(*ends[0]).time_s
     except (ValueError, TypeError, AttributeError, OverflowError) as error:
         raise _damaged(path, number, error) from error
-
-
-def _size(path: Path) -> int:
-    return 0 if is_missing(path) else path.stat().st_size
 
 
 def _quoted(path: Path) -> str:
@@ -289,11 +264,7 @@ def _step_record(parts: Sequence[FloatArray], stop: str | None, limited_by: str)
 
 
 def _standing(records: Sequence[StepRecord], count: int) -> tuple[StepRecord, ...]:
-    """Records each with the poses of all things, where a sample leaves out what stands as before.
-
-    Raises:
-        ValueError: there are poses of another number of things.
-    """
+    """Records each with the poses of all things, where a sample leaves out those that have not moved."""
     newest = NO_THINGS
     standing: list[StepRecord] = []
     for record in records:

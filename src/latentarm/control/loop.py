@@ -10,8 +10,8 @@ from typing import Final, final
 import numpy as np
 
 from latentarm.arms.contract import Arm, ArmStatus, check_arm, check_rate
-from latentarm.control.arm_stops import stop_of
 from latentarm.control.clock import Clock
+from latentarm.control.engagement import stop_of
 from latentarm.control.input_port import InputSource
 from latentarm.control.step import Step
 from latentarm.core.types import StepRecord, Stop
@@ -23,23 +23,14 @@ ENABLING_S: Final = 5.0
 @final
 @dataclass(frozen=True)
 class DeadlineStatistics:
-    """Figures over the ticks of one run.
-
-    Attributes:
-        ticks: how many.
-        met_share: share of ticks that were done before the next one was due.
-        median_s: median time from a tick's due time until its command was sent, s.
-        p99_s: 99th percentile of the same, s.
-        worst_start_s: the latest that any tick began after it was due, s.
-        overruns: ticks that began so late that the last command had run out.
-    """
+    """Figures over the ticks of one run."""
 
     ticks: int
-    met_share: float
-    median_s: float
-    p99_s: float
-    worst_start_s: float
-    overruns: int
+    met_share: float  # share of ticks that were done before the next one was due
+    median_s: float  # median time from a tick's due time until its command was sent, s
+    p99_s: float  # 99th percentile of the same, s
+    worst_start_s: float  # the latest that any tick began after it was due, s
+    overruns: int  # ticks that began so late that the last command had run out
 
 
 @final
@@ -65,12 +56,9 @@ class DeadlineLog:
         return self._ticks
 
     def add(self, started_s: float, sent_s: float, *, overrun: bool) -> None:
-        """Record one tick.
+        """Record one tick, which began ``started_s`` and sent its command ``sent_s`` after it was due.
 
-        Args:
-            started_s: when it began, after it was due, s.
-            sent_s: when its command had been sent, after it was due, s.
-            overrun: whether the command before had run out.
+        ``overrun`` says that the command before had run out.
         """
         self._sent[self._ticks % len(self._sent)] = sent_s
         self._ticks += 1
@@ -113,8 +101,8 @@ class ControlLoop:
 
     Args:
         step: Algorithm 1.
-        arm: what is driven; connected.
-        source: where inputs come from.
+        arm: a connected arm.
+        source: of inputs.
         clock: the time.
         observers: called with every record, in the loop's thread.
 
@@ -152,11 +140,7 @@ class ControlLoop:
         self._enable_asked.set()
 
     def stop(self, reason: str) -> None:
-        """Stop the arm, from the next tick on.
-
-        Args:
-            reason: one short sentence for the person.
-        """
+        """Stop the arm from the next tick on; ``reason`` is one short sentence for the person."""
         self._enable_asked.clear()
         self._stop_reasons.put(reason)
 
@@ -174,9 +158,6 @@ class ControlLoop:
         Args:
             ticks: how many, or None for no end.
             mode: index of the controller's mode to begin in.
-
-        Returns:
-            How punctual the loop was.
 
         Raises:
             UserError: the controller has no such mode.
@@ -213,12 +194,12 @@ class ControlLoop:
         return True
 
     def _heed(self, status: ArmStatus) -> None:
-        """Disengage where the arm takes no commands: it has stopped by itself, or somebody stopped it."""
+        """Disengage where the arm takes no commands, because it or somebody has stopped it."""
         if not status.takes_commands and (self._step.stopped is None or self._step.yielding):
             self._step.halted(stop_of(status))
 
     def _try_to_enable(self, now_s: float) -> bool:
-        """Enable the arm and then the step; whether that is over, one way or the other."""
+        """Enable the arm and then the step; whether that has ended, in success or refusal."""
         status = self._arm.status()
         if status.phase == "fault" and status.recoverable:
             self._arm.recover()
@@ -241,11 +222,7 @@ class ControlLoop:
         return True
 
     def _await_tick(self) -> tuple[float, float]:
-        """Wait for the next tick.
-
-        Returns:
-            When it was due, and the time now, s.
-        """
+        """Wait for the next tick; when it was due, and the time now, s."""
         due_s = self._start_s + self._next * self._period_s
         # The next tick is never more than a period away, unless the clock has gone back.
         if due_s - self._clock.now_s() < 1.5 * self._period_s:

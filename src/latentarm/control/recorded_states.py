@@ -1,4 +1,4 @@
-"""Which recorded samples are physically possible; only those may go into a dataset."""
+"""Which recorded samples are physically possible; only those go into a dataset."""
 
 from collections.abc import Sequence
 from typing import Final
@@ -19,16 +19,10 @@ in steps, and are noisy."""
 def first_implausible(
     records: Sequence[StepRecord], joint_names: Sequence[str], limits: JointLimits | None
 ) -> tuple[int, str] | None:
-    """The first impossible sample of an episode.
+    """The index of an episode's first impossible sample and a short reason; None if all are possible.
 
-    Args:
-        records: the episode, in order.
-        joint_names: n names.
-        limits: of the joints; None checks only that the readings are numbers and that time goes on. Where one
-            sample has a gripper, those without are impossible.
-
-    Returns:
-        Its index and a short reason; None if every sample is possible.
+    ``limits`` are of the joints; without them only numbers and the clock are checked. Where one sample has a
+    gripper, those without are impossible.
     """
     if not records:
         return None

@@ -21,7 +21,7 @@ from latentarm.robots.limits import JointLimits
 from latentarm.robots.limits_file import limits_document
 
 LIMITS = ("lower", "upper", "velocity", "acceleration", "jerk")
-"""What a header says of the joints' limits."""
+"""The fields of a header's joint limits."""
 
 SCHEMA_VERSION = 5
 """Version 2 made samples compact, version 3 gave them a gripper, version 4 things, version 5 a co-pilot's
@@ -60,36 +60,21 @@ _COLUMNS = {
 @final
 @dataclass(frozen=True)
 class EpisodeHeader:
-    """What all samples of an episode share.
+    """The data that all samples of an episode share."""
 
-    Attributes:
-        robot: name or model path of the robot.
-        joint_names: n names.
-        rate_hz: nominal rate of the loop.
-        task: what was done, in words.
-        goals: the discrete goals ``G``.
-        modes: names of the controller's modes.
-        provenance: who and what records it.
-        end_effector: site, body or link of the robot's model file, or None.
-        limits: what was stated of the robot's limits, or None.
-        joint_limits: of the joints: samples outside them are impossible. None if unknown.
-        things: names of the K things whose poses every sample has; empty where nobody looks at things.
-        objects: those of them that matter for what is done, in the order of the context feature ``objects``;
-            all where this is empty.
-    """
-
-    robot: str
+    robot: str  # name or model path
     joint_names: tuple[str, ...]
-    rate_hz: float
-    task: str = ""
+    rate_hz: float  # nominal rate of the loop
+    task: str = ""  # in words
     goals: tuple[Goal, ...] = ()
     modes: tuple[str, ...] = ("",)
     provenance: Provenance = field(default_factory=Provenance)
-    end_effector: str | None = None
-    limits: StatedLimits | None = None
-    joint_limits: JointLimits | None = None
-    things: tuple[str, ...] = ()
+    end_effector: str | None = None  # site, body or link of the robot's model file
+    limits: StatedLimits | None = None  # stated by a person
+    joint_limits: JointLimits | None = None  # samples outside them are impossible; None if unknown
+    things: tuple[str, ...] = ()  # names of the K things whose poses every sample has
     objects: tuple[str, ...] = ()
+    """Those that matter for the task, in the order of the feature ``objects``; all where empty."""
 
 
 @final

@@ -16,15 +16,9 @@ JOURNAL_SUFFIX: Final = ".sqlite"
 @final
 @dataclass(frozen=True)
 class Recording:
-    """One recorded episode among all those of a folder.
+    """One recorded episode among all those of a folder."""
 
-    Attributes:
-        number: counted from one over all journals, the oldest journal first.
-        journal: the file that it is in.
-        entry: what the journal's table of contents says of it.
-    """
-
-    number: int
+    number: int  # counted from one over all journals, the oldest journal first
     journal: Path
     entry: JournalEntry
 
@@ -54,12 +48,7 @@ def list_recordings(path: Path) -> list[Recording]:
 
 
 def read_recordings(recordings: Sequence[Recording], *, source: str, incomplete: bool) -> Demonstrations:
-    """Recorded episodes as demonstrations; see `demonstrations_of`.
-
-    Args:
-        recordings: those to take, from `list_recordings`.
-        source: what errors name.
-        incomplete: take episodes that were cut short too.
+    """Recorded episodes from `list_recordings` as demonstrations; see `demonstrations_of`.
 
     Raises:
         UserError: a journal is damaged, or `demonstrations_of` refuses.

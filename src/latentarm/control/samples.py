@@ -1,4 +1,4 @@
-"""How a journal encodes the numbers of a step: exactly, without repetition."""
+"""A journal's encoding of the numbers of a step: exact, without repetition."""
 
 import struct
 from collections.abc import Sequence
@@ -11,12 +11,11 @@ from latentarm.robots.kinematics.pose_rows import STORED
 
 COMPACT: Final = {b"\x02": 8, b"\x03": 10, b"\x04": 11}
 """How many parts a compact sample has, by its first byte: two of a gripper came later, then one of things.
-Samples from before compact ones begin with a small integer as a float64: a byte of 0."""
+Older samples begin with a small integer as a float64: a byte of 0."""
 
 ALWAYS: Final = 8
-"""Parts that every step of an episode has, in one width. Those after them are a gripper's, which are empty
-where nothing was measured or commanded, and that of the things, which is empty where all stand as in the
-sample before."""
+"""Parts that every step of an episode has, in one width. The others are a gripper's, empty without a reading
+or command, and the things', empty where all stand as in the sample before."""
 
 _WRITTEN: Final = b"\x04"
 
@@ -58,16 +57,12 @@ def figures_of(record: StepRecord) -> Sequence[FloatArray]:
 
 
 def without_things(parts: Sequence[FloatArray]) -> Sequence[FloatArray]:
-    """The parts of a sample in which all things stand as in the one before."""
+    """The parts of a sample whose things all stand as in the one before."""
     return (*parts[:-1], _NOTHING)
 
 
 def gripper_reading(part: FloatArray) -> GripperReading | None:
-    """What a gripper measured, from a sample's part.
-
-    Raises:
-        ValueError: it is not what `figures_of` makes.
-    """
+    """A gripper's reading from a sample's part; ValueError where it is damaged."""
     if not len(part):
         return None
     width_m, holding = _gripper_figures(part, 2)
@@ -77,11 +72,7 @@ def gripper_reading(part: FloatArray) -> GripperReading | None:
 
 
 def gripper_command(part: FloatArray) -> GripperCommand | None:
-    """What a gripper was sent, from a sample's part.
-
-    Raises:
-        ValueError: it is not what `figures_of` makes.
-    """
+    """A gripper's command from a sample's part; ValueError where it is damaged."""
     if not len(part):
         return None
     width_m, speed_m_s, force_n = _gripper_figures(part, 3)
@@ -89,11 +80,7 @@ def gripper_command(part: FloatArray) -> GripperCommand | None:
 
 
 def thing_poses(part: FloatArray) -> FloatArray:
-    """Poses of things, (K, 7), from a sample's part.
-
-    Raises:
-        ValueError: it is not what `figures_of` makes.
-    """
+    """Poses of things, (K, 7), from a sample's part; ValueError where it is damaged."""
     if len(part) % STORED or not np.isfinite(part).all():
         raise ValueError("figures of things are missing or not finite")
     return part.reshape(-1, STORED)
@@ -106,12 +93,9 @@ def _gripper_figures(part: FloatArray, count: int) -> list[float]:
 
 
 def packed(parts: Sequence[FloatArray]) -> bytes:
-    """Parts as one sample: a byte, two more for each part, then the parts that must be written.
+    """Parts, each (k,), as one sample: a byte, two more for each part, then the parts that must be written.
 
     The two bytes hold the part's width, and a bit where it is all zeros, or equals the part before it.
-
-    Args:
-        parts: what `figures_of` gave, each (k,), float64.
 
     Raises:
         ValueError: a part is too wide.
@@ -138,14 +122,7 @@ def packed(parts: Sequence[FloatArray]) -> bytes:
 
 
 def unpacked(sample: bytes) -> list[FloatArray]:
-    """The parts of a compact sample.
-
-    Args:
-        sample: as `packed` made it, or as it was made before there were grippers or things.
-
-    Raises:
-        ValueError: it is not what `packed` makes.
-    """
+    """The parts of a compact sample of any version; ValueError where it is damaged."""
     count = COMPACT.get(sample[:1], 0)
     start = 1 + 2 * count
     if not count or len(sample) < start:

@@ -18,11 +18,7 @@ class Choices:
     """Lines 6 and 7 of Algorithm 1 for any inputs, asking the controller in as few calls as possible.
 
     A belief asks about the person's own input together with others, so its action is then already known.
-
-    Args:
-        controller: what turns inputs into actions.
-        context: of this moment.
-        mode: index of the controller's mode.
+    ``mode`` is the index of the controller's mode.
     """
 
     __slots__ = ("_actions", "_asked", "_context", "_controller", "_latents", "_mode")
@@ -47,14 +43,7 @@ class Choices:
         return actions
 
     def chosen(self, u: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Latent action and action of the person's own input.
-
-        Args:
-            u: (d,).
-
-        Returns:
-            z and a_h, rad/s, of whatever shapes the controller gave.
-        """
+        """Z and a_h, rad/s, of the person's own input (d,), of any shapes that the controller gave."""
         if self._asked is not None and self._asked[0].tolist() == u.tolist():
             return self._latents[0], self._actions[0]
         return self._decoded(u)
@@ -70,15 +59,9 @@ _BOUND_PERIOD_S = 0.05
 
 @final
 class SharedAutonomy:
-    """What the robot believes and how it helps, over one episode.
+    """The robot's belief and help over one episode.
 
-    Args:
-        dof: n, joints of the arm.
-        controller: what turns inputs into actions.
-        goals: the discrete goals ``G``.
-        belief: how inputs change the belief over goals; None keeps the belief uniform.
-        assistance: how the robot helps; None never helps.
-        dt_s: the loop's period, s.
+    Without a belief rule the belief stays uniform over the goals ``G``; without assistance nothing helps.
 
     Raises:
         UserError: assistance lacks goals, or the belief is over others.
@@ -135,18 +118,13 @@ class SharedAutonomy:
         self._bound_rad = None
 
     def update(self, u: FloatArray, context: Context, mode: int) -> Choices:
-        """Line 10, at the belief's own rate: the belief changes for the next step.
-
-        Args:
-            u: (d,), the input.
-            context: what this step saw.
-            mode: index of the controller's mode.
+        """Line 10, at the belief's own rate: u (d,) changes the belief for the next step.
 
         Returns:
-            What is known of inputs at this moment.
+            The controller's answers to inputs at this moment.
 
         Raises:
-            ValueError: the controller or the belief gave something that cannot be.
+            ValueError: the controller or the belief gave something impossible.
         """
         self._since_update += 1
         due = self._since_update >= self._ticks_per_update
@@ -158,12 +136,7 @@ class SharedAutonomy:
         return choices
 
     def help(self, u: FloatArray, action_human: FloatArray, context: Context) -> Contribution:
-        """Line 8: what the robot does towards the goals that it believed in when this step began.
-
-        Args:
-            u: (d,), the input.
-            action_human: (n,), the person's action, rad/s.
-            context: what this step saw.
+        """Line 8: help towards the goals of ``context.belief``, from u (d,) and the person's (n,), rad/s.
 
         Raises:
             ValueError: the assistance gave shares that are not in [0, 1].
@@ -173,15 +146,9 @@ class SharedAutonomy:
         return self._assistance.contribution(u, action_human, context.state, context.belief)
 
     def bound(self, given: Contribution, context: Context, mode: int) -> float:
-        """The radius of the bound about the likeliest goal, computed at most every `_BOUND_PERIOD_S`.
+        """The radius of the bound about the likeliest goal, rad, computed at most every `_BOUND_PERIOD_S`.
 
-        Args:
-            given: what the robot does in this step.
-            context: what this step saw; the bound is that of its belief.
-            mode: index of the controller's mode.
-
-        Returns:
-            rad, held in between; NaN where the person's action is not blended with help, or nothing is known.
+        NaN where the person's action is not blended with help, or nothing is known.
         """
         if self._assistance is None or given.alpha == 0.0:
             self._bound_rad = None

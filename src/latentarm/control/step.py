@@ -49,21 +49,20 @@ _MISSHAPEN = Stop(
     "The controller gave a latent action or an action of the wrong size.", code="controller_invalid"
 )
 
-_FALTERING = (Freshness().name,)
-"""What limits an arm whose inputs are missing for a moment."""
+_FALTERING = (Freshness.name,)
+"""The limit of an arm whose inputs are missing for a moment."""
 
 
 @final
 class Step:
     """From the person's input to a safe command, once per period.
 
-    Lines of Algorithm 1: ``z = f(u, c)``, ``a_h = phi(z, c)``, ``a_r`` and how it joins ``a_h`` as the
-    `Assistance` says (in the paper ``a_r = Σ b(g) (g - s)`` and ``a = (1 - alpha) a_h + alpha a_r``), and the
-    belief's update for the next step. What they want then passes the `SafetyStack`; nothing else can move the
-    arm.
+    Lines of Algorithm 1: ``z = f(u, c)``, ``a_h = phi(z, c)``, ``a_r`` and how it joins ``a_h`` by the
+    `Assistance` (in the paper ``a_r = Σ b(g) (g - s)`` and ``a = (1 - alpha) a_h + alpha a_r``), and the
+    belief's update for the next step. The action then passes the `SafetyStack`; nothing else moves the arm.
 
-    The arm starts disengaged. After a neutral input, `enable` engages it. Whatever stops it (the
-    operator, an input that is too old, a number that is not one, a reading of the joints that is too old or
+    The arm starts disengaged. After a neutral input, `enable` engages it. Every stop (by the operator, an
+    input that is too old, a number that is not one, a reading of the joints that is too old or
     cannot be true, a controller that fails) disengages it again: a ramped stop, then neutral, then `enable`::
 
         step.reset(arm.read().q)
@@ -73,12 +72,12 @@ class Step:
     After a stop by a following error that looks like contact the arm draws back a little before it rests: the
     one motion without a fresh input, see `Yielding`. `stop`, `enable` and any other reason to stop end it.
 
-    What is asked of the gripper passes a filter of its own (see `GripperFilter`), whoever asks: the person
-    who drives, one who guides the arm by hand, one who holds down what opens it. An arm that stops drops
-    nothing, and what was asked or believed before a stop counts for nothing after it.
+    Requests to the gripper pass a filter of their own (see `GripperFilter`), whether they come from the
+    person who drives, one who guides the arm by hand, or one who holds down the opening button. An arm that
+    stops drops nothing, and requests and beliefs from before a stop count for nothing after it.
 
-    A second person's pace scales what the limits leave, of the arm and the gripper alike; a stop is as fast
-    as ever.
+    A second person's pace scales the permitted motion of the arm and the gripper alike; a stop is as fast as
+    ever.
 
     An input within the dead zone means no motion, whatever the decoder returns for zero, and no help, unless
     the assistance acts at rest. An enabled arm then moves by itself while inputs are fresh.
@@ -94,7 +93,7 @@ class Step:
 
     Args:
         robot: the arm.
-        controller: what turns inputs into actions.
+        controller: turns inputs into actions.
         safety: the limits.
         goals: the discrete goals ``G``, for assistance.
         belief: how inputs change the belief over goals; None keeps the belief uniform.
@@ -155,7 +154,7 @@ class Step:
 
     @property
     def robot(self) -> Robot:
-        """The arm that the limits are those of."""
+        """The arm that the step commands."""
         return self._robot
 
     @property
@@ -175,7 +174,7 @@ class Step:
 
     @property
     def yielding(self) -> bool:
-        """Whether the arm draws back from what has stopped it, or is looked at for that; see `Yielding`."""
+        """Whether the arm draws back from an obstacle, or is watched to decide whether it should."""
         return self._yielding.on
 
     @property
@@ -209,7 +208,7 @@ class Step:
         return self._engagement.stopped
 
     def context(self, state: FloatArray) -> Context:
-        """What controllers are told in a state (n,), rad, with the belief that the next step will use."""
+        """The controllers' context in a state (n,), rad, with the belief that the next step will use."""
         measured, target_m = self._gripper.reading, self._gripper.target_m
         gripper = NO_GRIPPER if measured is None else np.array([measured.width_m])
         target = NO_GRIPPER if target_m is None else np.array([target_m])
@@ -242,11 +241,7 @@ class Step:
 
     @logged
     def enable(self) -> Stop | None:
-        """Let the arm move, if the newest input was neutral and the readings are steady.
-
-        Returns:
-            None where the arm may move now, else why it may not.
-        """
+        """Let the arm move, if the newest input was neutral and the readings are steady; why not, or None."""
         if self._time_s < self._steady_s:
             return Stop(
                 "The joint readings jumped a moment ago: check the arm, then enable it.",
@@ -259,19 +254,12 @@ class Step:
 
     @logged
     def sent(self, time_s: float) -> None:
-        """Set when the last command was sent, which is later than its tick began.
-
-        Args:
-            time_s: the loop's clock, s.
-        """
+        """Set when the last command was sent, by the loop's clock, s; later than its tick began."""
         self._timekeeping.sent(time_s)
 
     @logged
     def choose_mode(self, mode: int) -> None:
-        """Switch to another mode from the next step on; the current motion is ramped over to it.
-
-        Args:
-            mode: index of the controller's mode.
+        """Switch to the mode of this index from the next step on; the current motion is ramped over to it.
 
         Raises:
             UserError: the controller has no such mode.
@@ -282,48 +270,33 @@ class Step:
 
     @logged
     def stop(self, reason: str) -> None:
-        """Stop the arm from the next step on.
-
-        Args:
-            reason: one short sentence for the person.
-        """
+        """Stop the arm from the next step on; ``reason`` is one short sentence for the person."""
         self._engagement.stop(Stop(reason))
         self._yielding.end()
 
     @logged
     def refuse(self, stop: Stop) -> None:
-        """Keep the arm disengaged for this reason, whatever the reason was until now.
-
-        Args:
-            stop: why.
-        """
+        """Keep the arm disengaged for this reason, in place of any earlier one."""
         self._engagement.replace(stop)
         self._yielding.end()
 
     @logged
     def halted(self, stop: Stop) -> None:
-        """Record that a command ran out and the arm stopped by itself; stay stopped.
-
-        Args:
-            stop: why.
-        """
+        """Record that a command ran out and the arm stopped by itself; stay stopped."""
         self._engagement.stop(stop)
         self._stack.reset()
         self._yielding.end()
 
     @logged
     def forget(self) -> None:
-        """Believe again what was believed at first: a motion that nobody steered says nothing of a goal."""
+        """Return to the first belief, because a motion that nobody steered says nothing of a goal."""
         self._shared.reset()
 
     @logged
     def guided(self, ask: GripperAsk | None) -> None:
-        """In the next step the gripper goes where somebody asks who guides the disengaged arm by hand.
+        """In the next step the gripper follows a person who guides the disengaged arm; None asks nothing new.
 
-        Said before each step as long as the arm is guided; fingers in motion stop when it no longer is.
-
-        Args:
-            ask: what is asked of the gripper; None asks nothing new.
+        Call this before each step as long as the arm is guided; moving fingers stop when it no longer is.
         """
         self._gripper.guided(ask)
 
@@ -338,7 +311,7 @@ class Step:
             time_s: the loop's clock, s.
 
         Returns:
-            What was read and decided; its command is what the arm must be sent.
+            The readings and decisions; its command is for the arm.
         """
         if (lost := self._timekeeping.refusal(time_s)) is not None:
             self._plausibility.reset()
@@ -416,9 +389,9 @@ class Step:
                 bound_rad = shared.bound(help_, context, self._mode)
                 wanted = help_.with_person(a_h)
         except Exception as error:  # noqa: BLE001 - whatever a controller does wrong, the arm stops
-            said = _said(error)
+            text = _message_of(error)
             stop = Stop(
-                f"The controller failed ({said}).", code="controller_failed", parameters={"text": said}
+                f"The controller failed ({text}).", code="controller_failed", parameters={"text": text}
             )
             return self._record(time_s, q, self._refused(stop), u)
         passed = self._passed(wanted, q, input_age_s)
@@ -448,7 +421,7 @@ class Step:
         return passed
 
     def _stopping(self, q: FloatArray) -> Passed:
-        """The stop that is under way; after a following error the arm then yields to what holds it."""
+        """The stop that is under way; after a following error the arm then yields."""
         back = self._yielding.wanted(q)
         if back is None:
             return Passed(self._stack.stop())
@@ -475,7 +448,7 @@ class Step:
             if not self._gripper.known(given.gripper):
                 return _invalid("The input asks the gripper for something that it cannot do.")
         except Exception as error:  # noqa: BLE001 - a ragged list, None, whatever an interface gives
-            return _invalid(f"The input cannot be read ({_said(error)}).")
+            return _invalid(f"The input cannot be read ({_message_of(error)}).")
         if u.shape != self._no_input.shape or u.dtype.kind not in "iuf":
             return _invalid(f"The input must be {len(self._no_input)} numbers.")
         values = [float(value) for value in u.tolist()]
@@ -491,7 +464,7 @@ class Step:
         try:
             refused = self._newest_reading.refusal(reading, time_s) or self._gripper.saw(reading.gripper)
         except Exception as error:  # noqa: BLE001 - whatever a driver gives
-            reason = f"The arm's reading cannot be used ({_said(error)})."
+            reason = f"The arm's reading cannot be used ({_message_of(error)})."
             refused = Stop(reason, untrusted=True, code="reading_invalid")
         if refused is not None:
             return refused
@@ -565,7 +538,7 @@ def _invalid(reason: str) -> Stop:
     return Stop(reason, code="input_invalid")
 
 
-def _said(error: Exception) -> str:
+def _message_of(error: Exception) -> str:
     """The message of an error, if it has one."""
     try:
         return f"{type(error).__name__}: {error}"

@@ -1,4 +1,4 @@
-"""The ring that is drawn about the tool: where every direction of the stick leads within a second."""
+"""The ring drawn about the tool: where every direction of the stick leads within a second."""
 
 from typing import Final
 
@@ -13,7 +13,7 @@ AHEAD_S: Final = 1.0
 """How far ahead the ring shows the tool, s."""
 
 STRETCHES: Final = 6
-"""Into how many equal stretches this time is cut; in each the action is constant."""
+"""This time is cut into so many equal stretches; the action is constant in each."""
 
 
 def full_pushes(axes: int) -> FloatArray:

@@ -1,8 +1,8 @@
 """Accuracy: how well encoding and decoding preserve actions (section 8.1), compared with PCA of equal d.
 
-There are two ways to encode. The encoder network, of models that have one, is what section 8.1 measures. The
-nearest input in the range of a person's stick (`latentarm.evaluation.search`) says what the decoder can
-express, and asks the same of every model. Nobody needs an encoder to drive, so that is what counts.
+There are two ways to encode. Section 8.1 measures the encoder network, of models that have one. The nearest
+input in the range of a person's stick (`latentarm.evaluation.search`) tells what the decoder can express, and
+works alike for every model. Nobody needs an encoder to drive, so that figure counts.
 """
 
 from collections.abc import Mapping, Sequence
@@ -19,32 +19,18 @@ from latentarm.evaluation.search import nearest_latents
 def reconstruction_error(
     decoders: Sequence[DecodesActions], z: FloatArray, context: FloatArray, action: FloatArray
 ) -> FloatArray:
-    """Mean squared error of ``phi(psi(c, a), c)`` against the action a.
+    """Mean squared error (S,) of ``phi(psi(c, a), c)`` against the action a, rad^2/s^2.
 
-    Args:
-        decoders: S decoders.
-        z: (S, N, d), the encoded actions ``psi(c, a)``.
-        context: (N, c), the contexts that the actions were encoded in.
-        action: (N, m), noise-free, rad/s.
-
-    Returns:
-        (S,), mean over pairs and joints, rad^2/s^2.
+    ``z`` is psi(c, a), (S, N, d); contexts are (N, c), actions (N, m), noise-free, rad/s.
     """
     return np.mean((decode_all(decoders, z, context) - action) ** 2, axis=(1, 2))
 
 
 def pca_error(train_action: FloatArray, action: FloatArray, latent_dim: int) -> float:
-    """Mean squared error of the best plane through the training actions, the paper's baseline.
+    """Mean squared error of the best plane through (M, m) training actions on (N, m) others, rad^2/s^2.
 
-    PCA sees actions only, as they are in rad/s, so its error is the same with and without state noise.
-
-    Args:
-        train_action: (M, m), actions that the plane is fitted to, rad/s.
-        action: (N, m), actions it is tested on, rad/s.
-        latent_dim: number of components d.
-
-    Returns:
-        Mean over pairs and joints, rad^2/s^2.
+    This is the paper's baseline. PCA sees actions only, as they are in rad/s, so its error is the same with
+    and without state noise.
     """
     mean = train_action.mean(axis=0)
     scatter = (train_action - mean).T @ (train_action - mean)
@@ -61,40 +47,23 @@ def percent_of(baseline: float, error: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True)
 class Accuracy:
-    """Errors of S seeds, and what they leave for the other measures.
+    """Errors of S seeds, and intermediate results for the other measures."""
 
-    Attributes:
-        figures: measure -> (S,); NaN through an encoder network where the model has none.
-        decoders: of the S seeds.
-        z: (S, L, d), the nearest inputs without noise, for the pairs that were searched for.
-        context: (L, c), their contexts.
-        action: (L, m), the actions there, rad/s.
-    """
-
-    figures: Mapping[str, FloatArray]
+    figures: Mapping[str, FloatArray]  # measure -> (S,); NaN for an encoder network that the model lacks
     decoders: Sequence[DecodesActions]
-    z: FloatArray
-    context: FloatArray
-    action: FloatArray
+    z: FloatArray  # (S, L, d), the nearest inputs without noise, for the pairs that were searched for
+    context: FloatArray  # (L, c), their contexts
+    action: FloatArray  # (L, m), the actions there, rad/s
 
 
 def accuracy(
-    model: EncodesActions,
-    train_action: FloatArray,
-    pairs: Pairs,
-    *,
-    learns_encoder: bool,
-    searched: int,
+    model: EncodesActions, train_action: FloatArray, pairs: Pairs, *, learns_encoder: bool, searched: int
 ) -> Accuracy:
     """Errors with both ways of encoding, with noise on the states and without.
 
-    Args:
-        model: of S seeds.
-        train_action: (M, m), actions that PCA, the baseline, is fitted to, rad/s.
-        pairs: held-out pairs; all of them go through an encoder network.
-        learns_encoder: whether the model has one.
-        searched: pairs, spread evenly, for which the nearest input is searched; PCA's error is then taken on
-            the same ones.
+    PCA, the baseline, is fitted to ``train_action`` (M, m), rad/s. All held-out pairs go through an encoder
+    network; for ``searched`` of them, spread evenly, the nearest input is searched, and PCA's error is taken
+    on the same ones.
     """
     chosen = evenly_spread(searched, len(pairs.action))
     action = pairs.action[chosen]

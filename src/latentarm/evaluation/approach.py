@@ -29,55 +29,33 @@ PROGRESS_M = 1e-4  # a drive that comes nearer by less than this has stalled
 
 @dataclass(frozen=True)
 class SolverConfig:
-    """Settings of the greedy operator.
+    """Settings of the greedy operator."""
 
-    Attributes:
-        time_s: time limit; the closest moment counts, s.
-        joint_weight_m: w, what one radian of joint error weighs beside tool error, m/rad.
-        refinements: Gauss-Newton steps at every choice.
-        hold: steps for which a choice is held; it is chosen as if one step were this long.
-        per_axis: values of each latent axis in the fixed set of choices, up to d = 2.
-        stall_s: a drive ends after this long without progress of `PROGRESS_M`, s.
-    """
-
-    time_s: float = 6.0
-    joint_weight_m: float = 0.05
+    time_s: float = 6.0  # time limit; the closest moment counts, s
+    joint_weight_m: float = 0.05  # w, what one radian of joint error weighs beside tool error, m/rad
     refinements: int = 2
-    hold: int = 1
-    per_axis: int = 5
-    stall_s: float = math.inf
+    hold: int = 1  # steps for which a choice is held; it is chosen as if one step were this long
+    per_axis: int = 5  # values of each latent axis in the fixed set of choices, up to d = 2
+    stall_s: float = math.inf  # a drive ends after this long without progress of `PROGRESS_M`, s
 
 
 @dataclass(frozen=True)
 class Target:
-    """The targets of P drives.
+    """The targets of P drives."""
 
-    Attributes:
-        places: (P, T, 3), of the T tools, m.
-        state: (P, n), the posture wanted there, rad, or None where none is.
-    """
-
-    places: FloatArray
-    state: FloatArray | None = None
+    places: FloatArray  # (P, T, 3), of the T tools, m
+    state: FloatArray | None = None  # (P, n), the posture wanted there, rad, or None where none is
 
 
 @dataclass(frozen=True)
 class Approach:
-    """P drives up to the moment of closest approach to the target, for each of S seeds.
+    """P drives up to the moment of closest approach to the target, for each of S seeds."""
 
-    Attributes:
-        distance_m: (S, P), of the tools from their places at that moment, mean over tools, m.
-        context: (S, P, c), at that moment.
-        path_m: (S, P), path length of the tools until then, mean over tools, m.
-        straight_m: (S, P), the straight-line distance, m.
-        latent: (S, P, T, d), what was chosen at each of the T steps; 0 after a drive has stalled.
-    """
-
-    distance_m: FloatArray
-    context: FloatArray
-    path_m: FloatArray
-    straight_m: FloatArray
-    latent: FloatArray
+    distance_m: FloatArray  # (S, P), of the tools from their places at that moment, mean over tools, m
+    context: FloatArray  # (S, P, c), at that moment
+    path_m: FloatArray  # (S, P), path length of the tools until then, mean over tools, m
+    straight_m: FloatArray  # (S, P), the straight-line distance, m
+    latent: FloatArray  # (S, P, T, d), what was chosen at each of the T steps; 0 after a drive has stalled
 
 
 def approach(
@@ -89,17 +67,7 @@ def approach(
     config: SolverConfig,
     tools: Sequence[int] = (0,),
 ) -> Approach:
-    """Drive from every start towards its target with every decoder; see the module's text.
-
-    Args:
-        decoders: S decoders.
-        start: (P, c), contexts; their first entries are the state, rad.
-        target: where each drive leads.
-        chain: the robot's forward kinematics.
-        step_s: dt of the transition, s.
-        config: the solver's settings.
-        tools: the T end-effectors.
-    """
+    """Drive from every start (P, c) towards its target with every decoder; see the module's text."""
     drives = [_drive(_Problem(decoder, target, chain, tools, step_s, config), start) for decoder in decoders]
     distance, context, path, straight, latent = (np.stack(part) for part in zip(*drives, strict=True))
     return Approach(distance_m=distance, context=context, path_m=path, straight_m=straight, latent=latent)
@@ -148,8 +116,9 @@ class _Problem:
 
 
 def _drive(problem: _Problem, start: FloatArray) -> tuple[FloatArray, ...]:
-    """What `Approach` says of one seed: distance, context, path, straight way and choices of P drives."""
-    config, target, dof = problem.config, problem.target.places, _dof(problem.decoder, start)
+    """The arrays of `Approach` for one seed: distance, context, path, straight way and choices."""
+    config, target, z = problem.config, problem.target.places, zero_latent(problem.decoder, start)
+    dof = problem.decoder.decode(z, start).shape[-1]
     first = tool_places(problem.chain, start[:, :dof], problem.tools)
     distance, nearest = mean_distance(first, target), start.copy()
     path, straight = np.zeros((2, len(start)))
@@ -159,7 +128,6 @@ def _drive(problem: _Problem, start: FloatArray) -> tuple[FloatArray, ...]:
     # The drives still running: their indices and their progress.
     running, waited, way = np.arange(len(start)), np.zeros(len(start)), np.zeros(len(start))
     mark, context, places = distance.copy(), start, first
-    z = zero_latent(problem.decoder, start)
     for step in range(steps):
         if step % config.hold == 0:
             z = _choose(problem.of(running), context, z)
@@ -181,11 +149,6 @@ def _drive(problem: _Problem, start: FloatArray) -> tuple[FloatArray, ...]:
         if not len(running):
             break
     return distance, nearest, path, straight, latent
-
-
-def _dof(decoder: DecodesActions, context: FloatArray) -> int:
-    """Number of joints that the decoder moves, in contexts (P, c)."""
-    return decoder.decode(zero_latent(decoder, context), context).shape[-1]
 
 
 def _choose(problem: _Problem, context: FloatArray, previous: FloatArray) -> FloatArray:

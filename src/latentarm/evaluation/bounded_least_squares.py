@@ -7,33 +7,24 @@ import numpy as np
 from latentarm.core.types import BoolArray, FloatArray
 
 NEWTON_STEPS: Final = 50
-"""Of a convex problem within bounds, at most; a few suffice."""
+"""At most; a convex problem within bounds needs a few."""
 
 RIDGE: Final = 1e-12
 """Added to a curvature, relative to it."""
 
 ROUNDING: Final = 1e-12
-"""Of z."""
+"""A smaller change of z ends the search."""
 
 
 def bounded_least_squares(
     gram: FloatArray, target: FloatArray, low: FloatArray, high: FloatArray
 ) -> FloatArray:
-    """Minimise ``z^T G z / 2 - t^T z`` with z between two bounds.
+    """Minimise ``z^T G z / 2 - t^T z`` for z (N, d) between two bounds, with G (N, d, d) symmetric, ≥ 0.
 
     Where the free minimum lies within the bounds it is the solution. Elsewhere an active-set method begins
     from it: axes that a bound holds, and those that the step would push through theirs at once, are left
     alone; the others take a Newton step as far as the first bound. A sweep of coordinate descent after each
     step lets go of axes that were held too long.
-
-    Args:
-        gram: (N, d, d), symmetric and positive semi-definite.
-        target: (N, d).
-        low: (N, d).
-        high: (N, d).
-
-    Returns:
-        (N, d).
     """
     dim = target.shape[-1]
     # So that an axis that moves nothing has a solution.
@@ -65,7 +56,7 @@ def bounded_least_squares(
 
 
 def _newton_step(curvature: FloatArray, gradient: FloatArray, held: BoolArray) -> FloatArray:
-    """What to take from z, (N, d), with the held axes left alone."""
+    """The amount (N, d) to subtract from z, with the held axes left alone."""
     alone = held[:, :, None] | held[:, None]
     free = np.where(alone, 0.0, curvature) + held[:, :, None] * np.eye(held.shape[-1])
     return np.linalg.solve(free, np.where(held, 0.0, gradient)[..., None])[..., 0].astype(np.float64)

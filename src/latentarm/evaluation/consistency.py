@@ -6,7 +6,7 @@ travels and its direction (+1 right), and report R^2 of the best-fit line of dis
 Not specified in the paper: each latent axis is varied alone, and one line, with an intercept, is fitted to
 all states together. "Right" is defined in two ways:
 
-- As the paper has it, one direction in space for the whole axis: the principal direction of all its
+- In the paper's sense, one direction in space for the whole axis: the principal direction of all its
   displacements (largest singular vector, uncentred). This penalises an axis that goes right in one state
   and left in another.
 - In demonstrations that turn corners, no single direction is right everywhere, and the first measure
@@ -21,41 +21,21 @@ from latentarm.core.types import FloatArray
 
 
 def principal_direction(effects: FloatArray) -> FloatArray:
-    """The direction in space along which an axis mostly moves the end-effector.
-
-    Args:
-        effects: (..., N, K, 3), displacements of one axis in N states, m.
-
-    Returns:
-        (..., 3), unit vectors; their sign is arbitrary.
-    """
+    """Unit vectors (..., 3), of arbitrary sign, along which effects (..., N, K, 3) mostly point."""
     scatter = np.einsum("...nki,...nkj->...ij", effects, effects)
     return np.linalg.eigh(scatter)[1][..., :, -1]
 
 
 def own_direction(effects: FloatArray) -> FloatArray:
-    """The direction in which an axis leads at each state.
-
-    Args:
-        effects: (..., N, K, 3), displacements over a rising grid of z, m.
-
-    Returns:
-        (..., N, 3), from the end of z = -1 to that of z = +1, m; not of unit length.
-    """
+    """The way (..., N, 3), m, from the end of z = -1 to that of z = +1; not of unit length."""
     return effects[..., -1, :] - effects[..., 0, :]
 
 
 def signed_distance(effects: FloatArray, grid: FloatArray) -> FloatArray:
-    """Distance times direction: positive along the axis' principal direction, negative against it.
+    """Distance (..., N, K), m, positive along the axis' principal direction, negative against it.
 
-    The principal direction is turned so that positive z goes with it on the whole.
-
-    Args:
-        effects: (..., N, K, 3), m, see `axis_effects`.
-        grid: (K,), the values of z.
-
-    Returns:
-        (..., N, K), m.
+    The principal direction is turned so that positive z goes with it on the whole. Effects are those of
+    `axis_effects`, for the values of z in ``grid`` (K,).
     """
     right = principal_direction(effects)[..., None, :]
     signed = _distance_times_direction(effects, right)
@@ -93,28 +73,12 @@ def r_squared(x: FloatArray, y: FloatArray) -> FloatArray:
 
 
 def consistency(effects: FloatArray, grid: FloatArray) -> FloatArray:
-    """R^2 of signed distance against z, for every seed and axis, with one "right" for the whole axis.
-
-    Args:
-        effects: (S, d, N, K, 3), m, see `axis_effects`.
-        grid: (K,), the values of z.
-
-    Returns:
-        (S, d), in [0, 1].
-    """
+    """R^2 (S, d) of signed distance against z, with one "right" for the whole axis."""
     return _fit_all_states(signed_distance(effects, grid), grid)
 
 
 def local_consistency(effects: FloatArray, grid: FloatArray) -> FloatArray:
-    """R^2 of signed distance against z, for every seed and axis, with each state's own "right".
-
-    Args:
-        effects: (S, d, N, K, 3), m, see `axis_effects`.
-        grid: (K,), the values of z, rising.
-
-    Returns:
-        (S, d), in [0, 1].
-    """
+    """R^2 (S, d) of signed distance against z, with each state's own "right"; the grid rises."""
     return _fit_all_states(_distance_times_direction(effects, own_direction(effects)), grid)
 
 

@@ -53,16 +53,8 @@ def zero_latent(decoder: DecodesActions, context: FloatArray) -> FloatArray:
 def next_context(context: FloatArray, action: FloatArray, step_s: float) -> FloatArray:
     """The transition ``T(s, a) = s + a dt`` of section 8.1 on contexts ``(s, ...)``.
 
-    The rest of the context (a belief) stays unchanged: these measures are about the decoder, not about the
-    inference around it.
-
-    Args:
-        context: (..., c), its first m entries are the state, rad.
-        action: (..., m), rad/s.
-        step_s: dt, s.
-
-    Returns:
-        (..., c).
+    Contexts (..., c) begin with the state, rad; actions are (..., m), rad/s. The rest of the context (a
+    belief) stays unchanged: these measures are about the decoder, not about the inference around it.
     """
     dof = action.shape[-1]
     state = context[..., :dof] + step_s * action

@@ -18,32 +18,20 @@ from latentarm.evaluation.samples import StartGoalPairs
 
 @dataclass(frozen=True)
 class ReachConfig:
-    """The controllability test for the greedy operator.
+    """The controllability test for the greedy operator."""
 
-    Attributes:
-        pairs: number of start-goal pairs.
-        separation_s: time between start and goal in the demonstration, s.
-        solver: what it may do.
-    """
-
-    pairs: int = 200
-    separation_s: float = 3.0
+    pairs: int = 200  # number of start-goal pairs
+    separation_s: float = 3.0  # time between start and goal in the demonstration, s
     solver: SolverConfig = field(default_factory=SolverConfig)
 
 
 @dataclass(frozen=True)
 class Reach:
-    """How close the arm came to each of P goals, for each of S seeds.
+    """How close the arm came to each of P goals, for each of S seeds."""
 
-    Attributes:
-        tool_error_m: (S, P), least distance of the tools from their places at the goal, mean over tools, m.
-        state_error_rad: (S, P), ‖s - s_j‖ at that moment, rad.
-        start_distance_m: (P,), distance of the tools at the start, mean over tools, m.
-    """
-
-    tool_error_m: FloatArray
-    state_error_rad: FloatArray
-    start_distance_m: FloatArray
+    tool_error_m: FloatArray  # (S, P), least distance of the tools from the goal, mean over tools, m
+    state_error_rad: FloatArray  # (S, P), ‖s - s_j‖ at that moment, rad
+    start_distance_m: FloatArray  # (P,), distance of the tools at the start, mean over tools, m
 
 
 def reach_goals(
@@ -54,16 +42,7 @@ def reach_goals(
     config: SolverConfig,
     tools: Sequence[int] = (0,),
 ) -> Reach:
-    """Drive from every start towards its goal with every decoder.
-
-    Args:
-        decoders: S decoders.
-        pairs: P start-goal pairs.
-        chain: the robot's forward kinematics.
-        step_s: dt of the transition, s.
-        config: what the greedy operator may do.
-        tools: which end-effectors.
-    """
+    """Drive from every start towards its goal with every decoder, in steps of ``step_s``."""
     dof = pairs.goal.shape[1]
     goal = Target(tool_places(chain, pairs.goal, tools), pairs.goal)
     came = approach(decoders, pairs.start, goal, chain, step_s, config, tools)

@@ -10,18 +10,14 @@ random, and random directions look half disentangled (57°)."""
 
 
 def disentanglement_deg(effects: FloatArray) -> FloatArray:
-    """Mean angle between the end-effector's directions of motion for the first two latent axes.
+    """Mean angle (S,), degrees in [0, 90], between the end-effector's directions for the first two axes.
 
-    The direction of an axis at a state is half the difference between what its ends do, so a drift that
-    both share does not count. The sign of a latent axis is arbitrary, so the angle is that between lines:
-    90 degrees is best, 0 is two axes that do the same.
+    The direction of an axis at a state is half the difference between the effects of its ends, so a drift
+    that both share does not count. The sign of a latent axis is arbitrary, so the angle is that between
+    lines: 90 degrees is best, 0 is two axes that do the same.
 
-    Args:
-        effects: (S, d, N, K, 3), m, see `axis_effects`; the ends of the grid are its extremes.
-
-    Returns:
-        (S,), mean over the states in which both axes move the end-effector, degrees in [0, 90];
-        NaN where d < 2, in no state both move it, or one of them is dead (`DEAD_SHARE`).
+    The mean is over the states in which both axes move the end-effector; NaN where d < 2, in no state both
+    move it, or one of them is dead (`DEAD_SHARE`).
     """
     seeds, dim = effects.shape[:2]
     if dim < 2:

@@ -1,4 +1,4 @@
-"""What each latent axis does to the end-effector: the basis of consistency, scalability and angles."""
+"""The effect of each latent axis on the end-effector: the basis of consistency and angles."""
 
 from collections.abc import Sequence
 
@@ -22,18 +22,10 @@ def axis_effects(
     step_s: float,
     tool: int = 0,
 ) -> FloatArray:
-    """How far the end-effector moves in one step for each latent axis alone, the other axes at zero.
+    """Displacement Psi(T(s, phi(z, s))) - Psi(s), (S, d, N, K, 3), m, for each latent axis alone.
 
-    Args:
-        decoders: S decoders.
-        context: (N, c), contexts; their first entries are the state, rad.
-        grid: (K,), values that each axis takes in turn.
-        chain: the robot's forward kinematics.
-        step_s: how long each latent action is held, s.
-        tool: which end-effector, where there are several.
-
-    Returns:
-        (S, d, N, K, 3), displacement Psi(T(s, phi(z, s))) - Psi(s), m.
+    Each axis takes the values of ``grid`` (K,) in turn, for one step from each context (N, c), with the
+    others at zero.
     """
     effects: list[FloatArray] = []
     for decoder in decoders:
@@ -51,18 +43,9 @@ def axis_turns(
     step_s: float,
     tools: Sequence[int] = (0,),
 ) -> FloatArray:
-    """How far the end-effectors turn in one step for each latent axis alone, the other axes at zero.
+    """Rotation vectors (S, d, T N, K, 3), rad, in the base frame, as `axis_effects` takes displacements.
 
-    Args:
-        decoders: S decoders.
-        context: (N, c), contexts; their first entries are the state, rad.
-        grid: (K,), values that each axis takes in turn.
-        chain: the robot's forward kinematics.
-        step_s: how long each latent action is held, s.
-        tools: T end-effectors, each of which counts as N further states.
-
-    Returns:
-        (S, d, T N, K, 3), rotation vectors in the base frame, rad.
+    Each of the T end-effectors counts as N further states.
     """
     turns: list[FloatArray] = []
     for decoder in decoders:
@@ -99,20 +82,7 @@ def held_paths(
     steps: int,
     tool: int = 0,
 ) -> FloatArray:
-    """Where the end-effector goes while a latent action is held.
-
-    Args:
-        decoder: one decoder.
-        context: (N, c), contexts to start from.
-        z: (L, d), the latent actions that are held, each from each start.
-        chain: the robot's forward kinematics.
-        step_s: dt of the transition, s.
-        steps: number of steps T.
-        tool: which end-effector, where there are several.
-
-    Returns:
-        (L, N, T + 1, 3), places of the tool, m.
-    """
+    """Places (L, N, T + 1, 3), m, of the end-effector while latent actions (L, d) are held for T steps."""
     latent = np.broadcast_to(z[:, None], (len(z), len(context), z.shape[-1]))
     now = np.broadcast_to(context, (len(z), *context.shape))
     action = decoder.decode(latent, now)

@@ -36,7 +36,7 @@ HOLDS_S: Final = {"reversal_0_5_s": 0.5, "reversal_2_s": 2.0}
 
 
 class TrainedModel(EncodesActions, Protocol):
-    """A fitted model together with how its training pairs were made."""
+    """A fitted model together with the parameters of its training pairs."""
 
     @property
     def latent_dim(self) -> int:
@@ -71,43 +71,24 @@ class TrainedModel(EncodesActions, Protocol):
 
 @dataclass(frozen=True)
 class EvaluationConfig:
-    """Settings of the measures; the same for all models that are compared.
+    """Settings of the measures; the same for all models that are compared."""
 
-    Attributes:
-        state_noise_rad: SD of the noise on held-out states for the noisy error, rad;
-            None for the noise that the model was trained with.
-        step_s: dt of the transition s' = s + a dt, and how long z and -z are each held for `reversal`, s;
-            None for one sample of the demonstrations.
-        states: states for consistency, disentanglement and turning.
-        grid: values of z in [-1, 1] on each axis, at each of these states.
-        latents: held-out pairs whose nearest inputs are searched for: for what the decoder can express, for
-            drift, reversal and change in state.
-        held_latents: of these, for reversal after longer holds.
-        reach: what is asked for controllability.
-        tool: which end-effector, where there are several.
-    """
-
-    state_noise_rad: float | None = None
-    step_s: float | None = None
-    states: int = 25
-    grid: int = 21
-    latents: int = 2000
-    held_latents: int = 300
+    state_noise_rad: float | None = None  # SD of the noise on held-out states; the training's where None
+    step_s: float | None = None  # dt of s' = s + a dt, and of `reversal`'s holds; one sample where None
+    states: int = 25  # for consistency, disentanglement and turning
+    grid: int = 21  # values of z in [-1, 1] on each axis, at each of these states
+    latents: int = 2000  # held-out pairs whose nearest inputs are searched for
+    held_latents: int = 300  # of these, for reversal after longer holds
     reach: ReachConfig = field(default_factory=ReachConfig)
-    tool: int = 0
+    tool: int = 0  # which end-effector, where there are several
 
 
 @dataclass(frozen=True)
 class Figures:
-    """The measures of a model for each seed, before averaging.
+    """The measures of a model for each seed, before averaging."""
 
-    Attributes:
-        per_seed: measure -> (S,).
-        start_distance_m: (P,), of the tools from the goals before any drive, m.
-    """
-
-    per_seed: Mapping[str, FloatArray]
-    start_distance_m: FloatArray
+    per_seed: Mapping[str, FloatArray]  # measure -> (S,)
+    start_distance_m: FloatArray  # (P,), of the tools from the goals before any drive, m
 
     def rows(self, subject: Subject) -> list[Row]:
         """Mean and SD over seeds, one row per measure."""
@@ -124,19 +105,12 @@ def measure(
     rng: np.random.Generator,
     config: EvaluationConfig | None = None,
 ) -> Figures:
-    """Measure every seed of a model on held-out episodes.
+    """Measure every seed of a fitted model on held-out episodes of the dataset that it was trained on.
 
-    Args:
-        model: a fitted model of S seeds.
-        demonstrations: the dataset that it was trained on; PCA is fitted to all of it that is not held out,
-            so also to validation episodes.
-        held_out: indices of the episodes that it has not seen.
-        robot: the arm that it moves.
-        rng: for the noise on held-out states.
-        config: how the measures are taken.
+    PCA is fitted to all episodes that are not held out, so also to validation episodes. ``rng`` draws the
+    noise on held-out states.
 
-    Raises:
-        UserError: no episode is held out, none is left for PCA, or the contexts lack a feature.
+    Raises UserError where no episode is held out, none is left for PCA, or the contexts lack a feature.
     """
     config = config or EvaluationConfig()
     episodes = moving_episodes(demonstrations, held_out)
@@ -149,33 +123,19 @@ def measure(
 @final
 @dataclass(frozen=True, eq=False)
 class Probe:
-    """Held-out samples on which a model's behaviour is measured.
-
-    Attributes:
-        pairs: starts and goals for controllability.
-        states: (K, c), contexts for consistency, disentanglement and turning.
-        context: (L, c), contexts for drift, reversal and change in state.
-        action: (L, m), the actions there, rad/s.
-        step_s: dt of the transition, s.
-    """
+    """Held-out samples on which a model's behaviour is measured."""
 
     pairs: StartGoalPairs
-    states: FloatArray
-    context: FloatArray
-    action: FloatArray
-    step_s: float
+    states: FloatArray  # (K, c), contexts for consistency, disentanglement and turning
+    context: FloatArray  # (L, c), contexts for drift, reversal and change in state
+    action: FloatArray  # (L, m), the actions there, rad/s
+    step_s: float  # dt of the transition, s
 
 
 def take_probe(model: TrainedModel, demonstrations: Demonstrations, held_out: Sequence[int]) -> Probe:
-    """The samples that `measure` takes by default, so that a run can keep them.
+    """The samples that `measure` takes by default, for a run to keep.
 
-    Args:
-        model: says how pairs of contexts and actions are made.
-        demonstrations: the dataset.
-        held_out: indices of the episodes that the model has not seen.
-
-    Raises:
-        UserError: no episode is held out, nothing moves in them, or the contexts lack a feature.
+    Raises UserError as `measure` does, and where nothing moves in the held-out episodes.
     """
     config = EvaluationConfig()
     episodes = moving_episodes(demonstrations, held_out)
@@ -195,12 +155,7 @@ def measure_behaviour(
 ) -> Figures:
     """All measures of `measure` but the errors of reconstruction, which need the demonstrations.
 
-    Args:
-        decoders: S decoders.
-        z: (S, L, d), the inputs whose actions are nearest to the probe's, see `nearest_latents`.
-        probe: what is measured on.
-        robot: the arm.
-        config: how the measures are taken.
+    ``z`` (S, L, d) are the inputs whose actions are nearest to the probe's, see `nearest_latents`.
     """
     config = config or EvaluationConfig()
     figures: dict[str, FloatArray] = {}
@@ -254,7 +209,7 @@ def _measure_accuracy(
     rng: np.random.Generator,
     config: EvaluationConfig,
 ) -> Accuracy:
-    """Reconstruction errors with and without state noise, relative to PCA fitted to what is not held out."""
+    """Reconstruction errors with and without state noise, relative to PCA on the other episodes."""
     noise = model.state_noise_rad if config.state_noise_rad is None else config.state_noise_rad
     trained_on = [index for index in range(len(demonstrations.episodes)) if index not in set(held_out)]
     if not trained_on:

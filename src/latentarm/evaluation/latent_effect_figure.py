@@ -18,10 +18,10 @@ AXIS_COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7")
 HOLD_S = 1.0
 BASE_AXES = "xyz"
 AWAY_M = 0.04
-"""How far from the starts the way back is drawn, m."""
+"""The way back is drawn from this far off the starts, m."""
 
 AROUND = 6
-"""In how many directions."""
+"""Directions in which the way back is drawn."""
 
 
 class LeadsBack(Protocol):
@@ -42,20 +42,11 @@ def latent_effect_figure(
     tool: int = 0,
     way_back: LeadsBack | None = None,
 ) -> "Figure":
-    """Paths of the tool over one second of ±1 on each latent axis, from each of a few states.
+    """Paths of the tool over one second of ±1 on each latent axis, from each of a few contexts (N, c).
 
-    A path ends in a filled marker for +1 and in an open one for -1. The view is along the base axis in
-    which the drawn paths differ least.
-
-    Args:
-        decoder: one seed's decoder.
-        context: (N, c), the states to start from, three or so.
-        chain: the robot's forward kinematics.
-        step_s: dt of the transition, s.
-        model: name of the model, for the title.
-        demonstrated: (T, 3), places of the tool in a demonstration to draw behind, m, or None.
-        tool: which end-effector, where there are several.
-        way_back: where it leads from around the starts is drawn with arrows, None for none.
+    A path ends in a filled marker for +1 and in an open one for -1. The view is along the base axis in which
+    the drawn paths differ least. A demonstration's places (T, 3), m, are drawn behind, and the way back as
+    arrows around the starts. ``model`` names the model in the title.
     """
     dim = decoder.latent_dim
     ends = np.concatenate([np.eye(dim), -np.eye(dim)])

@@ -5,6 +5,8 @@ from typing import Final
 from latentarm.core.style import Look
 from latentarm.models.catalogue import KINDS
 
+_PLAIN: Final = ("#000000", "o", "-")
+
 LOOKS: Final[dict[str, Look]] = {
     "latent": Look("latent actions", "#0072B2", "o", "-"),
     "latent_assist": Look("latent actions + shared autonomy", "#009E73", "D", "-"),
@@ -41,15 +43,33 @@ LOOKS: Final[dict[str, Look]] = {
     "moved_marshmallows": Look("Marshmallows, moved", "#CC79A7", "v", ":"),
     "moved_reach_and_pour": Look("Reach & Pour, moved", "#56B4E9", "s", ":"),
 }
-"""Of conditions and tasks; a model's look is that of its kind."""
+"""Of conditions and tasks."""
+
+_MODELS: Final[dict[str, tuple[str, str, str | tuple[float, tuple[float, ...]]]]] = {
+    "pca": ("#7f7f7f", "s", ":"),
+    "ae": ("#E69F00", "v", "--"),
+    "vae": ("#CC79A7", "^", "--"),
+    "cae": ("#0072B2", "o", "-"),
+    "cvae": ("#009E73", "D", "-"),
+    "cae_zero": ("#56B4E9", "P", "-."),
+    "cae_reversal": ("#332288", "<", (0.0, (5.0, 1.0, 1.0, 1.0))),
+    "cae_jacobian": ("#44AA99", "p", "-."),
+    "cvae_jacobian": ("#117733", ">", "-."),
+    "odd_cae": ("#999933", "d", (0.0, (3.0, 1.0))),
+    "scl": ("#D55E00", "X", "-."),
+    "isometric": ("#000000", "*", (0.0, (6.0, 1.5, 1.5, 1.5, 1.5, 1.5))),
+    "homogeneous": ("#882255", "h", (0.0, (4.0, 1.0, 1.0, 1.0))),
+    "low_turning": ("#DDAA33", "x", (0.0, (8.0, 2.0))),
+}
+"""Colour, marker and dash of each kind of model; those of other distributions are drawn plainly."""
 
 
 def look_of(name: str) -> Look:
-    """The look of a model, condition or task; a plain one under its own name where none is laid down.
+    """The look of a model, condition or task; a plain one under its own name for any other.
 
     Raises:
         UserError: it is a plug-in's model that does not load.
     """
     if name in KINDS:
-        return KINDS[name].look
-    return LOOKS.get(name, Look(name, "#000000", "o", "-"))
+        return Look(KINDS[name].label, *_MODELS.get(name, _PLAIN))
+    return LOOKS.get(name, Look(name, *_PLAIN))

@@ -11,21 +11,13 @@ ARROWS: Final[dict[Better | None, str]] = {"higher": "↑", "lower": "↓", None
 
 @dataclass(frozen=True)
 class Measure:
-    """What a figure means.
+    """A measure's meaning."""
 
-    Attributes:
-        unit: "1" is a plain number or ratio.
-        label: as tables call it, without the unit.
-        better: which way is better; None where neither is by itself.
-        definition: one sentence, without a capital or a full stop.
-        group: heading that it stands under where measures are grouped, or "".
-    """
-
-    unit: str
-    label: str
-    better: Better | None
-    definition: str
-    group: str = ""
+    unit: str  # "1" is a plain number or ratio
+    label: str  # as tables call it, without the unit
+    better: Better | None  # which way is better; None where neither is by itself
+    definition: str  # one sentence, without a capital or a full stop
+    group: str = ""  # heading that it stands under where measures are grouped, or ""
 
 
 EXPRESSED: Final = "what the decoder can express"
@@ -44,11 +36,7 @@ MEASURES: Final[dict[str, Measure]] = {
         EXPRESSED,
     ),
     "search_noise_free_error": Measure(
-        "rad^2/s^2",
-        "noise-free error, nearest input",
-        "lower",
-        "the same on clean states",
-        EXPRESSED,
+        "rad^2/s^2", "noise-free error, nearest input", "lower", "the same on clean states", EXPRESSED
     ),
     "search_error_percent_of_pca": Measure(
         "%",
@@ -139,7 +127,7 @@ MEASURES: Final[dict[str, Measure]] = {
         "R², mean of axes",
         "higher",
         "R² of one line, over 25 held-out states and 21 values in [−1, 1] of one axis, of the tool's signed"
-        " way in a sample against z, with one forward for all states, as the paper has it",
+        " way in a sample against z, with one forward for all states, as in the paper",
         PROPERTIES,
     ),
     "r2_local": Measure(
@@ -160,7 +148,7 @@ MEASURES: Final[dict[str, Measure]] = {
         "1",
         "drift, of motion",
         "lower",
-        "how fast the arm is told to move with the stick at rest, ‖φ(0, s)‖, relative to how fast the"
+        "how fast the arm moves with the stick at rest, ‖φ(0, s)‖, relative to how fast the"
         " person moved it, ‖φ(z, s)‖; both means over held-out pairs; here and below z is the nearest input",
         AT_REST,
     ),
@@ -350,7 +338,7 @@ def unit_of(name: str) -> str:
 
 
 def label_of(name: str) -> str:
-    """What tables call a measure, without its unit; the name itself for one that is not in the table."""
+    """A measure's name in tables, without its unit; the name itself for one that is not in the table."""
     base, _, axis = name.rpartition("_axis_")
     if base in AXIS_LABELS and axis.isdigit():
         return f"{AXIS_LABELS[base]}, axis {int(axis) + 1}"

@@ -17,12 +17,9 @@ MM_PER_M = 1000.0
 
 
 def properties_figure(effects: FloatArray, grid: FloatArray, model: str) -> "Figure":
-    """Signed distance against z, a faint line per state and the best-fit line, one panel per axis.
+    """Signed distance of effects (d, N, K, 3), m, of one seed against z, in one panel per axis.
 
-    Args:
-        effects: (d, N, K, 3), of one seed, m, see `axis_effects`.
-        grid: (K,), values of z.
-        model: name of the model, for its look.
+    Each panel has a faint line per state and the best-fit line.
     """
     signed = MM_PER_M * signed_distance(effects, grid)
     figure = new_figure(height_mm=48.0)

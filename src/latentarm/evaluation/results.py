@@ -14,15 +14,10 @@ def as_document(rows: Iterable[Row], about: Mapping[str, object] | None = None) 
 
 
 def write_results(path: Path, rows: Sequence[Row], about: Mapping[str, object] | None = None) -> None:
-    """Write rows to a JSON file, whole or not at all.
-
-    Args:
-        path: the file, usually ``metrics.json`` or ``results.json``.
-        rows: the figures; a figure that is not a number is None, never NaN.
-        about: anything JSON can hold: settings, versions, the command.
+    """Write rows to a JSON file (``metrics.json``, ``results.json``), whole or not at all.
 
     Raises:
         UserError: the file cannot be written.
-        ValueError: a figure is NaN or infinite, which JSON does not have.
+        ValueError: a figure is NaN or infinite; an absent figure is None.
     """
     write_text(path, json.dumps(as_document(rows, about), indent=2, allow_nan=False) + "\n")

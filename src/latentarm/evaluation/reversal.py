@@ -21,15 +21,9 @@ def reversal(
     are taken before the ratio, so that states in which z hardly moves the arm do not dominate. 0 is a motion
     fully undone; 1 leaves as far to go back as the motion was long; 2 is a decoder that ignores z's sign.
 
-    Args:
-        decoders: S decoders.
-        z: (S, N, d), latent actions that the demonstrations use.
-        context: (N, c), contexts of s0.
-        step_s: dt, s.
-        hold_s: how long each of z and -z is held, s, in equal steps of about ``step_s``; one step where None.
-
-    Returns:
-        (S,), a ratio; NaN where no z moves the arm at all, or where the arm leaves all bounds.
+    Latent actions (S, N, d) begin in contexts (N, c) of s0. Each of z and -z is held for ``hold_s`` in equal
+    steps of about ``step_s``, or for one step where that is None. The ratio (S,) is NaN where no z moves the
+    arm at all, or where the arm leaves all bounds.
     """
     steps = 1 if hold_s is None else max(1, round(hold_s / step_s))
     step_s = step_s if hold_s is None else hold_s / steps

@@ -1,4 +1,4 @@
-"""Which held-out states and start-goal pairs the measures use.
+"""The held-out states and start-goal pairs of the measures.
 
 All choices are even spreads over the held-out samples, so that the same data always give the same
 states and no seed is needed.
@@ -19,15 +19,10 @@ from latentarm.robots.kinematics.stillness import moving_range
 
 @dataclass(frozen=True)
 class StartGoalPairs:
-    """Start-goal pairs ``(s_i, s_j)`` of held-out states.
+    """Start-goal pairs ``(s_i, s_j)`` of held-out states."""
 
-    Attributes:
-        start: (P, c), context at the start; its first n entries are the state, rad.
-        goal: (P, n), state to be reached, rad.
-    """
-
-    start: FloatArray
-    goal: FloatArray
+    start: FloatArray  # (P, c), context at the start; its first n entries are the state, rad
+    goal: FloatArray  # (P, n), state to be reached, rad
 
 
 def evenly_spread(count: int, total: int) -> IntArray:
@@ -75,12 +70,6 @@ def start_goal_pairs(
 
     All samples that have a sample that much later are candidates; ``count`` of them are taken, spread
     evenly. An episode that is shorter gives one pair: its first and its last sample.
-
-    Args:
-        episodes: held-out episodes.
-        context: the features that the decoder sees, see `latentarm.core.context.feature_names`.
-        separation_s: time between start and goal in the demonstration, s.
-        count: number of pairs wanted.
     """
     starts: list[FloatArray] = []
     goals: list[FloatArray] = []

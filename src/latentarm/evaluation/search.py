@@ -1,8 +1,8 @@
 """The search encoder: the input whose decoded action is nearest, whatever the decoder.
 
 What a decoder can express is a property of the decoder alone. An encoder network may miss it, and the
-encoders of some models are themselves searches, each over a range of its own. So here the same question is
-asked of every decoder:
+encoders of some models are themselves searches, each over a range of its own. So this search answers the same
+question for every decoder:
 
     z*(c, a) = argmin ‖a - phi(z, c)‖^2 over z in [-1, 1]^d,
 
@@ -48,7 +48,7 @@ LEAST_SIZE: Final = 0.05
 """Inputs nearer to rest than this count as this large."""
 
 AT_ONCE: Final = 4096
-"""Inputs tried at a time: what a hidden layer makes of them stays in the processor's cache."""
+"""Inputs tried at a time, so that the values of a hidden layer stay in the processor's cache."""
 
 BLOCK: Final = 256
 """Pairs refined at a time."""
@@ -74,16 +74,9 @@ def nearest_latents(
     action: FloatArray,
     codes: FloatArray | None = None,
 ) -> FloatArray:
-    """The inputs whose decoded actions are nearest to given ones.
+    """The inputs (S, N, d) in [-1, 1] whose decoded actions are nearest to ``action`` (N, m), rad/s.
 
-    Args:
-        decoders: S decoders.
-        context: (N, c).
-        action: (N, m), rad/s.
-        codes: (S, N, d), inputs to beat, such as an encoder's; brought into [-1, 1] first.
-
-    Returns:
-        (S, N, d), in [-1, 1].
+    ``codes`` (S, N, d), such as an encoder's, are brought into [-1, 1] and then inputs to beat.
     """
     found = np.zeros((len(decoders), len(action), decoders[0].latent_dim))
     fixed = _fixed_inputs(found.shape[-1])
@@ -99,15 +92,10 @@ def nearest_latents(
 
 @dataclass(frozen=True)
 class _FixedInputs:
-    """Inputs that are tried in every context.
+    """Inputs that are tried in every context."""
 
-    Attributes:
-        grid: (G, d), over the whole range.
-        rim: (R, d), on its surface, one for each ray from rest.
-    """
-
-    grid: FloatArray
-    rim: FloatArray
+    grid: FloatArray  # (G, d), over the whole range
+    rim: FloatArray  # (R, d), on its surface, one for each ray from rest
 
 
 def _fixed_inputs(latent_dim: int) -> _FixedInputs:
@@ -128,7 +116,7 @@ def _fixed_inputs(latent_dim: int) -> _FixedInputs:
 def _nearest(
     decode: Decode, fixed: _FixedInputs, context: FloatArray, action: FloatArray, codes: FloatArray | None
 ) -> FloatArray:
-    """Of one decoder and a bounded number of pairs, (N, d)."""
+    """`nearest_latents` of one decoder and a bounded number of pairs, (N, d)."""
     solved = _if_affine(decode, fixed, context, action)
     if solved is not None:
         return solved
@@ -148,7 +136,7 @@ def _nearest(
 def _starts(
     decode: Decode, fixed: _FixedInputs, context: FloatArray, action: FloatArray, codes: FloatArray | None
 ) -> tuple[FloatArray, FloatArray]:
-    """Inputs (N, K, d) to refine, and what they decode to (N, K, m)."""
+    """Inputs (N, K, d) to refine, and their decoded actions (N, K, m)."""
     dim, rays = fixed.rim.shape[1], len(fixed.rim)
     inputs = np.concatenate([np.zeros((1, dim)), fixed.rim, fixed.rim / 2.0, fixed.grid])
     tried = _repeated(inputs, len(context))
@@ -210,11 +198,7 @@ def _apart(tried: FloatArray, cost: FloatArray) -> IntArray:
 
 
 class _Search:
-    """Several searches for each pair, side by side.
-
-    Attributes:
-        z: (N, K, d), the best inputs so far.
-    """
+    """Several searches for each pair, side by side; ``z`` (N, K, d) are the best inputs so far."""
 
     def __init__(
         self, decode: Decode, context: FloatArray, action: FloatArray, z: FloatArray, came: FloatArray

@@ -23,15 +23,8 @@ def state_change(decoders: Sequence[DecodesActions], z: FloatArray, context: Flo
     """Mean ‖phi(z, s2) - phi(z, s1)‖ over mean ‖phi(z, s1)‖, with ‖s2 - s1‖ = `NEAR_RAD`.
 
     The directions from s1 to s2 are drawn evenly from all directions, the same for every decoder. 0 is a
-    decoder that does not see the state; 1 changes the motion as much as the motion is fast.
-
-    Args:
-        decoders: S decoders.
-        z: (S, N, d), latent actions that the demonstrations use.
-        context: (N, c), contexts of s1; their first entries are the state, rad.
-
-    Returns:
-        (S,), a ratio; NaN where no z moves the arm at all.
+    decoder that does not see the state; 1 changes the motion as much as the motion is fast. Latent actions
+    are (S, N, d), contexts (N, c). The ratio (S,) is NaN where no z moves the arm at all.
     """
     here = decode_all(decoders, z, context)
     drawn = np.random.default_rng(0).normal(size=here.shape[1:])

@@ -24,19 +24,12 @@ HEADLINE: tuple[str, ...] = (
 
 @dataclass(frozen=True)
 class Subject:
-    """What a row is about.
+    """The subject of a row."""
 
-    Attributes:
-        study: the command or simulation that took the figures.
-        task: what was done, or None.
-        model: the model's name, or None.
-        condition: what was varied, or None.
-    """
-
-    study: str
+    study: str  # the command or simulation that took the figures
     task: str | None = None
     model: str | None = None
-    condition: str | None = None
+    condition: str | None = None  # the varied setting
 
 
 def headline(rows: Iterable[Row]) -> list[Row]:
@@ -45,15 +38,9 @@ def headline(rows: Iterable[Row]) -> list[Row]:
 
 
 def summarise(subject: Subject, measure: str, values: ArrayLike) -> Row:
-    """Mean and sample SD over runs.
+    """Mean and sample SD over runs (n,), without those that have no figure (NaN).
 
-    Args:
-        subject: what the row is about.
-        measure: a name in `latentarm.evaluation.measures.MEASURES`.
-        values: (n,), one figure per run; runs without one (NaN) are left out and not counted.
-
-    Returns:
-        A row with SD absent for a single run, and mean absent where no run has a figure.
+    The SD is absent for a single run, and the mean where no run has a figure.
     """
     known = np.asarray(values, dtype=np.float64).reshape(-1)
     known = known[np.isfinite(known)]

@@ -13,7 +13,7 @@ from latentarm.evaluation.measures import label_of
 
 BORDER = 3  # characters between two columns
 ABSENT = "–"
-ROUNDING = 1e-12  # what is smaller is the rounding of a zero
+ROUNDING = 1e-12  # smaller figures are the rounding of a zero
 
 
 def format_figure(mean: float | None, sd: float | None) -> str:
@@ -41,7 +41,7 @@ def _rounded(value: float, places: int) -> str:
 
 
 def series_name(row: Row) -> str:
-    """How a row's model and condition are called in a table's head."""
+    """A table's heading for a row's model and condition."""
     # Conditions have parts, such as "end_effector, learning".
     names = [name for name in (row.model, *(row.condition or "").split(", ")) if name]
     parts = [look_of(name).label for name in names]
@@ -55,13 +55,7 @@ def measure_name(row: Row) -> str:
 
 
 def rich_tables(rows: Sequence[Row], title: str = "", width: int = 100) -> RenderableType:
-    """Measures down, models or conditions across; see `rich_figures`.
-
-    Args:
-        rows: figures; where they are of several tasks, the head names them.
-        title: what the table shows.
-        width: characters that a line may have.
-    """
+    """Measures down, models or conditions across; with several tasks, the head names them."""
     return rich_figures(*_arranged(rows), title=title, width=width)
 
 
@@ -77,14 +71,6 @@ def rich_figures(
     """A terminal's table of figures by measure, down, and series, across.
 
     If the columns are too wide, the SD goes below the mean; if that is not enough, the table is split.
-
-    Args:
-        measures: names of the lines.
-        series: names of the columns.
-        figures: text by measure and series.
-        corner: what the figures are.
-        title: what the table shows.
-        width: characters that a line may have.
     """
     room = width - max((len(measure) for measure in (*measures, corner)), default=0) - BORDER - 1
     widths = _column_widths(measures, series, figures)

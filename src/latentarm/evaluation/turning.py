@@ -30,15 +30,10 @@ class MovesTool(Protocol):
 
 @dataclass(frozen=True)
 class Turning:
-    """Turn of the motion per turn of the stick, NaN where nothing moves.
+    """Turn of the motion per turn of the stick, NaN where nothing moves."""
 
-    Attributes:
-        joints: (S, N, K), of the joints' velocity.
-        tool: (S, N, K), of the velocity of the tool's place.
-    """
-
-    joints: FloatArray
-    tool: FloatArray
+    joints: FloatArray  # (S, N, K), of the joints' velocity
+    tool: FloatArray  # (S, N, K), of the velocity of the tool's place
 
 
 def turning(
@@ -48,18 +43,7 @@ def turning(
     directions: int = DIRECTIONS,
     tool: int = 0,
 ) -> Turning:
-    """Lead a full push of a two-axis stick once around, in every context.
-
-    Args:
-        decoders: S decoders with d = 2.
-        context: (N, c), contexts; their first entries are the state, rad.
-        chain: the robot.
-        directions: K.
-        tool: which end-effector, where there are several.
-
-    Raises:
-        ValueError: a latent space has other than two axes.
-    """
+    """Lead a full push of a two-axis stick once around, in every context (N, c)."""
     if any(decoder.latent_dim != 2 for decoder in decoders):
         raise ValueError("A stick that is led around has two axes.")
     angle = np.arange(directions) * (2.0 * np.pi / directions)

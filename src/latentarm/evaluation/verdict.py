@@ -9,23 +9,14 @@ from latentarm.core.types import Row
 
 @dataclass(frozen=True)
 class Threshold:
-    """A limit on a measure that every useful model should meet.
+    """A limit on a measure that every useful model should meet."""
 
-    Attributes:
-        measure: a name in `latentarm.evaluation.measures.MEASURES`, or of one of its axes.
-        worst: the figure from which on it is missed.
-        least: whether figures below ``worst`` miss it, instead of figures from there on.
-        meaning: what it means to a person.
-        scale: what figures are multiplied by to be shown.
-        unit: that follows.
-    """
-
-    measure: str
-    worst: float
-    least: bool
-    meaning: str
-    scale: float = 1.0
-    unit: str = ""
+    measure: str  # a name in `latentarm.evaluation.measures.MEASURES`, or of one of its axes
+    worst: float  # the figure from which on it is missed
+    least: bool  # whether figures below ``worst`` miss it, instead of figures from there on
+    meaning: str  # in a person's words
+    scale: float = 1.0  # factor for showing figures
+    unit: str = ""  # after a shown figure
 
     def missed_by(self, figure: float) -> bool:
         """Whether a figure misses it."""
@@ -60,23 +51,14 @@ REACH_SHARE: Final = 0.5
 
 @dataclass(frozen=True)
 class Finding:
-    """A threshold that is missed.
-
-    Attributes:
-        measure: whose figure it is.
-        said: in words, with the figure.
-    """
+    """A threshold that is missed."""
 
     measure: str
     said: str
 
 
 def findings(rows: Sequence[Row]) -> list[Finding]:
-    """The thresholds that a model misses, worst kinds first.
-
-    Args:
-        rows: of one model, one per measure; figures that are absent miss nothing.
-    """
+    """The thresholds that the rows of one model miss, worst kinds first; absent figures miss nothing."""
     found = {row.measure: row for row in rows if row.mean is not None}
     missed: list[Finding] = []
     for threshold in THRESHOLDS:

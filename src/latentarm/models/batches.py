@@ -11,59 +11,39 @@ from torch import Tensor
 from latentarm.core.types import FloatArray
 
 ELSEWHERE: Final = 32
-"""Contexts without demonstrated actions that a step sees, at most, for terms that ask for them."""
+"""Most contexts without demonstrated actions in a step, for terms that ask for them."""
 
 ELSEWHERE_JUDGED: Final = 256
 """The same for validation, which always uses the first ones."""
 
 JUDGED_AT_ONCE: Final = 400
-"""Validation pairs per seed that are judged together: what they need stays in the processor's cache."""
+"""Validation pairs per seed that are judged together, so that they fit into the processor's cache."""
 
 FEWEST_STEPS: Final = 16
 """Steps of an epoch, at least: a small dataset is cut into smaller batches."""
 
 
 class Batch(NamedTuple):
-    """One training step's data.
+    """One training step's data."""
 
-    Attributes:
-        context: (S, B, c), normalised.
-        action: (S, B, m), normalised.
-        noise: (S, B, k), standard normal for training and zero for judging; k = 0 where the encoder
-            is deterministic.
-        elsewhere: (S, E, c), contexts without demonstrated actions, for terms that need none.
-        later: (S, B, c), where the actions lead, for models that look there; otherwise (S, B, 0).
-    """
-
-    context: Tensor
-    action: Tensor
-    noise: Tensor
-    elsewhere: Tensor
-    later: Tensor
+    context: Tensor  # (S, B, c), normalised
+    action: Tensor  # (S, B, m), normalised
+    noise: Tensor  # (S, B, k), standard normal for training, zero for judging; k = 0 without need
+    elsewhere: Tensor  # (S, E, c), contexts without demonstrated actions, for terms that need none
+    later: Tensor  # (S, B, c), where the actions lead, for models that look there; otherwise (S, B, 0)
 
 
 @dataclass(frozen=True)
 class TrainingData:
-    """Normalised pairs, the same for every seed; or with a leading axis (S, ...), each seed's own.
+    """Normalised pairs, the same for every seed; or with a leading axis (S, ...), each seed's own."""
 
-    Attributes:
-        context: (N, c), training pairs.
-        action: (N, m).
-        validation_context: (H, c), pairs of the validation episodes.
-        validation_action: (H, m).
-        elsewhere: (M, c), contexts without demonstrated actions; none where no term asks for them.
-        later: (N, c), contexts to which the training pairs' actions lead, for models that look there;
-            otherwise (N, 0).
-        validation_later: (H, c) or (H, 0), the same of the validation pairs.
-    """
-
-    context: FloatArray
-    action: FloatArray
-    validation_context: FloatArray
-    validation_action: FloatArray
-    elsewhere: FloatArray
-    later: FloatArray
-    validation_later: FloatArray
+    context: FloatArray  # (N, c)
+    action: FloatArray  # (N, m)
+    validation_context: FloatArray  # (H, c)
+    validation_action: FloatArray  # (H, m)
+    elsewhere: FloatArray  # (M, c), contexts without demonstrated actions; none unless a term asks
+    later: FloatArray  # (N, c), where the actions lead, for models that look there; otherwise (N, 0)
+    validation_later: FloatArray  # (H, c) or (H, 0)
 
     @property
     def own(self) -> bool:
@@ -94,11 +74,7 @@ def seed_generator(seed: int, stream: int) -> torch.Generator:
 class Batches:
     """Shuffled training batches and the validation pairs, on the device.
 
-    Attributes:
-        size: B, pairs per step and seed.
-        steps: of an epoch.
-        batch: the current training batch; always the same tensors, which `epoch` fills anew.
-        validation: all validation pairs, in parts.
+    `epoch` fills the tensors of ``batch`` anew.
     """
 
     def __init__(

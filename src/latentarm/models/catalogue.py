@@ -1,14 +1,9 @@
 """Every latent action model by name: ours, and those that other distributions add (`latentarm.models`)."""
 
-from collections.abc import Iterator, Mapping
-from pkgutil import resolve_name
-from typing import TYPE_CHECKING, Final, final
+from typing import Final
 
 from latentarm.core.plugins import Catalogue
 from latentarm.models.kind import ModelKind
-
-if TYPE_CHECKING:
-    from latentarm.models.model import LatentActionModel
 
 
 def _as_kind(name: str, thing: object) -> ModelKind:
@@ -40,28 +35,7 @@ KINDS: Final = Catalogue(
     },
     _as_kind,
 )
-"""What each kind is, in the order in which tables and figures show them. Needs no torch."""
+"""Every `ModelKind`, in the order of tables and figures. Needs no torch."""
 
 DEFAULT_MODEL: Final = "homogeneous"
-"""What `train`, the demo and the page use unless another is named; docs/decisions/0031 has the rule."""
-
-
-@final
-class _Estimators(Mapping[str, "type[LatentActionModel]"]):
-    """The class that trains each kind; looking one up imports torch."""
-
-    def __getitem__(self, name: str) -> "type[LatentActionModel]":
-        reference = KINDS[name].estimator
-        return KINDS.running(name, lambda: resolve_name(reference))
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(KINDS)
-
-    def __len__(self) -> int:
-        return len(KINDS)
-
-    def __contains__(self, name: object) -> bool:
-        return name in KINDS
-
-
-MODELS: Final = _Estimators()
+"""The model of `train`, the demo and the page unless another is named; see docs/decisions/0031."""

@@ -30,27 +30,19 @@ METADATA_KEY: Final = "latentarm_training"
 class TrainingState:
     """Everything that the next epoch depends on; updated in place.
 
-    Attributes:
-        values: (S, P), the weights; the trainer's own buffer.
-        first: (S, P), Adam's running mean of the gradient; its own buffer.
-        second: (S, P), Adam's running mean of the squared gradient; its own buffer.
-        best: (S, P), each seed's weights at its best epoch.
-        best_loss: (S,), validation loss there; infinite before the first epoch.
-        best_epoch: (S,), counted from 1.
-        epoch: epochs done.
-        steps: optimiser steps done.
-        history: validation loss (S,) after each epoch.
+    ``values``, ``first`` and ``second`` are the trainer's own buffers: weights, and Adam's running means of
+    the gradient and of its square.
     """
 
-    values: Tensor
-    first: Tensor
-    second: Tensor
-    best: Tensor
-    best_loss: FloatArray
-    best_epoch: IntArray
+    values: Tensor  # (S, P)
+    first: Tensor  # (S, P)
+    second: Tensor  # (S, P)
+    best: Tensor  # (S, P), each seed's weights at its best epoch
+    best_loss: FloatArray  # (S,), validation loss there; infinite before the first epoch
+    best_epoch: IntArray  # (S,), counted from 1
     epoch: int = 0
     steps: int = 0
-    history: list[list[float]] = field(default_factory=list[list[float]])
+    history: list[list[float]] = field(default_factory=list[list[float]])  # losses (S,) by epoch
 
     @staticmethod
     def start(values: Tensor, adam: FlatAdam) -> "TrainingState":
@@ -89,12 +81,7 @@ class TrainingState:
 
 
 def fingerprint(settings: Mapping[str, object], arrays: Sequence[FloatArray]) -> str:
-    """SHA-256 of everything that determines a training's result; a checkpoint with another one is refused.
-
-    Args:
-        settings: plain values, ready for JSON.
-        arrays: the data.
-    """
+    """SHA-256 of everything that determines a training's result; a checkpoint with another one is refused."""
     digest = hashlib.sha256(json.dumps(settings, sort_keys=True).encode())
     for array in arrays:
         digest.update(repr(array.shape).encode())

@@ -1,4 +1,4 @@
-"""A trained decoder as the control loop runs it."""
+"""A trained decoder of one seed for the control loop."""
 
 from typing import final
 
@@ -10,19 +10,13 @@ from latentarm.models.way_back.runtime import WayBack
 
 @final
 class Decoder:
-    """The decoder as the control loop runs it: one seed, NumPy alone, a few microseconds.
+    """One seed's decoder ``a_h = phi(u, c)``, rad/s: NumPy alone, a few microseconds.
 
-    ``a_h = phi(u, c)`` in rad/s, with u in [-1, 1] spanning what the demonstrations used.
+    u in [-1, 1] spans the demonstrations. Nothing is checked in `decode`: the control loop has checked its
+    input, and a wrong shape raises in NumPy.
 
-    Nothing is checked in `decode`: the control loop has checked its input, and a wrong shape raises in NumPy.
-
-    Attributes:
-        kind: kind of model.
-        layout: the features that its contexts consist of.
-        latent_dim: d.
-        context_dim: c.
-        action_dim: m.
-        way_back: what leads back to the demonstrations; None without it.
+    ``latent_dim``, ``context_dim`` and ``action_dim`` are d, c and m; ``layout`` lists the features of its
+    contexts, and ``way_back`` is None in a model without one.
     """
 
     __slots__ = (
@@ -37,15 +31,7 @@ class Decoder:
     )
 
     def __init__(self, trained: TrainedModel, seed: int = 0) -> None:
-        """Take one seed's decoder out of a trained model.
-
-        Args:
-            trained: the model.
-            seed: index of the seed, 0..S-1.
-
-        Raises:
-            UserError: there is no such seed.
-        """
+        """Take one seed's decoder, by its index, out of a trained model; UserError without such a seed."""
         trained.check_seed_index(seed)
         self.kind = trained.kind.name
         self.layout = trained.layout
@@ -57,24 +43,14 @@ class Decoder:
         self.way_back = WayBack(trained, seed) if trained.dimensions.way_back else None
 
     def decode(self, z: FloatArray, context: FloatArray) -> FloatArray:
-        """Joint velocities of latent actions in contexts.
-
-        Args:
-            z: (..., d), in input units.
-            context: (..., c); leading axes broadcast against those of ``z``.
-
-        Returns:
-            (..., m), rad/s.
-        """
+        """Joint velocities (..., m), rad/s, of z (..., d) in contexts (..., c), which broadcast."""
         action = self._runtime(z, context if self._frame is None else self._frame.apply(context))
         return action if self.way_back is None else self.way_back(action, z, context)
 
     def enclose(self, context: FloatArray, fineness: int = 1) -> Enclosure | None:
         """A proven enclosure of `decode` over all latent actions in [-1, 1]^d; None where none is known.
 
-        Args:
-            context: (..., c).
-            fineness: 1 for a control loop; more is tighter and takes longer.
+        ``fineness`` is 1 for a control loop; more is tighter and takes longer.
         """
         framed = context if self._frame is None else self._frame.apply(context)
         found = self._runtime.enclose(framed, fineness)

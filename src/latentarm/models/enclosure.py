@@ -1,4 +1,4 @@
-"""Proven enclosures of what a decoder can do over all inputs (Taylor models of first order).
+"""Proven enclosures of a decoder over all inputs (Taylor models of first order).
 
 Sampling does not bound a decoder: between two samples it may do more. Here all inputs ``Z = [-1, 1]^d`` are
 cut into cells, and in each cell k the decoder is an affine map with a remainder::
@@ -45,17 +45,11 @@ BEYOND: Final = 0.15
 @final
 @dataclass(frozen=True, eq=False)
 class Enclosure:
-    """A set that holds ``phi(z, c)`` for all z in ``[-1, 1]^d``: a union of K boxes under affine maps.
+    """A set that holds ``phi(z, c)`` for all z in ``[-1, 1]^d``: a union of K boxes under affine maps."""
 
-    Attributes:
-        centre: (..., K, m), rad/s.
-        spread: (..., K, g, m), rad/s.
-        remainder: (..., K, m), zero or more, rad/s.
-    """
-
-    centre: FloatArray
-    spread: FloatArray
-    remainder: FloatArray
+    centre: FloatArray  # (..., K, m), rad/s
+    spread: FloatArray  # (..., K, g, m), rad/s
+    remainder: FloatArray  # (..., K, m), zero or more, rad/s
 
     def largest(self) -> FloatArray:
         """Upper bound of ``‖phi(z, c)‖`` over all z, (...,), rad/s; NaN where the decoder gives NaN."""
@@ -68,11 +62,7 @@ class Enclosure:
         return (1.0 + ROUNDING) * (reach + _length(self.remainder)).max(axis=-1)
 
     def furthest(self, direction: FloatArray) -> FloatArray:
-        """Upper bound of ``w·phi(z, c)`` over all z (the support function), (...,).
-
-        Args:
-            direction: (..., m), w.
-        """
+        """Upper bound (...,) of ``w·phi(z, c)`` over all z, w (..., m): the support function."""
         w = direction[..., None, :]
         sides = np.abs(np.vecdot(w[..., None, :], self.spread)).sum(axis=-1)
         reach = sides + np.vecdot(np.abs(w), self.remainder)
@@ -97,10 +87,8 @@ class Enclosure:
     def bent(self, value: FloatArray, slope: FloatArray, curvature: FloatArray | float) -> Self:
         """The enclosure after an activation of every entry.
 
-        Args:
-            value: (..., K, m), the activation of the centre.
-            slope: (..., K, m), its derivative there.
-            curvature: (..., K, m), upper bound of its second derivative within `radius` of the centre.
+        ``value`` and ``slope`` (..., K, m) are the activation of the centre and its derivative, and
+        ``curvature`` bounds its second derivative within `radius` of the centre.
         """
         rest = np.abs(slope) * self.remainder + 0.5 * curvature * np.square(self.radius)
         return type(self)(value, slope[..., None, :] * self.spread, rest)
@@ -112,12 +100,7 @@ class Enclosure:
 
 
 def cells(d: int, fineness: int) -> tuple[FloatArray, float]:
-    """Centres (K, d) of the cells of ``[-1, 1]^d``, and half their width.
-
-    Args:
-        d: axes of z.
-        fineness: times `CELLS_PER_AXIS`.
-    """
+    """Centres (K, d) of the cells of ``[-1, 1]^d``, and half their width; a larger ``fineness`` has more."""
     per_axis = fineness * CELLS_PER_AXIS.get(d, 1)
     middles = (2.0 * np.arange(per_axis) + 1.0) / per_axis - 1.0
     return np.array(list(product(middles, repeat=d))), 1.0 / per_axis
@@ -126,16 +109,14 @@ def cells(d: int, fineness: int) -> tuple[FloatArray, float]:
 def linear_enclosure(columns: FloatArray, offset: FloatArray) -> Enclosure:
     """The enclosure of ``offset + Σ z_i columns_i``, exact and in one cell.
 
-    Args:
-        columns: (..., d, m), rad/s.
-        offset: (..., m), rad/s.
+    Columns are (..., d, m), offsets (..., m), rad/s.
     """
     centre = offset[..., None, :]
     return Enclosure(centre, columns[..., None, :, :], np.zeros(centre.shape))
 
 
 def celled(columns: FloatArray, offset: FloatArray, fineness: int) -> Enclosure:
-    """As `linear_enclosure`, in the `cells` of z."""
+    """The enclosure of `linear_enclosure` in the `cells` of z."""
     middles, half = cells(columns.shape[-2], fineness)
     centre = middles @ columns + offset[..., None, :]
     spread = np.broadcast_to(half * columns[..., None, :, :], (*centre.shape[:-1], *columns.shape[-2:]))
@@ -150,14 +131,9 @@ def network_enclosure(
 ) -> Enclosure:
     """The enclosure of a network as `numpy_networks.propagate` runs it.
 
-    Cells half as wide leave about a quarter of the remainder.
-
-    Args:
-        from_latent: (d, h), from inputs to the first layer's pre-activations, halved where an activation
-            follows.
-        offset: (..., h), what context and bias add to them.
-        layers: weight and bias of those after the first, halved but for the last.
-        fineness: times `CELLS_PER_AXIS`.
+    Cells half as wide leave about a quarter of the remainder. ``from_latent`` (d, h) maps inputs to the first
+    layer's pre-activations, halved where an activation follows, to which context and bias add ``offset``
+    (..., h). The later layers are halved but for the last.
     """
     if not layers:
         columns = np.broadcast_to(from_latent, (*offset.shape[:-1], *from_latent.shape))

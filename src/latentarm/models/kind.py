@@ -8,7 +8,6 @@ from typing import Literal, final
 
 from latentarm.core.context import ContextLayout
 from latentarm.core.errors import UserError
-from latentarm.core.style import Look
 from latentarm.core.types import BoolArray, FloatArray, IntArray
 from latentarm.models.enclosure import Enclosure
 from latentarm.models.numpy_networks import network_shapes
@@ -23,25 +22,15 @@ Shape = tuple[int, ...]
 
 @dataclass(frozen=True)
 class Dimensions:
-    """The sizes that fix every tensor's shape.
+    """The sizes that fix every tensor's shape."""
 
-    Attributes:
-        seeds: S, models trained side by side.
-        latent: d.
-        context: c.
-        action: m.
-        hidden: units of each hidden layer, the same in encoder and decoder.
-        tools: k, end-effectors of the arm; 0 where nothing of the model looks at them.
-        way_back: units of each hidden layer of the way back's network; none where there is no way back.
-    """
-
-    seeds: int
-    latent: int
-    context: int
-    action: int
-    hidden: tuple[int, ...]
-    tools: int = 0
-    way_back: tuple[int, ...] = ()
+    seeds: int  # S, models trained side by side
+    latent: int  # d
+    context: int  # c
+    action: int  # m
+    hidden: tuple[int, ...]  # units of each hidden layer, the same in encoder and decoder
+    tools: int = 0  # k, end-effectors of the arm; 0 where nothing of the model looks at them
+    way_back: tuple[int, ...] = ()  # units of each hidden layer of the way back's network, if there is one
 
 
 class Runtime(ABC):
@@ -56,10 +45,10 @@ class Runtime(ABC):
         """Joint velocities (..., m), rad/s, of inputs (..., d) in contexts (..., c), which broadcast."""
 
     def enclose(self, context: FloatArray, fineness: int = 1) -> Enclosure | None:
-        """A proven enclosure of what all inputs in [-1, 1]^d together can do in contexts (..., c).
+        """A proven enclosure of the actions of all inputs in [-1, 1]^d in contexts (..., c).
 
-        None where none is proven, as here: then nothing is claimed about how far help constrains the arm.
-        A finer one is tighter and takes longer; ``fineness`` is 1 for a control loop.
+        None where none is proven, as here: then nothing is claimed about how far help constrains the arm. A
+        finer one is tighter and takes longer; ``fineness`` is 1 for a control loop.
         """
         return None
 
@@ -71,7 +60,7 @@ class ModelKind:
 
     Attributes:
         name: on disk, on the command line and in results.
-        look: how figures draw it, and its name there.
+        label: its name in figures and tables.
         estimator: the class that trains it, a `LatentActionModel`, as ``package.module:Class``. It is
             imported when a model is trained, so that running one needs no torch.
         runtime: the decoder in NumPy.
@@ -79,7 +68,6 @@ class ModelKind:
         encoder: ``projection`` onto the columns of the decoder or the ``nearest`` action that it can
             decode (neither has weights), or a network of (c, a) whose output is z
             (``deterministic``) or (mu, log sigma^2) (``gaussian``).
-        sees_context: whether the decoder sees the context.
         rests_at_zero: whether z = 0 means rest, phi(0, c) = 0, by the model's definition, so that it must
             stay u = 0. Where it does not, u = 0 is the mean latent action of the demonstrations.
         reverses: whether it rests, and the opposite input goes back, by construction.
@@ -92,7 +80,7 @@ class ModelKind:
     """
 
     name: str
-    look: Look
+    label: str
     estimator: str
     runtime: type[Runtime]
     decoder: Callable[[Dimensions], Mapping[str, Shape]]
@@ -140,72 +128,50 @@ class ModelKind:
 @final
 @dataclass(frozen=True)
 class TrainingSummary:
-    """Summary of a training.
-
-    Attributes:
-        seeds: the S seeds.
-        validation_episodes: indices of the episodes that decided when training stopped.
-        validation_loss: (S,), loss on their pairs, in normalised units.
-        best_epoch: (S,), the epoch whose weights were kept, counted from 1.
-        history: (E, S), validation loss after each epoch, possibly NaN; E = 0 for models without epochs.
-        collapsed: (S, d), latent dimensions that move nothing.
-    """
+    """Summary of a training."""
 
     seeds: tuple[int, ...]
-    validation_episodes: tuple[int, ...]
-    validation_loss: FloatArray
-    best_epoch: IntArray
-    history: FloatArray
-    collapsed: BoolArray
+    validation_episodes: tuple[int, ...]  # indices of the episodes that decided when training stopped
+    validation_loss: FloatArray  # (S,), loss on their pairs, in normalised units
+    best_epoch: IntArray  # (S,), the epoch whose weights were kept, counted from 1
+    history: FloatArray  # (E, S), validation loss after each epoch, possibly NaN; E = 0 without epochs
+    collapsed: BoolArray  # (S, d), latent dimensions that move nothing
 
 
 @final
 @dataclass(frozen=True)
 class TrainedModel:
-    """The result of a fit as plain arrays, which is saved, loaded and run.
-
-    Attributes:
-        kind: which kind of model.
-        parameters: what the model was constructed with, as JSON values.
-        dimensions: its sizes.
-        layout: the features that its contexts consist of.
-        tensors: float64 arrays by name, as `ModelKind.tensor_shapes` lists them.
-        summary: how the training went.
-    """
+    """The result of a fit as plain arrays, which is saved, loaded and run."""
 
     kind: ModelKind
-    parameters: Mapping[str, object]
+    parameters: Mapping[str, object]  # constructor's arguments, as JSON values
     dimensions: Dimensions
     layout: ContextLayout
-    tensors: Mapping[str, FloatArray]
+    tensors: Mapping[str, FloatArray]  # float64 arrays by name, see `ModelKind.tensor_shapes`
     summary: TrainingSummary
 
     @property
     def frame(self) -> ToolFrame | None:
-        """What turns poses in contexts into the frame of the arm's tool; None where that is not asked for."""
+        """Turns poses in contexts into the frame of the arm's tool; None where no feature asks for it."""
         return ToolFrame(chain_of_tensors(self.tensors), self.layout) if self.layout.sees_tool_frame else None
 
     @property
     def contexts(self) -> Normaliser | ToolContexts:
-        """The map from contexts (..., c), after `frame` if there is one, to what the networks see."""
+        """The map from contexts (..., c), after `frame` if there is one, to the networks' inputs."""
         if self.kind.sees_tools:
             return self.tool_contexts
         return Normaliser(self.tensors["context.centre"], self.tensors["context.scale"])
 
     @cached_property
     def geometry(self) -> ToolGeometry:
-        """The geometry of the arm, which all that decodes shares."""
+        """The geometry of the arm, shared by all parts of a decoder."""
         if self.kind.sees_tools:
             return self.tool_contexts.geometry
         return ToolGeometry(chain_of_tensors(self.tensors))
 
     @cached_property
     def tool_contexts(self) -> ToolContexts:
-        """`contexts` of a model that looks at the tools.
-
-        Raises:
-            UserError: it does not.
-        """
+        """`contexts` of a model that looks at the tools; UserError where it does not."""
         if self.kind.damping_m2 is None:
             raise UserError(f"A {self.kind.name} model does not look at the arm's tools.")
         return ToolContexts.of_tensors(self.tensors, self.kind.damping_m2)
@@ -222,11 +188,7 @@ class TrainedModel:
         return Normaliser(self.tensors["latent.centre"][:, None], self.tensors["latent.scale"][:, None])
 
     def check_seed_index(self, seed: int) -> None:
-        """Check that the model has this seed index.
-
-        Raises:
-            UserError: ``seed`` is not within 0..S-1.
-        """
+        """Raise a UserError unless ``seed`` is within 0..S-1."""
         if not 0 <= seed < self.dimensions.seeds:
             raise UserError(
                 f"This model has no seed index {seed}: it was trained with {self.dimensions.seeds} "

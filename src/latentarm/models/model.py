@@ -72,9 +72,8 @@ class LatentActionModel(BaseEstimator, ABC):
     """A decoder ``phi: (z, c) -> a`` and an encoder ``psi: (c, a) -> z``, learned for S seeds at once.
 
     A scikit-learn estimator: the constructor stores parameters as they are, `fit` checks them and learns,
-    attributes that end in ``_`` exist after it, and `sklearn.base.clone` and ``set_params`` work. z is
-    given and returned in input units: u in [-1, 1] on each axis spans what the demonstrations used.
-    Arrays are float64.
+    attributes that end in ``_`` exist after it, and `sklearn.base.clone` and ``set_params`` work. z is in
+    input units: u in [-1, 1] on each axis spans the demonstrations. Arrays are float64.
 
     All models take the same parameters, so that they can be compared with one set of them; PCA ignores those
     of the networks and their training.
@@ -85,8 +84,7 @@ class LatentActionModel(BaseEstimator, ABC):
         actions: where actions come from: ``displacement`` between states, or ``recorded``.
         window: samples that a displacement may reach ahead and back.
         state_noise_rad: standard deviation of the noise on training states, rad.
-        validation_fraction: share of the episodes that decide when training stops, where `fit` is not
-            told which.
+        validation_fraction: share of the episodes that decide when training stops, if `fit` gets no list.
         data_seed: draws the validation episodes and the state noise, the same for every seed.
         seeds: S, models trained side by side.
         seed: the first of S consecutive seeds.
@@ -97,9 +95,9 @@ class LatentActionModel(BaseEstimator, ABC):
         patience: epochs without improvement on the validation episodes after which a seed stops.
         device: ``cpu``, ``cuda``, or ``auto`` for CUDA where there is one.
         checkpoint_interval_s: shortest time between two checkpoints of a training, s.
-        way_back_m: L, from how far off the demonstrations a full push is led back at their speed, m; 0 for no
-            way back (`latentarm.models.way_back`).
-        trained_: what `fit` learned.
+        way_back_m: L, the distance from the demonstrations at which a full push is led back at their speed,
+            m; 0 for no way back (`latentarm.models.way_back`).
+        trained_: the result of `fit`.
     """
 
     kind: ClassVar[ModelKind]
@@ -171,7 +169,7 @@ class LatentActionModel(BaseEstimator, ABC):
             term: is minimised together with the model's own loss; for inputs that were not demonstrated.
             checkpoint: file to write the training's state to and, if it exists, to go on from. It
                 stays when the training is done; delete it once the model is saved.
-            report: is told after each epoch, by models that are trained in epochs.
+            report: called after each epoch, by models that are trained in epochs.
 
         Returns:
             This model.
@@ -195,17 +193,9 @@ class LatentActionModel(BaseEstimator, ABC):
         return self
 
     def encode(self, context: FloatArray, action: FloatArray) -> FloatArray:
-        """Latent actions of demonstrated ones.
+        """Latent actions (S, N, d), in input units, of actions (N, m), rad/s, in contexts (N, c).
 
-        Args:
-            context: (N, c).
-            action: (N, m), rad/s.
-
-        Returns:
-            (S, N, d), in input units.
-
-        Raises:
-            UserError: the model is not fitted, or an array has the wrong shape or a NaN.
+        Raises UserError where the model is not fitted, or an array has the wrong shape or a NaN.
         """
         trained = self._fitted()
         check_rows("context", context, trained.dimensions.context)
@@ -214,17 +204,11 @@ class LatentActionModel(BaseEstimator, ABC):
         return trained.latents.apply(self._encode_rows(trained.tensors, contexts, actions))
 
     def decode(self, z: FloatArray, context: FloatArray) -> FloatArray:
-        """Actions that latent actions stand for.
+        """Actions (S, N, m), rad/s, of latent actions in contexts (N, c).
 
-        Args:
-            z: (S, N, d), or (N, d) for the same in every seed; in input units.
-            context: (N, c).
+        z is (S, N, d), or (N, d) for the same in every seed; in input units.
 
-        Returns:
-            (S, N, m), rad/s.
-
-        Raises:
-            UserError: the model is not fitted, or an array has the wrong shape or a NaN.
+        Raises UserError where the model is not fitted, or an array has the wrong shape or a NaN.
         """
         trained = self._fitted()
         check_rows("context", context, trained.dimensions.context)
@@ -238,37 +222,23 @@ class LatentActionModel(BaseEstimator, ABC):
         return np.stack([WayBack(trained, seed)(alone, z, context) for seed, (alone, z) in each])
 
     def decoder(self, seed: int = 0) -> Decoder:
-        """The decoder of one seed as the control loop runs it.
+        """The decoder of one seed, by its index, for the control loop.
 
-        Args:
-            seed: index of the seed, 0..S-1.
-
-        Raises:
-            UserError: the model is not fitted, or has no such seed.
+        Raises UserError where the model is not fitted, or has no such seed.
         """
         return Decoder(self._fitted(), seed)
 
     def torch_decoder(self, seed: int = 0, dtype: torch.dtype = torch.float32) -> TorchDecoder:
         """The decoder of one seed in torch, differentiable with respect to z and c.
 
-        Args:
-            seed: index of the seed, 0..S-1.
-            dtype: to compute in.
-
-        Raises:
-            UserError: the model is not fitted, or has no such seed.
+        Raises UserError where the model is not fitted, or has no such seed.
         """
         return TorchDecoder(self._fitted(), self._action, seed, dtype)
 
     def save(self, folder: StrPath, *, run: Mapping[str, object] | None = None) -> None:
-        """Write ``model.safetensors`` and ``config.json``.
+        """Write ``model.safetensors`` and ``config.json``, with the further keys of ``run`` in the latter.
 
-        Args:
-            folder: made if it does not exist.
-            run: further keys for ``config.json``, next to ``model``.
-
-        Raises:
-            UserError: the model is not fitted, or the files cannot be written.
+        Raises UserError where the model is not fitted, or the files cannot be written.
         """
         write_model(Path(folder), self._fitted(), run or {})
 
@@ -289,7 +259,7 @@ class LatentActionModel(BaseEstimator, ABC):
 
     @property
     def validation_episodes_(self) -> tuple[int, ...]:
-        """Indices of the episodes that decided when training stopped; nothing else was fitted to them."""
+        """Indices of the episodes that decided when training stopped."""
         return self._fitted().summary.validation_episodes
 
     @property
@@ -303,11 +273,7 @@ class LatentActionModel(BaseEstimator, ABC):
         return self._fitted().summary.history
 
     def _arm(self, demonstrations: Demonstrations, chain: Chain | None) -> Chain:
-        """The given chain, or else that of the robot that the demonstrations name.
-
-        Raises:
-            UserError: there is neither, or it has other joints than the demonstrations.
-        """
+        """The given chain, or that of the demonstrations' robot; UserError for other joints or none."""
         if chain is None:
             if not demonstrations.robot:
                 raise UserError(
@@ -346,11 +312,7 @@ class LatentActionModel(BaseEstimator, ABC):
         return prepare(asked, pairs, layout, validation, arm, term)
 
     def _dimensions(self, prepared: Prepared) -> Dimensions:
-        """The sizes of this model on these data.
-
-        Raises:
-            UserError: a latent action is larger than an action.
-        """
+        """The sizes of this model on these data."""
         if self.latent_dim > prepared.joints:
             raise UserError(
                 f"A latent action of {self.latent_dim} dimensions is no smaller than the arm's "
@@ -427,7 +389,7 @@ class LatentActionModel(BaseEstimator, ABC):
 
 
 def _observed(trained: TrainedModel, context: FloatArray) -> FloatArray:
-    """What the networks see of contexts (N, c)."""
+    """The networks' inputs for contexts (N, c)."""
     frame = trained.frame
     return trained.contexts.apply(context if frame is None else frame.apply(context))
 

@@ -26,17 +26,11 @@ follows the weight directly, so that the two can be one matrix."""
 
 
 def mlp(layers: Sequence[Layer], *inputs: Tensor) -> Tensor:
-    """S perceptrons with SiLU hidden units, x sigmoid(x), and a linear output.
+    """S perceptrons with SiLU hidden units, x sigmoid(x), and a linear output (S, B, out).
 
-    SiLU is smooth, so the arm follows the stick smoothly. The gradient with respect to weights that are being
-    trained is written out and can be taken once; for a loss that has a gradient in it see `mlp_along`.
-
-    Args:
-        layers: at least one.
-        *inputs: side by side, (S, B, k) each.
-
-    Returns:
-        (S, B, out).
+    The inputs (S, B, k) lie side by side. SiLU is smooth, so the arm follows the stick smoothly. The gradient
+    with respect to weights that are being trained is written out and can be taken once; for a loss that has a
+    gradient in it see `mlp_along`.
     """
     if layers[0][0].requires_grad or not torch.is_grad_enabled():
         parameters = [parameter for layer in layers for parameter in layer]
@@ -49,16 +43,7 @@ def mlp(layers: Sequence[Layer], *inputs: Tensor) -> Tensor:
 
 
 def mlp_along(layers: Sequence[Layer], inputs: Tensor, direction: Tensor) -> tuple[Tensor, Tensor]:
-    """As `mlp`, with the derivative of its output along a direction of its input (forward mode).
-
-    Args:
-        layers: at least one.
-        inputs: (S, B, in).
-        direction: (S, B, in).
-
-    Returns:
-        Output and derivative, (S, B, out) each.
-    """
+    """The output of `mlp` and its derivative along a direction (forward mode), (S, B, out) each."""
     *hidden, (weight, bias) = layers
     values, slope = inputs, direction
     for hidden_weight, hidden_bias in hidden:
@@ -87,16 +72,11 @@ def networks_from_arrays(arrays: Mapping[str, FloatArray]) -> Networks:
 
 @final
 class FlatNetworks:
-    """All weights of S models in one (S, P) buffer, and the layers as views into it.
+    """All weights of S models in one (S, P) float32 buffer, and the layers as views into it.
 
-    One buffer makes the optimiser a handful of operations whatever the number of layers, and the
-    copy of a seed's best weights a single one.
-
-    Attributes:
-        values: (S, P) float32, the weights.
-        gradient: (S, P) float32, the gradient that `fill_gradient` filled in.
-        networks: the layers, leaves of the graph, sharing memory with ``values``.
-        offsets: where in a row of ``values`` each tensor begins, by name.
+    One buffer makes the optimiser a handful of operations whatever the number of layers, and the copy of a
+    seed's best weights a single one. `fill_gradient` fills ``gradient``; ``networks`` are leaves of the graph
+    that share memory with ``values``, and ``offsets`` tells where in a row each tensor begins.
     """
 
     def __init__(self, shapes: "Mapping[str, Shape]", device: torch.device) -> None:
@@ -129,9 +109,7 @@ class FlatNetworks:
     def initialise(self, generators: Sequence[torch.Generator], start: Mapping[str, FloatArray]) -> None:
         """Draw each seed's weights from its own generator, uniform within ±1/sqrt(inputs).
 
-        Args:
-            generators: one for each seed.
-            start: weights that begin with these values instead, by name.
+        Weights in ``start`` begin with those values instead.
         """
         views = self.views(self.values)
         for seed, generator in enumerate(generators):

@@ -30,8 +30,8 @@ Start = Callable[[TrainingData, Dimensions], dict[str, FloatArray]]
 class NeuralModel(LatentActionModel, ABC):
     """A latent action model whose encoder and decoder are small networks.
 
-    Training is in float32; encoding and decoding afterwards in float64. A model says how it encodes,
-    decodes and what it minimises, on batches with a leading seed axis and normalised values.
+    Training is in float32; encoding and decoding afterwards in float64. A subclass defines its encoder,
+    decoder and loss on batches with a leading seed axis and normalised values.
     """
 
     start: ClassVar[Start | None] = None
@@ -42,7 +42,7 @@ class NeuralModel(LatentActionModel, ABC):
 
     @abstractmethod
     def _loss(self, networks: Networks, batch: Batch) -> Tensor:
-        """What training minimises, (S,)."""
+        """The loss (S,)."""
 
     @abstractmethod
     def _latent(self, networks: Networks, context: Tensor, action: Tensor) -> Tensor:
@@ -54,18 +54,10 @@ class NeuralModel(LatentActionModel, ABC):
     ) -> list[Self]:
         """Learn one seed from each of S data sets, all in one training.
 
-        The result is that of fitting each alone, except that data sets that hold more pairs than the
-        smallest lose their last ones.
+        The result is that of fitting each alone, except that data sets that hold more pairs than the smallest
+        lose their last ones. Returns S fitted models of one seed each.
 
-        Args:
-            demonstrations: S of them, one for each of this model's seeds.
-            validation: as in `fit`, the same for all.
-
-        Returns:
-            S fitted models of one seed each.
-
-        Raises:
-            UserError: there are not as many data sets as seeds, or as in `fit`.
+        Raises UserError where there are not as many data sets as seeds, and as in `fit`.
         """
         if len(demonstrations) != self.seeds:
             raise UserError(
@@ -83,7 +75,7 @@ class NeuralModel(LatentActionModel, ABC):
         return models
 
     def _first(self, data: TrainingData, dimensions: Dimensions) -> dict[str, FloatArray] | None:
-        """What `start` says, for each seed on its own pairs where it has its own."""
+        """The values of `start`, for each seed on its own pairs where it has its own."""
         if self.start is None or not data.own:
             return self.start(data, dimensions) if self.start else None
         one = replace(dimensions, seeds=1)
@@ -147,7 +139,7 @@ class NeuralModel(LatentActionModel, ABC):
         return objective
 
     def _span(self, latent: Tensor) -> Span:
-        """What `LatentActionModel.fit` will scale inputs to, as far as a batch (S, B, d) tells."""
+        """The scaling of inputs that `fit` will choose, estimated from a batch (S, B, d)."""
         centre = latent.mean(dim=1, keepdim=True)
         if self.kind.rests_at_zero:
             centre = torch.zeros_like(centre)

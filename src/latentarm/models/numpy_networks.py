@@ -1,4 +1,4 @@
-"""Small networks as the control loop runs them: one seed, NumPy only, with scalings folded in."""
+"""Small networks in the control loop: one seed, NumPy only, with scalings folded in."""
 
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
@@ -19,12 +19,7 @@ Layer = tuple[FloatArray, FloatArray]
 
 
 def network_shapes(networks: "Mapping[str, Shape]", seeds: int) -> "dict[str, Shape]":
-    """Shape, with the leading seed axis, of every weight and bias by name (``decoder.0.weight``, ...).
-
-    Args:
-        networks: layer widths, input first, by network.
-        seeds: S.
-    """
+    """Shape, with the leading seed axis, of every weight and bias by name (``decoder.0.weight``, ...)."""
     return {
         f"{network}.{layer}.{part}": (seeds, rows, width)
         for network, sizes in networks.items()

@@ -1,34 +1,19 @@
-"""The terms that the models' loss functions are made of, one value per seed."""
+"""The parts of the models' loss functions, one value per seed."""
 
 import torch
 from torch import Tensor
 
 
 def reconstruction_error(action: Tensor, reconstructed: Tensor) -> Tensor:
-    """``‖a - a_h‖^2`` of equations 6-8, mean over the batch.
-
-    Args:
-        action: (S, B, m), normalised.
-        reconstructed: (S, B, m).
-
-    Returns:
-        (S,).
-    """
+    """``‖a - a_h‖^2`` (S,) of equations 6-8, mean over a batch of normalised actions (S, B, m)."""
     squared = torch.nn.functional.mse_loss(reconstructed, action, reduction="none")
     return squared.sum(dim=(1, 2)) / action.shape[1]
 
 
 def kl_divergence(mean: Tensor, log_variance: Tensor) -> Tensor:
-    """``KL[N(mu, sigma) ‖ N(0, 1)]`` of equations 7 and 8, summed over dimensions, mean over the batch.
+    """``KL[N(mu, sigma) ‖ N(0, 1)]`` (S,) of equations 7 and 8, summed over d, mean over the batch.
 
-    Closed form per dimension: ``(mu^2 + sigma^2 - log sigma^2 - 1) / 2``.
-
-    Args:
-        mean: (S, B, d), mu.
-        log_variance: (S, B, d), log sigma^2.
-
-    Returns:
-        (S,).
+    Closed form per dimension: ``(mu^2 + sigma^2 - log sigma^2 - 1) / 2``, with mu and log sigma^2 (S, B, d).
     """
     per_entry = mean.square() + log_variance.exp() - log_variance - 1
     return per_entry.sum(dim=(1, 2)) / (2 * mean.shape[1])

@@ -14,13 +14,7 @@ FINAL_RATE: Final = 0.01
 
 
 def falling_rate(initial: float, done: int, total: int) -> float:
-    """Half a cosine from the initial learning rate down to `FINAL_RATE` of it.
-
-    Args:
-        initial: the learning rate at the start.
-        done: steps or epochs done.
-        total: of how many.
-    """
+    """Half a cosine from the initial learning rate to `FINAL_RATE` of it, when ``done`` is ``total``."""
     fall = (1 + math.cos(math.pi * done / total)) / 2
     return initial * (FINAL_RATE + (1 - FINAL_RATE) * fall)
 
@@ -29,13 +23,8 @@ def falling_rate(initial: float, done: int, total: int) -> float:
 class FlatAdam:
     """Adam (Kingma and Ba, 2015) for one buffer that holds every weight of every seed.
 
-    The same arithmetic as ``torch.optim.Adam``. That one costs 80-200 us a step in bookkeeping over a
-    dozen small tensors, as much as a forward pass of these networks; this one costs 20-40 us.
-
-    Attributes:
-        first: running mean of the gradient, shaped like the buffer.
-        second: running mean of its square, shaped like the buffer.
-        steps: steps taken.
+    The same arithmetic as ``torch.optim.Adam``. That one costs 80-200 us a step in bookkeeping over a dozen
+    small tensors, as much as a forward pass of these networks; this one costs 20-40 us.
     """
 
     def __init__(self, values: Tensor) -> None:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
 LARGEST: Final = 2**31 - 1
-"""A whole-numbered parameter or a seed, at most."""
+"""The largest whole-numbered parameter or seed."""
 
 Count = Annotated[int, Field(ge=1, le=LARGEST)]
 Seed = Annotated[int, Field(ge=0, le=LARGEST)]
@@ -58,11 +58,7 @@ def check_parameters(model: "type[DataclassInstance]", parameters: Mapping[str, 
 
 
 def check_validation(validation: Sequence[int], episodes: int) -> None:
-    """Check that the indices of validation episodes name some of the episodes and leave others to train on.
-
-    Raises:
-        UserError: they do not.
-    """
+    """Check that validation episodes exist and leave others to train on; UserError where they do not."""
     for index in validation:
         if not 0 <= index < episodes:
             raise UserError(
@@ -82,15 +78,8 @@ def check_rows(
 ) -> None:
     """Check an array of shape (N, columns), or (seeds, N, columns) where ``seeds`` is given.
 
-    Args:
-        name: what the array is, for the message.
-        values: the array.
-        columns: the size that its last axis must have.
-        seeds: the size that a leading third axis may have; 0 where there must be none.
-        rows: N, where another array fixes it.
-
-    Raises:
-        UserError: the shape is wrong or a value is not finite.
+    ``rows`` is N where another array fixes it. Raises UserError where the shape is wrong or a value is not
+    finite.
     """
     stacked = values.ndim == 3 and seeds > 0 and values.shape[0] == seeds
     fits = (values.ndim == 2 or stacked) and values.shape[-1] == columns and rows in (None, values.shape[-2])

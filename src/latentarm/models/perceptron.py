@@ -11,7 +11,7 @@ _aten = torch.ops.aten
 
 @final
 class Perceptrons(torch.autograd.Function):
-    """S perceptrons with SiLU hidden units and a linear output, as `latentarm.models.networks.mlp` has them.
+    """S perceptrons with SiLU hidden units and a linear output, see `latentarm.models.networks.mlp`.
 
     Between the layers the B pairs come last, so that narrow layers fill the processor's vectors too, and each
     hidden layer has a further unit that is always one: a bias is then a row of the weights, and its gradient
@@ -20,16 +20,7 @@ class Perceptrons(torch.autograd.Function):
 
     @staticmethod
     def forward(ctx: Any, count: int, *tensors: Tensor) -> Tensor:
-        """Run the networks.
-
-        Args:
-            ctx: keeps what the gradient needs.
-            count: how many of the tensors are inputs.
-            *tensors: inputs (S, B, k), side by side; weight (S, in, out) and bias (S, 1, out) of each layer.
-
-        Returns:
-            (S, B, out).
-        """
+        """Outputs (S, B, out) for ``count`` inputs (S, B, k), followed by each layer's weight and bias."""
         inputs, parameters = tensors[:count], tensors[count:]
         weights = [
             _joined(weight, bias) for weight, bias in zip(parameters[::2], parameters[1::2], strict=True)

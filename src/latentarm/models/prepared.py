@@ -18,55 +18,35 @@ from latentarm.models.tool_frame import ToolFrame
 from latentarm.robots.kinematics.chain import Chain
 
 AHEAD_S: Final = 0.1
-"""How far ahead models look (those that do), s: as long as a short press of the stick."""
+"""Models that look ahead look this far, s: as long as a short press of the stick."""
 
 
 @final
 @dataclass(frozen=True)
 class Preparation:
-    """What a model asks of its data.
+    """A model's demands on its data."""
 
-    Attributes:
-        damping_m2: see `ModelKind.damping_m2`.
-        looks_ahead: whether its loss looks at the context that an action leads to within `AHEAD_S`.
-        data_seed: draws the contexts of a term.
-    """
-
-    damping_m2: float | None
-    looks_ahead: bool
+    damping_m2: float | None  # see `ModelKind.damping_m2`
+    looks_ahead: bool  # whether its loss looks at the context that an action leads to within `AHEAD_S`
     data_seed: int
 
 
 @final
 @dataclass(frozen=True)
 class Prepared:
-    """One data set, ready for training.
-
-    Attributes:
-        data: normalised pairs.
-        frame: turns poses in contexts into the tool's frame; None where that is not asked for.
-        contexts: from contexts, after ``frame``, to those of ``data``.
-        layout: the features of a context.
-        actions: from actions in rad/s to those of ``data``.
-        joints: m, joints that an action moves.
-        width: c, entries of a context.
-        pairs: before all this.
-        arm: its kinematics, where something needs them.
-        validation: episodes that decide when training stops.
-        term: the further term of the loss, or None.
-    """
+    """One data set, ready for training."""
 
     data: TrainingData
-    frame: ToolFrame | None
-    contexts: Normaliser | ToolContexts
+    frame: ToolFrame | None  # turns poses in contexts into the tool's frame, where a feature asks for it
+    contexts: Normaliser | ToolContexts  # from contexts, after ``frame``, to those of ``data``
     layout: ContextLayout
-    actions: Normaliser
-    joints: int
+    actions: Normaliser  # from actions in rad/s to those of ``data``
+    joints: int  # m, joints that an action moves
     width: int
     pairs: Pairs
-    arm: Chain | None
+    arm: Chain | None  # its kinematics, where something needs them
     validation: tuple[int, ...]
-    term: ScaledTerm | None
+    term: ScaledTerm | None  # the further term of the loss, or None
 
 
 def prepare(
@@ -79,16 +59,7 @@ def prepare(
 ) -> Prepared:
     """Split pairs by episode and normalise them by the training episodes alone.
 
-    Args:
-        asked: what the model asks of its data.
-        pairs: of all episodes.
-        layout: of their contexts.
-        validation: indices of the episodes that decide when training stops.
-        arm: the arm's kinematics, for models or contexts that look at the tools.
-        term: is minimised together with the model's own loss.
-
-    Raises:
-        UserError: on one side of the split nothing moves, or every action is zero.
+    Raises UserError where nothing moves on one side of the split, or every action is zero.
     """
     outside = np.isin(pairs.episode, validation)
     if outside.all() or not outside.any():

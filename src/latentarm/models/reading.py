@@ -15,27 +15,14 @@ from latentarm.core.untrusted.documents import read_object
 @final
 @dataclass(frozen=True)
 class Section:
-    """A JSON object in a file.
-
-    Attributes:
-        where: file and place, for error messages.
-        values: what it holds.
-    """
+    """A JSON object in a file."""
 
     where: str
     values: Mapping[str, Any]
 
     @staticmethod
     def of_file(path: Path, limit: int) -> "Section":
-        """The object that a file consists of.
-
-        Args:
-            path: a JSON file.
-            limit: bytes that it may have at most.
-
-        Raises:
-            UserError: see `read_object`.
-        """
+        """The object of a JSON file of at most ``limit`` bytes; UserError as in `read_object`."""
         return Section(str(path), read_object(path, limit))
 
     def section(self, key: str) -> "Section":
@@ -82,8 +69,9 @@ class Section:
     ) -> list[int]:
         """The list of whole numbers under a key, of the given length or at most the given one."""
         entries = self.entries(key)
+        of_length = "" if length is None else f", {length} of them"
         if not all(_is_integer(entry, least) for entry in entries) or length not in (None, len(entries)):
-            raise self._wrong(key, f"a list of whole numbers of at least {least}" + _of_length(length))
+            raise self._wrong(key, f"a list of whole numbers of at least {least}{of_length}")
         if longest is not None and len(entries) > longest:
             raise self._wrong(key, f"a list of at most {longest} whole numbers")
         return entries
@@ -138,7 +126,3 @@ class Section:
 
 def _is_integer(value: object, least: int) -> bool:
     return isinstance(value, int) and not isinstance(value, bool) and least <= value < 2**31
-
-
-def _of_length(length: int | None) -> str:
-    return "" if length is None else f", {length} of them"

@@ -32,25 +32,15 @@ class UnreplayableError(Exception):
 
 
 class _Call(NamedTuple):
-    """One operation as it ran.
-
-    Attributes:
-        operation: of ATen.
-        args: its positional arguments.
-        kwargs: its named arguments.
-        result: what it returned.
-        read: storages of the tensors among its arguments.
-        written: storages that it wrote to; empty for views.
-        in_place: whether it wrote to an argument.
-    """
+    """One operation of torch, with its arguments and result."""
 
     operation: Operation
     args: tuple[Any, ...]
     kwargs: Mapping[str, Any]
     result: Any
     read: set[int]
-    written: set[int]
-    in_place: bool
+    written: set[int]  # storages that it wrote to; empty for views
+    in_place: bool  # whether it wrote to an argument
 
     @property
     def fills(self) -> bool:
@@ -60,7 +50,7 @@ class _Call(NamedTuple):
 
 @final
 class _Recorder(TorchDispatchMode):
-    """Runs operations and takes them down."""
+    """Runs operations and records them."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -105,16 +95,13 @@ class Replay:
     """Repeats a computation that writes its results in place into tensors outside it."""
 
     def __init__(self, compute: Callable[[], None], inputs: Sequence[Tensor], device: torch.device) -> None:
-        """Run a computation once, and record it.
+        """Run a computation once on a device, and record it.
 
-        Args:
-            compute: reads and writes tensors; the same operations whatever the values of the inputs.
-            inputs: all the tensors that it reads and whose values change from one call to the next. Any
-                other tensor counts as constant.
-            device: where all of that happens.
+        ``compute`` reads and writes tensors by the same operations whatever the values of ``inputs``, which
+        are all the tensors whose values change from one call to the next. Any other tensor counts as
+        constant.
 
-        Raises:
-            UnreplayableError: the operations depend on values.
+        Raises UnreplayableError where the operations depend on values.
         """
         with _Recorder() as recorder:
             compute()
@@ -224,8 +211,7 @@ def _placed(
 ) -> list[tuple[Operation, tuple[Any, ...], Mapping[str, Any], Any]]:
     """The calls with their intermediate results in memory that later results use again.
 
-    Returns:
-        Operation, arguments, named arguments, and where its result has still to be copied to, if anywhere.
+    Each is an operation, its arguments, and the place that its result must be copied to, if any.
     """
     homes = dict(_homes(calls, device))
 

@@ -1,7 +1,7 @@
 """A trained model on disk: ``model.safetensors`` and the ``model`` key of ``config.json``. NumPy only.
 
-What is read is used only after it has been checked: sizes before anything is allocated, then the
-weights' SHA-256, then every tensor's name, shape, dtype and finiteness. Nothing is unpickled.
+A file's sizes are checked before anything is allocated, then the weights' SHA-256, then every tensor's name,
+shape, dtype and finiteness. Nothing is unpickled.
 """
 
 import hashlib
@@ -9,10 +9,9 @@ import json
 import math
 import platform
 from collections.abc import Mapping
-from dataclasses import fields
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, cast
+from typing import Final
 
 import numpy as np
 from safetensors import SafetensorError
@@ -25,14 +24,11 @@ from latentarm.core.plugins import Origin
 from latentarm.core.types import FloatArray, StrPath
 from latentarm.core.untrusted.opening import read_bytes
 from latentarm.demonstrations.contexts import GRIPPER_SOURCES
-from latentarm.models.catalogue import KINDS, MODELS
+from latentarm.models.catalogue import KINDS
 from latentarm.models.decoder import Decoder
 from latentarm.models.kind import Dimensions, Shape, TrainedModel, TrainingSummary
 from latentarm.models.reading import Section
 from latentarm.models.way_back.runtime import pull_shapes
-
-if TYPE_CHECKING:
-    from latentarm.models.model import LatentActionModel
 
 CONFIG_NAME: Final = "config.json"
 WEIGHTS_NAME: Final = "model.safetensors"
@@ -44,7 +40,7 @@ OLD_NAMES: Final = {
     "held_out_episodes": "validation_episodes",
     "held_out_loss": "validation_loss",
 }
-"""What schema 2 called the validation episodes."""
+"""Names of schema 2."""
 CONFIG_LIMIT: Final = 16 * 2**20
 """Bytes; a config with the training curves of a hundred seeds stays far below."""
 MOST_LAYERS: Final = 64
@@ -55,15 +51,9 @@ PACKAGES: Final = ("latentarm", "numpy", "safetensors", "scikit-learn", "torch")
 
 
 def write_model(folder: Path, trained: TrainedModel, run: Mapping[str, object]) -> None:
-    """Write a model to a folder, each file whole or not at all.
+    """Write a model to a folder, each file whole or not at all; ``run`` has further keys of ``config.json``.
 
-    Args:
-        folder: made if it does not exist.
-        trained: the model.
-        run: further keys for ``config.json`` (dataset, commit, ...), next to ``model``.
-
-    Raises:
-        UserError: the files cannot be written.
+    Raises UserError where the files cannot be written.
     """
     content = save({name: np.ascontiguousarray(trained.tensors[name]) for name in sorted(trained.tensors)})
     with written_whole(folder / WEIGHTS_NAME) as part:
@@ -176,11 +166,7 @@ def _earlier_layout(parameters: Section, dimensions: Dimensions) -> ContextLayou
 
 
 def _layout(section: Section, dimensions: Dimensions) -> ContextLayout:
-    """The layout of contexts that a model says it has.
-
-    Raises:
-        UserError: a feature is unknown, or the sizes do not agree.
-    """
+    """The layout of contexts in a model's file."""
     try:
         features = feature_names(section.texts("features"))
     except UserError as error:
@@ -205,50 +191,15 @@ def _checked(layout: ContextLayout, dimensions: Dimensions, where: str) -> Conte
     return layout
 
 
-def load_model(folder: StrPath) -> "LatentActionModel":
-    """Read a model that was saved to a folder, to encode with or to fit anew. Imports torch.
-
-    Raises:
-        UserError: a file is missing, broken, foreign, of another version, or does not agree with the
-            other, or the distribution that the model came from is not installed.
-    """
-    from latentarm.models.parameters import check_parameters  # with pydantic, which decoders do not need
-
-    folder = Path(folder)
-    trained = read_model(folder)
-    path, kind = folder / CONFIG_NAME, trained.kind.name
-    model_class = MODELS[kind]
-    parameters: dict[str, Any] = {
-        name: tuple(cast(list[object], value)) if isinstance(value, list) else value
-        for name, value in trained.parameters.items()
-    }
-    known = {entry.name for entry in fields(model_class) if entry.init}
-    for name in sorted(known ^ set(parameters)):
-        state = "lacks the" if name in known else "holds an unknown"
-        raise UserError(f"{path} {state} parameter '{name}' of the {kind} model.")
-    check_parameters(model_class, parameters)
-    model = model_class(**parameters)
-    if (model.latent_dim, model.seeds) != (trained.dimensions.latent, trained.dimensions.seeds):
-        raise UserError(f"{path} contradicts itself: parameters and dimensions differ.")
-    model.trained_ = trained
-    return model
-
-
 def _renamed(section: Section) -> Section:
     """The section with today's names for what schema 2 called otherwise."""
     return Section(section.where, {OLD_NAMES.get(key, key): value for key, value in section.values.items()})
 
 
 def read_tensors(path: Path, shapes: Mapping[str, Shape], sha256: str) -> dict[str, FloatArray]:
-    """The tensors of a safetensors file, after every check that can be made on them.
+    """The tensors of a safetensors file of this SHA-256, after every check against ``config.json``.
 
-    Args:
-        path: the file; the ``config.json`` in its folder says what must be in it.
-        shapes: of every tensor, by name.
-        sha256: of the whole file.
-
-    Raises:
-        UserError: the file is missing, or not what its ``config.json`` says.
+    Raises UserError where the file is missing, or another than its ``config.json`` describes.
     """
     payload = 8 * sum(int(np.prod(shape, dtype=object)) for shape in shapes.values())
     if payload > WEIGHTS_LIMIT:

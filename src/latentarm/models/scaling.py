@@ -17,15 +17,10 @@ turn rounding into signal."""
 @final
 @dataclass(frozen=True)
 class Normaliser:
-    """An affine map of each feature: ``(x - centre) / scale``.
+    """An affine map of each feature: ``(x - centre) / scale``."""
 
-    Attributes:
-        centre: (k,) or (1,).
-        scale: (k,) or (1,), positive.
-    """
-
-    centre: FloatArray
-    scale: FloatArray
+    centre: FloatArray  # (k,) or (1,)
+    scale: FloatArray  # (k,) or (1,), positive
 
     def apply(self, values: FloatArray) -> FloatArray:
         """Normalise values (..., k)."""
@@ -41,11 +36,7 @@ class Normaliser:
 
 
 def context_normaliser(context: FloatArray) -> Normaliser:
-    """Zero mean and unit spread for every context feature on its own; a constant one is only centred.
-
-    Args:
-        context: (N, c).
-    """
+    """Zero mean and unit spread for each feature of contexts (N, c); a constant one is only centred."""
     spread = context.std(axis=0)
     return Normaliser(centre=context.mean(axis=0), scale=np.where(spread > CONSTANT_SPREAD, spread, 1.0))
 
@@ -68,20 +59,18 @@ _UNITS: Final = np.repeat([1.0, 10.0], [3, OBJECT - 3])
 
 
 def feature_normaliser(recorded: FloatArray, framed: FloatArray, layout: ContextLayout) -> Normaliser:
-    """A normaliser of each feature of a context on its own.
+    """A normaliser of each feature of contexts (N, c) on its own.
 
-    Joints and belief have zero mean and unit spread, as `context_normaliser` has them. The gripper's opening
-    is centred in its range and divided by half of it. Poses of things have zero mean and are divided by their
-    spread, or by `LEAST_SCALE` where that is larger.
+    ``recorded`` has all poses in the base frame, ``framed`` those for `OBJECTS_IN_TOOL` in the tool's frame;
+    the latter is normalised.
 
-    What did not vary (`STILL`) is not seen at all: the decoder is then what it would be without. In the
-    tool's frame even a thing that stands still varies with the joints, and tells nothing that these do not;
-    so what varied is decided in the base frame there too, for position and rotation as a whole.
+    Joints and belief get zero mean and unit spread by `context_normaliser`. The gripper's opening is centred
+    in its range and divided by half of it. Poses of things get zero mean and are divided by their spread, or
+    by `LEAST_SCALE` where that is larger.
 
-    Args:
-        recorded: (N, c), contexts with all poses in the base frame.
-        framed: (N, c), the same with poses for `OBJECTS_IN_TOOL` in the tool's frame; what is normalised.
-        layout: of these contexts.
+    A feature that did not vary (`STILL`) is hidden: the decoder is then the same as without it. In the tool's
+    frame even a thing that stands still varies with the joints, and tells nothing more; so its variation is
+    judged in the base frame there too, for position and rotation as a whole.
     """
     plain = context_normaliser(framed)
     centre, scale = plain.centre.copy(), plain.scale.copy()
@@ -107,20 +96,17 @@ def feature_normaliser(recorded: FloatArray, framed: FloatArray, layout: Context
 
 
 def action_normaliser(action: FloatArray) -> Normaliser:
-    """One scale for all joints and no offset.
+    """One scale for all joints and no offset, from actions (N, m), rad/s, not all zero.
 
     One scale keeps the loss proportional to ``‖a - a_h‖^2`` of equations 6-8 in rad/s: a scale per joint
     would weigh joints more the less they move. Without an offset, zero action stays zero, which models with
     phi(0, c) = 0 need.
-
-    Args:
-        action: (N, m), rad/s, not all zero.
     """
     return Normaliser(centre=np.zeros(1), scale=np.sqrt(np.square(action).mean()).reshape(1))
 
 
 SPAN_QUANTILE: Final = 0.99
-"""u in [-1, 1] reaches this share of what the demonstrations used; the rest are outliers."""
+"""u in [-1, 1] spans this share of the demonstrations; the rest are outliers."""
 
 EFFECT_SAMPLES: Final = 512
 """Training contexts, at most, in which the effect of a latent dimension is measured."""
@@ -144,12 +130,7 @@ class CollapseWarning(UserWarning):
 def latent_scale(latents: FloatArray, centre: FloatArray) -> Normaliser:
     """The map between z as trained and the input u, so that u in [-1, 1] spans the demonstrations.
 
-    Args:
-        latents: (S, N, d), the encoder's means on the training pairs.
-        centre: (S, d), the z that becomes u = 0.
-
-    Returns:
-        Normaliser with centre (S, 1, d) and scale (S, 1, d).
+    From latents (S, N, d) and the z (S, d) that becomes u = 0; its centre and scale are (S, 1, d).
     """
     distance = np.abs(latents - centre[:, None])
     scale = np.quantile(distance, SPAN_QUANTILE, axis=1)
@@ -157,11 +138,7 @@ def latent_scale(latents: FloatArray, centre: FloatArray) -> Normaliser:
 
 
 def unit_scale(latents: FloatArray) -> Normaliser:
-    """The map between z and u of a model whose z is the input as it is.
-
-    Args:
-        latents: (S, N, d).
-    """
+    """The identity between z and u, for latents (S, N, d) that are inputs already."""
     seeds, _, dimensions = latents.shape
     return Normaliser(centre=np.zeros((seeds, 1, dimensions)), scale=np.ones((seeds, 1, dimensions)))
 
@@ -169,15 +146,10 @@ def unit_scale(latents: FloatArray) -> Normaliser:
 def effect_of_dimensions(
     decode: Callable[[FloatArray], FloatArray], inputs: FloatArray, action_size: float
 ) -> FloatArray:
-    """How much each latent dimension moves the arm, as a share of the demonstrated speed.
+    """RMS of ``‖phi(u_j = 1) - phi(u_j = -1)‖ / 2`` (S, d), as a share of the demonstrated speed.
 
-    Args:
-        decode: from inputs u (S, N, d) to actions (S, N, m) in N fixed contexts.
-        inputs: (S, N, d), the inputs that the demonstrations used there.
-        action_size: root mean square norm ``‖a‖`` of the demonstrated actions, same unit as decoded ones.
-
-    Returns:
-        (S, d), RMS of ``‖phi(u_j = 1) - phi(u_j = -1)‖ / 2`` over ``action_size``.
+    ``inputs`` (S, N, d) are those of the demonstrations in N fixed contexts, where ``decode`` gives actions;
+    ``action_size`` is the root mean square of ‖a‖.
     """
     effects: list[FloatArray] = []
     for axis in range(inputs.shape[-1]):
@@ -189,15 +161,9 @@ def effect_of_dimensions(
 
 
 def find_collapsed(effect: FloatArray, latents: FloatArray, *, gaussian: bool) -> BoolArray:
-    """Which dimensions have collapsed.
+    """Which dimensions (S, d) have collapsed, by their effect (S, d) and the encoder's means (S, N, d).
 
-    Args:
-        effect: (S, d), see `effect_of_dimensions`.
-        latents: (S, N, d), the encoder's means on the training pairs.
-        gaussian: whether the encoder is Gaussian and may also collapse to its prior.
-
-    Returns:
-        (S, d).
+    A Gaussian encoder may also collapse to its prior.
     """
     dead = effect < DEAD_EFFECT
     if gaussian:
@@ -206,13 +172,7 @@ def find_collapsed(effect: FloatArray, latents: FloatArray, *, gaussian: bool) -
 
 
 def describe_collapse(kind: str, seeds: tuple[int, ...], collapsed: BoolArray) -> str:
-    """One sentence that names the dead dimensions.
-
-    Args:
-        kind: kind of model.
-        seeds: S seeds.
-        collapsed: (S, d), at least one True.
-    """
+    """One sentence that names the dead dimensions."""
     dead = [
         f"seed {seed}: " + ", ".join(f"z{axis + 1}" for axis in np.flatnonzero(row))
         for seed, row in zip(seeds, collapsed, strict=True)

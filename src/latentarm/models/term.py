@@ -16,19 +16,12 @@ from latentarm.models.scaling import Normaliser
 @final
 @dataclass(frozen=True, eq=False)
 class Situation:
-    """E contexts during training, and the actions of the S decoders for any input there.
+    """E contexts during training, and the actions of the S decoders for any input there."""
 
-    Attributes:
-        state: (S, E, n), rad.
-        action_of: inputs (K, d), in [-1, 1], to the actions (S, E, K, m) that they would cause, rad/s.
-        speed: root mean square of the demonstrated ‖a‖, rad/s.
-        axes: d, of the input.
-    """
-
-    state: Tensor
-    action_of: Callable[[Tensor], Tensor]
-    speed: float
-    axes: int
+    state: Tensor  # (S, E, n), rad
+    action_of: Callable[[Tensor], Tensor]  # inputs (K, d) in [-1, 1] to actions (S, E, K, m), rad/s
+    speed: float  # root mean square of the demonstrated ‖a‖, rad/s
+    axes: int  # d
 
 
 class LossTerm(ABC):
@@ -37,52 +30,35 @@ class LossTerm(ABC):
     @property
     @abstractmethod
     def settings(self) -> Mapping[str, object]:
-        """All that the term depends on, as JSON values: a checkpoint of other settings is refused."""
+        """All parameters of the term, as JSON values: a checkpoint of other settings is refused."""
 
     @abstractmethod
     def contexts(self, demonstrated: FloatArray, joints: int, rng: np.random.Generator) -> FloatArray:
-        """Contexts that training draws from for this term.
+        """Contexts (M, c) that training draws from for this term, from those of the training pairs (N, c).
 
-        Args:
-            demonstrated: (N, c), contexts of the training pairs.
-            joints: n; the first n entries of a context are the state, rad.
-            rng: source of all variation.
-
-        Returns:
-            (M, c), at least one.
+        The first ``joints`` entries of a context are the state, rad.
         """
 
     @abstractmethod
     def __call__(self, situation: Situation) -> Tensor:
-        """What is to be minimised, (S,)."""
+        """The loss (S,)."""
 
 
 @final
 @dataclass(frozen=True, eq=False)
 class ScaledTerm:
-    """A term, with the normalisers of one training.
-
-    Attributes:
-        term: the term.
-        contexts: normalises the first c entries of what a network sees.
-        actions: normalises actions.
-        joints: n.
-        speed: root mean square of the demonstrated ‖a‖, rad/s.
-    """
+    """A term, with the normalisers of one training."""
 
     term: LossTerm
-    contexts: Normaliser
+    contexts: Normaliser  # of the first c entries of a network's input
     actions: Normaliser
     joints: int
-    speed: float
+    speed: float  # root mean square of the demonstrated ‖a‖, rad/s
 
     def loss(self, decode: Callable[[Tensor, Tensor], Tensor], context: Tensor, span: "Span") -> Tensor:
-        """The term, (S,).
+        """The term (S,) in contexts (S, E, c'), as the networks see them.
 
-        Args:
-            decode: latents (S, B, d) in contexts (S, B, c') to normalised actions (S, B, m).
-            context: (S, E, c'), as the networks see them.
-            span: the latent actions that inputs will stand for.
+        ``decode`` maps latents (S, B, d) in contexts (S, B, c') to normalised actions (S, B, m).
         """
 
         def constant(values: FloatArray) -> Tensor:
@@ -104,12 +80,7 @@ class ScaledTerm:
 @final
 @dataclass(frozen=True, eq=False)
 class Span:
-    """The latent actions that inputs stand for: z = centre + scale u.
+    """The latent actions that inputs stand for: z = centre + scale u."""
 
-    Attributes:
-        centre: (S, 1, d).
-        scale: (S, 1, d).
-    """
-
-    centre: Tensor
-    scale: Tensor
+    centre: Tensor  # (S, 1, d)
+    scale: Tensor  # (S, 1, d)

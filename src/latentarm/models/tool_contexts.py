@@ -19,7 +19,7 @@ TWIST: Final = 6
 """Entries of a tool's twist: 3 of velocity, 3 of angular velocity."""
 
 PLACE: Final = 9
-"""Numbers that tell a network where a tool is: its position and the first two columns of its rotation."""
+"""Numbers of a tool's place: its position and the first two columns of its rotation."""
 
 ROTATION_WEIGHT_M: Final = 0.05
 """Weight of a tool's turn by 1 rad relative to a motion by 1 m. Low, so that directions of z differ mainly in
@@ -28,31 +28,21 @@ where they move the tools; not zero, so that turning a tool in place counts too.
 
 def tool_shapes(tools: int) -> dict[str, tuple[int, ...]]:
     """Shapes of a saved model's arrays for an arm with k tools, by name, without its kinematics."""
-    return {
-        "place.centre": (PLACE * tools,),
-        "place.scale": (PLACE * tools,),
-        "metric.scale": (2,),
-    }
+    return {"place.centre": (PLACE * tools,), "place.scale": (PLACE * tools,), "metric.scale": (2,)}
 
 
 @final
 @dataclass(frozen=True)
 class ToolSizes:
-    """Where the parts of an observation lie along its last axis.
+    """The places of the parts of an observation along its last axis."""
 
-    Attributes:
-        context: c.
-        joints: n.
-        tools: k.
-    """
-
-    context: int
-    joints: int
-    tools: int
+    context: int  # c
+    joints: int  # n
+    tools: int  # k
 
     @property
     def seen(self) -> int:
-        """What the network sees: the context and the tools' places."""
+        """Entries of the network's input: the context and the tools' places."""
         return self.context + PLACE * self.tools
 
     @property
@@ -79,20 +69,13 @@ class ToolContexts:
     The metric of the task is ``G(s) = J_w^T J_w + damping 1`` with ``J_w = W^(1/2) J / sqrt(k)`` over all k
     tools: ``a^T G a`` is the squared speed of the tools, m^2/s^2, where a turn of 1 rad/s counts as much as
     ``rotation_weight`` m/s, and a little for motion of the joints that no tool shows.
-
-    Attributes:
-        chain: the arm.
-        contexts: normaliser of contexts (..., c), of which the first n entries are the state.
-        places: normaliser of the tools' places (..., 9 k).
-        rotation_weight: m/rad.
-        damping: m^2/rad^2, positive.
     """
 
     chain: Chain
-    contexts: Normaliser
-    places: Normaliser
-    rotation_weight: float
-    damping: float
+    contexts: Normaliser  # normaliser of contexts (..., c), of which the first n entries are the state
+    places: Normaliser  # normaliser of the tools' places (..., 9 k)
+    rotation_weight: float  # m/rad
+    damping: float  # m^2/rad^2, positive
 
     @staticmethod
     def fitted(chain: Chain, context: FloatArray, contexts: Normaliser, damping: float) -> "ToolContexts":
@@ -107,11 +90,7 @@ class ToolContexts:
 
     @staticmethod
     def of_tensors(tensors: Mapping[str, FloatArray], damping: float) -> "ToolContexts":
-        """The map that `tensors` gave, in the metric of a damping, m^2/rad^2.
-
-        Raises:
-            UserError: it measures in another metric than this version.
-        """
+        """The map that `tensors` gave; UserError where it measures in another metric than this version."""
         weight, damped = tensors["metric.scale"]
         if (weight, damped) != (ROTATION_WEIGHT_M, damping):
             raise UserError(
@@ -128,7 +107,7 @@ class ToolContexts:
         )
 
     def tensors(self) -> dict[str, FloatArray]:
-        """Everything that the map consists of, as float64 arrays by name."""
+        """The map as float64 arrays by name."""
         return {
             **self.contexts.tensors(),
             "place.centre": self.places.centre,
@@ -143,14 +122,7 @@ class ToolContexts:
         return ToolSizes(len(self.contexts.centre), self.chain.dof, len(self.chain.tools))
 
     def apply(self, context: FloatArray) -> FloatArray:
-        """Observe contexts.
-
-        Args:
-            context: (..., c).
-
-        Returns:
-            (..., c + 9 k + 12 k n), laid out as in `ToolSizes`.
-        """
+        """Observations (..., c + 9 k + 12 k n) of contexts (..., c), laid out as in `ToolSizes`."""
         sizes = self.sizes
         places, jacobian = self.geometry(context[..., : sizes.joints])
         metric = jacobian.mT @ jacobian + self.damping * np.eye(sizes.joints)
@@ -178,9 +150,7 @@ class ToolContexts:
     def action_normaliser(self, context: FloatArray, action: FloatArray) -> Normaliser:
         """One scale for all joints, so that the fastest tools, outliers aside, have the speed 1.
 
-        Args:
-            context: (N, c).
-            action: (N, n), rad/s, not all zero.
+        From contexts (N, c) and actions (N, n), rad/s, not all zero.
         """
         jacobian = self.apply(context)[:, self.sizes.jacobian].reshape(len(context), -1, self.sizes.joints)
         twist = np.matvec(jacobian, action)
@@ -218,11 +188,7 @@ def places_and_jacobian(chain: Chain, state: FloatArray) -> tuple[FloatArray, Fl
 
 @final
 class ToolGeometry:
-    """`places_and_jacobian` of one arm, computed once for a single state that is asked about repeatedly.
-
-    Args:
-        chain: the arm.
-    """
+    """`places_and_jacobian` of one arm, computed once for a single state that is asked about repeatedly."""
 
     __slots__ = ("_chain", "_last")
 

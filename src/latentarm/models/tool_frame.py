@@ -15,16 +15,12 @@ from latentarm.robots.kinematics.chain import Chain
 class ToolFrame:
     """Turns the poses of one feature of a context from the base frame into that of the arm's first tool.
 
-    A context keeps these poses in the base frame, so that looking ahead changes nothing but the state. What
-    a network sees of it goes through here first.
-
-    Attributes:
-        chain: the arm.
-        layout: of the contexts, with the feature `OBJECTS_IN_TOOL`.
+    A context keeps these poses in the base frame, so that looking ahead changes nothing but the state. A
+    network gets them through here.
     """
 
     chain: Chain
-    layout: ContextLayout
+    layout: ContextLayout  # of the contexts, with the feature `OBJECTS_IN_TOOL`
 
     def apply(self, context: FloatArray) -> FloatArray:
         """Contexts (..., c) with the poses of the feature in the tool's frame, (..., c)."""

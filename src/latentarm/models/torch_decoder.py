@@ -15,38 +15,19 @@ from latentarm.models.torch_tool_frame import TorchToolFrame
 from latentarm.models.way_back.torch_way_back import TorchWayBack
 
 Action = Callable[[Networks, Tensor, Tensor], Tensor]
-"""A model's phi as it is trained: networks, latents (1, B, d) and what is seen of the contexts (1, B, o), to
-normalised actions (1, B, m)."""
+"""A model's phi: networks, latents (1, B, d) and observations (1, B, o) to normalised actions (1, B, m)."""
 
 
 @final
 class TorchDecoder:
-    """``a_h = phi(u, c)`` of one seed in torch, as `Decoder` is in NumPy, for what is learned on top of it.
+    """``a_h = phi(u, c)`` of one seed in torch, like `Decoder`, as a base for further learning.
 
-    In two steps, for contexts that come back again and again: `observe` what the networks see of a
-    context, and decode in what was seen.
-
-    Attributes:
-        layout: the features that its contexts consist of.
-        latent_dim: d.
-        context_dim: c.
-        action_dim: m.
-        dtype: of all tensors.
-        contexts: normaliser of contexts (..., c), the first part of what `observe` gives.
+    It has two steps, for contexts that come back again and again: `observe` contexts, and decode in
+    observations. ``contexts`` normalises contexts (..., c), the first part of an observation.
     """
 
     def __init__(self, trained: TrainedModel, action: Action, seed: int, dtype: torch.dtype) -> None:
-        """Take one seed's decoder out of a trained model.
-
-        Args:
-            trained: the model.
-            action: its phi.
-            seed: index of the seed, 0..S-1.
-            dtype: to compute in.
-
-        Raises:
-            UserError: there is no such seed.
-        """
+        """Take one seed's decoder, by its index, out of a trained model; UserError without such a seed."""
         trained.check_seed_index(seed)
 
         def tensor(values: FloatArray) -> Tensor:
@@ -72,22 +53,13 @@ class TorchDecoder:
         observe = observe if frame is None else _Framed(frame, observe)
         self._way_back = TorchWayBack(trained, seed, dtype) if trained.dimensions.way_back else None
         self.observe = observe if self._way_back is None else _LedBack(observe, self._way_back)
-        """What the networks see of contexts: (..., c) to (..., o), of which the first c entries are the
-        context, normalised, with poses in the tool's frame where that is asked for."""
+        """Contexts (..., c) to inputs of the networks (..., o), whose first c are the normalised context."""
         self.contexts = contexts.contexts if isinstance(contexts, ToolContexts) else contexts
         self._centre, self._scale = tensor(latents.centre[seed, 0]), tensor(latents.scale[seed, 0])
         self._action_scale = tensor(trained.actions.scale)
 
     def decode(self, z: Tensor, observed: Tensor) -> Tensor:
-        """Joint velocities of latent actions in observed contexts.
-
-        Args:
-            z: (..., d), in input units.
-            observed: (..., o), from `observe`, with the same leading axes.
-
-        Returns:
-            (..., m), rad/s.
-        """
+        """Joint velocities (..., m), rad/s, of z (..., d) in observations (..., o)."""
         lead, back = z.shape[:-1], observed[..., :0]
         if self._way_back is not None:
             observed, back = observed.split(

@@ -1,6 +1,6 @@
 """`ToolContexts` and the metric of the tools in torch, differentiable with respect to the state.
 
-Joint velocities a come with their weighted twists J_w a, as `latentarm.models.tool_contexts` has them; then
+Joint velocities a come with their weighted twists J_w a of `latentarm.models.tool_contexts`; then
 ``a^T G b = (J_w a)^T (J_w b) + damping a^T b``, and G itself is never needed.
 """
 
@@ -16,12 +16,7 @@ from latentarm.robots.kinematics.torch_chain import TorchChain
 
 @final
 class TorchToolContexts:
-    """The map from contexts to observations ``[c, x, J_w, G^-1 J_w^T]``, as `ToolContexts` computes it.
-
-    Args:
-        contexts: the map in NumPy.
-        dtype: of all tensors.
-    """
+    """The map from contexts to observations ``[c, x, J_w, G^-1 J_w^T]``, as `ToolContexts` computes it."""
 
     def __init__(self, contexts: ToolContexts, dtype: torch.dtype) -> None:
         def tensor(values: FloatArray) -> Tensor:

@@ -12,12 +12,7 @@ from latentarm.robots.kinematics.torch_chain import TorchChain
 
 @final
 class TorchToolFrame:
-    """Contexts with the poses of one feature in the tool's frame, as `ToolFrame` computes it.
-
-    Args:
-        frame: the map in NumPy.
-        dtype: of all tensors.
-    """
+    """Contexts with the poses of one feature in the tool's frame, as `ToolFrame` computes it."""
 
     def __init__(self, frame: ToolFrame, dtype: torch.dtype) -> None:
         self._tool = TorchChain(frame.chain).to(dtype)

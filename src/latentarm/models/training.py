@@ -24,7 +24,7 @@ from latentarm.models.optimiser import FlatAdam, falling_rate
 from latentarm.models.replay import Replay, UnreplayableError
 
 Report = Callable[[int, int, float], None]
-"""Is told after each epoch: how many are done, how many there are at most, and the validation loss so far."""
+"""Called after each epoch with the epochs done, the most there will be, and the validation loss so far."""
 
 THREADED_WORK: Final = 40_000
 """Hidden units per layer and step above which a second thread pays off."""
@@ -35,38 +35,23 @@ REPLAYED_STEPS: Final = 100
 
 @dataclass(frozen=True)
 class TrainingConfig:
-    """How long and how fast to train.
+    """Length and speed of a training."""
 
-    Attributes:
-        learning_rate: Adam's, at the start; it falls along half a cosine.
-        epochs: passes over the training pairs, at most.
-        batch_size: pairs per step and seed, at most.
-        patience: a seed has stalled when its validation loss has not improved for this many epochs.
-        checkpoint_interval_s: shortest time between two checkpoints, s.
-    """
-
-    learning_rate: float
-    epochs: int
-    batch_size: int
-    patience: int
-    checkpoint_interval_s: float
+    learning_rate: float  # Adam's, at the start; it falls along half a cosine
+    epochs: int  # passes over the training pairs, at most
+    batch_size: int  # pairs per step and seed, at most
+    patience: int  # a seed stalls after so many epochs without improvement of its validation loss
+    checkpoint_interval_s: float  # shortest time between two checkpoints, s
 
 
 @dataclass(frozen=True)
 class TrainingResult:
-    """The best weights of every seed.
+    """The best weights of every seed."""
 
-    Attributes:
-        weights: float64 arrays (S, in, out) by name.
-        validation_loss: (S,), the loss that those weights have on the validation pairs.
-        best_epoch: (S,), counted from 1.
-        history: (E, S), validation loss after each epoch.
-    """
-
-    weights: dict[str, FloatArray]
-    validation_loss: FloatArray
-    best_epoch: IntArray
-    history: FloatArray
+    weights: dict[str, FloatArray]  # float64 arrays (S, in, out) by name
+    validation_loss: FloatArray  # (S,), the loss that those weights have on the validation pairs
+    best_epoch: IntArray  # (S,), counted from 1
+    history: FloatArray  # (E, S), validation loss after each epoch
 
     def of_seed(self, index: int) -> "TrainingResult":
         """The result of one of the S seeds, by its index."""
@@ -98,19 +83,11 @@ def train(
     Per seed, the weights with the least validation loss are kept. A seed that has stalled is left as
     it is; the loop ends when all have, or after the last epoch.
 
-    Args:
-        objective: loss (S,) of the networks on a batch, minimised for each seed separately.
-        shapes: shape (S, in, out) of each weight by name.
-        noise_dim: k, standard normal numbers that the objective takes per pair.
-        data: N training and H validation pairs.
-        seeds: S seeds.
-        config: how long and how fast.
-        device: where to compute.
-        start: values that weights begin with instead of being drawn, by name, each of a shape that
-            broadcasts to (S, in, out).
-        checkpoint: file to go on from, if it exists, and to write to.
-        identity: whatever else determines the result; a checkpoint of another identity is refused.
-        report: see `Report`; also told before the first epoch, with a loss that is infinite.
+    The objective gives a loss (S,) for the networks on a batch, of N training or H validation pairs, with
+    ``noise_dim`` standard normal numbers per pair. ``shapes`` (S, in, out) are those of the weights by name,
+    and ``start`` has values that some begin with instead of being drawn. ``checkpoint`` is a file to go on
+    from, if it exists, and to write to; one of another ``identity`` is refused. ``report`` is also called
+    before the first epoch, with an infinite loss.
 
     Raises:
         UserError: a seed diverged, or the checkpoint is not this training's.
@@ -130,7 +107,7 @@ def train(
 
     batches = Batches(data, seeds, config.batch_size, noise_dim, device)
     written = monotonic()
-    report = report or _unheard
+    report = report or (lambda epoch, epochs, loss: None)
     report(state.epoch, config.epochs, math.inf)
     with threads_for(len(seeds) * batches.size * max(shape[-1] for shape in shapes.values())):
         fill_gradient = _gradient(objective, networks, batches, device, state, config)
@@ -168,7 +145,7 @@ def _gradient(
     state: TrainingState,
     config: TrainingConfig,
 ) -> Callable[[], None]:
-    """What fills in the gradient of the current batch: a `Replay`, if it pays off and proves to be right."""
+    """Fills in the current batch's gradient: a `Replay`, if it pays off and proves to be right."""
 
     def compute() -> None:
         networks.fill_gradient(objective(networks.networks, batches.batch).sum())
@@ -204,11 +181,7 @@ def validation_loss(
 
 @contextmanager
 def threads_for(work: int) -> Generator[None]:
-    """Use one thread for small steps, where a second costs more than it saves.
-
-    Args:
-        work: hidden units computed per layer and step.
-    """
+    """Use one thread for small steps, where a second costs more than it saves."""
     before = torch.get_num_threads()
     torch.set_num_threads(before if work >= THREADED_WORK else 1)
     try:
@@ -229,17 +202,9 @@ def choose_device(name: str) -> torch.device:
     return torch.device("cuda" if present and name in ("cuda", "auto") else "cpu")
 
 
-def _unheard(epoch: int, epochs: int, loss: float) -> None:
-    pass
-
-
 @contextmanager
 def epoch_bar(shown: bool) -> Generator[Report]:
-    """A `Report` that shows a bar on standard error.
-
-    Args:
-        shown: whether there is one at all.
-    """
+    """A `Report` that shows a bar on standard error, if ``shown``."""
     with progress_bar(shown, "epochs") as bar:
         task = bar.add_task("training", loss="")
 
@@ -251,12 +216,7 @@ def epoch_bar(shown: bool) -> Generator[Report]:
 
 
 def progress_bar(shown: bool, unit: str) -> Progress:
-    """A bar on standard error that goes away when it is done, with a field ``loss`` for a few words.
-
-    Args:
-        shown: whether there is one at all.
-        unit: what is counted.
-    """
+    """A bar on standard error that goes away when it is done, with a field ``loss`` for a few words."""
     return Progress(
         TextColumn("{task.description}"),
         BarColumn(),

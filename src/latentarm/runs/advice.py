@@ -1,4 +1,4 @@
-"""Which model to try next, and why; docs/models.md has the measurements behind it."""
+"""Advice on the next model to try; docs/models.md has the measurements behind it."""
 
 from typing import Final
 
@@ -9,12 +9,7 @@ FEW_EPISODES: Final = 20
 
 
 def model_advice(model: str, episodes: int) -> str:
-    """What to try besides the model that was trained; "" where nothing is known.
-
-    Args:
-        model: its name.
-        episodes: of the dataset.
-    """
+    """Advice on models besides the trained one; "" where there is none."""
     said = [KINDS[model].advice] if KINDS[model].advice else []
     if episodes <= FEW_EPISODES:
         said.append(f"{episodes} episodes are few: `latentarm evaluate` holds each of them out in turn.")
@@ -22,14 +17,7 @@ def model_advice(model: str, episodes: int) -> str:
 
 
 def next_step(model: str, run: str, dataset: str, missed: frozenset[str]) -> str:
-    """One sentence on what to do after evaluating.
-
-    Args:
-        model: name of the model that was measured.
-        run: its folder.
-        dataset: folder of its demonstrations.
-        missed: measures of the thresholds that it misses.
-    """
+    """One sentence on what to do after evaluating."""
     if not missed:
         return f"Next: latentarm drive {run}"
     if missed & {"drift", "reversal", "reversal_2_s"} and not KINDS[model].reverses:

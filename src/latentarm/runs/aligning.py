@@ -19,7 +19,7 @@ from latentarm.core.types import Row
 from latentarm.demonstrations.split import select_episodes
 from latentarm.evaluation.measures import unit_of
 from latentarm.evaluation.results import as_document
-from latentarm.models.saving import load_model
+from latentarm.models.estimators import load_model
 from latentarm.runs.folder import Run, read_run, robot_of
 from latentarm.runs.person import Kind
 from latentarm.runs.questions import Scene
@@ -27,23 +27,16 @@ from latentarm.runs.samples import ALIGN_STREAM, load_samples
 
 NO_ALIGN: Final = "no_align"
 PROFILE: Final = "profile"
-"""Conditions of the rows: z = u, and as it was learned."""
+"""Conditions of the rows: z = u, and the learned alignment."""
 
 
 @final
 @dataclass(frozen=True, eq=False)
 class Alignable:
-    """A run that a person can be asked about.
-
-    Attributes:
-        run: what its folder says.
-        fingerprint: of the model and the seed that decodes.
-        scene: what is asked about.
-        seed: of everything random.
-    """
+    """A run, ready for a person's questions."""
 
     run: Run
-    fingerprint: str
+    fingerprint: str  # of the model and the seed that decodes
     scene: Scene
     seed: int
 
@@ -51,42 +44,25 @@ class Alignable:
 @final
 @dataclass(frozen=True, eq=False)
 class Learned:
-    """What was learned of a person.
-
-    Attributes:
-        known: what is known of them.
-        fingerprint: of the model and the seed that it is for.
-        seed_index: that seed.
-        rows: how far the answers themselves are missed: with the profile, with an affine map, and with z = u.
-        about: what the profile's file says besides.
-    """
+    """A learned alignment of a person."""
 
     known: ToolSpace
-    fingerprint: str
+    fingerprint: str  # of the model and the seed that it is for
     seed_index: int
-    rows: list[Row]
-    about: dict[str, object]
+    rows: list[Row]  # error on the answers themselves: with the profile, an affine map, and z = u
+    about: dict[str, object]  # further keys of the profile's file
 
     def save(self, folder: Path) -> None:
-        """Write the profile to a new folder, whole or not at all.
-
-        Raises:
-            UserError: the folder is there already, or cannot be written.
-        """
+        """Write the profile to a new folder, whole or not at all; UserError where that is impossible."""
         save_profile(self.known, self.fingerprint, self.seed_index, folder, self.about)
 
 
 def alignable(folder: Path, seed_index: int = 0, seed: int = 0, dataset: Path | None = None) -> Alignable:
-    """Load a run, and choose what may be asked about.
+    """Load a run, and choose the motions that may be asked about.
 
-    Args:
-        folder: of the run.
-        seed_index: which of the run's seeds decodes.
-        seed: of everything random.
-        dataset: where the run's dataset lies now, if it was moved; runs of this version do not need it.
+    ``dataset`` is where the run's dataset lies now, if it was moved; runs of this version do not need it.
 
-    Raises:
-        UserError: the run cannot be aligned.
+    Raises UserError where the run cannot be aligned.
     """
     run = read_run(folder)
     model = load_model(folder)
@@ -108,14 +84,7 @@ def alignable(folder: Path, seed_index: int = 0, seed: int = 0, dataset: Path | 
 
 
 def learn(known: Alignable, answers: Answers, name: str, kind: Kind) -> Learned:
-    """Learn a person's alignment from their answers.
-
-    Args:
-        known: what they were asked about.
-        answers: theirs.
-        name: of the person.
-        kind: of person.
-    """
+    """Learn a person's alignment from their answers."""
     scene = known.scene
     decoder = scene.model.decoder(scene.seed_index)
     tool_space = scene.learn(answers)

@@ -19,7 +19,7 @@ CELLS: Final = 4
 
 STILL_M: Final = 5e-4
 STILL_DEG: Final = 0.5
-"""Less than this is rounded to nothing."""
+"""Smaller motions count as none."""
 
 
 def moved(chain: Chain, motion: Motions) -> list[tuple[str, Pose, Pose]]:
@@ -31,7 +31,7 @@ def moved(chain: Chain, motion: Motions) -> list[tuple[str, Pose, Pose]]:
     return [tool for tool in tools if _moves(tool[1], tool[2])] or tools[:1]
 
 
-def said(name: str, before: Pose, after: Pose) -> str:
+def describe(name: str, before: Pose, after: Pose) -> str:
     """A tool's motion in words: mm along the axes of the base frame, degrees about which axis of it."""
     x, y, z = 1000 * (after.position - before.position)
     turn = rotation_vector(after.rotation @ before.rotation.T)
@@ -44,15 +44,9 @@ def said(name: str, before: Pose, after: Pose) -> str:
 
 
 def draw(before: Pose, after: Pose, reach_m: float) -> str:
-    """A tool's path from above, and its height: from o to *.
+    """A tool's path from above, and its height, from o to * in lines of ASCII.
 
-    Args:
-        before: where it starts, in the middle of the figure.
-        after: where it ends.
-        reach_m: distance from the figure's middle to its edge, m.
-
-    Returns:
-        Lines of ASCII.
+    The path starts in the middle of the figure, whose edges are ``reach_m`` away.
     """
     step = (after.position - before.position) / max(reach_m, STILL_M) * CELLS
     size = 2 * CELLS + 1
@@ -81,12 +75,7 @@ FASTEST: Final = 0.99
 
 @final
 class SimulatedPerson(Person):
-    """Answers by a stated preference, and says so.
-
-    Args:
-        preference: what they mean.
-        say: shows a line.
-    """
+    """Answers by a stated preference, and prints that."""
 
     def __init__(self, preference: Preference, say: Say) -> None:
         self._preference = preference
@@ -98,11 +87,11 @@ class SimulatedPerson(Person):
         return "simulated person"
 
     def answer(self, question: Question) -> FloatArray:
-        """What the preference makes of the motion."""
+        """The preference's input for the motion."""
         u = self._preference.inputs(question.motion)[0]
         self._say(
             f"Question {question.number} of at most {question.total}: "
-            f"{'; '.join(said(*tool) for tool in moved(question.chain, question.motion))}. "
+            f"{'; '.join(describe(*tool) for tool in moved(question.chain, question.motion))}. "
             f"The simulated person answers ({', '.join(f'{value:+.2f}' for value in u)})."
         )
         return u
@@ -110,12 +99,7 @@ class SimulatedPerson(Person):
 
 @final
 class PersonAtTerminal(Person):
-    """Is shown each motion as numbers and as a small figure, and answers with a line or the arrow keys.
-
-    Args:
-        say: shows text.
-        read: the next line, as `parse` takes it.
-    """
+    """Sees each motion as numbers and as a small figure, and answers with a line or the arrow keys."""
 
     def __init__(self, say: Say, read: Callable[[int], str]) -> None:
         self._say = say
@@ -127,17 +111,13 @@ class PersonAtTerminal(Person):
         return "person"
 
     def answer(self, question: Question) -> FloatArray | None:
-        """Ask until the answer is one.
-
-        Raises:
-            UserError: the input has ended.
-        """
+        """Ask until the answer is valid; UserError where the input has ended."""
         tools = moved(question.chain, question.motion)
         self._say(
             f"\nQuestion {question.number} of at most {question.total}, {question.motion.duration_s:g} s:"
         )
         for tool in tools:
-            self._say(f"  {said(*tool)}.")
+            self._say(f"  {describe(*tool)}.")
         farthest = max(tools, key=lambda tool: float(np.linalg.norm(tool[2].position - tool[1].position)))
         self._say(draw(farthest[1], farthest[2], question.reach_m))
         self._say(f"How would you push for this? {_way(question.axes)} Enter alone skips.")

@@ -37,8 +37,8 @@ from latentarm.evaluation.search import nearest_latents
 from latentarm.evaluation.summary import Subject, summarise
 from latentarm.evaluation.verdict import THRESHOLDS, Finding, findings
 from latentarm.models.decoder import Decoder
+from latentarm.models.estimators import load_model
 from latentarm.models.model import LatentActionModel
-from latentarm.models.saving import load_model
 from latentarm.models.scaling import CollapseWarning
 from latentarm.robots.robot import Robot
 from latentarm.runs.advice import FEW_EPISODES, next_step
@@ -48,13 +48,13 @@ from latentarm.runs.results_folder import refuse_other_results, write_json
 from latentarm.runs.samples import load_samples
 
 FOLDS: Final = 5
-"""How many where there are few episodes."""
+"""Number of folds where there are few episodes."""
 
 OVER_FOLDS: Final = "over folds"
 """Condition of the rows whose SD is over folds and not over seeds."""
 
 FOLD_STREAM: Final = 3
-"""Keeps the choice of folds apart from everything else that is drawn from the same seed."""
+"""Stream of the seed that chooses the folds."""
 
 DRAWN_STATES = 3
 """States from which the effect of each latent axis is drawn."""
@@ -64,18 +64,14 @@ DRAWN_STATES = 3
 class Evaluation:
     """A run, measured.
 
-    Attributes:
-        rows: mean and SD over the run's seeds on its own split; where it was refitted on folds, the same with
-            the condition `OVER_FOLDS`: mean over folds of the mean over seeds, and SD over folds.
-        found: thresholds that it misses, judged over folds where there are some.
-        advice: what to do next.
-        missing: one sentence on what could not be measured; "" if nothing is missing.
+    ``rows`` are mean and SD over the run's seeds on its own split; where it was refitted on folds, the same
+    with the condition `OVER_FOLDS`: mean over folds of the mean over seeds, and SD over folds.
     """
 
     rows: list[Row]
-    found: list[Finding]
+    found: list[Finding]  # thresholds that it misses, judged over folds where there are some
     advice: str
-    missing: str = ""
+    missing: str = ""  # one sentence on the measures that could not be taken, or ""
 
     @property
     def verdict(self) -> str:
@@ -165,7 +161,7 @@ def evaluate_run(options: EvaluateOptions) -> Evaluation:
 
 
 def findings_row(evaluation: Evaluation) -> Row:
-    """How many thresholds are missed, as a row among the others."""
+    """The number of missed thresholds, as a row among the others."""
     first = evaluation.rows[0]
     return Row(
         "evaluate", "findings", "1", float(len(evaluation.found)), None, 1, task=first.task, model=first.model
@@ -174,19 +170,12 @@ def findings_row(evaluation: Evaluation) -> Row:
 
 @dataclass(frozen=True, eq=False)
 class _Measured:
-    """A run on its own split, and what is drawn of it.
-
-    Attributes:
-        figures: measured.
-        probe: on what.
-        starts: (N, c), contexts from which the effects of the axes are drawn.
-        path: (T, n), an episode to draw behind them, rad, or None.
-    """
+    """A run on its own split, and the input of its figures."""
 
     figures: Figures
     probe: Probe
-    starts: FloatArray
-    path: FloatArray | None = None
+    starts: FloatArray  # (N, c), contexts from which the effects of the axes are drawn
+    path: FloatArray | None = None  # (T, n), an episode to draw behind them, rad, or None
 
 
 def _measure_all(
@@ -208,21 +197,12 @@ def _measure_kept(model: LatentActionModel, probe: Probe, robot: Robot) -> _Meas
 
 @dataclass(frozen=True, eq=False)
 class _FoldCell:
-    """The model of a run, to be fitted anew with other episodes held out.
-
-    Attributes:
-        run: whose model it is.
-        model: for its parameters.
-        demonstrations: the run's dataset.
-        index: number of the fold; the run's own split is 0.
-        held_out: episodes that nothing is fitted to.
-        seed: of the noise on held-out states.
-    """
+    """The model of a run, to be fitted anew with other episodes held out."""
 
     run: Run
     model: LatentActionModel
-    demonstrations: Demonstrations
-    index: int
+    demonstrations: Demonstrations  # the run's dataset
+    index: int  # number of the fold; the run's own split is 0
     held_out: tuple[int, ...]
     seed: int
 
@@ -230,11 +210,7 @@ class _FoldCell:
 def _folds(
     run: Run, model: LatentActionModel, demonstrations: Demonstrations, folds: int | None, seed: int
 ) -> list[_FoldCell]:
-    """The folds beyond the run's own split.
-
-    Raises:
-        UserError: there are too few episodes, or the run cannot be refitted.
-    """
+    """The folds beyond the run's own split."""
     episodes = len(demonstrations.episodes)
     rest = [index for index in range(episodes) if index not in run.held_out]
     trained_with_entropy = bool(read_object(run.folder / "config.json").get("goal_entropy"))

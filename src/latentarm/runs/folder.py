@@ -1,7 +1,7 @@
 """The description in a run's folder: its task, its robot, and the dataset that it was trained on.
 
-A run from elsewhere is read with bounded readers. Of what it keeps, nothing outside its folder is opened;
-the dataset that it names is opened for what it does not keep.
+A run from elsewhere is read with bounded readers, and nothing outside its folder is opened but the dataset
+that it names, for the parts that it does not keep.
 """
 
 import hashlib
@@ -42,19 +42,16 @@ class Run:
     """A trained run, without its weights.
 
     Attributes:
-        folder: the run folder.
         demonstrations: where the dataset was that the model was trained on.
-        held_out: episodes that neither trained nor stopped it.
         model: the model's name.
         context: the features that its decoder sees, in order.
         robot: name or model file of the robot, or "" where it is unknown.
         end_effector: which site, body or link of a model file is the end-effector.
         fingerprint: of the dataset's states, so that another dataset is not taken for it.
-        limits: what was stated of the robot's limits, or None.
+        limits: limits of the robot that a person stated, or None.
         robot_model: name of the copy of the robot's model file in the folder `ROBOT`; None for a robot of the
             catalogue, and where no copy was kept.
         task: the task that it was trained for; None in older runs, which kept none.
-        goals: of the dataset.
         routes: the ways of the held-out episodes, see `latentarm.tasks.replay.routes_of`; None where the run
             does not keep them.
         open_at: what the gripper does along them, see `latentarm.tasks.replay.GripperRoutes`; empty where the
@@ -77,15 +74,12 @@ class Run:
     open_at: tuple[FloatArray, ...] = ()
 
     def dataset(self, moved_to: Path | None = None, wanted: str = "", option: bool = True) -> Demonstrations:
-        """The dataset that the model was trained on.
+        """The dataset that the model was trained on, or ``moved_to`` if it was moved.
 
-        Args:
-            moved_to: where it lies now, if it was moved.
-            wanted: what the run does not keep and the dataset is needed for, for the message.
-            option: whether the user can say where it lies with ``--demonstrations``.
+        ``wanted`` names, for the message, the part that the run does not keep, and ``option`` tells whether
+        the user can name the dataset with ``--demonstrations``.
 
-        Raises:
-            UserError: it is not there, cannot be read, or is another dataset.
+        Raises UserError where it is not there, cannot be read, or is another dataset.
         """
         path = moved_to or self.demonstrations
         if is_missing(path):
@@ -114,16 +108,12 @@ def fingerprint(demonstrations: Demonstrations) -> str:
 
 
 def weights_fingerprint(run: Path) -> str:
-    """SHA-256 of a run's weights, so that another model of the same name is not taken for it.
-
-    Raises:
-        UserError: the run has no model.
-    """
+    """SHA-256 of a run's weights, to tell models of one name apart; UserError without a model."""
     return hashlib.sha256(read_bytes(run / WEIGHTS_NAME, _LARGEST_WEIGHTS)).hexdigest()
 
 
 def run_facts(run: Run) -> dict[str, object]:
-    """What `read_run` needs, as keys of the run's ``config.json``."""
+    """The keys of the run's ``config.json`` that `read_run` needs."""
     return {
         "demonstrations": str(run.demonstrations.resolve()),
         "held_out": list(run.held_out),
@@ -216,11 +206,7 @@ def _open_at(config: Section, routes: Sequence[FloatArray]) -> tuple[FloatArray,
 
 
 def robot_of(run: Run) -> Robot:
-    """The robot that a run's dataset was recorded on.
-
-    Raises:
-        UserError: the dataset did not say, or the robot cannot be loaded.
-    """
+    """The robot of a run's dataset; UserError where the dataset named none, or it cannot be loaded."""
     if not run.robot:
         raise UserError(f"{run.demonstrations} does not name its robot: import it again with --robot.")
     try:
@@ -237,7 +223,7 @@ def robot_of(run: Run) -> Robot:
 
 
 def git_commit() -> str | None:
-    """The commit that this package stands at, where it is run from a clone."""
+    """The commit of this package, where it is run from a clone."""
     command = ["git", "-C", str(Path(__file__).parent), "rev-parse", "HEAD"]
     try:
         done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=5)

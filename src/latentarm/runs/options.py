@@ -3,14 +3,25 @@
 import sys
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from tyro.conf import Positional, arg
 
+from latentarm.assistance.catalogue import BELIEFS
 from latentarm.core.context import JOINTS, FeatureName
-from latentarm.models.catalogue import DEFAULT_MODEL
+from latentarm.models.catalogue import DEFAULT_MODEL, KINDS
 from latentarm.runs.checks import check_seed
-from latentarm.runs.choices import ModelName, TaskName
+from latentarm.tasks.catalogue import HELD_OUT, SCENE_TASKS, TASKS
+
+# The choices are the names in a catalogue, plug-ins included.
+if TYPE_CHECKING:
+    BeliefName = str
+    ModelName = str
+    TaskName = str
+else:
+    BeliefName = Literal[tuple(BELIEFS)]
+    ModelName = Literal[tuple(KINDS)]
+    TaskName = Literal[(*TASKS, *SCENE_TASKS, HELD_OUT)]
 
 Json = Annotated[bool, arg(help="Print one JSON document on standard output and nothing else there.")]
 Seed = Annotated[int, arg(help="Seed of all randomness.")]
@@ -25,7 +36,7 @@ MovedDataset = Annotated[
 
 @dataclass(frozen=True)
 class TrainOptions:
-    """Options of `latentarm train`. Those that a model has a parameter of the same name for are its own.
+    """Options of `latentarm train`; those named like a parameter of the model are that parameter.
 
     Raises:
         UserError: the seed is out of its range.
@@ -98,7 +109,7 @@ class TrainOptions:
 
     @property
     def folder(self) -> Path:
-        """Of the run."""
+        """The run's folder."""
         names = "-".join(one.resolve().name for one in self.demonstrations)
         return self.out or Path("runs") / f"{names}-{self.model}"
 
@@ -138,7 +149,7 @@ class EvaluateOptions:
 
     @property
     def folder(self) -> Path:
-        """For metrics and figures."""
+        """The folder for metrics and figures."""
         return self.out or self.run
 
     @property

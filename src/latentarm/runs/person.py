@@ -21,22 +21,13 @@ Reply = FloatArray | Literal["back"] | None
 @final
 @dataclass(frozen=True, eq=False)
 class Question:
-    """One motion, and what a person sees of it.
+    """One motion for a person to answer."""
 
-    Attributes:
-        number: counted from 1.
-        total: how many there may be.
-        motion: one motion.
-        chain: the arm.
-        reach_m: the longest way of a tool in any motion, m.
-        axes: d, numbers that the answer has.
-    """
-
-    number: int
-    total: int
+    number: int  # counted from 1
+    total: int  # at most
     motion: Motions
     chain: Chain
-    reach_m: float
+    reach_m: float  # the longest way of a tool in any motion, m
     axes: int
 
 
@@ -46,12 +37,8 @@ class Person(ABC):
     @property
     @abstractmethod
     def kind(self) -> Kind:
-        """As the profile keeps it."""
+        """The kind of person, for the profile."""
 
     @abstractmethod
     def answer(self, question: Question) -> Reply:
-        """The input by which they would ask for the motion.
-
-        Raises:
-            UserError: there is nobody to ask any more.
-        """
+        """The input by which they would ask for the motion; UserError where nobody answers any more."""

@@ -1,4 +1,4 @@
-"""Asking a person, question by question, what they mean by their input."""
+"""Asking a person for their meaning of an input, question by question."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -22,14 +22,7 @@ from latentarm.runs.person import Person, Question, Say
 @final
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """What stays the same while a person is asked.
-
-    Attributes:
-        model: the trained model.
-        seed_index: which of its seeds decodes.
-        chain: the arm.
-        motions: of the demonstrations; the first of them may be asked about.
-    """
+    """The model, the arm and the demonstrated motions that a person is asked about."""
 
     model: LatentActionModel
     seed_index: int
@@ -43,30 +36,24 @@ class Scene:
 
     @cached_property
     def surroundings(self) -> Surroundings:
-        """What the motions do in each place."""
+        """The demonstrated directions in each place."""
         return Surroundings.of_motions(self.motions, self.chain, self.model.latent_dim)
 
     def posterior(self, answers: Answers) -> Posterior:
-        """What answers say of the person."""
+        """The person's meaning, learned from answers."""
         return fit_meaning(answers, self.chain, self.surroundings, self.candidates)
 
     def learn(self, answers: Answers) -> ToolSpace:
-        """What is to be kept of the person."""
+        """The part of it that a profile keeps."""
         return ToolSpace(self.posterior(answers).meaning, self.surroundings, answers.motions.duration_s)
 
 
 def ask(scene: Scene, person: Person, count: int, say: Say, stopping: StoppingRule) -> Answers:
     """Ask about the motion that teaches most, again and again, until enough is known.
 
-    Args:
-        scene: what is asked about.
-        person: who answers.
-        count: questions to be answered, at most.
-        say: shows text to the person.
-        stopping: when fewer are enough.
+    At most ``count`` questions are answered; ``stopping`` may end the asking earlier.
 
-    Raises:
-        UserError: nobody answers, or there is nothing left to ask.
+    Raises UserError where nobody answers.
     """
     motions, chain = scene.candidates, scene.chain
     places = [chain.forward(state).position for state in (motions.start, motions.end)]

@@ -18,7 +18,7 @@ CONFIG: Final = "config.json"
 """The options; written first, and used to recognise a study's folders."""
 
 PACKAGES: Final = ("latentarm", "numpy", "scikit-learn", "scipy", "statsmodels", "torch")
-"""Those whose versions the figures may hang on."""
+"""Packages on whose versions the figures may depend."""
 
 SHORT: Final = 40
 """Characters of a value in a sentence, at most."""
@@ -26,32 +26,21 @@ SHORT: Final = 40
 
 @dataclass(frozen=True)
 class ResultsFolder:
-    """The folder of a study, or of a command with results of its own.
+    """The folder of a study, or of a command with results of its own."""
 
-    Attributes:
-        name: as in `CONFIG` and in every row of ``results.json``.
-        made: every file that it may write, beside `CONFIG`.
-        kept: folders of finished parts, which a further run goes on from.
-        grows: keys of what was asked for that may differ in a run that goes on.
-    """
-
-    name: str
-    made: tuple[str, ...]
-    kept: tuple[str, ...] = ()
-    grows: tuple[str, ...] = ()
+    name: str  # as in `CONFIG` and in every row of ``results.json``
+    made: tuple[str, ...]  # every file that it may write, beside `CONFIG`
+    kept: tuple[str, ...] = ()  # folders of finished parts, which a further run goes on from
+    grows: tuple[str, ...] = ()  # options that may differ in a run that goes on
 
     def claim(self, out: Path, about: Mapping[str, object]) -> None:
-        """Make room for a new run: one that asked for the same is replaced, anything else is left alone.
+        """Make room for a new run: one of the same options is replaced, anything else is left alone.
 
-        Where finished parts are kept, the new run may ask for more or less of them.
+        Where finished parts are kept, the new run may have more or less of them. The options ``about`` go to
+        `CONFIG` with the versions of the packages.
 
-        Args:
-            out: the folder.
-            about: what the figures depend on; goes to `CONFIG` with the versions of what computes them.
-
-        Raises:
-            UserError: the folder holds something that this study did not write, or the results of a run
-                that asked for something else; or it cannot be written.
+        Raises UserError where the folder holds anything else, or the results of other options, or cannot be
+        written.
         """
         earlier = self._earlier(out)
         if out.exists() and earlier is None and not (out.is_dir() and not any(out.iterdir())):
@@ -69,7 +58,7 @@ class ResultsFolder:
         write_json(out / CONFIG, {**about, "versions": package_versions(), "git_commit": git_commit()})
 
     def _earlier(self, out: Path) -> dict[str, Any] | None:
-        """What an earlier run of this study was asked for; None where the folder holds none."""
+        """The options of an earlier run of this study; None where the folder holds none."""
         try:
             config = read_object(out / CONFIG)
         except UserError:
@@ -79,26 +68,13 @@ class ResultsFolder:
 
 def package_versions() -> dict[str, str]:
     """Versions of `PACKAGES` and of Python."""
-    return {
-        "python": platform.python_version(),
-        **{package: version(package) for package in PACKAGES},
-    }
+    return {"python": platform.python_version(), **{package: version(package) for package in PACKAGES}}
 
 
 def refuse_other_results(
     results: Path, out: Path, earlier: Mapping[str, object], wanted: Mapping[str, object]
 ) -> None:
-    """Refuse to replace results by those of another run.
-
-    Args:
-        results: the file or folder that holds the results.
-        out: the folder that was asked for.
-        earlier: what they depend on, as read from JSON.
-        wanted: what the new ones would depend on, as it would be read from JSON.
-
-    Raises:
-        UserError: the two differ.
-    """
+    """Raise a UserError where earlier results depend on other options than the new ones would."""
     names = [name for name in dict.fromkeys((*wanted, *earlier)) if wanted.get(name) != earlier.get(name)]
     if names:
         shown = ", ".join(
@@ -127,8 +103,6 @@ def _short(value: object) -> str:
 def write_json(path: Path, document: object) -> None:
     """Write a document as JSON, whole or not at all.
 
-    Raises:
-        UserError: the file cannot be written.
-        ValueError: a figure is NaN or infinite, which JSON does not have.
+    Raises UserError where the file cannot be written, and ValueError where a figure is NaN or infinite.
     """
     write_text(path, json.dumps(document, indent=2, allow_nan=False) + "\n")

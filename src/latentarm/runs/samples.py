@@ -25,17 +25,17 @@ from latentarm.robots.kinematics.chain import Chain
 
 SAMPLES_NAME: Final = "samples.safetensors"
 ALIGN_STREAM: Final = 3
-"""Keeps the draws of what a person is asked about apart from everything else that a seed draws."""
+"""Stream of a seed that draws the motions that a person is asked about."""
 
 MOST_ROWS: Final = 100_000
-"""Of an array; a run of ours keeps some thousands."""
+"""Most rows of an array; a run of ours keeps some thousands."""
 
 _WIDTHS: Final = {
     "unlabelled": "context",  # runs of earlier versions have it
     "motions.start": "action",
     "motions.end": "action",
     "motions.rest": "rest",
-    "motions.belief": "rest",  # what earlier versions call it
+    "motions.belief": "rest",  # its name in earlier versions
     "probe.start": "context",
     "probe.goal": "action",
     "probe.states": "context",
@@ -47,15 +47,10 @@ _WIDTHS: Final = {
 @final
 @dataclass(frozen=True, eq=False)
 class Samples:
-    """What a run keeps of its demonstrations.
+    """Samples of the demonstrations in a run's folder."""
 
-    Attributes:
-        motions: that a person may be asked about; None where no demonstration moves for long enough.
-        probe: held-out samples for `latentarm evaluate`; None where nothing moves in the held-out episodes.
-    """
-
-    motions: Motions | None
-    probe: Probe | None
+    motions: Motions | None  # for questions to people; None where no demonstration moves for long enough
+    probe: Probe | None  # for `latentarm evaluate`; None where nothing moves in the held-out episodes
 
 
 def take_samples(
@@ -66,16 +61,7 @@ def take_samples(
     chain: Chain,
     rng: np.random.Generator,
 ) -> Samples:
-    """Choose what a run keeps.
-
-    Args:
-        model: the trained model.
-        demonstrations: the dataset.
-        training: indices of the episodes that a person may be asked about.
-        held_out: indices of the episodes that the model has not seen.
-        chain: the arm.
-        rng: decides which motions.
-    """
+    """Choose the samples that a run keeps: motions of the training episodes, and held-out samples."""
     motions = probe = None
     # What cannot be taken is not kept; `align` and `evaluate` say why once they need it.
     with suppress(UserError):
@@ -86,22 +72,14 @@ def take_samples(
 
 
 def save_samples(folder: Path, samples: Samples) -> Mapping[str, object]:
-    """Write samples to a run's folder.
+    """Write samples to a run's folder; returns the key ``samples`` of the run's ``config.json``.
 
-    Returns:
-        What `load_samples` needs, for the key ``samples`` of the run's ``config.json``.
-
-    Raises:
-        UserError: the file cannot be written.
+    Raises UserError where the file cannot be written.
     """
     tensors: dict[str, FloatArray] = {}
     motions, probe = samples.motions, samples.probe
     if motions is not None:
-        tensors |= {
-            "motions.start": motions.start,
-            "motions.end": motions.end,
-            "motions.rest": motions.rest,
-        }
+        tensors |= {"motions.start": motions.start, "motions.end": motions.end, "motions.rest": motions.rest}
     if probe is not None:
         tensors |= {
             "probe.start": probe.pairs.start,
@@ -122,10 +100,9 @@ def save_samples(folder: Path, samples: Samples) -> Mapping[str, object]:
 
 
 def load_samples(folder: Path) -> Samples | None:
-    """Read and check what a run keeps; None for an older run, which kept nothing.
+    """Read and check a run's samples; None for an older run without any.
 
-    Raises:
-        UserError: a file is missing or damaged.
+    Raises UserError where a file is missing or damaged.
     """
     config = Section.of_file(folder / CONFIG_NAME, CONFIG_LIMIT)
     if config.plain().get("samples") is None:

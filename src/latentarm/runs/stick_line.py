@@ -11,7 +11,7 @@ import numpy as np
 from latentarm.core.types import FloatArray
 
 ARROW: Final = re.compile(r"\x1b[\[O]([ABCD])")
-"""What a terminal sends for an arrow key."""
+"""A terminal's bytes for an arrow key."""
 
 PUSHES: Final = {"C": (0, 1), "D": (0, -1), "A": (1, 1), "B": (1, -1)}
 """Axis and direction of the keys right, left, up and down."""
@@ -25,18 +25,10 @@ ERASE: Final = ("\x7f", "\b")
 
 
 def parse(line: str, axes: int) -> FloatArray | None:
-    """An input from what was typed.
+    """The input (d,) of a typed line, or None for an empty one.
 
-    Args:
-        line: ``axes`` numbers in [-1, 1], separated by blanks or commas; or arrow keys as terminals send
-            them.
-        axes: d.
-
-    Returns:
-        (d,), or None for an empty line.
-
-    Raises:
-        ValueError: the line is neither; the message is a sentence for the person.
+    The line has ``axes`` numbers in [-1, 1], separated by blanks or commas, or arrow keys as terminals send
+    them. Any other raises ValueError with a sentence for the person.
     """
     if ARROW.search(line):
         if ARROW.sub("", line).strip():
@@ -60,13 +52,8 @@ def parse(line: str, axes: int) -> FloatArray | None:
 def read_line(axes: int) -> str:
     """A line from standard input. At a terminal the arrow keys push a stick that is shown meanwhile.
 
-    Windows has no POSIX terminal: there, as from a pipe, a line is numbers.
-
-    Args:
-        axes: d.
-
-    Raises:
-        EOFError: the input has ended.
+    Windows has no POSIX terminal: there, as from a pipe, a line is numbers. Raises EOFError where the input
+    has ended.
     """
     if sys.platform != "win32" and sys.stdin.isatty():
         return _read_terminal(axes)
@@ -77,17 +64,13 @@ def read_line(axes: int) -> str:
 
 
 def _read_terminal(axes: int) -> str:
-    """A line typed at a POSIX terminal, key by key.
-
-    Raises:
-        EOFError: the input ends, or the person ends it.
-    """
+    """A line typed at a POSIX terminal, key by key; EOFError where the input ends."""
     import termios
     import tty
 
     descriptor = sys.stdin.fileno()
     before = termios.tcgetattr(descriptor)
-    tty.setcbreak(descriptor, termios.TCSAFLUSH)  # what was typed before the question does not answer it
+    tty.setcbreak(descriptor, termios.TCSAFLUSH)  # keys typed before the question do not answer it
     try:
         return _read_keys(lambda: os.read(descriptor, 1).decode("latin-1"), _show, axes)
     finally:
@@ -96,11 +79,7 @@ def _read_terminal(axes: int) -> str:
 
 
 def _read_keys(key: Callable[[], str], show: Callable[[str], None], axes: int) -> str:
-    """Keys up to Enter as one line, shown as they come.
-
-    Raises:
-        EOFError: the input ends, or the person ends it.
-    """
+    """Keys up to Enter as one line, shown as they come; EOFError where the input ends."""
     line = ""
     while True:
         pressed = key()

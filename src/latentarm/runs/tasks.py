@@ -32,23 +32,15 @@ def task_of_run(
     *,
     option: bool = True,
 ) -> Task:
-    """The task that is asked for, or else the one that a run was trained for.
+    """The task of this name, or else the one that a run was trained for.
 
-    The dataset is read only for what the run does not keep: of runs of earlier versions the task and the
-    goals, and the held-out episodes where another robot or end-effector is to follow them.
+    The dataset, at ``dataset`` if it was moved, is read only for parts that the run does not keep: of runs of
+    earlier versions the task and the goals, and the held-out episodes where another robot or end-effector is
+    to follow them. Robot, end-effector and limits are those of the run where None. ``option`` tells whether
+    the user can name the dataset with ``--demonstrations``.
 
-    Args:
-        run: the run.
-        name: the task; that of the run where None.
-        robot: a robot's name or model file; that of the run where None.
-        end_effector: site, body or link of a model file; that of the run where None.
-        limits: what is stated of the robot's limits; what the run states where None.
-        dataset: where the run's dataset lies now, if it was moved.
-        option: whether the user can say so with ``--demonstrations``, for messages.
-
-    Raises:
-        UserError: the robot or the dataset cannot be loaded, or the task does not suit the robot, or has
-            other goals than those that the run's decoder sees a belief over.
+    Raises UserError where the robot or the dataset cannot be loaded, or the task does not suit the robot, or
+    has other goals than those of a decoder that sees a belief.
     """
     kept = run.task
     if kept is None:
@@ -79,16 +71,9 @@ def task_without_run(
     end_effector: str | None = None,
     limits: StatedLimits | None = None,
 ) -> Task:
-    """The task that is asked for, or the table-top task for a Panda, and poses in reach for other arms.
+    """The task of this name, or the table-top task for a Panda, and poses in reach for other arms.
 
-    Args:
-        name: the task.
-        robot: a robot's name or model file; a Panda where None.
-        end_effector: site, body or link of a model file.
-        limits: what is stated of the robot's limits.
-
-    Raises:
-        UserError: the robot is not available, or the task does not suit it, or belongs to a run.
+    Raises UserError where the robot is not available, or the task does not suit it, or belongs to a run.
     """
     chosen = name or ("table_top" if robot in (None, "panda") else "reach")
     if chosen == HELD_OUT:
@@ -103,14 +88,10 @@ def make_task(
     limits: StatedLimits | None = None,
     usual: Callable[[], Robot] | None = None,
 ) -> Task:
-    """A task of the catalogue.
+    """A task of the catalogue, by its name in `TASKS`.
 
-    Args:
-        name: a name in `TASKS`.
-        robot: a robot's name or model file; the task's own where None, else ``usual``.
-        end_effector: site, body or link of a model file.
-        limits: what is stated of the robot's limits.
-        usual: the robot of a task for any robot where none is named; a Panda where None.
+    ``robot`` is a robot's name or model file; where None, the task's own or, for tasks of any robot,
+    ``usual`` or a Panda. ``end_effector`` is a site, body or link of a model file.
 
     Raises:
         UserError: there is no such task, it does not load, the robot cannot be loaded, or the task is for
@@ -139,19 +120,12 @@ def make_task(
 def routes_seen(
     robot: Robot, demonstrations: Demonstrations, context: Named
 ) -> tuple[tuple[FloatArray, ...], tuple[FloatArray, ...]]:
-    """The ways that demonstrations went, as a model is to be driven along them.
+    """The routes and gripper openings of demonstrations, for a model with this context to follow.
 
-    Args:
-        robot: the arm that was recorded.
-        demonstrations: the episodes to follow.
-        context: the features that the model sees. Only where it sees what the gripper was told, the gripper
-            opens and closes on the way.
+    See `routes_of` and `GripperRoutes`. The gripper opens and closes on the way only where the model sees its
+    command.
 
-    Returns:
-        Routes, see `routes_of`, and what the gripper does along them, see `GripperRoutes`; empty for nothing.
-
-    Raises:
-        UserError: the tool goes nowhere in any of them.
+    Raises UserError where the tool goes nowhere in any of them.
     """
     told = all(opening_source(one.extras) == ACTION_GRIPPER for one in demonstrations.episodes)
     if GRIPPER in feature_names(context) and told and robot.gripper is not None:
@@ -169,16 +143,15 @@ def usual_task(goals: Sequence[Goal]) -> str:
 
 
 def usual_arm(task: str | None) -> str:
-    """The arm that moves where none is named: only in physics are things touched and held.
+    """The default arm: only in physics are things touched and held.
 
-    Args:
-        task: a name of the catalogue; None is not yet known, and has no things.
+    A task of None is not yet known, and has no things.
     """
     return PHYSICAL_ARM if task in SCENE_TASKS else DEFAULT_ARM
 
 
 def _check_goals(run: Run, task: Task) -> None:
-    """A decoder that sees a belief knows only the goals that it was trained with."""
+    """Refuse a task with other goals than those of a decoder that sees a belief."""
     trained = [goal.configuration for goal in run.goals]
     here = [goal.configuration for goal in task.goals]
     if np.shape(trained) != np.shape(here) or not np.allclose(trained, here, atol=1e-6):

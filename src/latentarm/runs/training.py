@@ -5,9 +5,10 @@ early, and the held-out ones do neither: they are for `latentarm evaluate`.
 """
 
 import warnings
+from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
@@ -17,9 +18,12 @@ from latentarm.assistance.entropy import GoalEntropy
 from latentarm.core.context import Named, feature_names
 from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations, Row
-from latentarm.demonstrations.dataset import read_dataset
+from latentarm.core.untrusted.opening import is_missing
+from latentarm.demonstrations.dataset import read_dataset, write_dataset
+from latentarm.demonstrations.joining import join
 from latentarm.demonstrations.split import select_episodes, split_episodes
-from latentarm.models.catalogue import MODELS
+from latentarm.demonstrations.timing import check_one_rate
+from latentarm.models.estimators import MODELS
 from latentarm.models.model import LatentActionModel
 from latentarm.models.neural import NeuralModel
 from latentarm.models.training import Report
@@ -28,31 +32,27 @@ from latentarm.robots.kinematics.chain import Chain
 from latentarm.robots.model_copy import copy_model
 from latentarm.robots.robot import Robot
 from latentarm.runs.folder import ROBOT, Run, fingerprint, git_commit, run_facts
-from latentarm.runs.joined import joined_dataset
 from latentarm.runs.options import TrainOptions
 from latentarm.runs.samples import ALIGN_STREAM, save_samples, take_samples
 from latentarm.runs.tasks import routes_seen, usual_task
 
-CHECKPOINT = "training.safetensors"
+CHECKPOINT: Final = "training.safetensors"
+
+JOINED: Final = "demonstrations"
+"""Folder of a run with the datasets that it was trained on, where there were several."""
 
 MOST_NUMBERS = 200_000
-"""In the routes of a run's ``config.json``."""
+"""Most numbers in the routes of a run's ``config.json``."""
 
 HOLD_OUT_STREAM = 1
-"""Keeps this choice apart from everything else that is drawn from the same seed."""
+"""Stream of the seed that chooses the held-out episodes."""
 
 
 @dataclass(frozen=True)
 class Training:
-    """The result of a training.
+    """The result of a training."""
 
-    Attributes:
-        rows: the normalised loss on the validation episodes: mean and SD over seeds.
-        episodes: of the dataset.
-        import_warnings: what importing the dataset warned of.
-    """
-
-    rows: list[Row]
+    rows: list[Row]  # the normalised loss on the validation episodes: mean and SD over seeds
     episodes: int
     import_warnings: list[str]
 
@@ -60,17 +60,12 @@ class Training:
 def train_run(options: TrainOptions, report: Report | None = None) -> Training:
     """Train a model on a dataset and write its run folder.
 
-    Args:
-        options: what was asked for.
-        report: called after each epoch.
-
-    Raises:
-        UserError: the dataset cannot be read or lacks what is asked for, the folder holds a run
-            already, or a setting makes no sense.
+    Raises UserError where the dataset cannot be read or lacks something, the folder holds a run already, or a
+    setting makes no sense.
     """
     folder = options.folder
     _check_folder(folder, options.resume)
-    dataset = joined_dataset(options.demonstrations, folder)
+    dataset = _joined_dataset(options.demonstrations, folder)
     demonstrations = prepared(read_dataset(dataset), options.context)
     robot = None
     if options.end_effector is not None:
@@ -128,8 +123,25 @@ def train_run(options: TrainOptions, report: Report | None = None) -> Training:
     return Training([row], len(demonstrations.episodes), demonstrations.warnings)
 
 
+def _joined_dataset(datasets: Sequence[Path], run: Path) -> Path:
+    """The one dataset to train on, or all that are named, joined in the run's folder.
+
+    Raises UserError where none is named, they do not fit each other, or the folder holds other ones.
+    """
+    if not datasets:
+        raise UserError("No dataset is named: say which with --demonstrations.")
+    if len(datasets) == 1:
+        return datasets[0]
+    joined = join({str(one): read_dataset(one) for one in datasets})
+    check_one_rate(joined, [str(index) for index in range(len(joined.episodes))], str(run / JOINED))
+    # A training that was broken off has written it already.
+    if is_missing(run / JOINED) or fingerprint(read_dataset(run / JOINED)) != fingerprint(joined):
+        write_dataset(joined, run / JOINED)
+    return run / JOINED
+
+
 def _model(options: TrainOptions) -> LatentActionModel:
-    """The model that is asked for; of its parameters those that are options, and those that are not None."""
+    """The model of these options, with those of its parameters that are options and not None."""
     model_class = MODELS[options.model]
     parameters = {field.name for field in fields(model_class) if field.init}
     given = {name: value for name, value in vars(options).items() if value is not None}
@@ -150,11 +162,7 @@ def _model(options: TrainOptions) -> LatentActionModel:
 def _term(
     weight: float, demonstrations: Demonstrations, chain: Chain | None, dataset: Path
 ) -> GoalEntropy | None:
-    """The entropy over the demonstrations' goals, where it is asked for.
-
-    Raises:
-        UserError: the weight makes no sense, or there are fewer than two goals.
-    """
+    """The entropy over the demonstrations' goals, if its weight is not 0."""
     if weight == 0:
         return None
     if len(demonstrations.goals) < 2:
@@ -167,10 +175,7 @@ def _term(
 
 
 def _routes(robot: Robot, held_out: Demonstrations, context: Named) -> dict[str, Any]:
-    """Routes of the held-out episodes, as a run keeps them.
-
-    None are kept without held-out episodes or if they are too large to store.
-    """
+    """Routes of the held-out episodes for a run; none without such episodes or if they are too large."""
     try:
         routes, open_at = routes_seen(robot, held_out, context)
     except UserError:

@@ -1,1 +1,1 @@
-"""What stands between a wanted velocity and the arm: shaping filters and the verified brake."""
+"""The way from a wanted velocity to the arm: shaping filters and the verified brake."""

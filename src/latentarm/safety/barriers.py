@@ -1,4 +1,4 @@
-"""What the arm may not pass, all of it at once: joint limits, things, itself, the workspace."""
+"""The barriers that the arm may not pass, all at once: joint limits, things, itself, the workspace."""
 
 from dataclasses import dataclass
 from typing import final
@@ -9,41 +9,28 @@ from latentarm.core.types import FloatArray
 from latentarm.safety.bounds import BUFFER_M, BUFFER_RAD, MAY_BEND_M
 from latentarm.safety.filter import Situation
 from latentarm.safety.halfspaces import slide, unbent
-from latentarm.safety.small import largest, smallest, some
+from latentarm.safety.small import any_nonzero, largest, smallest
 
 
 @final
 @dataclass(frozen=True, slots=True, eq=False)
 class Distances:
-    """C distances of one kind that a velocity may not reduce too fast.
+    """C distances of one kind that a velocity may not reduce too fast."""
 
-    Attributes:
-        kind: what the person is told when they have changed a command.
-        rows: (C, n), how joint velocities change them, m/s per rad/s.
-        room: (C,), what each may still lose, m.
-        curvature: (C, n, n), bound of their second derivatives, see `Body`.
-    """
-
-    kind: str
-    rows: FloatArray
-    room: FloatArray
-    curvature: FloatArray
+    kind: str  # the name that `Passed.limited_by` gets
+    rows: FloatArray  # (C, n), m/s per rad/s: how joint velocities change them
+    room: FloatArray  # (C,), m: what each may still lose
+    curvature: FloatArray  # (C, n, n): bound of their second derivatives, see `Body`
 
 
 def past_barriers(velocity: FloatArray, situation: Situation, limited_by: list[str]) -> FloatArray:
-    """Slow a velocity down before it passes a barrier, and keep what leads along it.
+    """Slow a velocity (n,), rad/s, before it passes a barrier, and keep its part along the barrier.
 
     The speed towards a barrier is at most the distance left times ``damping_per_s``, which ordinary motion
-    can follow. Past it the arm may only move back. One after the other, what slides along one barrier could
-    lead past another, and in their corner the guard would let nothing pass: so all of them count at once.
+    can follow. Past it the arm may only move back. All barriers count at once, because sliding along one
+    could lead past another, and in their corner the guard would let nothing pass.
 
-    Args:
-        velocity: (n,), rad/s, within the joints' speeds.
-        situation: what is known at this tick.
-        limited_by: gets the names of what changed something.
-
-    Returns:
-        (n,), rad/s, ``velocity`` itself where nothing had to change.
+    ``limited_by`` gets the names of the barriers that act; without any, ``velocity`` itself is returned.
     """
     bounds = situation.bounds
     near = [kind for kind in (_contacts(velocity, situation), _faces(situation)) if kind is not None]
@@ -56,14 +43,14 @@ def past_barriers(velocity: FloatArray, situation: Situation, limited_by: list[s
     room = np.concatenate([np.zeros(0), *(kind.room for kind in near)])
     floor = -bounds.damping_per_s * np.maximum(room - BUFFER_M, 0.0)
     slid, acting = slide(velocity, (down, up), rows, floor, room <= 0.0)
-    if some(acting[: bounds.dof]):
+    if any_nonzero(acting[: bounds.dof]):
         limited_by.append("joint position")
     size, share, first = np.abs(slid), 1.0, bounds.dof
     for kind in near:
         first, after = first + len(kind.room), first
         bend = kind.curvature @ size @ size
         slow = unbent(slid, kind.rows, np.maximum(kind.room, MAY_BEND_M), bend, bounds.reach_s)
-        if slow < 1.0 or some(acting[after:first]):
+        if slow < 1.0 or any_nonzero(acting[after:first]):
             limited_by.append(kind.kind)
         share = min(share, slow)
     return slid if share == 1.0 else share * slid

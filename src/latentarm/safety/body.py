@@ -22,11 +22,7 @@ class Body:
     at most ``Σ_jk |d_j| |d_k| R[p, j, k]`` with ``R[p, j, k] = lever[p, the outer of j and k]``,
     because ``∂²p/∂q_j∂q_k = w_j × (w_k × (p - o_k))`` for a joint k further out than j.
 
-    Args:
-        robot: the arm.
-
     Attributes:
-        robot: as given.
         capsule: (K,), index into the robot's capsules of each moving capsule.
         link: (P,), the link that carries each point.
         radius: (P,), m; zero for tools.
@@ -130,15 +126,9 @@ class Body:
 
 @final
 class Placement:
-    """The arm in one configuration: where its points are and how joint velocities move them.
-
-    Args:
-        body: the arm.
-        q: (n,), rad.
+    """The arm in one configuration (n,), rad: where its points are and how joint velocities move them.
 
     Attributes:
-        body: as given.
-        q: as given.
         points: (P, 3), m, base frame.
         jacobian: (n, 6, P), what a unit speed of joint j does at point p: rows 0-2 its velocity, m/s,
             rows 3-5 the angular velocity of its link, rad/s.
@@ -165,13 +155,10 @@ class Placement:
         self._flat = jacobian.reshape(len(axes), -1)
 
     def speeds(self, velocity: FloatArray) -> FloatArray:
-        """Largest speed of any point on the surface about each point, (P,), m/s.
+        """Largest speed (P,), m/s, of any point on the surface about each point, at joint velocities (n,).
 
         The speed within a rigid capsule is largest at an end of its segment; its surface adds at most
         radius times angular speed.
-
-        Args:
-            velocity: (n,), rad/s.
         """
         moved = (velocity @ self._flat).reshape(2, 3, -1)
         linear, angular = np.sqrt(np.add.reduce(moved * moved, axis=1))

@@ -9,6 +9,7 @@ from latentarm.core.errors import UserError
 from latentarm.robots.robot import Robot
 from latentarm.safety.brake import Brake
 from latentarm.safety.config import SafetyConfig
+from latentarm.safety.obstacles import is_number
 
 STOPPED_WITHIN_S = 0.15
 """From the last fresh input to a command of zero."""
@@ -28,17 +29,10 @@ MAY_BEND_M = 1e-6
 
 @final
 class Bounds:
-    """Limits in joint space, and the times that follow from them.
-
-    Args:
-        config: what the person set.
-        robot: whose hardware limits hold.
-        dt_s: the loop's period, s.
+    """Limits in joint space of one robot, and the times that follow from them and the loop's period, s.
 
     Attributes:
-        config: as given.
-        dt_s: as given.
-        dof: number of joints n.
+        dof: n.
         speed: (n,), largest speed of each joint, rad/s; that of links, m/s, where a joint slides.
         slowest: the smallest of these.
         lower: (n,), lowest joint position, margin taken off, rad.
@@ -66,7 +60,7 @@ class Bounds:
     """
 
     def __init__(self, config: SafetyConfig, robot: Robot, dt_s: float) -> None:
-        if not _is_number(dt_s):
+        if not is_number(dt_s):
             raise UserError(f"The loop's period must be a number of seconds, not {dt_s!r}.")
         if not (math.isfinite(dt_s) and 0.001 <= dt_s <= 0.05):
             raise UserError(
@@ -153,7 +147,3 @@ class Bounds:
         """Phase two is longest with all joints at full speed, phase one at full deceleration."""
         settle = float((self.stop_acceleration / self.stop_jerk).max())
         return settle + self.brake(self.speed, np.zeros(self.dof)).ramp_s
-
-
-def _is_number(value: object) -> bool:
-    return isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)

@@ -7,7 +7,7 @@ import numpy as np
 from ruckig import ControlInterface, InputParameter, Result, Ruckig, Trajectory
 
 from latentarm.core.types import FloatArray
-from latentarm.safety.small import largest, some
+from latentarm.safety.small import any_nonzero, largest
 
 AT_REST_S = 1e-9
 """A brake shorter than this is, in float64, indistinguishable from standing still."""
@@ -26,11 +26,7 @@ class Brake:
     ``sigma`` has plateau deceleration ``rate = min(min_i A_i / |v+_i|, sqrt(B))`` with
     ``B = min_i J_i / |v+_i|``, lasts ``1 / rate + rate / B`` and covers half of that time at full speed.
 
-    Args:
-        velocity: (n,), rad/s.
-        acceleration: (n,), rad/s².
-        stop_acceleration: (n,), A, rad/s².
-        stop_jerk: (n,), J, rad/s³.
+    Its arguments are (n,): velocity, rad/s, and acceleration, rad/s²; the stop's A, rad/s², and J, rad/s³.
 
     Attributes:
         settle_s: duration of phase one, s.
@@ -65,7 +61,7 @@ class Brake:
         self._acceleration = acceleration
         self._stop_jerk = stop_jerk
         self._fall: _Fall | None = None
-        if some(acceleration):
+        if any_nonzero(acceleration):
             settle = np.abs(acceleration) / stop_jerk
             self.settle_s = largest(settle)
             self.kink = 0.5 * acceleration * settle
@@ -108,10 +104,7 @@ class _Fall:
     """The ramp sigma from 1 to 0, at a plateau of -1 per unit of time.
 
     Time is in units of the ramp's own length, because Ruckig is inaccurate for the decelerations of many
-    thousands per second that an almost motionless arm would need.
-
-    Args:
-        jerk: per unit of time squared; at least 1.
+    thousands per second that an almost motionless arm would need. ``jerk`` is at least 1.
     """
 
     __slots__ = ("_trajectory",)

@@ -9,7 +9,7 @@ import numpy as np
 from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray
 from latentarm.robots.kinematics.obstacles import Obstacle
-from latentarm.safety.obstacles import as_array, checked_obstacle
+from latentarm.safety.obstacles import as_array, checked_obstacle, is_number
 from latentarm.safety.zones import Zone, checked_zones
 
 
@@ -124,7 +124,8 @@ class SafetyConfig:
                 "The safety limit stop_fraction must be at least acceleration_fraction, jerk_fraction and"
                 " release_fraction: a stop may not be softer than ordinary motion."
             )
-        _check_workspace(self.workspace)
+        if self.workspace is not None and not isinstance(self.workspace, Workspace):  # pyright: ignore[reportUnnecessaryIsInstance]
+            raise UserError("The safety limit workspace must be a Workspace, or None for anywhere.")
         object.__setattr__(self, "obstacles", _checked_obstacles(self.obstacles))
         object.__setattr__(self, "zones", checked_zones(self.zones))
 
@@ -158,7 +159,7 @@ _MAY_TOUCH = ("input_grace_s", "dead_zone", "command_periods", "reading_periods"
 def _figure(name: str, value: object) -> float:
     """The figure as a float inside its range, or a `UserError` that names it."""
     lowest, highest, unit = _RANGES[name]
-    if isinstance(value, bool) or not isinstance(value, int | float | np.integer | np.floating):
+    if not is_number(value):
         raise UserError(f"The safety limit {name} must be a number, not {value!r}.")
     try:
         figure = float(value)
@@ -169,11 +170,6 @@ def _figure(name: str, value: object) -> float:
         bounds = f"{'at least' if name in _MAY_TOUCH else 'above'} {lowest:g} and at most {highest:g} {unit}"
         raise UserError(f"The safety limit {name} is {figure:g}: it must be {bounds}.")
     return figure
-
-
-def _check_workspace(value: object) -> None:
-    if value is not None and not isinstance(value, Workspace):
-        raise UserError("The safety limit workspace must be a Workspace, or None for anywhere.")
 
 
 def _checked_obstacles(value: object) -> tuple[Obstacle, ...]:

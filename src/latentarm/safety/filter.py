@@ -1,16 +1,17 @@
-"""What a safety filter is, what it knows, and the filters that keep a velocity's direction."""
+"""The contract of a safety filter, its view of one tick, and the filters that keep a direction."""
 
 import math
 from abc import ABC, abstractmethod
 from typing import final
 
 import numpy as np
+from typing_extensions import override
 
 from latentarm.core.types import FloatArray, Stop
 from latentarm.safety.body import Body, Placement
 from latentarm.safety.bounds import Bounds
 from latentarm.safety.proximity import Contacts, Proximity
-from latentarm.safety.small import largest, smallest, some
+from latentarm.safety.small import any_nonzero, largest, smallest
 from latentarm.safety.zone_distances import ZoneDistances
 
 _DRIFT_RAD = 0.05
@@ -19,19 +20,7 @@ _DRIFT_RAD = 0.05
 
 @final
 class Surroundings:
-    """One arm with its limits and everything it must keep clear of.
-
-    Args:
-        bounds: the limits.
-        body: the arm.
-
-    Attributes:
-        bounds: as given.
-        body: as given.
-        proximity: its near pairs.
-        zones: how far it is from where it must be slow.
-        reference: where the arm was placed last.
-    """
+    """One arm with its limits, everything it must keep clear of, and where it was placed last."""
 
     def __init__(self, bounds: Bounds, body: Body) -> None:
         self.bounds = bounds
@@ -45,17 +34,14 @@ class Surroundings:
 
 @final
 class Situation:
-    """What the filters know at one tick; expensive quantities are computed once, on first use.
+    """One tick as the filters see it; expensive quantities are computed once, on first use.
 
     Args:
-        surroundings: the arm and what is about it.
         state: (n,), measured joint positions, rad, finite.
         velocity: (n,), the last command, rad/s.
         acceleration: (n,), the acceleration that the last command was reached with, rad/s².
-        input_age_s: age of the newest input, s.
 
     Attributes:
-        bounds: the limits.
         room: (2, n), distance to the lowest position (zero or below inside) and to the highest, rad.
         nearest_limit: the smallest of these distances in size, negative where a limit is passed, rad.
     """
@@ -86,16 +72,12 @@ class Situation:
     def placement(self) -> Placement:
         """The arm's points at the measured state."""
         reference = self.surroundings.reference
-        if reference is None or some(reference.q != self.state):
+        if reference is None or any_nonzero(reference.q != self.state):
             reference = self.surroundings.reference = Placement(self.surroundings.body, self.state)
         return reference
 
     def nearby(self) -> tuple[Placement, FloatArray]:
-        """A placement of the arm that may be a few ticks old, for bounds that account for its age.
-
-        Returns:
-            The placement, and how far each joint has moved since, (n,), rad, zero or more.
-        """
+        """A placement that may be a few ticks old, and how far each joint has moved since, (n,), rad, ≥ 0."""
         reference = self.surroundings.reference
         if self._nearby is None or self._nearby[0] is not reference:
             drift = None if reference is None else np.abs(self.state - reference.q)
@@ -105,12 +87,8 @@ class Situation:
         return self._nearby
 
     def contacts(self, speed: FloatArray) -> Contacts:
-        """What the arm could come too close to if no joint is faster than this; may be a few ticks old.
-
-        Args:
-            speed: (n,), rad/s, zero or more.
-        """
-        if self._contacts is None or some(speed > self._asked):
+        """Pairs that could come too close if no joint is faster than (n,), rad/s; may be a few ticks old."""
+        if self._contacts is None or any_nonzero(speed > self._asked):
             # Include what ordinary motion passes through next, so that this is computed once.
             self._asked = np.maximum(speed, np.abs(self.velocity)) + self.bounds.quickening
             self._contacts = self.surroundings.proximity.held(self.state, self._asked)
@@ -119,22 +97,19 @@ class Situation:
         return self._contacts
 
     def contacts_now(self) -> Contacts:
-        """The same for the speed that was asked for last, measured at this very state."""
+        """The same for the last speed asked for, measured at this very state."""
         if self._contacts is None or not self._contacts.fresh:
             self._contacts = self.surroundings.proximity.measured(self.placement, self._asked)
         return self._contacts
 
     def zone_distances(self) -> tuple[FloatArray, FloatArray]:
-        """How far the arm's parts are from the zones at least, and at most, (Z, K + T), m.
-
-        As far as is known without measuring, see `ZoneDistances`.
-        """
+        """Bounds of the parts' distances from the zones, least and most, (Z, K + T), m."""
         if self._zone_distances is None:
             self._zone_distances = self.surroundings.zones.bounded(self.state)
         return self._zone_distances
 
     def zone_distances_now(self, zone: int) -> FloatArray:
-        """How far the arm's parts are from one zone, (K + T,), m, measured at this very state."""
+        """Distances of the parts from one zone, (K + T,), m, measured at this very state."""
         self._zone_distances = None
         return self.surroundings.zones.measured(zone, self.placement)
 
@@ -142,21 +117,14 @@ class Situation:
 class SafetyFilter(ABC):
     """Makes a velocity safe in one respect, or rejects it."""
 
-    @property
-    @abstractmethod
-    def name(self) -> str:
-        """What the person is told when this filter has changed a command."""
+    name: str
+    """The name that ``limited_by`` gets when this filter has changed a command."""
 
     @abstractmethod
     def apply(self, velocity: FloatArray, situation: Situation) -> FloatArray | Stop:
-        """The velocity as far as it is safe.
+        """The velocity (n,), rad/s, as far as it is safe, or why the arm must stop.
 
-        Args:
-            velocity: (n,), rad/s, what is wanted.
-            situation: what is known at this tick.
-
-        Returns:
-            (n,), rad/s, ``velocity`` itself where nothing had to change; or why the arm must stop.
+        Where nothing has to change this is ``velocity`` itself.
         """
 
 
@@ -164,13 +132,10 @@ class SafetyFilter(ABC):
 class Finite(SafetyFilter):
     """Stops where a velocity is not a number, not finite, or not one for each joint."""
 
-    @property
-    def name(self) -> str:
-        """See the base class."""
-        return "finite"
+    name = "finite"
 
+    @override
     def apply(self, velocity: FloatArray, situation: Situation) -> FloatArray | Stop:
-        """See the base class."""
         if velocity.shape != situation.state.shape:
             return Stop(
                 f"The controller gave {velocity.shape} numbers for {len(situation.state)} joints.",
@@ -191,13 +156,10 @@ class Freshness(SafetyFilter):
     never starts to move by surprise when a connection returns.
     """
 
-    @property
-    def name(self) -> str:
-        """See the base class."""
-        return "freshness"
+    name = "freshness"
 
+    @override
     def apply(self, velocity: FloatArray, situation: Situation) -> FloatArray | Stop:
-        """See the base class."""
         return self.refusal(situation.input_age_s, situation.bounds.config.input_timeout_s) or velocity
 
     @staticmethod
@@ -214,13 +176,10 @@ class Freshness(SafetyFilter):
 class JointVelocity(SafetyFilter):
     """Slows the whole arm down until its fastest joint is within the limit; the direction is kept."""
 
-    @property
-    def name(self) -> str:
-        """See the base class."""
-        return "joint velocity"
+    name = "joint velocity"
 
+    @override
     def apply(self, velocity: FloatArray, situation: Situation) -> FloatArray:
-        """See the base class."""
         speed, limit = np.abs(velocity), situation.bounds.speed
         if largest(speed) <= situation.bounds.slowest:
             return velocity
@@ -237,13 +196,10 @@ HEADROOM = 0.95
 class LinkSpeed(SafetyFilter):
     """Slows the whole arm down until no point on any link, nor the tool, is too fast."""
 
-    @property
-    def name(self) -> str:
-        """See the base class."""
-        return "link speed"
+    name = "link speed"
 
+    @override
     def apply(self, velocity: FloatArray, situation: Situation) -> FloatArray:
-        """See the base class."""
         limit = HEADROOM * situation.bounds.config.link_speed
         nearby, drift = situation.nearby()
         bend = nearby.body.bent(drift) @ np.abs(velocity)

@@ -1,4 +1,4 @@
-"""What leaves the loop for the gripper: asked by who may ask, within limits, still when the arm stops."""
+"""The last filter of gripper commands: who may ask, within which limits, still when the arm stops."""
 
 import math
 from typing import Final, Literal, final, get_args
@@ -18,23 +18,21 @@ _ASTRAY: Final = 0.01
 
 @final
 class GripperFilter:
-    """Turns what people ask of the gripper into commands, and takes nothing back that holds something.
+    """Turns requests into commands for the gripper, and never lets go of a held thing by itself.
 
     Three may ask, and the fingers move only while the one who asked still may:
 
     - the person who drives, while the arm is enabled. An ask counts once, when it appears;
     - a person who guides the disengaged arm by hand, as long as they do;
-    - whoever holds down what opens the gripper of a disengaged arm: after `OPENS_AFTER_S` without a break it
-      opens as long as that is held. Nothing closes it then. Inputs may be missing as long as an arm that
-      moves would not be stopped for it, and the fingers wait meanwhile.
+    - a person who holds down the button that opens the gripper of a disengaged arm: after `OPENS_AFTER_S`
+      without a break it opens as long as that is held. Nothing closes it then. Inputs may be missing as long
+      as an arm that moves would not be stopped for it, and the fingers wait meanwhile.
 
-    Otherwise the fingers stay where they are, and what they hold stays held as hard as at that moment, and no
+    Otherwise the fingers stay where they are, and a held thing stays held as hard as at that moment, and no
     harder: when the arm is stopped, when guiding ends, and after the arm is enabled until something new is
     asked. While inputs falter they wait, and go on when inputs come back.
 
-    Args:
-        gripper: what is driven, or None where there is nothing: then there are no commands.
-        config: the limits; where the gripper can do less, that counts.
+    Without a gripper there are no commands. The gripper's own limits count where they are below ``config``.
     """
 
     def __init__(self, gripper: Gripper | None, config: SafetyConfig) -> None:
@@ -59,12 +57,12 @@ class GripperFilter:
 
     @property
     def reading(self) -> GripperReading | None:
-        """What the gripper measured in this tick; None without a gripper, or where that cannot be used."""
+        """The gripper's reading of this tick; None without a gripper, or where it cannot be used."""
         return self._reading if self._fresh else None
 
     @property
     def target_m(self) -> float | None:
-        """Where it was told to go, m; until it was told, where it is, and 0 where it holds something.
+        """The commanded opening, m; before any command the measured one, or 0 where something is held.
 
         None where there is no `reading`.
         """
@@ -74,18 +72,11 @@ class GripperFilter:
         return 0.0 if reading.holding else max(reading.width_m, 0.0)
 
     def tick(self) -> None:
-        """A new tick: the reading of the one before is old."""
+        """Begin a tick: the reading of the one before is old."""
         self._fresh = False
 
     def saw(self, reading: GripperReading | None) -> Stop | None:
-        """Take a reading.
-
-        Args:
-            reading: of this tick.
-
-        Returns:
-            Why it cannot be used, or None.
-        """
+        """Take this tick's reading; why it cannot be used, or None."""
         if self._gripper is None:
             return None
         if reading is None:
@@ -100,42 +91,30 @@ class GripperFilter:
 
     @staticmethod
     def known(asked: object) -> bool:
-        """Whether this is something that can be asked."""
+        """Whether this is a request that a gripper can meet."""
         return asked is None or (isinstance(asked, str) and asked in _ASKS)
 
     def ask(self, asked: GripperAsk | None, *, engaged: bool) -> None:
-        """Take what a fresh input asks.
-
-        Args:
-            asked: what is asked; counts when it changes.
-            engaged: whether the arm may move.
-        """
+        """Take a fresh input's request, which counts when it changes."""
         new, self._held = asked != self._held, asked
         if new and engaged and asked is not None and self._fresh:
             self._aim(asked)
             self._asker = "driver"
 
     def guided(self, asked: GripperAsk | None) -> None:
-        """The arm is guided by hand until the next command.
-
-        Args:
-            asked: what the person who guides it asks; None asks nothing new.
-        """
+        """The arm is guided by hand until the next command; the guide asks this, or nothing new."""
         self._guided, self._guide_asks = True, asked
 
     def command(
         self, time_s: float, pace: float, *, engaged: bool, opens: bool | None = None
     ) -> GripperCommand | None:
-        """Where the gripper is to go now; called once in every tick.
+        """The next command, once per tick; None where the gripper has never been commanded.
 
         Args:
             time_s: the loop's clock, s.
             pace: share of its speed that it may move with, in [0, 1]; 0 while inputs falter.
             engaged: whether the arm may move.
-            opens: whether a fresh input says that what opens the gripper is held down; None without one.
-
-        Returns:
-            The command, or None where the gripper was never told anything and is to stay as it is.
+            opens: whether a fresh input says that the opening button is held down; None without an input.
         """
         guided, asked = self._guided and not engaged, self._guide_asks
         self._guided, self._guide_asks = False, None
@@ -168,7 +147,7 @@ class GripperFilter:
             self._target_m = self._gripper.width_m if opens else 0.0
 
     def _here(self) -> float | None:
-        """The opening at which it stands still; where something is held, what it was closing towards, m."""
+        """The opening at which it stands still, m; where something is held, the target of closing."""
         if self._reading is None or self._reading.holding:
             return self._target_m
         return min(max(self._reading.width_m, 0.0), self._width)

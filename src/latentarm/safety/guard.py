@@ -9,7 +9,7 @@ from latentarm.safety.body import Placement
 from latentarm.safety.bounds import MAY_BEND_M
 from latentarm.safety.brake import Brake
 from latentarm.safety.filter import Situation
-from latentarm.safety.small import largest, smallest, some
+from latentarm.safety.small import any_nonzero, largest, smallest
 from latentarm.safety.zone_distances import ZoneDistances
 from latentarm.safety.zones import Zone, zone_filter_name
 
@@ -26,10 +26,7 @@ class Path:
     ``v+ - v`` and the short settling of acceleration; ``stray`` bounds, joint by joint, how far the true
     path lies from the straight one.
 
-    Args:
-        velocity: (n,), the command, rad/s.
-        brake: the stop that would follow it.
-        hold_s: how long the command lasts, s.
+    ``hold_s`` is how long the command lasts, s.
 
     Attributes:
         before_s: for how long the arm moves at the command, phase one of the brake included, s.
@@ -37,7 +34,6 @@ class Path:
         way: (n,), rad.
         kink: (n,), ``|v+ - v|``, rad/s.
         fastest: (n,), largest speed of each joint, rad/s.
-        brake: as given.
     """
 
     __slots__ = ("after_s", "before_s", "brake", "fastest", "kink", "way")
@@ -90,13 +86,7 @@ class Guard:
     """
 
     def objection(self, velocity: FloatArray, brake: Brake, situation: Situation) -> str | None:
-        """What the command or the stop after it would break, or None.
-
-        Args:
-            velocity: (n,), the command, rad/s.
-            brake: the stop from it.
-            situation: what is known at this tick.
-        """
+        """The limit that the command (n,), rad/s, or the stop after it would break, or None."""
         path = Path(velocity, brake, situation.bounds.hold_s)
         if self._passes_joint_limits(velocity, path, situation):
             return "joint position"
@@ -123,7 +113,7 @@ class Guard:
         lowest = before_s * np.minimum(velocity, 0.0) + after_s * np.minimum(settled, 0.0)
         above = highest > np.maximum(room[1], 0.0) + _NUMERIC_RAD
         below = lowest < np.minimum(room[0], 0.0) - _NUMERIC_RAD
-        return some(above) or some(below)
+        return any_nonzero(above) or any_nonzero(below)
 
     def _too_fast(self, velocity: FloatArray, path: Path, situation: Situation) -> bool:
         nearby, drift = situation.nearby()
@@ -193,7 +183,7 @@ class Guard:
         """Indices of the zones that a part reaches into on the path, and is too fast for."""
         near = distance - (path.before_s + path.after_s) * speed <= situation.bounds.config.clearance
         harmful = (speed > situation.surroundings.zones.limit) & near
-        return np.flatnonzero(harmful.any(axis=1)) if some(harmful.ravel()) else _NONE
+        return np.flatnonzero(harmful.any(axis=1)) if any_nonzero(harmful.ravel()) else _NONE
 
     @staticmethod
     def _too_close(path: Path, situation: Situation) -> bool:
@@ -238,4 +228,4 @@ def _worsens(now: FloatArray, change: FloatArray, bend: FloatArray, least: Float
     both too near, every way out bends towards one of them.
     """
     nearer = now + change < np.minimum(least, now) - _NUMERIC_M
-    return some((nearer | (now + change - bend < np.minimum(least, now - MAY_BEND_M))).ravel())
+    return any_nonzero((nearer | (now + change - bend < np.minimum(least, now - MAY_BEND_M))).ravel())

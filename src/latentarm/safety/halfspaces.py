@@ -4,7 +4,7 @@ import daqp
 import numpy as np
 
 from latentarm.core.types import BoolArray, FloatArray
-from latentarm.safety.small import some
+from latentarm.safety.small import any_nonzero
 
 _LEAN = 0.2
 """Beyond a limit, at least this share of the motion must lead away from it, where that is possible."""
@@ -13,7 +13,7 @@ _UNFELT = 1e-9
 """A distance that no joint changes by more than this, in m per rad, has no direction."""
 
 _ROUNDING = 1e-6
-"""A velocity of which no greater share is left is rest."""
+"""A velocity whose share left is below this is rest."""
 
 _SOFTNESS = 1e-10
 """The solver may miss half-spaces by this times their force, or it finds no way between opposite ones."""
@@ -26,13 +26,13 @@ def slide(
     floor: FloatArray,
     passed: BoolArray,
 ) -> tuple[FloatArray, BoolArray]:
-    """The velocity nearest to what was asked for that approaches nothing too fast.
+    """The nearest velocity that approaches nothing too fast.
 
     Rest is within the half-spaces ``rows @ v >= floor`` and the ``limits``, so there is a nearest velocity P:
     an arm that is pushed obliquely at a table slides along it. P is rest only where every velocity d within
-    them leads backwards, ``d @ velocity <= 0``. Where a distance is too small already, what is left leans
+    them leads backwards, ``d @ velocity <= 0``. Where a distance is too small already, the result leans
     away if it can, because a path along a curved surface would come nearer. The result is never longer than
-    what was asked for nor turned against it.
+    ``velocity`` nor turned against it.
 
     Args:
         velocity: (n,), rad/s.
@@ -46,8 +46,8 @@ def slide(
     """
     clipped = np.clip(velocity, *limits)
     acting = np.concatenate([clipped != velocity, passed & False])
-    if not some(passed | (rows @ clipped < floor)):
-        return (clipped if some(acting) else velocity), acting
+    if not any_nonzero(passed | (rows @ clipped < floor)):
+        return (clipped if any_nonzero(acting) else velocity), acting
     norm = np.maximum(np.sqrt(np.vecdot(rows, rows)), _UNFELT)
     rows, floor = rows / norm[:, None], floor / norm
     slid, acting = _nearest(velocity, limits, rows, floor)
@@ -56,9 +56,9 @@ def slide(
         return np.zeros_like(velocity), acting
     lean = np.where(passed & (norm > _UNFELT), _LEAN * np.sqrt(slid @ slid), floor)
     leaning, leant = _nearest(slid, limits, rows, lean)
-    if leaning @ velocity > 0.0 and not some(rows @ leaning < np.minimum(0.5 * lean, lean) - 1e-9):
+    if leaning @ velocity > 0.0 and not any_nonzero(rows @ leaning < np.minimum(0.5 * lean, lean) - 1e-9):
         slid, acting = leaning * min(1.0, size / float(np.sqrt(leaning @ leaning))), acting | leant
-    return (slid if some(acting) else velocity), acting
+    return (slid if any_nonzero(acting) else velocity), acting
 
 
 def _nearest(
@@ -84,21 +84,11 @@ def _nearest(
 def unbent(
     velocity: FloatArray, rows: FloatArray, room: FloatArray, bend: FloatArray, time_s: float
 ) -> float:
-    """The share of a velocity that is slow enough to treat paths as straight.
+    """The share in [0, 1] of a velocity that is slow enough to treat paths as straight.
 
-    Over ``time_s`` at share s of the velocity a distance changes by at least ``s g t - s² c t² / 2`` with
-    its rate g and its bend c. That must not use up more than the room left. The largest such share
-    has a closed form.
-
-    Args:
-        velocity: (n,), rad/s.
-        rows: (C, n), as in `slide`.
-        room: (C,), distance that may still be lost, above zero, m.
-        bend: (C,), second derivative of each distance at full velocity, zero or more, m/s².
-        time_s: s.
-
-    Returns:
-        The share, in [0, 1].
+    Over ``time_s`` at share s of the velocity a distance changes by at least ``s g t - s² c t² / 2`` with its
+    rate g (from ``rows``, see `slide`) and its bend c at full velocity, m/s², ≥ 0. That must not use up more
+    than the ``room`` left (C,), m, > 0. The largest such share has a closed form.
     """
     rate = rows @ velocity
     root = np.sqrt(rate * rate + 2.0 * bend * room)

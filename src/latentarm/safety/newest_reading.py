@@ -35,11 +35,7 @@ class NewestReading:
         self._sequence = None
 
     def refusal(self, reading: Reading, time_s: float) -> Stop | None:
-        """Why the reading cannot be used, or None.
-
-        Args:
-            reading: the newest.
-            time_s: the loop's clock, s.
+        """Why the reading cannot be used at this time of the loop's clock, or None.
 
         Raises:
             Exception: any, where its time or its number is not a number.

@@ -1,7 +1,7 @@
 """Validation of obstacles for the safety filters, and common obstacles by name."""
 
 from dataclasses import replace
-from typing import Any
+from typing import Any, TypeGuard
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,11 +39,7 @@ def checked_obstacle(obstacle: object) -> Obstacle:
 
 
 def checked_shape(obstacle: Obstacle, what: str) -> Obstacle:
-    """The shape with float arrays, validated.
-
-    Args:
-        obstacle: any of the shapes, whatever it stands for.
-        what: what messages call it, the subject of a sentence.
+    """The shape with float arrays, validated; ``what`` is the subject of the messages.
 
     Raises:
         UserError: as for `checked_obstacle`.
@@ -76,6 +72,11 @@ def checked_shape(obstacle: Obstacle, what: str) -> Obstacle:
                 rotation=_rotation(what, obstacle.rotation),
                 half_extents=extents,
             )
+
+
+def is_number(value: object) -> TypeGuard[float]:
+    """Whether the value is a real number, and no truth value."""
+    return isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)
 
 
 def as_array(value: object) -> NDArray[Any]:
@@ -116,7 +117,7 @@ def _rotation(what: str, value: FloatArray) -> FloatArray:
 
 
 def _size(what: str, field: str, value: object) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float | np.integer | np.floating):
+    if not is_number(value):
         raise UserError(f"{what} needs a number as its {field}.")
     if not 0.0 < value <= _FAR_M:
         raise UserError(f"{what} has {field} {value}: it must be above 0 and at most {_FAR_M:g} m.")

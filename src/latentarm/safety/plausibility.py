@@ -41,10 +41,6 @@ class Plausibility:
     fast the arm moves. A joint that has been commanded one way for longer than any lag must be moving: where
     its new readings repeat, the commanded displacement counts in full. The anchor is at most
     ``following_window_s`` old, so slow drift is no error either.
-
-    Args:
-        bounds: the limits.
-        robot: the arm.
     """
 
     def __init__(self, bounds: Bounds, robot: Robot) -> None:
@@ -79,14 +75,9 @@ class Plausibility:
         self._reading = None
 
     def jump(self, reading: FloatArray, time_s: float) -> Stop | None:
-        """Whether a reading is too far from the previous one; call this first, on every tick.
+        """Why a reading (n,), rad, is too far from the previous one, or None; call this first, on every tick.
 
-        Args:
-            reading: (n,), measured joint positions, rad, finite.
-            time_s: the loop's clock, s; not before that of the reading before.
-
-        Returns:
-            Why it cannot be true, or None.
+        ``time_s`` is the loop's clock, not before that of the previous reading.
         """
         if self._reading is None:
             return None
@@ -110,7 +101,7 @@ class Plausibility:
     def follow(
         self, reading: FloatArray, velocity: FloatArray, time_s: float, *, new: bool, driven: bool
     ) -> Stop | None:
-        """Add a reading and check whether it agrees with the commands.
+        """Add a reading; why it disagrees with the commands, or None.
 
         Args:
             reading: (n,), measured joint positions, rad, finite.
@@ -118,10 +109,7 @@ class Plausibility:
             time_s: the loop's clock, s.
             new: whether it was measured since the reading before.
             driven: whether the arm is expected to follow its commands. An arm at rest that is not enabled may
-                be moved by hand: then every reading is the anchor for what comes.
-
-        Returns:
-            Why it cannot be true, or None.
+                be moved by hand: then every reading is the anchor for the next ones.
         """
         if self._reading is None:
             self._begin(reading, time_s)
@@ -157,17 +145,11 @@ class Plausibility:
         return None
 
     def estimate(self, reading: FloatArray) -> FloatArray:
-        """The joint positions, assuming that joints whose readings repeat moved as commanded.
+        """The positions (n,), rad, assuming that joints whose readings repeat moved as commanded.
 
         A reading that repeats exactly is either old or from a frozen encoder. Until `follow` can tell which,
         assume that the joint has moved: nothing that depends on the arm's position may wait for the next
         reading.
-
-        Args:
-            reading: (n,), rad, as it was given to `follow`.
-
-        Returns:
-            (n,), rad; ``reading`` itself where nothing repeats on the move.
         """
         if not self._repeats:
             return reading
@@ -231,6 +213,6 @@ class Plausibility:
         )
 
     def _of(self, joint: int, what: str, amount: float) -> dict[str, str | int]:
-        """A joint's name and an amount, rad or m, as what people read: whole degrees or millimetres."""
+        """A joint's name and an amount, rad or m, in whole degrees or millimetres for people to read."""
         unit, shown = ("mm", 1000 * amount) if self._slides[joint] else ("deg", math.degrees(amount))
         return {"joint": self._names[joint], f"{what}_{unit}": round(shown)}

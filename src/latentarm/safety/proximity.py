@@ -1,4 +1,4 @@
-"""What the arm is close to, obstacles and itself, as heights above supporting planes."""
+"""Shapes near the arm, obstacles and its own links, as heights above supporting planes."""
 
 from dataclasses import dataclass, replace
 from typing import final
@@ -9,7 +9,7 @@ from latentarm.core.types import BoolArray, FloatArray, IntArray
 from latentarm.robots.kinematics.distances import box_separation, segment_distance
 from latentarm.robots.kinematics.obstacles import Box, Capsule, HalfSpace, Obstacle, Sphere
 from latentarm.safety.body import Body, Placement
-from latentarm.safety.small import largest, some
+from latentarm.safety.small import any_nonzero, largest
 
 _CROSSING_M = 1e-9
 """Segments closer than this intersect, so the line between their closest points has no direction."""
@@ -31,20 +31,13 @@ class Contacts:
     to it where n joins their closest points. n is fixed in the frame of A's link where that link carries
     B (so only the joints between them matter), otherwise in the base frame. Both ends have a height,
     because a capsule may come down with either.
-
-    Attributes:
-        pair: (C,), index into the proximity's pairs.
-        height: (C, 2), of both ends of B, m; the smaller one is the distance.
-        row: (C, 2, n), how joint velocities change the heights, m/s per rad/s.
-        since: (n,), how far each joint has moved since all this was measured, rad.
-        fresh: whether that is nothing at all.
     """
 
-    pair: IntArray
-    height: FloatArray
-    row: FloatArray
-    since: FloatArray
-    fresh: bool
+    pair: IntArray  # (C,), index into the proximity's pairs
+    height: FloatArray  # (C, 2), of both ends of B, m; the smaller one is the distance
+    row: FloatArray  # (C, 2, n), how joint velocities change the heights, m/s per rad/s
+    since: FloatArray  # (n,), how far each joint has moved since the measurement, rad
+    fresh: bool  # whether no joint has moved since
 
 
 @final
@@ -57,14 +50,11 @@ class Proximity:
     close are measured anew.
 
     Args:
-        body: the arm.
-        obstacles: the obstacles, already validated.
         link_speed: the fastest that any point of the arm may move, m/s.
         nearest_m: distance to be kept, m.
         horizon_s: for how long the arm may go on towards something, s.
 
     Attributes:
-        names: for each pair, what a person would call it.
         lever: (pairs, n), bound of how fast a joint changes the pair's distance, m.
         curvature: (pairs, n, n), bound of the heights' second derivative, see `Body`.
     """
@@ -128,14 +118,9 @@ class Proximity:
         self._held_at = self._held_speed = np.zeros(body.robot.dof)
 
     def held(self, q: FloatArray, speed: FloatArray) -> Contacts | None:
-        """The contacts that were measured last, if they are still all that matter.
+        """The contacts measured last, if they are still all that matter at q (n,), rad; None if not.
 
-        Args:
-            q: (n,), rad.
-            speed: (n,), how fast each joint may go, rad/s.
-
-        Returns:
-            The contacts, a few ticks old; or None where they must be measured anew.
+        ``speed`` (n,), rad/s, bounds how fast each joint may go.
         """
         if self._held is None:
             return None
@@ -143,20 +128,15 @@ class Proximity:
         moved = np.abs(since)
         used = moved + self._horizon_s * np.maximum(speed - self._held_speed, 0.0)
         furthest = largest(moved)
-        if furthest > _STALE_RAD or some(self.lever @ used >= self._spare):
+        if furthest > _STALE_RAD or any_nonzero(self.lever @ used >= self._spare):
             return None
         held = self._held
         return Contacts(held.pair, held.height, held.row, since=since, fresh=furthest == 0.0)
 
     def measured(self, placement: Placement, speed: FloatArray) -> Contacts:
-        """The pairs that matter, measured now.
+        """All pairs, measured now, that could come nearer than the distance to be kept within the horizon.
 
-        Args:
-            placement: the arm.
-            speed: (n,), how fast each joint may go, rad/s.
-
-        Returns:
-            All pairs that could come nearer than the distance to be kept within the horizon.
+        ``speed`` (n,), rad/s, bounds how fast each joint may go.
         """
         q = placement.q
         known = self._distance - (self.lever * np.abs(q - self._at)).sum(axis=1)
@@ -176,36 +156,24 @@ class Proximity:
                     contacts, pair=contacts.pair[near], height=contacts.height[near], row=contacts.row[near]
                 )
         else:
-            contacts = self._nothing(len(q))
+            still = np.zeros(len(q))
+            none = np.zeros((0, 2)), np.zeros((0, 2, len(q)))
+            contacts = Contacts(np.zeros(0, dtype=np.int64), *none, since=still, fresh=True)
         self._held, self._held_at, self._held_speed = contacts, q, speed
         self._spare = known - enough
         self._spare[contacts.pair] = np.inf
         return contacts
 
     def heights(self, contacts: Contacts, way: FloatArray) -> FloatArray:
-        """Lower bounds of all heights once the joints have moved on, (C, 2), m.
+        """Lower bounds (C, 2), m, of all heights once the joints have moved on by ``way`` (n,), rad.
 
         By Taylor's theorem from where they were measured, see `Body`. Along a straight way the bound
         is concave, so that between two points of it no height is below the lower of their bounds.
-
-        Args:
-            contacts: of this robot.
-            way: (n,), from the present configuration, rad.
         """
         way = contacts.since + way
         size = np.abs(way)
         bend = self.curvature[contacts.pair] @ size @ size
         return contacts.height + contacts.row @ way - 0.5 * bend[:, None]
-
-    @staticmethod
-    def _nothing(dof: int) -> Contacts:
-        return Contacts(
-            pair=np.zeros(0, dtype=np.int64),
-            height=np.zeros((0, 2)),
-            row=np.zeros((0, 2, dof)),
-            since=np.zeros(dof),
-            fresh=True,
-        )
 
     def _planes_between(self, points: FloatArray, pair: IntArray) -> tuple[FloatArray, FloatArray]:
         """For each pair the plane's unit normal, out of A, and how far along it A reaches, m."""

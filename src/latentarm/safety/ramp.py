@@ -4,6 +4,7 @@ from typing import final
 
 import numpy as np
 from ruckig import ControlInterface, InputParameter, Result, Ruckig, RuckigError, Synchronization, Trajectory
+from typing_extensions import override
 
 from latentarm.core.types import FloatArray, Stop
 from latentarm.safety.filter import SafetyFilter, Situation
@@ -16,11 +17,10 @@ class Ramp(SafetyFilter):
     All joints arrive together: in proportion where the way is straight, so that no mix of old and new
     velocity moves any point faster than the faster of the two.
 
-    Args:
-        dt_s: the loop's period, s.
-        acceleration: (n,), the limit, rad/s².
-        jerk: (n,), the limit, rad/s³.
+    ``dt_s`` is the loop's period; acceleration (n,), rad/s², and jerk (n,), rad/s³, are the limits.
     """
+
+    name = "ramp"
 
     def __init__(self, dt_s: float, acceleration: FloatArray, jerk: FloatArray) -> None:
         dof = len(acceleration)
@@ -34,28 +34,17 @@ class Ramp(SafetyFilter):
         wanted.max_jerk = jerk.tolist()
         self._wanted = wanted
 
-    @property
-    def name(self) -> str:
-        """See the base class."""
-        return "ramp"
-
+    @override
     def apply(self, velocity: FloatArray, situation: Situation) -> FloatArray | Stop:
-        """See the base class."""
         ramped = self.ramped(velocity, situation.velocity, situation.acceleration)
         return ramped if isinstance(ramped, Stop) else ramped[0]
 
     def ramped(
         self, target: FloatArray, velocity: FloatArray, acceleration: FloatArray
     ) -> tuple[FloatArray, FloatArray] | Stop:
-        """Velocity and acceleration one period later.
+        """Velocity (n,), rad/s, and acceleration (n,), rad/s², one period later; a stop where no ramp exists.
 
-        Args:
-            target: (n,), what is wanted, rad/s.
-            velocity: (n,), the last command, rad/s.
-            acceleration: (n,), at the last command, rad/s².
-
-        Returns:
-            Velocity (n,), rad/s, and acceleration (n,), rad/s²; or a stop where no ramp exists.
+        ``target`` is (n,), rad/s; ``velocity`` and ``acceleration`` are those of the last command.
         """
         wanted = self._wanted
         wanted.current_velocity = velocity.tolist()

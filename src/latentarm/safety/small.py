@@ -17,6 +17,6 @@ def smallest(values: FloatArray) -> float:
     return min(values.tolist())
 
 
-def some(values: BoolArray | FloatArray) -> bool:
+def any_nonzero(values: BoolArray | FloatArray) -> bool:
     """Whether any entry of (n,) is true, or not zero."""
     return any(values.tolist())

@@ -23,7 +23,7 @@ from latentarm.safety.filter import (
 )
 from latentarm.safety.guard import Guard
 from latentarm.safety.ramp import Ramp
-from latentarm.safety.small import largest, smallest, some
+from latentarm.safety.small import any_nonzero, largest, smallest
 from latentarm.safety.zone_speed import ZoneSpeed
 
 _SAME_RAD_S = 1e-9
@@ -33,17 +33,11 @@ _SAME_RAD_S = 1e-9
 @final
 @dataclass(frozen=True, slots=True)
 class Passed:
-    """What came out of the stack.
+    """The command that leaves the stack."""
 
-    Attributes:
-        velocity: (n,), rad/s.
-        limited_by: names of the filters that changed what was asked for.
-        stop: why the arm is being stopped, or None.
-    """
-
-    velocity: FloatArray
-    limited_by: tuple[str, ...] = ()
-    stop: Stop | None = None
+    velocity: FloatArray  # (n,), rad/s
+    limited_by: tuple[str, ...] = ()  # names of the filters that changed the request
+    stop: Stop | None = None  # why the arm is being stopped, or None
 
 
 @final
@@ -53,17 +47,8 @@ class SafetyStack:
     The output is the first of these that is proven safe: the shaped and ramped velocity; a small step to it;
     an ordinary deceleration; the stop that was proven with the previous command. See `Guard` for the proof.
 
-    Args:
-        config: the limits.
-        robot: the arm.
-        dt_s: the loop's period, s.
-
-    Attributes:
-        bounds: the limits for this arm.
-        body: the arm.
-
     Raises:
-        UserError: the limits do not suit the robot or the period, see `Bounds`.
+        UserError: the limits do not suit the robot or the loop's period ``dt_s``, see `Bounds`.
     """
 
     def __init__(self, config: SafetyConfig, robot: Robot, dt_s: float) -> None:
@@ -91,7 +76,7 @@ class SafetyStack:
     @property
     def at_rest(self) -> bool:
         """Whether the last command was to stand still."""
-        return not (some(self._velocity) or some(self._acceleration))
+        return not (any_nonzero(self._velocity) or any_nonzero(self._acceleration))
 
     @property
     def velocity(self) -> FloatArray:
@@ -105,24 +90,17 @@ class SafetyStack:
         self._brake = None
 
     def tick(self, time_s: float) -> None:
-        """Take note of the time, for a stop that is under way when ticks come late.
-
-        Args:
-            time_s: the loop's clock, s.
-        """
+        """Take note of the loop's clock, for a stop that is under way when ticks come late."""
         self._now_s = time_s
 
     def command(self, wanted: FloatArray, state: FloatArray, input_age_s: float, pace: float = 1.0) -> Passed:
-        """The next command.
+        """The next command: a velocity that keeps all limits, or a stop that is under way.
 
         Args:
             wanted: (n,), rad/s, any floats.
             state: (n,), measured joint positions, rad, finite.
             input_age_s: age of the newest input, s.
-            pace: share of what the limits leave of it that the arm moves with, in [0, 1].
-
-        Returns:
-            A velocity that keeps all limits, or a stop that is under way.
+            pace: share of the permitted velocity that the arm moves with, in [0, 1].
         """
         situation = Situation(self._surroundings, state, self._velocity, self._acceleration, input_age_s)
         limited_by: list[str] = []
@@ -130,15 +108,15 @@ class SafetyStack:
         if isinstance(shaped, Stop):
             return Passed(self.stop(), tuple(limited_by), shaped)
         shaped = pace * shaped
-        if not some(shaped) and self.at_rest:
+        if not any_nonzero(shaped) and self.at_rest:
             self._brake = None
             return Passed(self._rest, tuple(limited_by))
-        first = self._ramp if some(wanted) and pace > 0.0 else self._release
+        first = self._ramp if any_nonzero(wanted) and pace > 0.0 else self._release
         more = shaped - self._velocity
         step = more * smallest(self.bounds.one_step / np.maximum(np.abs(more), self.bounds.one_step))
         # The guard foresees what a ramp still adds once it has begun, which may be too much in a slow zone or
         # beside a thing. Steps that are over by the next tick then move the arm until it is fast enough.
-        self._by_steps &= some(wanted) and largest(np.abs(step - more)) > 0.0
+        self._by_steps &= any_nonzero(wanted) and largest(np.abs(step - more)) > 0.0
         targets = ((first, shaped), (first, self._velocity + step), (self._ramp, self._rest))
         for ramp, target in targets[self._by_steps :]:
             ramped = ramp.ramped(target, self._velocity, self._acceleration)
@@ -147,7 +125,7 @@ class SafetyStack:
                     limited_by.append(self._ramp.name)
                 continue
             velocity, acceleration = ramped
-            if not some(target) and largest(np.abs(velocity)) <= _SAME_RAD_S:
+            if not any_nonzero(target) and largest(np.abs(velocity)) <= _SAME_RAD_S:
                 # Without this, rounding leaves ever smaller motion and the arm never quite rests.
                 velocity, acceleration = np.zeros_like(velocity), np.zeros_like(acceleration)
             objection = self._guard.objection(velocity, self.bounds.brake(velocity, acceleration), situation)
@@ -185,12 +163,9 @@ class SafetyStack:
         return velocity
 
     def stop(self) -> FloatArray:
-        """Start or continue the proven stop.
+        """Start or continue the proven stop; the next velocity (n,), rad/s.
 
         It was proven to go on in real time, so a late tick takes up the ramp where it should be by now.
-
-        Returns:
-            (n,), the next velocity, rad/s.
         """
         if self._brake is None:
             self._brake = self.bounds.brake(self._velocity, self._acceleration)

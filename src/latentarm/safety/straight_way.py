@@ -17,19 +17,15 @@ LARGEST_RAD: Final = 0.05
 _SMALLEST_RAD: Final = 0.003
 
 _NEARER_M: Final = 1e-3
-"""What is too near already may not come nearer than this much, m."""
+"""Things that are too near already may come nearer by this much at most, m."""
 
 
 @final
 class StraightWay:
-    """Goes along the way in thought, from the obstacles and the arm itself that the safety filters know of.
+    """Follows the way in thought, past the obstacles and the arm's own links that the safety filters know.
 
     Between two looks every distance has a lower bound (`Proximity.heights`). Where it does not suffice, the
     next look is nearer; no two looks are closer than 3 mrad, so a corner may be cut by about as many mm.
-
-    Args:
-        robot: the arm.
-        safety: obstacles, and the distance to be kept from them and between parts of the arm.
     """
 
     def __init__(self, robot: Robot, safety: SafetyConfig) -> None:
@@ -42,12 +38,7 @@ class StraightWay:
         self.clear = True
 
     def begin(self, start: FloatArray, goal: FloatArray) -> None:
-        """Look at another way.
-
-        Args:
-            start: (n,), where the arm is, rad.
-            goal: (n,), where it is to go, rad.
-        """
+        """Look at another way, from where the arm is to where it goes, (n,), rad."""
         self._start, self._way = start, goal - start
         farthest = float(np.abs(self._way).max())
         self._step = min(1.0, LARGEST_RAD / max(farthest, LARGEST_RAD))
@@ -56,14 +47,11 @@ class StraightWay:
         self.clear = False
 
     def look(self, times: int) -> tuple[str, str] | None:
-        """Go on along the way.
-
-        Args:
-            times: at so many places of it at most.
+        """Look at up to ``times`` further places along the way.
 
         Returns:
-            What would come too close to what else; None where nothing has been found, so far or, where
-            `clear` is set by then, at all.
+            The two things that would come too close, or None where none have been found so far. Once `clear`
+            is set, there are none on the whole way.
         """
         for _ in range(times):
             if self.clear:
@@ -91,7 +79,7 @@ class StraightWay:
         return None
 
     def _sure_step(self, contacts: Contacts) -> float:
-        """How far the way can be gone from here without anything coming too near, as a share of it."""
+        """The share of the way that can be gone from here without anything coming too near."""
         farthest = float(np.abs(self._way).max())
         step = self._step
         while step * farthest > _SMALLEST_RAD:

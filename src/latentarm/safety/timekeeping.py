@@ -12,8 +12,7 @@ class Timekeeping:
     After any of these the elapsed time is unknown, and so is whether the arm still moves or has stopped by
     itself. A command that continues from the last one could then be a jump.
 
-    Args:
-        hold_s: how long one command lasts, s.
+    One command lasts ``hold_s``.
     """
 
     def __init__(self, hold_s: float) -> None:
@@ -31,11 +30,7 @@ class Timekeeping:
         self._sent_s = time_s
 
     def refusal(self, time_s: float) -> Stop | None:
-        """Why no command may follow at this time, or None.
-
-        Args:
-            time_s: the loop's clock at this tick, s.
-        """
+        """Why no command may follow at this time of the loop's clock, s, or None."""
         before_s, sent_s = self._tick_s, self._sent_s
         self._tick_s = self._sent_s = time_s
         if before_s is None:

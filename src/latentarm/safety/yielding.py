@@ -1,4 +1,4 @@
-"""An arm that was stopped because something holds it draws back a little, and rests."""
+"""An arm that was stopped because something holds it draws back a little and rests."""
 
 import math
 from collections import deque
@@ -38,13 +38,9 @@ class Yielding:
     that was commanded, inside the thing. So the arm is commanded to where it is measured, then back along its
     last commands, until a point of it has gone back by `FARTHEST_M`, for at most `LONGEST_S`.
 
-    Contact is not measured. What counts as contact: the arm stands still, a joint is still off, in readings
+    Contact is not measured but inferred: the arm stands still, a joint is still off, in readings
     that change, and it or the farthest point is behind where it was commanded to go. A frozen encoder repeats
-    itself, late readings catch up, and what is pushed along is not behind.
-
-    Args:
-        bounds: the limits.
-        body: the arm.
+    itself, late readings catch up, and an arm that is pushed along is not behind.
     """
 
     def __init__(self, bounds: Bounds, body: Body) -> None:
@@ -61,7 +57,7 @@ class Yielding:
 
     @property
     def on(self) -> bool:
-        """Whether the arm draws back, or is looked at to decide whether it should."""
+        """Whether the arm draws back, or is watched to decide whether it should."""
         return self._looked is not None
 
     def end(self) -> None:
@@ -79,13 +75,9 @@ class Yielding:
         self._looked = 0
 
     def wanted(self, q: FloatArray) -> FloatArray | None:
-        """What to ask of the filters now; call this in every tick in which the arm is stopped.
+        """The velocity (n,), rad/s, to ask of the filters now; None where the arm is to stand still.
 
-        Args:
-            q: (n,), measured joint positions, rad.
-
-        Returns:
-            (n,), rad/s; None where the arm is to stand still.
+        Call this with the measured positions (n,), rad, in every tick in which the arm is stopped.
         """
         if self._looked is None:
             return None
@@ -104,11 +96,7 @@ class Yielding:
         return self._way_back.pop()
 
     def _decided(self, looked: int) -> list[FloatArray] | None:
-        """Velocities that lead back, the last one first, rad/s; None where nothing seems to hold the arm.
-
-        Args:
-            looked: for how many ticks the arm has been looked at.
-        """
+        """Velocities back, the last first, rad/s, after so many ticks; None where nothing holds the arm."""
         if looked <= self._looks or len(self._past) <= looked + self._looks:
             return None
         q, velocity = (np.array(part) for part in zip(*self._past, strict=True))

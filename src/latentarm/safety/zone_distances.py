@@ -1,4 +1,4 @@
-"""How far the parts of the arm are from the zones in which it must be slow."""
+"""Distances of the arm's parts from the zones in which it must be slow."""
 
 from typing import final
 
@@ -16,11 +16,7 @@ class ZoneDistances:
     """Distances of the arm's parts to zones, measured when they are asked for and bounded in between.
 
     The K + T parts are the arm's moving capsules and its tools. A distance that was measured at q' is at q
-    within ``Σ_j lever_j |q_j - q'_j|`` of what it was (see `Body`).
-
-    Args:
-        body: the arm.
-        zones: Z zones.
+    within ``Σ_j lever_j |q_j - q'_j|`` of that (see `Body`).
 
     Attributes:
         limit: (Z, 1), the zones' speeds, m/s.
@@ -46,24 +42,12 @@ class ZoneDistances:
         return np.maximum(figures[self._start], figures[self._end])
 
     def bounded(self, q: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Bounds of the distances from what was measured last.
-
-        Args:
-            q: (n,), rad.
-
-        Returns:
-            The least that each can be, and the most, (Z, K + T), m.
-        """
+        """The least and the most, (Z, K + T), m, that each distance can be at q (n,), rad."""
         change = np.abs(q - self._at) @ self._lever + self._doubt
         return self._distance - change, self._distance + change
 
     def measured(self, zone: int, placement: Placement) -> FloatArray:
-        """The distances to a zone, (K + T,), m; zero or less where a part reaches into it.
-
-        Args:
-            zone: its index.
-            placement: the arm.
-        """
+        """The distances to a zone, (K + T,), m; zero or less where a part reaches into it."""
         if self._measured[zone] is not placement:
             start, end = placement.points[self._start], placement.points[self._end]
             self._distance[zone] = self._to(self._zones[zone], start, end)

@@ -3,11 +3,12 @@
 from typing import final
 
 import numpy as np
+from typing_extensions import override
 
 from latentarm.core.types import FloatArray
 from latentarm.safety.bounds import Bounds
 from latentarm.safety.filter import HEADROOM, SafetyFilter, Situation
-from latentarm.safety.small import smallest, some
+from latentarm.safety.small import any_nonzero, smallest
 from latentarm.safety.zones import zone_filter_name
 
 _NOTHING = 1e-300
@@ -27,16 +28,12 @@ class ZoneSpeed(SafetyFilter):
     full speed is slow before it is there: it can follow this as it slows down, and the stop from such a speed
     ends before the zone. The direction is kept. An arm in a zone may move every way, and so out of it.
 
-    This only makes the motion smooth. What is promised is proven of each command by `Guard`.
-
-    Args:
-        bounds: the limits.
-        index: of the zone in the configuration.
+    This only makes the motion smooth. `Guard` proves the promise for each command.
     """
 
     def __init__(self, bounds: Bounds, index: int) -> None:
         zone = bounds.config.zones[index]
-        self._name = zone_filter_name(zone.name)
+        self.name = zone_filter_name(zone.name)
         self._index = index
         self._limit = zone.speed
         self._gain_per_s = bounds.damping_per_s
@@ -44,13 +41,8 @@ class ZoneSpeed(SafetyFilter):
         # Farther away than this, the limit of all links holds and this one is not below it.
         self._far_m = self._begins_m + (bounds.config.link_speed - zone.speed) / self._gain_per_s
 
-    @property
-    def name(self) -> str:
-        """See the base class."""
-        return self._name
-
+    @override
     def apply(self, velocity: FloatArray, situation: Situation) -> FloatArray:
-        """See the base class."""
         zones, bounds = situation.surroundings.zones, situation.bounds
         least, most = (distances[self._index] for distances in situation.zone_distances())
         if smallest(least) >= self._far_m:
@@ -59,11 +51,11 @@ class ZoneSpeed(SafetyFilter):
         nearby, drift = situation.nearby()
         bend = nearby.body.bent(bounds.reach_s * size + drift) @ size
         too_fast = zones.of_parts(nearby.speeds(velocity) + bend) > self._allowed(least)
-        if not some(too_fast):
+        if not any_nonzero(too_fast):
             return velocity
         # Placement and distances were a few ticks old, which may be the only reason.
         placement = situation.placement
-        if some(most[too_fast] > self._begins_m):
+        if any_nonzero(most[too_fast] > self._begins_m):
             least = situation.zone_distances_now(self._index)
         allowed = self._allowed(least)
         speed = zones.of_parts(placement.speeds(velocity))

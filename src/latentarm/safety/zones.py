@@ -4,12 +4,10 @@ import math
 from dataclasses import dataclass
 from typing import Final, cast, final
 
-import numpy as np
-
 from latentarm.core.errors import UserError
 from latentarm.core.untrusted.names import clean_name, same_name
 from latentarm.robots.kinematics.obstacles import Obstacle
-from latentarm.safety.obstacles import checked_shape
+from latentarm.safety.obstacles import checked_shape, is_number
 
 MOST_ZONES: Final = 8
 
@@ -29,7 +27,7 @@ class Zone:
     slab over the table's top) and ``self`` (the person's body or wheelchair).
 
     Attributes:
-        shape: the solid, in the base frame, and the zone's name.
+        shape: the solid, in the base frame, with the zone's name.
         speed: the largest speed of any point of a part that reaches into the zone, m/s.
 
     Raises:
@@ -45,7 +43,7 @@ class Zone:
         what, speed = f"The zone {self.shape.name!r}", cast("object", self.speed)
         check_name(self.shape.name, what)
         object.__setattr__(self, "shape", checked_shape(self.shape, what))
-        if isinstance(speed, bool) or not isinstance(speed, int | float | np.integer | np.floating):
+        if not is_number(speed):
             raise UserError(f"{what} needs a number of m/s as its speed, not {speed!r}.")
         if not (math.isfinite(speed) and SLOWEST_M_PER_S <= speed <= _FASTEST_M_PER_S):
             raise UserError(
@@ -56,19 +54,15 @@ class Zone:
 
     @property
     def name(self) -> str:
-        """What a person would call it."""
+        """The zone's name for people."""
         return self.shape.name
 
 
 def check_name(name: str, what: str) -> None:
-    """Refuse a name that a page could not list.
-
-    Args:
-        name: of a zone.
-        what: what messages call it, the subject of a sentence.
+    """Refuse a name that a page could not list; ``what`` is the subject of the message.
 
     Raises:
-        UserError: it has commas, spaces around it, or what cannot be shown.
+        UserError: it has commas, spaces around it, or characters that cannot be shown.
     """
     if "," in name or clean_name(name) != name:
         raise UserError(f"{what} needs another name: without commas, and without spaces around it.")
@@ -95,18 +89,10 @@ def checked_zones(value: object) -> tuple[Zone, ...]:
 
 
 def zone_filter_name(zone: str) -> str:
-    """What a zone's filter is called among those that limit a command.
-
-    Args:
-        zone: the zone's name.
-    """
+    """The name of a zone's filter among those that limit a command."""
     return f"{_FILTER}{zone}"
 
 
 def zone_of_filter(name: str) -> str | None:
-    """The zone's name, or None where a filter is not a zone's.
-
-    Args:
-        name: of a filter.
-    """
+    """The zone's name, or None where a filter is not a zone's."""
     return name.removeprefix(_FILTER) if name.startswith(_FILTER) else None

@@ -1,4 +1,4 @@
-"""A zones file: where the arm is slow, and what it keeps out of, in TOML, with units in the keys.
+"""A zones file: where the arm is slow and what it keeps out of, in TOML, with units in the keys.
 
 An example::
 
@@ -49,22 +49,14 @@ _MOST_CLEARANCE_M: Final = 0.5
 @final
 @dataclass(frozen=True, eq=False)
 class StatedZones:
-    """What a zones file states.
+    """A zones file's content."""
 
-    Attributes:
-        slow: where the arm is slow.
-        keep_out: what the arm must keep clear of, larger by what is to be kept beyond the usual clearance.
-    """
-
-    slow: tuple[Zone, ...]
-    keep_out: tuple[Obstacle, ...]
+    slow: tuple[Zone, ...]  # where the arm is slow
+    keep_out: tuple[Obstacle, ...]  # enlarged by the clearance that they need beyond the usual one
 
 
 def read_zones(path: Path) -> StatedZones:
     """Read a zones file.
-
-    Args:
-        path: of a TOML file.
 
     Raises:
         UserError: the file cannot be read or is invalid; the message names the key.
@@ -79,11 +71,7 @@ def read_zones(path: Path) -> StatedZones:
 
 
 def parse_zones(document: object, where: str) -> StatedZones:
-    """Validate the zones of a zones file.
-
-    Args:
-        document: tables, lists and numbers.
-        where: the file, for messages.
+    """Validate the document of a zones file; ``where`` names the file in messages.
 
     Raises:
         UserError: a key is missing or unknown, a value cannot be used, two zones have the same name, or there
@@ -116,7 +104,7 @@ def _kept_out(solids: list[Obstacle]) -> tuple[Obstacle, ...]:
 
 
 def _solid(name: str, entry: object, where: str) -> Callable[[], Obstacle]:
-    """What makes a solid to keep out of, larger by the clearance that it states beyond the usual one."""
+    """A maker of a solid to keep out of, enlarged by the clearance that it states beyond the usual one."""
     key, usual_m = f"{_KEEP_OUT}.{name}", SafetyConfig.clearance
     given = dict(table_of(entry, where, key))
     clearance_m = number_of(given.pop(_CLEARANCE, usual_m), where, f"{key}.{_CLEARANCE}")
@@ -142,16 +130,10 @@ def _grown(solid: Obstacle, by_m: float) -> Obstacle:
 def _entry(
     key: str, entry: object, where: str, besides: tuple[str, ...] = ()
 ) -> tuple[Callable[[str], Obstacle], float]:
-    """An entry's keys, checked.
-
-    Args:
-        key: of the entry.
-        entry: its table.
-        where: the file, for messages.
-        besides: keys that it needs besides those of its shape: its speed, or nothing.
+    """Check an entry's keys; ``besides`` are those that it needs besides its shape's.
 
     Returns:
-        What makes its solid from a name, and its speed, m/s; 0 where it needs none.
+        A function that makes its solid from a name, and its speed, m/s; 0 where it needs none.
     """
     given = table_of(entry, where, key)
     shape = given.get("shape")

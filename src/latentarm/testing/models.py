@@ -20,8 +20,9 @@ from latentarm.core.types import Demonstrations, Episode, FloatArray
 from latentarm.demonstrations.pairs import make_pairs
 from latentarm.evaluation.search import nearest_latents
 from latentarm.models.catalogue import KINDS
+from latentarm.models.estimators import load_model
 from latentarm.models.model import LatentActionModel
-from latentarm.models.saving import load_decoder, load_model
+from latentarm.models.saving import load_decoder
 from latentarm.models.scaling import CollapseWarning
 from latentarm.robots.planar import planar
 

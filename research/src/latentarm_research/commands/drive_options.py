@@ -12,7 +12,7 @@ from latentarm.commands.options import Arm, EndEffector, Jobs, Json, LimitsFile,
 from latentarm.core.errors import UserError
 from latentarm.core.types import Row
 from latentarm.runs.checks import check_count, check_positive, check_seed
-from latentarm.runs.choices import BeliefName, TaskName
+from latentarm.runs.options import BeliefName, TaskName
 from latentarm_research.assistance.catalogue import AssistanceName
 from latentarm_research.people.names import OperatorName
 

@@ -6,7 +6,7 @@ from dataclasses import fields, replace
 from typing import Any, Final
 
 from latentarm.core.types import Demonstrations
-from latentarm.models.catalogue import MODELS
+from latentarm.models.estimators import MODELS
 from latentarm.models.model import LatentActionModel
 from latentarm.models.neural import NeuralModel
 from latentarm.models.scaling import CollapseWarning

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from latentarm.models.catalogue import MODELS
+from latentarm.models.estimators import MODELS
 from latentarm_research.studies.hypotheses import verdicts
 from latentarm_research.studies.properties.cell import PropertiesCell, PropertiesResult
 from latentarm_research.studies.properties.hypotheses import (

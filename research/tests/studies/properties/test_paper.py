@@ -1,7 +1,7 @@
 import pytest
 
 from latentarm.core.types import Row
-from latentarm.models.catalogue import MODELS
+from latentarm.models.estimators import MODELS
 from latentarm_research.studies.properties.paper import LENGTHS, MODELS_OF_THE_PAPER, PAPER, with_paper
 from latentarm_research.tasks.planar.catalogue import MOTIONS
 

@@ -15,19 +15,15 @@ from latentarm.robots.robot import Robot
 @final
 @dataclass(frozen=True)
 class AxisModes:
-    """Which axes of the end-effector the person's inputs drive in each mode.
+    """The axes of the end-effector that the person's inputs drive in each mode.
 
-    Attributes:
-        names: of the modes.
-        axes: for each mode, the row of the twist (x, y, z, roll, pitch, yaw) that each of the d input axes
-            drives.
-
-    Raises:
-        UserError: there is no mode, modes have different numbers of axes, or a row is not one of the six.
+    Raises UserError where there is no mode, modes have different numbers of axes, or a row is not one of the
+    six.
     """
 
     names: tuple[str, ...]
     axes: tuple[tuple[int, ...], ...]
+    """By mode, the row of the twist (x, y, z, roll, pitch, yaw) that each of the d input axes drives."""
 
     def __post_init__(self) -> None:
         if not self.axes or len(self.names) != len(self.axes) or len({len(one) for one in self.axes}) != 1:
@@ -36,15 +32,10 @@ class AxisModes:
             raise UserError("A mode's axes are rows of the twist, 0 to 5.")
 
     def twists(self, mode: int, scale: FloatArray, rotation: FloatArray) -> FloatArray:
-        """What a full input along each axis asks of the tool.
+        """Twists (..., d, 6), m/s and rad/s, in the base frame, for a full input along each axis.
 
-        Args:
-            mode: index into `names`.
-            scale: (6,), speed along and about each axis, m/s and rad/s.
-            rotation: (..., 3, 3), of the tool.
-
-        Returns:
-            (..., d, 6), m/s and rad/s, in the base frame; turns are asked for in the tool's.
+        ``scale`` (6,) is the speed along and about each axis. Turns are about the axes of the tool, whose
+        rotation is (..., 3, 3).
         """
         rows = self.axes[mode]
         directions = np.zeros((len(rows), 6))
@@ -64,16 +55,10 @@ paper's End-Effector (section 9.2)."""
 
 
 class AxisController(Controller, ABC):
-    """Turns an input into the twist that its mode asks of the tool; subclasses say how the joints follow.
+    """Turns an input into its mode's twist of the tool; subclasses say how the joints follow.
 
-    Args:
-        robot: the arm; its first tool is driven.
-        linear_speed: of a full input along an axis, m/s.
-        angular_speed: of a full input about an axis, rad/s.
-        modes: which axes the inputs drive in each mode.
-
-    Raises:
-        UserError: a speed is not positive and finite.
+    Speeds are those of a full input along an axis, m/s, and about one, rad/s; UserError where one is not
+    positive and finite.
     """
 
     def __init__(
@@ -104,7 +89,7 @@ class AxisController(Controller, ABC):
         return u
 
     def _twists_and_jacobian(self, state: FloatArray, mode: int) -> tuple[FloatArray, FloatArray]:
-        """What a full input along each axis asks of the tool (..., d, 6), and its Jacobian (..., 6, n)."""
+        """Twists (..., d, 6) for a full input along each axis, and the tool's Jacobian (..., 6, n)."""
         transforms = self._chain.link_transforms(state)
         pose = self._chain.tool_pose(transforms)
         twists = self._modes.twists(mode, self._scale, pose.rotation)

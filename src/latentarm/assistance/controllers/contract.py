@@ -11,6 +11,8 @@ class Controller(ABC):
     Batches matter: the belief asks what *other* inputs would have done, and a simulated operator
     asks the same of every mode. A planner asks about hypothetical states, so the context's state may have
     leading axes (..., n) too, which broadcast against those of the input.
+
+    Methods take the context of one moment, and the mode as its index in `modes`.
     """
 
     @property
@@ -30,39 +32,15 @@ class Controller(ABC):
 
     @abstractmethod
     def latent(self, u: FloatArray, context: Context, mode: int) -> FloatArray:
-        """Alignment ``z = f(u, c)`` (Algorithm 1, line 6).
-
-        Args:
-            u: (..., d), each entry in [-1, 1].
-            context: what is known at one moment.
-            mode: index into `modes`.
-
-        Returns:
-            (..., d), ``z``.
-        """
+        """Alignment ``z = f(u, c)`` (Algorithm 1, line 6): u in [-1, 1], (..., d), to z (..., d)."""
 
     @abstractmethod
     def action(self, z: FloatArray, context: Context, mode: int) -> FloatArray:
-        """Decoding ``a_h = phi(z, c)`` (Algorithm 1, line 7).
-
-        Args:
-            z: (..., d).
-            context: what is known at one moment.
-            mode: index into `modes`.
-
-        Returns:
-            (..., n), joint velocities, rad/s.
-        """
+        """Decoding ``a_h = phi(z, c)`` (Algorithm 1, line 7): z (..., d) to (..., n), rad/s."""
 
     def speed_bound(self, context: Context, mode: int) -> float | None:
-        """sigma_h of equation 14: what no input in [-1, 1]^d exceeds in this context.
+        """sigma_h of equation 14, rad/s: a proven upper bound of ``‖a_h‖`` over all inputs in [-1, 1]^d.
 
-        Args:
-            context: what is known at one moment.
-            mode: index into `modes`.
-
-        Returns:
-            A proven upper bound of ``‖a_h‖``, rad/s; None where none is known, as here: no bound on the help
-            is then recorded.
+        None where no bound is known, as here: then no bound on the help is recorded.
         """
         return None

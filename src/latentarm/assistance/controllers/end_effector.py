@@ -1,4 +1,4 @@
-"""Today's way: mode-switched control of the end-effector, by resolved rates."""
+"""Mode-switched control of the end-effector by resolved rates."""
 
 from typing import final
 

@@ -17,9 +17,6 @@ class JoinedController(Controller):
     A controller with fewer axes than the others leaves the last ones unused: its latent actions are zero
     there.
 
-    Args:
-        controllers: at least one.
-
     Raises:
         UserError: no controllers were given, or two of them use different objects.
     """
@@ -51,7 +48,7 @@ class JoinedController(Controller):
         return self._objects
 
     def latent(self, u: FloatArray, context: Context, mode: int) -> FloatArray:
-        """What the mode's own controller makes of its axes; zero on axes that it lacks."""
+        """The latent action of the mode's own controller; zero on axes that it lacks."""
         controller, own = self._parts[mode]
         axes = controller.input_dim
         if axes == self._input_dim:
@@ -61,7 +58,7 @@ class JoinedController(Controller):
         return z
 
     def action(self, z: FloatArray, context: Context, mode: int) -> FloatArray:
-        """What the mode's own controller does."""
+        """The action of the mode's own controller."""
         controller, own = self._parts[mode]
         return controller.action(z[..., : controller.input_dim], context, own)
 

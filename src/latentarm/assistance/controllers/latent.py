@@ -4,11 +4,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import final
 
-from latentarm.alignment.contract import Alignment, identity
+from latentarm.alignment.contract import Alignment, Seat, identity
 from latentarm.alignment.frame import StickFrame
 from latentarm.alignment.frame_file import load_frame
 from latentarm.alignment.profile import load_profile
-from latentarm.alignment.seat import Seat
 from latentarm.assistance.controllers.contract import Controller
 from latentarm.core.context import BELIEF, GRIPPER, ContextLayout, context_vector
 from latentarm.core.errors import UserError
@@ -71,7 +70,7 @@ class LatentController(Controller):
         return self._decoder.decode(z, self._vector(context))
 
     def speed_bound(self, context: Context, mode: int) -> float | None:
-        """That of the decoder's enclosure; None with a person's alignment, whose z may leave [-1, 1]^d.
+        """The bound of the decoder's enclosure; None with a person's alignment, whose z may leave [-1, 1]^d.
 
         Raises:
             UserError: the decoder was trained for another arm or another number of goals.
@@ -92,14 +91,10 @@ class LatentController(Controller):
 
 
 def latent_controller(run: Path, profile: str | None, robot: Robot, seat: Seat | None) -> LatentController:
-    """What steers by a run's latent actions.
+    """A controller by the latent actions of a run.
 
-    Args:
-        run: the run's folder.
-        profile: name of the person whose alignment stands between input and latent action, or None.
-        robot: the arm.
-        seat: where a person without a profile sits, for whom the run's `StickFrame` turns the stick; z = u
-            where None, and where the run keeps no frame.
+    A person's profile stands between input and latent action. Without one, the run's `StickFrame` turns the
+    stick for a person in this seat; z = u without a seat, and where the run keeps no frame.
 
     Raises:
         UserError: the run has no such profile, its model is broken, or it is for another arm.
@@ -117,7 +112,7 @@ def latent_controller(run: Path, profile: str | None, robot: Robot, seat: Seat |
 
 
 def _misfit(layout: ContextLayout, context: Context) -> str:
-    """That a context has other sizes than those that a decoder was trained with."""
+    """The message for a context of other sizes than those in training."""
     parts = [f"{layout.joints} joints"]
     if BELIEF in layout.features:
         parts.append(f"{layout.goals} goals")

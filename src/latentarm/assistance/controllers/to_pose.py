@@ -24,13 +24,6 @@ _SLOWING: Final = 3.0
 class ToPose(Controller):
     """One axis: a full input moves all joints straight towards a pose, so that they arrive together.
 
-    Args:
-        robot: the arm; its first tool is kept slow.
-        pose: (n,), where it leads at first, rad.
-
-    Attributes:
-        calls: where it is recorded where it leads; None for nowhere.
-
     Raises:
         UserError: the pose is not n finite numbers.
     """
@@ -43,14 +36,7 @@ class ToPose(Controller):
 
     @logged
     def lead_to(self, pose: FloatArray) -> None:
-        """Lead somewhere else from now on.
-
-        Args:
-            pose: (n,), rad.
-
-        Raises:
-            UserError: it is not n finite numbers.
-        """
+        """Lead to another pose (n,), rad, from now on; UserError where it is not n finite numbers."""
         goal = np.array(pose, dtype=np.float64)
         if goal.shape != (self._dof,) or not np.isfinite(goal).all():
             raise UserError(f"A pose of this arm is {self._dof} finite joint positions.")

@@ -8,7 +8,6 @@ from typing import Final, final
 
 import numpy as np
 
-from latentarm.core.style import Look
 from latentarm.core.types import FloatArray
 from latentarm.models.enclosure import Enclosure, network_enclosure
 from latentarm.models.kind import Dimensions, ModelKind, Runtime, Shape, TrainedModel
@@ -89,7 +88,7 @@ _TRAINING: Final = "latentarm.models.autoencoders.training"
 
 AE: Final = ModelKind(
     name="ae",
-    look=Look("AE", "#E69F00", "v", "--"),
+    label="AE",
     estimator=f"{_TRAINING}:AE",
     runtime=LatentDecoder,
     decoder=_latent_sizes,
@@ -100,14 +99,14 @@ AE: Final = ModelKind(
 VAE: Final = replace(
     AE,
     name="vae",
-    look=Look("VAE", "#CC79A7", "^", "--"),
+    label="VAE",
     estimator=f"{_TRAINING}:VAE",
     encoder="gaussian",
     advice=_MOVES.format(name="vae"),
 )
 CAE: Final = ModelKind(
     name="cae",
-    look=Look("cAE", "#0072B2", "o", "-"),
+    label="cAE",
     estimator=f"{_TRAINING}:CAE",
     runtime=ConditionedDecoder,
     decoder=conditioned_sizes,
@@ -117,7 +116,7 @@ CAE: Final = ModelKind(
 CVAE: Final = replace(
     CAE,
     name="cvae",
-    look=Look("cVAE", "#009E73", "D", "-"),
+    label="cVAE",
     estimator=f"{_TRAINING}:CVAE",
     encoder="gaussian",
     advice=_MOVES.format(name="cvae"),
@@ -125,7 +124,7 @@ CVAE: Final = replace(
 CAE_ZERO: Final = replace(
     CAE,
     name="cae_zero",
-    look=Look("cAE, zero penalty", "#56B4E9", "P", "-."),
+    label="cAE, zero penalty",
     estimator=f"{_TRAINING}:CAEZero",
     rests_at_zero=True,
     advice="The cae_zero nearly rests but need not go back when the stick is pressed back; for both by"
@@ -134,7 +133,7 @@ CAE_ZERO: Final = replace(
 CAE_REVERSAL: Final = replace(
     CAE,
     name="cae_reversal",
-    look=Look("cAE, reversal penalty", "#332288", "<", (0.0, (5.0, 1.0, 1.0, 1.0))),
+    label="cAE, reversal penalty",
     estimator=f"{_TRAINING}:CAEReversal",
     rests_at_zero=True,
     advice="The cae_reversal nearly rests and nearly goes back when the stick is pressed back; for both by"
@@ -143,14 +142,14 @@ CAE_REVERSAL: Final = replace(
 CAE_JACOBIAN: Final = replace(
     CAE,
     name="cae_jacobian",
-    look=Look("cAE, Jacobian penalty", "#44AA99", "p", "-."),
+    label="cAE, Jacobian penalty",
     estimator=f"{_TRAINING}:CAEJacobian",
     advice=_MOVES.format(name="cae_jacobian"),
 )
 CVAE_JACOBIAN: Final = replace(
     CVAE,
     name="cvae_jacobian",
-    look=Look("cVAE, Jacobian penalty", "#117733", ">", "-."),
+    label="cVAE, Jacobian penalty",
     estimator=f"{_TRAINING}:CVAEJacobian",
     advice=_MOVES.format(name="cvae_jacobian"),
 )

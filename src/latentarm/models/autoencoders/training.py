@@ -45,7 +45,7 @@ class _Variational(_Autoencoder, ABC):
     kl_weight: NotNegative = 0.01
 
     def _drawn(self, networks: Networks, batch: Batch) -> tuple[Tensor, Tensor]:
-        """Latent actions (S, B, d) drawn from the encoder, and what their distribution costs, (S,)."""
+        """Latent actions (S, B, d) drawn from the encoder, and the price of their distribution, (S,)."""
         mean, log_variance = self._encoded(networks, batch.context, batch.action).chunk(2, dim=-1)
         divergence = self.kl_weight * kl_divergence(mean, log_variance)
         return sample_latent(mean, log_variance, batch.noise), divergence
@@ -139,8 +139,8 @@ class CAEReversal(_Deterministic):
 
     ``‖a - phi(z, c)‖^2 + lambda_r ‖phi(z, c) + phi(-z, c)‖^2``: the penalty is zero where phi is odd in z. Of
     the two ways to an odd decoder in Przystupa et al. (2024, arXiv 2410.21406) this is the soft one, a
-    regulariser on an end-to-end decoder. Our source for the paper is its abstract and
-    what reviews of it say, so the form of the penalty is ours.
+    regulariser on an end-to-end decoder. Our source for the paper is its abstract and reviews of it, so
+    the form of the penalty is ours.
 
     Attributes:
         reversal_weight: lambda_r.

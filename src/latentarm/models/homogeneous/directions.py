@@ -31,15 +31,10 @@ def odd_degrees(direction: Tensor) -> Tensor:
 
 @torch.no_grad()
 def nearest_direction(columns: Tensor, target: Tensor, latent_dim: int) -> Tensor:
-    """The directions of the stick (S, d, B) in which the best push comes nearest to an action.
+    """The directions of the stick (S, d, B) in which the best push comes nearest to an action (S, m, B).
 
     Searched for over a fixed set, then around the best of it along each axis with parabolas. That is exact
-    for d = 1 and otherwise an approximation.
-
-    Args:
-        columns: M_1(c), M_3(c), ... side by side, (S, q, m, B).
-        target: actions, (S, m, B).
-        latent_dim: d.
+    for d = 1 and otherwise an approximation. The columns M_1(c), M_3(c), ... lie side by side, (S, q, m, B).
     """
     spacing = np.pi / HALF_TURN
     best = _best_fixed(columns, target, latent_dim)
@@ -62,13 +57,7 @@ def nearest_direction(columns: Tensor, target: Tensor, latent_dim: int) -> Tenso
 
 
 def _explained(columns: Tensor, target: Tensor, direction: Tensor) -> Tensor:
-    """How much of ‖a‖^2 the best push explains, (S, K, B).
-
-    Args:
-        columns: (S, q, m, B).
-        target: actions, (S, m, B).
-        direction: K for each, (S, d, K, B).
-    """
+    """The part (S, K, B) of ‖a‖^2 that the best push explains, along K directions (S, d, K, B)."""
     led = (columns[:, :, :, None] * odd_degrees(direction)[:, :, None]).sum(1)
     return (led * target[:, :, None]).sum(1).square() / (led.square().sum(1) + NORM_FLOOR)
 
@@ -77,11 +66,6 @@ def _best_fixed(columns: Tensor, target: Tensor, latent_dim: int) -> Tensor:
     """The directions (S, d, B) among `_directions` that explain most.
 
     `_explained` of all of them, ``(a^T C e)^2 / ‖C e‖^2``, from ``C^T C`` and ``C^T a`` alone.
-
-    Args:
-        columns: (S, q, m, B).
-        target: actions, (S, m, B).
-        latent_dim: d.
     """
     every = torch.cat([columns, target[:, None]], dim=1).permute(0, 3, 1, 2).contiguous()
     gram = every @ every.mT

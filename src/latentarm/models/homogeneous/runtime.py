@@ -5,7 +5,6 @@ from typing import Final, final
 
 import numpy as np
 
-from latentarm.core.style import Look
 from latentarm.core.types import FloatArray
 from latentarm.models.enclosure import Enclosure, linear_enclosure
 from latentarm.models.kind import Dimensions, ModelKind, Runtime, Shape, TrainedModel
@@ -40,7 +39,7 @@ class CurveDecoder(Runtime, ABC):
 
     @final
     def _raw_columns(self, context: FloatArray) -> FloatArray:
-        """The same as the network gives them."""
+        """The network's output in this shape."""
         raw = propagate(context @ self._weight + self._bias, self._rest)
         return raw.reshape(*raw.shape[:-1], -1, self._joints).swapaxes(-1, -2).copy()
 
@@ -159,7 +158,7 @@ def curve_sizes(dimensions: Dimensions) -> dict[str, Shape]:
 
 HOMOGENEOUS: Final = ModelKind(
     name="homogeneous",
-    look=Look("homogeneous", "#882255", "h", (0.0, (4.0, 1.0, 1.0, 1.0))),
+    label="homogeneous",
     estimator="latentarm.models.homogeneous.training:Homogeneous",
     runtime=_Runtime,
     decoder=curve_sizes,

@@ -96,20 +96,13 @@ class _Geometry(NamedTuple):
 
     Each column comes twice: as joint velocities, and in coordinates in which the metric is the identity,
     ``(J_w a, sqrt(damping) a)``, of w = 6 k + m entries.
-
-    Attributes:
-        straight: d of (S, m, B), the orthonormal columns of M_1(c).
-        straight_white: d of (S, w, B), the same in those coordinates.
-        bend: (S, orders d, m, B), what the network gives for M_3(c), M_5(c), ...
-        bend_white: (S, orders d, w, B).
-        along: d of (S, orders d, B), the part of the bends along each straight column, to be taken out.
     """
 
-    straight: list[Tensor]
-    straight_white: list[Tensor]
-    bend: Tensor
-    bend_white: Tensor
-    along: list[Tensor]
+    straight: list[Tensor]  # d of (S, m, B), the orthonormal columns of M_1(c)
+    straight_white: list[Tensor]  # d of (S, w, B), the same in those coordinates
+    bend: Tensor  # (S, orders d, m, B), the network's M_3(c), M_5(c), ...
+    bend_white: Tensor  # (S, orders d, w, B)
+    along: list[Tensor]  # d of (S, orders d, B), parts of the bends along straight columns, to be removed
 
     def led(self, degrees: Tensor) -> tuple[Tensor, Tensor]:
         """The columns weighted with `odd_degrees` (S, q, B) of directions, added: (S, m, B), (S, w, B)."""

@@ -4,7 +4,6 @@ from typing import Final, final
 
 import numpy as np
 
-from latentarm.core.style import Look
 from latentarm.core.types import FloatArray
 from latentarm.models.enclosure import ROUNDING, Enclosure
 from latentarm.models.kind import Dimensions, ModelKind, Runtime, Shape, TrainedModel
@@ -112,7 +111,7 @@ def _sizes(dimensions: Dimensions) -> dict[str, Shape]:
 
 ISOMETRIC: Final = ModelKind(
     name="isometric",
-    look=Look("isometric", "#000000", "*", (0.0, (6.0, 1.5, 1.5, 1.5, 1.5, 1.5))),
+    label="isometric",
     estimator="latentarm.models.isometric.training:Isometric",
     runtime=_Runtime,
     decoder=_sizes,

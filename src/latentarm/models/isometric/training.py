@@ -105,13 +105,9 @@ class Isometric(NeuralModel):
 
 
 class _Gain(NamedTuple):
-    """How fast the tools move for a push of r, in normalised units: ``g(r) = tanh(kappa r) / tanh(kappa)``.
+    """Speed of the tools for a push of r, in normalised units: ``g(r) = tanh(kappa r) / tanh(kappa)``."""
 
-    Attributes:
-        saturation: (S, 1, 1), kappa.
-    """
-
-    saturation: Tensor
+    saturation: Tensor  # (S, 1, 1), kappa
 
     def at(self, radius: Tensor) -> Tensor:
         """g(r) for radii (S, B, ...)."""
@@ -119,17 +115,11 @@ class _Gain(NamedTuple):
 
 
 class _Geometry(NamedTuple):
-    """The decoder in each context.
+    """The decoder in each context."""
 
-    Attributes:
-        straight: (S, B, m, d), M(c), orthonormal in the metric.
-        bend: (S, B, m, d), N(c), metric-orthogonal to M(c).
-        bend_twist: (S, B, 6 k, d), the tools' weighted twists along the bend.
-    """
-
-    straight: Tensor
-    bend: Tensor
-    bend_twist: Tensor
+    straight: Tensor  # (S, B, m, d), M(c), orthonormal in the metric
+    bend: Tensor  # (S, B, m, d), N(c), metric-orthogonal to M(c)
+    bend_twist: Tensor  # (S, B, 6 k, d), the tools' weighted twists along the bend
 
 
 def _gain(networks: Networks) -> _Gain:

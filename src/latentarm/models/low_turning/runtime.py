@@ -5,7 +5,6 @@ from typing import Final, final
 
 import numpy as np
 
-from latentarm.core.style import Look
 from latentarm.core.types import FloatArray
 from latentarm.models.homogeneous.runtime import DAMPING_M2, ORDERS, CurveDecoder, curve_sizes
 from latentarm.models.kind import ModelKind
@@ -41,7 +40,7 @@ def bend_sizes(latent_dim: int) -> FloatArray:
 
 LOW_TURNING: Final = ModelKind(
     name="low_turning",
-    look=Look("low turning", "#DDAA33", "x", (0.0, (8.0, 2.0))),
+    label="low turning",
     estimator="latentarm.models.low_turning.training:LowTurning",
     runtime=_Runtime,
     decoder=curve_sizes,

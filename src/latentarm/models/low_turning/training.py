@@ -98,15 +98,10 @@ class LowTurning(NeuralModel):
 
 
 class _Curves(NamedTuple):
-    """The curve of directions in each of B contexts, which come last: many small matrices are fast only so.
+    """Curves of directions in B contexts, which come last: many small matrices are fast only so."""
 
-    Attributes:
-        columns: (S, q, m, B), M_1(c), M_3(c), ... side by side; q = (1 + orders) d.
-        jacobian: (S, 6 k, m, B), from joint velocities to the tools' weighted twists.
-    """
-
-    columns: Tensor
-    jacobian: Tensor
+    columns: Tensor  # (S, q, m, B), M_1(c), M_3(c), ... side by side; q = (1 + orders) d.
+    jacobian: Tensor  # (S, 6 k, m, B), from joint velocities to the tools' weighted twists
 
     def split(self, pairs: int) -> "tuple[_Curves, _Curves]":
         """The first B contexts and the others."""
@@ -173,14 +168,11 @@ def _nearest(curves: _Curves, action: Tensor) -> Tensor:
 class Around(NamedTuple):
     """The motions of a full push that is led half around the stick, in some of a batch's contexts.
 
-    Attributes:
-        joints: (S, m, C, K + 1, B), the joints' velocities, of any length; C planes of two of the d axes, and
-            K + 1 directions from one to its opposite.
-        tools: (S, 6 k, C, K + 1, B), the tools' weighted twists, as shares of the speed of a full push.
+    C planes of two of the d axes have K + 1 directions each, from one to its opposite.
     """
 
-    joints: Tensor
-    tools: Tensor
+    joints: Tensor  # (S, m, C, K + 1, B), the joints' velocities, of any length
+    tools: Tensor  # (S, 6 k, C, K + 1, B), the tools' weighted twists, as shares of a full push's speed
 
 
 def turning(around: Around) -> Tensor:

@@ -4,7 +4,6 @@ from typing import Final, final
 
 import numpy as np
 
-from latentarm.core.style import Look
 from latentarm.core.types import FloatArray
 from latentarm.models.autoencoders.runtime import conditioned_sizes
 from latentarm.models.enclosure import Enclosure, network_enclosure
@@ -46,7 +45,7 @@ class _Runtime(Runtime):
 
 ODD_CAE: Final = ModelKind(
     name="odd_cae",
-    look=Look("odd cAE", "#999933", "d", (0.0, (3.0, 1.0))),
+    label="odd cAE",
     estimator="latentarm.models.odd_cae.training:OddCAE",
     runtime=_Runtime,
     decoder=conditioned_sizes,

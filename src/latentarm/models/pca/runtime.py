@@ -2,7 +2,6 @@
 
 from typing import Final
 
-from latentarm.core.style import Look
 from latentarm.models.autoencoders.runtime import LatentDecoder
 from latentarm.models.kind import Dimensions, ModelKind, Shape
 
@@ -13,7 +12,7 @@ def _sizes(dimensions: Dimensions) -> dict[str, Shape]:
 
 PCA: Final = ModelKind(
     name="pca",
-    look=Look("PCA", "#7f7f7f", "s", ":"),
+    label="PCA",
     estimator="latentarm.models.pca.training:PCA",
     runtime=LatentDecoder,
     decoder=_sizes,

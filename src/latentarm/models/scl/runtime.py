@@ -4,7 +4,6 @@ from typing import Final, final
 
 import numpy as np
 
-from latentarm.core.style import Look
 from latentarm.core.types import FloatArray
 from latentarm.models.enclosure import Enclosure, linear_enclosure
 from latentarm.models.kind import Dimensions, ModelKind, Runtime, Shape, TrainedModel
@@ -60,7 +59,7 @@ def _sizes(dimensions: Dimensions) -> dict[str, Shape]:
 
 SCL: Final = ModelKind(
     name="scl",
-    look=Look("SCL", "#D55E00", "X", "-."),
+    label="SCL",
     estimator="latentarm.models.scl.training:SCL",
     runtime=_Runtime,
     decoder=_sizes,

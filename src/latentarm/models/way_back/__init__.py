@@ -1,1 +1,1 @@
-"""A way back to what was demonstrated, for every decoder: see `runtime.py`."""
+"""A way back to the demonstrations, for every decoder: see `runtime.py`."""

@@ -1,4 +1,4 @@
-"""A way back to what was demonstrated, for any decoder H: ``phi(z, c) = cap[H(z, c) + ‖z‖ w(c)]``.
+"""A way back to the demonstrations, for any decoder H: ``phi(z, c) = cap[H(z, c) + ‖z‖ w(c)]``.
 
 The pull w moves the arm towards the demonstrated motions. It is proportional to the length of the push and
 does not depend on its direction. A network D predicts the displacement back to the demonstrations,
@@ -48,7 +48,7 @@ GATE_M: Final = 0.06
 """The pull fades out as the length of D grows from this to twice this, m."""
 
 STRENGTH: Final = 0.7
-"""How strong the pull is at most, relative to the person."""
+"""Largest pull, relative to the person."""
 
 DAMPING_M2: Final = 1e-3
 """Weight of a joint's motion by 1 rad in the metric, relative to the square of a tool's motion by 1 m."""
@@ -56,14 +56,10 @@ DAMPING_M2: Final = 1e-3
 
 @final
 class PullContexts:
-    """What D sees of a context: joints, tools, where things are, and what else the decoder sees.
+    """The input of D: joints, tools, poses of things, and the decoder's other features.
 
     Poses of things come twice: (..., K, 9) in the base frame, then positions (..., K, 3) and columns of
     rotations (..., K, 6) in that of the first tool.
-
-    Args:
-        geometry: of the arm.
-        layout: of the contexts.
     """
 
     def __init__(self, geometry: ToolGeometry, layout: ContextLayout) -> None:
@@ -72,7 +68,7 @@ class PullContexts:
         self._things, self._others = pull_columns(layout)
 
     def apply(self, context: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """What D sees of contexts (..., c): (..., o), and the weighted Jacobian there (..., 6 k, n)."""
+        """The input of D (..., o) in contexts (..., c), and the weighted Jacobian there (..., 6 k, n)."""
         state = context[..., self._joints]
         places, jacobian = self._geometry(state)
         parts = [state, places]
@@ -91,13 +87,13 @@ class PullContexts:
 
 
 def pull_columns(layout: ContextLayout) -> tuple[slice | None, list[slice]]:
-    """Where a context has the poses of things, None without any; and what else D sees as it is."""
+    """The columns of the poses of things in a context, None without any; and D's other columns."""
     things = next((layout.columns(one) for one in (OBJECTS, OBJECTS_IN_TOOL) if one in layout.features), None)
     return things, [layout.columns(one) for one in (BELIEF, GRIPPER) if one in layout.features]
 
 
 def pull_width(layout: ContextLayout, tools: int) -> int:
-    """o, the entries that D sees of a context."""
+    """o, the entries of D's input."""
     things, others = pull_columns(layout)
     count = 0 if things is None else len(layout.objects)
     beside = sum(columns.stop - columns.start for columns in others)
@@ -109,10 +105,7 @@ def pull_shapes(dimensions: "Dimensions", layout: ContextLayout) -> "dict[str, S
     if not dimensions.way_back:
         return {}
     sizes = (pull_width(layout, dimensions.tools), *dimensions.way_back, dimensions.action)
-    return {
-        **network_shapes({NETWORK: sizes}, dimensions.seeds),
-        f"{NETWORK}.scale": (2,),
-    }
+    return {**network_shapes({NETWORK: sizes}, dimensions.seeds), f"{NETWORK}.scale": (2,)}
 
 
 @final
@@ -126,15 +119,9 @@ class WayBack:
         self._speed, self._length = map(float, trained.tensors[f"{NETWORK}.scale"])
 
     def __call__(self, action: FloatArray, z: FloatArray, context: FloatArray) -> FloatArray:
-        """The decoder's action with the way back.
+        """The decoder's own action (..., m), rad/s, for z (..., d) in contexts (..., c), with the way back.
 
-        Args:
-            action: (..., m), what the decoder alone gives, rad/s.
-            z: (..., d), in input units.
-            context: (..., c), with all poses in the base frame.
-
-        Returns:
-            (..., m), rad/s.
+        All poses are in the base frame.
         """
         way, length, gain, jacobian = self.pull(context)
         fastest = self._speed * np.sqrt(np.vecdot(z, z))[..., None]
@@ -143,15 +130,10 @@ class WayBack:
         return led * np.minimum(1.0, fastest / metric_length(jacobian, led))
 
     def enclosed(self, enclosure: Enclosure, latent_dim: int, context: FloatArray) -> Enclosure:
-        """The enclosure of phi.
+        """The enclosure of phi, from that of the decoder alone in the same contexts.
 
-        The pull is one vector times a number from 0 to its largest, and the cap multiplies by a number from
-        0 to 1: both are further directions in which each cell spreads.
-
-        Args:
-            enclosure: the decoder's alone in the same contexts.
-            latent_dim: d.
-            context: (..., c), with all poses in the base frame.
+        The pull is one vector times a number from 0 to its largest, and the cap multiplies by a number from 0
+        to 1: both are further directions in which each cell spreads.
         """
         way, length, gain, _ = self.pull(context)
         fastest = self._speed * np.sqrt(latent_dim)
@@ -162,15 +144,10 @@ class WayBack:
         return Enclosure(middle, np.concatenate([enclosure.spread, further], axis=-2), enclosure.remainder)
 
     def leads(self, context: FloatArray, offset: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Where the pull leads the first tool from near the place that contexts have it in, for a figure.
+        """The pull on the first tool when it is displaced by ``offset`` (..., 3), m, for a figure.
 
-        Args:
-            context: (..., c), with all poses in the base frame. Things stay where they are.
-            offset: (..., 3), how far the tool is taken from there, m.
-
-        Returns:
-            Places (..., 3) that are nearly that far away, and those that a full push alone would be pulled to
-            in the time that the demonstrations take for L, m.
+        Returns places (..., 3) that are nearly that far away, and those that a full push alone would be
+        pulled to in the time that the demonstrations take for L, m. Things stay in place.
         """
         state, rest = context[..., : self._joints], context[..., self._joints :]
         jacobian = self._geometry(state)[1]

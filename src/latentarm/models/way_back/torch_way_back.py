@@ -20,13 +20,7 @@ if TYPE_CHECKING:
 
 @final
 class TorchWayBack:
-    """The way back of one seed, as `WayBack` computes it, in two steps like `TorchDecoder`.
-
-    Args:
-        trained: the model, which has one.
-        seed: index of the seed.
-        dtype: of all tensors.
-    """
+    """The way back of one seed, as `WayBack` computes it, in two steps like `TorchDecoder`."""
 
     def __init__(self, trained: "TrainedModel", seed: int, dtype: torch.dtype) -> None:
         def tensor(values: FloatArray) -> Tensor:
@@ -64,13 +58,7 @@ class TorchWayBack:
         return torch.cat([way, jacobian.flatten(-2)], dim=-1)
 
     def __call__(self, action: Tensor, z: Tensor, observed: Tensor) -> Tensor:
-        """phi, rad/s.
-
-        Args:
-            action: (..., m), what the decoder alone gives, rad/s.
-            z: (..., d), in input units.
-            observed: (..., width), from `observe`.
-        """
+        """The action (..., m), rad/s, from the decoder's own one, z (..., d) and an observation."""
         way, jacobian = observed[..., : self._joints], observed[..., self._joints :]
         jacobian = jacobian.unflatten(-1, (-1, self._joints))
         fastest = self._speed * torch.linalg.vector_norm(z, dim=-1, keepdim=True)

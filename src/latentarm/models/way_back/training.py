@@ -38,7 +38,7 @@ NULL_NOISE_RAD: Final = 0.1
 """The same of each joint in motions that no tool shows, rad."""
 
 LEAST_DISPLACED: Final = 0.15
-"""Displacements of less than this share of the largest count no more than those: else all were about them."""
+"""Displacements below this share of the largest weigh no more than those, or they would outweigh the rest."""
 
 HIDDEN: Final = (128, 128)
 """Units of each hidden layer."""
@@ -58,31 +58,17 @@ class NoWayBackWarning(UserWarning):
 @final
 @dataclass(frozen=True, eq=False)
 class Displaced:
-    """Displaced states.
+    """Displaced states."""
 
-    Attributes:
-        context: (N, c), there.
-        way: (N, m), from there to where they were, rad.
-        scale: (N, 1), how far they were displaced, as a share of the largest standard deviation.
-    """
-
-    context: FloatArray
-    way: FloatArray
-    scale: FloatArray
+    context: FloatArray  # (N, c), there
+    way: FloatArray  # (N, m), from there to where they were, rad
+    scale: FloatArray  # (N, 1), how far they were displaced, as a share of the largest standard deviation
 
 
 def displaced(
     chain: Chain, layout: ContextLayout, context: FloatArray, held: BoolArray, rng: np.random.Generator
 ) -> Displaced:
-    """Displace demonstrated states, and with the tool what it holds.
-
-    Args:
-        chain: the arm.
-        layout: of the contexts.
-        context: (N, c).
-        held: (N, K), which things are held.
-        rng: source of the displacements.
-    """
+    """Displace the states of contexts (N, c), and with the tool the things that it holds (N, K)."""
     state = context[:, : layout.joints]
     _, jacobian = places_and_jacobian(chain, state)
     tools = len(chain.tools)
@@ -105,19 +91,11 @@ def with_way_back(
     device: torch.device,
     report: Report | None,
 ) -> TrainedModel:
-    """A trained model with a way back.
+    """A trained model with a way back, learned from the pairs that it was trained on.
 
-    Args:
-        trained: the model.
-        pairs: that it was trained on.
-        chain: the arm.
-        length_m: L, from how far the pull is as fast as the demonstrations, m.
-        data_seed: draws the displacements.
-        device: where to compute.
-        report: see `Report`.
+    The pull is as fast as the demonstrations from ``length_m`` on, which is L.
 
-    Warns:
-        NoWayBackWarning: the network is no nearer to the held-out demonstrations than staying: no way back.
+    Warns with NoWayBackWarning where the network is no nearer to the held-out demonstrations than staying.
     """
     layout, seeds = trained.layout, trained.summary.seeds
     outside = np.isin(pairs.episode, trained.summary.validation_episodes)

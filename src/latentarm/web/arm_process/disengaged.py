@@ -4,7 +4,7 @@ from collections.abc import Callable
 from typing import final
 
 from latentarm.arms.contract import Arm, ArmStatus
-from latentarm.control.arm_stops import stop_of
+from latentarm.control.engagement import stop_of
 from latentarm.control.step import Step
 from latentarm.core.types import GripperAsk, Stop
 from latentarm.web.arm_process.episodes import Episodes

@@ -7,7 +7,7 @@ from typing import Final, final
 
 import numpy as np
 
-from latentarm.alignment.seat import Seat
+from latentarm.alignment.contract import Seat
 from latentarm.arms.address import is_address
 from latentarm.arms.catalogue import check_named
 from latentarm.arms.contract import Arm, SceneArm

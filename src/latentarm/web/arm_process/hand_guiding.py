@@ -5,7 +5,7 @@ from typing import Final, Literal, final
 
 from latentarm.arms.contract import Arm, ArmStatus
 from latentarm.arms.real import GuidableArm
-from latentarm.control.arm_stops import stop_of
+from latentarm.control.engagement import stop_of
 from latentarm.control.loop import ENABLING_S
 from latentarm.control.step import Step
 from latentarm.core.errors import UserError

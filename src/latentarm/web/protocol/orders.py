@@ -4,7 +4,7 @@ from typing import Annotated, Final, Literal, final
 
 from pydantic import Field, TypeAdapter, ValidationError
 
-from latentarm.alignment.seat import Seat
+from latentarm.alignment.contract import Seat
 from latentarm.core.types import GripperAsk
 from latentarm.web.protocol.notice import Message
 

@@ -8,7 +8,7 @@ from typing import Annotated, Final, Literal, final
 
 from pydantic import Field, TypeAdapter
 
-from latentarm.alignment.seat import Seat
+from latentarm.alignment.contract import Seat
 from latentarm.core.types import GripperAsk
 from latentarm.web.protocol.copilot_messages import CopilotMessage
 from latentarm.web.protocol.learning_messages import CancelTraining, PickRun, Train

@@ -114,5 +114,5 @@ def _choice(model: str, words: Words) -> ModelChoice:
         return ModelChoice(model, words.say(f"model.{model}"), words.say(f"model.{model}.help"))
     title, about = model, ""
     with suppress(UserError):  # said when somebody chooses it
-        title, about = KINDS[model].look.label, KINDS[model].description
+        title, about = KINDS[model].label, KINDS[model].description
     return ModelChoice(model, title, about or words.say("model.plugin.help"))

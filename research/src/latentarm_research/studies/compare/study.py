@@ -12,7 +12,7 @@ from latentarm.core.types import Row
 from latentarm.core.untrusted.console import VisibleConsole
 from latentarm.demonstrations.split import FEW, MANY
 from latentarm.evaluation.measures import label_of
-from latentarm.models.catalogue import MODELS
+from latentarm.models.estimators import MODELS
 from latentarm.runs.checks import check_seed
 from latentarm.runs.folder import fingerprint
 from latentarm_research.metrics.undone import NEAR_M

@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from latentarm.core.style import Look
 from latentarm.core.types import FloatArray
 from latentarm.models.kind import Dimensions, ModelKind, Runtime, TrainedModel
 
@@ -30,7 +29,7 @@ def _sizes(dimensions: Dimensions) -> dict[str, tuple[int, ...]]:
 STRAIGHT = ModelKind(
     name="straight",
     description="The same straight directions wherever the arm is, learned by gradient.",
-    look=Look("straight", "#444444", "D", "--"),
+    label="straight",
     estimator="latentarm_example.training:Straight",
     runtime=StraightRuntime,
     decoder=_sizes,
