@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 import torch
 
-from latentarm.models.catalogue import KINDS, MODELS
+from latentarm.models.catalogue import KINDS
 from latentarm.models.decoder import Decoder
+from latentarm.models.estimators import MODELS
 from latentarm.models.saved_chain import chain_tensors
 from latentarm.models.tool_contexts import places_and_jacobian
 from latentarm.models.way_back import training

@@ -13,8 +13,8 @@ import numpy as np
 from latentarm.assistance.controllers.latent import LatentController
 from latentarm.assistance.goal_blending import blending
 from latentarm.core.types import Demonstrations, FloatArray, Goal, Pose
-from latentarm.models.catalogue import MODELS
 from latentarm.models.decoder import Decoder
+from latentarm.models.estimators import MODELS
 from latentarm.robots.kinematics.obstacles import Obstacle
 from latentarm.robots.robot import Robot
 from latentarm.tasks.goal_task import GoalTask

@@ -14,8 +14,9 @@ from scipy.spatial import KDTree
 
 from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray
-from latentarm.models.catalogue import KINDS, MODELS
+from latentarm.models.catalogue import KINDS
 from latentarm.models.decoder import Decoder
+from latentarm.models.estimators import MODELS
 from latentarm.models.saved_chain import chain_tensors
 from latentarm.models.tool_contexts import ROTATION_WEIGHT_M
 from latentarm.models.way_back.runtime import NETWORK
