@@ -117,7 +117,7 @@ def test_earlier_names_are_those_of_features():
 def test_a_context_that_makes_no_sense_is_refused(context, said):
     with pytest.raises(UserError, match=said):
         feature_names(context)
-    with pytest.raises(UserError, match="joints first"):
+    with pytest.raises(UserError, match=f"parameter context is .*{said}"):
         PCA(context=context).fit(four_motions())
 
 

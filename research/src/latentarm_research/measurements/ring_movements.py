@@ -5,6 +5,7 @@ how fast a point goes.
 """
 
 import csv
+import io
 import json
 import tempfile
 from collections.abc import Sequence
@@ -19,6 +20,7 @@ from scipy.signal import find_peaks, savgol_filter
 from latentarm.assistance.controllers.axis_modes import AxisModes
 from latentarm.assistance.controllers.end_effector import EndEffectorController
 from latentarm.core.types import Context, FloatArray, Pose
+from latentarm.core.untrusted.opening import read_bytes
 from latentarm.robots.catalogue import load_robot
 from latentarm_research.people.loop_limits import LoopLimits
 from latentarm_research.people.person import SimulatedPerson
@@ -33,6 +35,9 @@ RINGS: Final = np.array([(0.06, 0.02), (0.12, 0.02), (0.06, 0.01), (0.12, 0.01)]
 
 ORDER: Final = np.array([0, 5, 1, 6, 2, 7, 3, 8, 4])
 """Of the nine targets of a ring. The way to the first of them does not count."""
+
+MOST_BYTES: Final = 1 << 27
+"""Length of a log."""
 
 LOG_S: Final = 0.025
 """Time between samples, in which a target is also seen to be reached, s."""
@@ -71,10 +76,10 @@ def logged(clone: Path) -> FloatArray:
     csv.field_size_limit(2**24)
     for person in range(24):
         folder = clone / f"ros2_ws/src/cpp_pubsub/data_logging/csv_logs/part{person + 1}"
-        with (folder / f"part{person + 1}_header.csv").open(newline="") as header:
-            trials = [one for one in csv.DictReader(header) if one["alpha_id"] == "5"]
+        header = io.StringIO(read_bytes(folder / f"part{person + 1}_header.csv", MOST_BYTES).decode())
+        trials = [one for one in csv.DictReader(header) if one["alpha_id"] == "5"]
         for one in trials:
-            log = folder / f"trial{one['trial_number']}.csv"
+            log = io.BytesIO(read_bytes(folder / f"trial{one['trial_number']}.csv", MOST_BYTES))
             target, at_s, *tool_m = np.loadtxt(log, delimiter=",", skiprows=1, usecols=(0, 19, 16, 17)).T
             ends_s = at_s[np.flatnonzero(np.diff(target)) + 1]
             # When the last target was reached only the header says.
