@@ -16,11 +16,8 @@ from tyro.extras import SubcommandApp
 from latentarm import __version__
 from latentarm.commands.catalogue import COMMAND_SETS, all_commands
 from latentarm.commands.configuration import configurable, file_named_in, read_options
-from latentarm.core.errors import UserError
+from latentarm.core.errors import UserError, naming_extras
 from latentarm.core.untrusted.terminal import one_line
-
-TRAINING: Final = ("torch", "sklearn", "joblib")
-"""What only the extra ``train`` brings."""
 
 RESEARCH: Final = "pip install 'latentarm[research]'"
 
@@ -41,7 +38,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(f"latentarm {__version__}")
         return 0
     try:
-        with warnings.catch_warnings():
+        with warnings.catch_warnings(), naming_extras():
             warnings.showwarning = _warn
             code = _app(words).cli(
                 prog="latentarm",
@@ -53,10 +50,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
             return code
     except UserError as error:
         return _refuse(str(error))
-    except ModuleNotFoundError as error:
-        if error.name not in TRAINING:
-            raise
-        return _refuse(f"This needs {error.name}, which is not installed: pip install 'latentarm[train]'.")
     except BrokenPipeError:
         # The reader closed the pipe, as `head` does; there is nothing left to flush to.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

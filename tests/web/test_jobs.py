@@ -32,6 +32,10 @@ def refuse(wire: Wire) -> None:
     raise UserError("There is nothing to do: bring something.")
 
 
+def need_torch(wire: Wire) -> None:
+    raise ModuleNotFoundError("No module named 'torch'", name="torch")
+
+
 def sleep_on(wire: Wire, left_behind: str) -> None:
     try:
         wire.say(Number(value=os.getpid()))  # it may be ended as soon as this is heard
@@ -71,6 +75,13 @@ def test_an_error_of_the_user_arrives_as_its_sentence():
     job = Job(refuse, (), NUMBERS, "Nothing")
     finished(job)
     assert job.failure.text == "There is nothing to do: bring something."
+    job.end()
+
+
+def test_a_job_names_the_extra_that_it_lacks():
+    job = Job(need_torch, (), NUMBERS, "Learning")
+    finished(job)
+    assert job.failure.text == "This needs torch, which is not installed: pip install 'latentarm[train]'."
     job.end()
 
 

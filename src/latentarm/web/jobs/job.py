@@ -19,7 +19,7 @@ from typing import Final, Generic, TypeVar, final
 from pydantic import BaseModel, TypeAdapter, ValidationError
 from threadpoolctl import threadpool_limits
 
-from latentarm.core.errors import UserError
+from latentarm.core.errors import UserError, naming_extras
 from latentarm.web.protocol.notice import Message, Notice, notice_of
 
 MESSAGE_LIMIT: Final = 1 << 20
@@ -168,7 +168,8 @@ def _run(
     wire = Wire(hearing, saying)
     with threadpool_limits(1):
         try:
-            work(wire, *arguments)
+            with naming_extras():
+                work(wire, *arguments)
         except UserError as error:
             wire.say(_Failed(failed=notice_of(error)))
 
