@@ -96,7 +96,7 @@ lock: $(VENV)/installed ## Pin the newest version of every package, direct or no
 	sed -n '/^torch==/p' constraints.txt > .torch
 	$(BIN)/python scripts/uv.py pip compile --quiet --upgrade --no-annotate --no-header --all-extras \
 		--constraint .torch --output-file .lock pyproject.toml research/pyproject.toml
-	{ grep '^#' constraints.txt; sed '/latentarm/d; s/+[a-z0-9.]*$$//' .lock; } > .torch && mv .torch constraints.txt && rm .lock
+	{ grep '^#' constraints.txt; sed '/^-e /d; s/+[a-z0-9.]*$$//' .lock; } > .torch && mv .torch constraints.txt && rm .lock
 
 dist: $(VENV)/installed-dev ## Build the wheel and the sdist in dist/.
 	rm -rf dist
