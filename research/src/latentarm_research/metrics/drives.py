@@ -2,7 +2,8 @@
 
 import itertools
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from math import isfinite
 from typing import Final, final
 
 import numpy as np
@@ -59,6 +60,13 @@ class Drive:
     food_force_n: float
     spilled: int
     grains: int
+
+    def as_json(self) -> dict[str, object]:
+        """Plain mapping; figures without a value are None."""
+        return {
+            name: None if isinstance(value, float) and not isfinite(value) else value
+            for name, value in asdict(self).items()
+        }
 
 
 @final

@@ -228,7 +228,10 @@ def _report(asked: Asked, request: Request[Preset], measured: CompareResults) ->
         page=_page(asked, measured.whole, main, tests, driven, counts),
         figures=figures,
         tests=tests,
-        documents={"seeds.json": seeds_of(results), "drives.json": [asdict(one) for one in drives]},
+        documents={
+            "seeds.json": seeds_of(results),
+            "drives.json": [{**asdict(one), "figures": one.figures.as_json()} for one in drives],
+        },
         timings=_timings(results, drives),
         tables=terminal_tables(main, names, preset.noises_rad, VisibleConsole().width),
     )

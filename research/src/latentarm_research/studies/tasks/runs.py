@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
-from math import isfinite
 from typing import final
 
 from latentarm.assistance.controllers.contract import Controller
@@ -79,11 +78,8 @@ class Run:
     def as_json(self) -> dict[str, object]:
         """Plain mapping; what has no value is None."""
         entries = asdict(self)
-        figures = entries.pop("figures") or {}
-        return {
-            name: None if isinstance(value, float) and not isfinite(value) else value
-            for name, value in (figures | entries).items()
-        }
+        del entries["figures"]
+        return (self.figures.as_json() if self.figures else {}) | entries
 
 
 def decoders_of(model: TrainedModel) -> tuple[Decoder, ...]:
