@@ -118,7 +118,7 @@ def test_two_switches_go_on_and_choose(person, arm):
     lit.get_by_text("Enable").wait_for()
     person.wait_for_timeout(1500)
     assert lit.inner_text() == "Enable"
-    person.locator("#switch-next").click()
+    person.locator("#switch-next").click(delay=80)  # shorter presses do not count
     lit.get_by_text("Other mode").wait_for()
-    person.get_by_role("button", name="Switch", exact=True).click()
+    person.get_by_role("button", name="Switch", exact=True).click(delay=80)
     arm.wait(lambda: arm.state["mode"] == "end_effector")
