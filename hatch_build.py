@@ -10,7 +10,7 @@ from typing import Any
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 FILES = ("build/three.module.min.js", "build/three.core.min.js", "LICENSE", "package.json")
-"""What the page loads and its licence; then the version, so that it is there only if all else is."""
+"""Files of three.js. `package.json` is copied last: it marks the copy as complete."""
 
 
 class ThreeHook(BuildHookInterface[Any]):
@@ -48,7 +48,7 @@ class ThreeHook(BuildHookInterface[Any]):
         return Path(self.root, "src", "latentarm", "web", "three")
 
     def _there(self) -> bool:
-        """Whether the files are there, and of the version that is pinned."""
+        """Whether the source tree has the pinned version."""
         lock = json.loads(Path(self.root, "package-lock.json").read_text())
         pinned = lock["packages"]["node_modules/three"]["version"]
         package = self._folder / "package.json"

@@ -85,7 +85,7 @@ def _app(words: Sequence[str]) -> SubcommandApp:
 
 
 def _description() -> str:
-    """What the program does, and what is missing."""
+    """The program in a sentence, and the extra to install where the research is missing."""
     more = (
         ""
         if len(COMMAND_SETS)

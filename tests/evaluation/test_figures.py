@@ -4,11 +4,9 @@ import pytest
 from figure_faults import faults
 from latentarm.core.errors import UserError
 from latentarm.core.style import COLUMN_MM, MM_PER_INCH, save_figure
-from latentarm.core.types import Row
 from latentarm.evaluation.effects import axis_effects, axis_grid, held_paths
 from latentarm.evaluation.latent_effect_figure import AWAY_M, latent_effect_figure
 from latentarm.evaluation.properties_figure import properties_figure
-from latentarm_research.metrics.comparison_figure import comparison_figure
 
 GRID = axis_grid(7)
 
@@ -28,41 +26,12 @@ def effects(request, linear_decoder, gantry):
     return axis_effects([decoder], rng.normal(size=(25, 3)), GRID, gantry, step_s=0.1)[0]
 
 
-def rows_of(models, **names):
-    measures = [("error_percent_of_pca", "%"), ("controllability_m", "m"), ("r2_axis_0", "1"), ("drift", "1")]
-    return [
-        Row("compare", measure, unit, 0.5 + place, 0.1 * place or None, 5, model=model, **names)
-        for place, model in enumerate(models)
-        for measure, unit in measures
-    ]
-
-
 def test_the_properties_figure_says_r_squared_for_every_axis(effects):
     figure = properties_figure(effects, GRID, "cvae")
     words = [text.get_text() for text in texts_of(figure)]
     assert words.count("$R^2$ = 1.00") == len(effects)
     assert figure.get_size_inches()[0] * MM_PER_INCH == pytest.approx(COLUMN_MM)
     assert_nothing_is_cut_off(figure)
-
-
-def test_the_comparison_names_every_model_and_shows_them_apart_without_colour():
-    models = ["pca", "ae", "vae", "cae", "cvae", "cae_zero", "scl", "a_new_model"]
-    figure = comparison_figure(rows_of(models))
-    words = {text.get_text() for text in texts_of(figure)}
-    assert {"PCA", "cVAE", "SCL", "a_new_model"} <= words
-    panel = figure.axes[0]
-    markers = [container.lines[0].get_marker() for container in panel.containers]
-    assert len(set(markers[:7])) == 7
-    assert_nothing_is_cut_off(figure)
-
-
-def test_conditions_of_one_model_are_compared_too():
-    rows = [
-        row for condition in ("latent", "latent_assist") for row in rows_of(["cvae"], condition=condition)
-    ]
-    figure = comparison_figure([*rows, Row("drive", "drift", "1", None, None, 0, condition="end_effector")])
-    words = {text.get_text() for text in texts_of(figure)}
-    assert {"latent actions", "mode switching"} <= words
 
 
 def test_held_paths_follow_the_decoder_step_by_step(turning_decoder, gantry):

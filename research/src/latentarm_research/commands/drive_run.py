@@ -44,7 +44,7 @@ OF_THE_TASK: Final = {
     "limits": "a robot of its own",
     "time_limit_s": "a time limit of its own",
 }
-"""What a task with things decides itself, by the option that decides it elsewhere."""
+"""Options that a task with things refuses, and what it has instead."""
 
 
 def drive_run(config: DriveOptions, tell: Callable[[Sequence[str]], None] = lambda sentences: None) -> Driven:

@@ -193,7 +193,7 @@ def _given(
 
 @final
 class _Rearming:
-    """What the person does about stops: they let go, enable the arm again, and begin the step again."""
+    """After a stop the person lets go, enables the arm again, and repeats the step."""
 
     def __init__(self, step: Step, progress: Progress) -> None:
         self.stops = 0
@@ -202,7 +202,7 @@ class _Rearming:
         self._since_s: float | None = None
 
     def lets_go(self, time_s: float) -> bool:
-        """Whether the arm is stopped; in the end it is enabled for the next tick."""
+        """Whether the person lets go because the arm has stopped. After `REARM_S` this enables the arm."""
         if self._step.stopped is None:
             self._since_s = None
             return False

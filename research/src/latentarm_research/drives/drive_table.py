@@ -43,7 +43,7 @@ COLUMNS: Final[dict[str, str]] = {
     "spilled": "grains that were spilled",
     "grains": "grains that there were",
 }
-"""What each column of ``drives.csv`` holds; ``drives`` in ``drives.json`` has the same fields.
+"""Columns of ``drives.csv``, and fields of ``drives`` in ``drives.json``.
 
 A figure that a drive does not have, such as a force where nothing can be touched, is empty, or null in JSON.
 """

@@ -17,7 +17,7 @@ from latentarm_research.metrics.ending import NOT_NEARER, STUCK_S, Ending, why_i
 from latentarm_research.metrics.preference_alignment import alignment_by_step, preference_alignment
 
 NEARER: Final = 0.1
-"""What counts as nearer, in tolerances of the waypoint."""
+"""Least progress towards a waypoint, in its tolerances: with less for `STUCK_S` the person is stuck."""
 
 STATES_EVERY: Final = 10
 """Ticks between two states that are kept."""
@@ -73,7 +73,7 @@ class Following:
                 self.ending = Ending("operator_stuck", NOT_NEARER)
 
     def trace(self, choice: int, chain: PlacesTool, stops: int) -> Trace:
-        """What is kept.
+        """The drive so far.
 
         Args:
             choice: index into the task's choices.
@@ -140,7 +140,7 @@ class Following:
 
 
 def poses_at(begun: Beginning) -> Mapping[str, Pose]:
-    """What a decoder may look at when a drive begins: the things, or the goals where there are none."""
+    """Poses of the things at the start, for the decoder; of the goals where there are no things."""
     return {one.name: one.pose for one in (begun.scene.things or begun.goals)}
 
 

@@ -1,4 +1,4 @@
-"""What is kept of a simulated drive."""
+"""The record of a simulated drive."""
 
 from dataclasses import dataclass
 from typing import final
@@ -14,7 +14,7 @@ from latentarm_research.metrics.preference_alignment import StepAlignment
 @final
 @dataclass(frozen=True, eq=False)
 class Trace:
-    """What is kept of a drive, sampled at the loop's rate.
+    """The record of a drive, sampled at the loop's rate.
 
     Attributes:
         figures: what is measured of it.

@@ -70,7 +70,7 @@ class Tab:
         return answer["result"].get("value")
 
     def wait(self, condition: str, within_s: float) -> bool:
-        """Whether a script in the tab has a true value in time."""
+        """Wait for a condition in the tab, a JavaScript expression; return whether it came true in time."""
         end_s = time.monotonic() + within_s
         while time.monotonic() < end_s:
             if self.evaluate(f"Boolean({condition})"):

@@ -31,8 +31,8 @@ class Judge:
         spec = mujoco.MjSpec.from_string(robot.mjcf)
         for obstacle in obstacles:
             _add(spec, obstacle)
-        # Some models turn MuJoCo's own collision code off for libccd, whose distances between meshes are
-        # wrong by centimetres and change with the largest distance that is asked for.
+        # Some models choose libccd instead of MuJoCo's own collision code. libccd gets distances between
+        # meshes wrong by centimetres, and its result depends on the distance limit of the query.
         spec.option.disableflags &= ~int(mujoco.mjtDisableBit.mjDSBL_NATIVECCD)
         self._model = model = spec.compile()
         self._data = mujoco.MjData(model)

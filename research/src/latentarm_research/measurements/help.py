@@ -29,7 +29,7 @@ from latentarm_research.people.catalogue import PEOPLE
 
 TABLE: Final = TableTop()
 HERE_M: Final = 0.03
-"""What the page calls there."""
+"""Distance within which the page reports that the tool is there, m."""
 
 
 def measure(options: Help, work: Work) -> Outcome:

@@ -1,4 +1,4 @@
-"""What every measurement is given and returns."""
+"""Inputs and results of every measurement."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -67,7 +67,7 @@ class Work:
 @final
 @dataclass(frozen=True)
 class Outcome:
-    """What a measurement found.
+    """Results of a measurement.
 
     Attributes:
         rows: its figures. A task is a table of its own, a condition a line, a measure a column.

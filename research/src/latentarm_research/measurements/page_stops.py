@@ -83,7 +83,7 @@ def measure(options: PageStops, work: Work) -> Outcome:
 @final
 @dataclass(frozen=True)
 class Scene:
-    """What a fault can happen to.
+    """The processes and connections that a fault can hit.
 
     Attributes:
         tab: shows the page.

@@ -18,7 +18,7 @@ START_M: Final = 0.03
 
 @final
 class Pusher(Controller):
-    """Moves the arm as it is told, with one axis of input."""
+    """Moves the arm along a given joint velocity, with one axis of input."""
 
     def __init__(self, dof: int) -> None:
         self.wanted: FloatArray = np.zeros(dof)

@@ -1,1 +1,1 @@
-"""What is measured of simulated drives, and of decoders beyond `latentarm evaluate`."""
+"""Measures of simulated drives, and of decoders beyond `latentarm evaluate`."""

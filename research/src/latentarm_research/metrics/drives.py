@@ -72,7 +72,7 @@ class Drive:
 @final
 @dataclass(frozen=True, eq=False)
 class Outcome:
-    """What the task says of a drive.
+    """The outcome of a drive at its task.
 
     Attributes:
         success: all steps were done, and nothing went wrong.

@@ -147,7 +147,7 @@ def welch_test(subject: FloatArray, against: FloatArray) -> MeansTest | None:
 
 
 def small_sample_correction(dof: int) -> float | None:
-    """What makes a standardised difference unbiased: J of Hedges (1981); None where nothing does."""
+    """Bias correction J of a standardised difference (Hedges 1981); None where it does not exist."""
     from scipy.special import gammaln
 
     if dof < 2:

@@ -216,7 +216,7 @@ class Study(Generic[Preset, Measured]):
     grows: tuple[str, ...] = ()
 
     def about(self, request: Request[Preset]) -> dict[str, object]:
-        """What the figures depend on; sizes without a limit are None."""
+        """Everything that determines the figures; sizes without a limit are None."""
         entries = asdict(request.preset)  # pyright: ignore[reportArgumentType]
         sizes = {name: None if value == inf else value for name, value in entries.items()}
         return {

@@ -205,7 +205,7 @@ class Definition:
 
     @property
     def study(self) -> str:
-        """What rows and folders of results call it."""
+        """Its name in rows and folders of results."""
         return f"{PREFIX}{self.name}"
 
     @property

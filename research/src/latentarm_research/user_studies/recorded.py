@@ -51,7 +51,7 @@ class Recorded:
 
     @property
     def documents(self) -> dict[str, object]:
-        """What a folder of them holds besides the traces, by file; the same wherever it is computed."""
+        """Contents of a folder's files other than the traces, by file name; the same on every computer."""
         about = self._about
         return {
             DEFINITION: {"digest": self.definition.digest, **self.definition.as_json()},

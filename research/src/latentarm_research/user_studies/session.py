@@ -69,7 +69,7 @@ class SessionCell:
 @final
 @dataclass(frozen=True, eq=False)
 class Session:
-    """What came of a `SessionCell`.
+    """The result of a `SessionCell`.
 
     Attributes:
         trials: in order.

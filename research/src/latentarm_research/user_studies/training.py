@@ -55,7 +55,7 @@ class TrainingCell:
 @final
 @dataclass(frozen=True, eq=False)
 class Trained:
-    """What came of a `TrainingCell`.
+    """The result of a `TrainingCell`.
 
     Attributes:
         task: name of the task.

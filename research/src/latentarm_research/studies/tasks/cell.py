@@ -44,7 +44,7 @@ class ShownCell:
 @final
 @dataclass(frozen=True, eq=False)
 class DemonstratedRun:
-    """What came of a `ShownCell`.
+    """The result of a `ShownCell`.
 
     Attributes:
         cell: what was asked for.
@@ -96,7 +96,7 @@ class ModelCell:
 @final
 @dataclass(frozen=True, eq=False)
 class FittedModel:
-    """What came of a `ModelCell`.
+    """The result of a `ModelCell`.
 
     Attributes:
         task: a name of `latentarm_research.studies.tasks.moved.TASKS`.
@@ -176,7 +176,7 @@ class TaskRunCell:
 @final
 @dataclass(frozen=True, eq=False)
 class TaskRunResult:
-    """What came of a `TaskRunCell`.
+    """The result of a `TaskRunCell`.
 
     Attributes:
         task: a name of `latentarm_research.studies.tasks.moved.TASKS`.

@@ -1,4 +1,4 @@
-"""What moves the arm in a run of the study, and who steers it."""
+"""A condition of the study: the controller and the person who steers."""
 
 from dataclasses import dataclass, replace
 from typing import Final, final
@@ -13,7 +13,7 @@ ORIENTED: Final = "learned_orientation"
 @final
 @dataclass(frozen=True)
 class Condition:
-    """What moves the arm, and who steers it.
+    """A controller and the person who steers.
 
     Attributes:
         name: `DEMONSTRATOR`, `SWITCHING`, `ORIENTED`, or for a model what its decoder sees, a name of

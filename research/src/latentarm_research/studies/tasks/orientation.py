@@ -51,7 +51,7 @@ class OrientationCell:
 @final
 @dataclass(frozen=True, eq=False)
 class Oriented:
-    """What came of an `OrientationCell`.
+    """The result of an `OrientationCell`.
 
     Attributes:
         task: a name of `latentarm_research.studies.tasks.moved.TASKS`.
