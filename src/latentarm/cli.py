@@ -88,7 +88,7 @@ def _description() -> str:
     """The program in a sentence, and the extra to install where the research is missing."""
     more = (
         ""
-        if len(COMMAND_SETS)
+        if "research" in COMMAND_SETS
         else f" Demo, simulated drives, the paper's studies and benchmarks: {RESEARCH}."
     )
     return (

@@ -2,7 +2,7 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
-from typing import Protocol, TypedDict, final
+from typing import Final, Protocol, TypedDict, final
 
 import numpy as np
 
@@ -11,6 +11,9 @@ from latentarm.core.types import FloatArray
 
 ActionOf = Callable[[FloatArray], FloatArray]
 """Inputs (..., K, d) to the actions ``a_h`` (..., K, n), rad/s, that they would cause in these states."""
+
+BELIEF_PERIOD_S: Final = 0.1
+"""How often the belief is updated, s, on the page and in simulated drives."""
 
 _LEAST = 1e-300
 """Stands in for a probability of zero, which has no logarithm."""

@@ -8,9 +8,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pkgutil import resolve_name
 from typing import Final, final
+from warnings import warn
 
 from latentarm.commands.configuration import Command
-from latentarm.core.plugins import Catalogue
+from latentarm.core.plugins import Catalogue, PluginWarning
 
 
 @final
@@ -94,9 +95,24 @@ COMMAND_SETS: Final = Catalogue("latentarm.commands", "set of commands", {}, _ch
 
 
 def all_commands() -> CommandSet:
-    """Our commands, and then those of other distributions."""
-    sets = (OWN, *COMMAND_SETS.usable().values())
-    return CommandSet(
-        {words: entry for one in sets for words, entry in one.commands.items()},
-        {word: text for one in sets for word, text in one.groups.items()},
-    )
+    """Our commands, and then those of other distributions.
+
+    Warns:
+        PluginWarning: for each command left out, because its words are taken or its group is missing.
+    """
+    commands, groups = dict(OWN.commands), dict(OWN.groups)
+    for name, added in COMMAND_SETS.usable().items():
+        groups = {**added.groups, **groups}
+        for words, entry in added.commands.items():
+            group = words.rpartition(" ")[0]
+            if words in commands:
+                _leave_out(name, words, "there is one already")
+            elif group and group not in groups:
+                _leave_out(name, words, f"there is no group '{group}'")
+            else:
+                commands[words] = entry
+    return CommandSet(commands, groups)
+
+
+def _leave_out(name: str, words: str, reason: str) -> None:
+    warn(PluginWarning(f"The command '{words}' of the set '{name}' is left out: {reason}."), stacklevel=3)

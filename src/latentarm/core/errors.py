@@ -1,11 +1,11 @@
-"""The error for problems that the user can fix."""
+"""The error for problems that the user can fix, such as an extra that is not installed."""
 
 from collections.abc import Generator
 from contextlib import contextmanager
 from typing import Final
 
 TRAINING: Final = ("torch", "sklearn", "joblib")
-"""Packages that only the extra ``train`` brings."""
+"""Packages of the extra ``train``."""
 
 
 class UserError(Exception):
@@ -18,7 +18,7 @@ class UserError(Exception):
 
 @contextmanager
 def naming_extras() -> Generator[None]:
-    """Turn the lack of a package that an extra brings into a `UserError`."""
+    """Turn the lack of a package of the extra ``train`` into a `UserError`."""
     try:
         yield
     except ModuleNotFoundError as error:

@@ -62,7 +62,7 @@ class GoalTask(SceneTask):
         """Draw where the arm starts.
 
         Raises:
-            UserError: there is no such goal or manner, or nothing is left to do where the arm starts.
+            UserError: there is no such manner, or nothing is left to do where the arm starts.
         """
         task, manner, goal = self._task, self._manner, self._task.goals[choice].name
         start = task.sample_start(choice, rng)

@@ -38,7 +38,7 @@ from latentarm.tasks.place import ScenePlace
 from latentarm_research.commands.demo_page import FILM, film, held_in_words, page
 from latentarm_research.drives.arm_figure import draw_task
 from latentarm_research.drives.demonstrate import demonstrate
-from latentarm_research.drives.drive import STATE_NOISE_RAD, Setup
+from latentarm_research.drives.drive import Setup
 from latentarm_research.drives.drive_figures import draw_drives, draw_inputs, marks_of_first_steps
 from latentarm_research.drives.drives import Planned, drive_all, plan_drives
 from latentarm_research.drives.trace import Trace
@@ -46,6 +46,7 @@ from latentarm_research.metrics.comparison_figure import comparison_figure
 from latentarm_research.metrics.drives import drive_rows
 from latentarm_research.people.catalogue import PEOPLE
 from latentarm_research.people.names import OperatorName
+from latentarm_research.studies.fitting import STATE_NOISE_RAD
 
 if TYPE_CHECKING:
     from latentarm_research.commands.demo import DemoOptions

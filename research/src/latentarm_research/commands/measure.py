@@ -60,12 +60,12 @@ def _measure(name: str, own: Any, common: Common, out: Path) -> int:
     from latentarm.runs.checks import check_seed
     from latentarm.runs.results_folder import ResultsFolder, write_json
     from latentarm_research.measurements.measurement import Work
-    from latentarm_research.measurements.page import command_of, page_of
+    from latentarm_research.measurements.page import page_of, repeated_by
 
     check_seed(common.seed)
     check_processes(common.jobs, "joblib")
     words = f"measure {name}"
-    command = command_of(name, own, common.seed)
+    command = repeated_by(name, own, common.seed)
     about = {"study": words, "command": command}
     ResultsFolder(words, ("results.json", "results.md")).claim(out, about)
     work = Work(common.seed, common.jobs, not common.json and sys.stderr.isatty())

@@ -92,7 +92,9 @@ def _reproduce(
     return 0
 
 
-properties = command_of("properties")
-shared_autonomy = command_of("shared-autonomy")
-alignment = command_of("alignment")
-tasks = command_of("tasks")
+def __getattr__(name: str) -> Command:
+    """The command of a study, by its name with underscores."""
+    words = name.replace("_", "-")
+    if words not in STUDIES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return command_of(words)

@@ -13,7 +13,7 @@ import numpy as np
 from latentarm.arms.catalogue import DEFAULT_ARM, PHYSICAL_ARM, make_scene_arm, make_simulated_arm
 from latentarm.arms.contract import Arm, SceneArm, check_arm
 from latentarm.assistance.assistance import Assistance, AssistanceRule
-from latentarm.assistance.belief import Belief, Rule
+from latentarm.assistance.belief import BELIEF_PERIOD_S, Belief, Rule
 from latentarm.assistance.boltzmann import BoltzmannBelief
 from latentarm.assistance.controllers.contract import Controller
 from latentarm.control.clock import SimulatedClock
@@ -34,12 +34,6 @@ from latentarm_research.people.person import Person, SimulatedPerson
 
 RATE_HZ: Final = 100.0
 """Rate of the simulated loop, the most that a real arm is sent from Python."""
-
-STATE_NOISE_RAD: Final = 0.05
-"""A driven arm leaves the demonstrated states: with this noise in training the decoder has been there."""
-
-BELIEF_PERIOD_S: Final = 0.1
-"""How often the belief is updated: as often as the simulated operator decides."""
 
 REARM_S: Final = 2.0
 """After a stop the simulated person lets go, and enables the arm again so much later, s."""

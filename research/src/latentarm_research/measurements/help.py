@@ -19,7 +19,7 @@ from latentarm.robots.kinematics.obstacles import Obstacle
 from latentarm.robots.robot import Robot
 from latentarm.tasks.goal_task import GoalTask
 from latentarm.tasks.table_top import TableTop
-from latentarm.tasks.task import Task
+from latentarm.tasks.task import REACHED_DISTANCE, Task
 from latentarm.web.arm_process.help import LEVELS
 from latentarm_research.drives.drive import Setup
 from latentarm_research.drives.drives import Planned, drive_all, plan_drives
@@ -28,8 +28,6 @@ from latentarm_research.measurements.options import Help
 from latentarm_research.people.catalogue import PEOPLE
 
 TABLE: Final = TableTop()
-HERE_M: Final = 0.03
-"""Distance within which the page reports that the tool is there, m."""
 
 
 def measure(options: Help, work: Work) -> Outcome:
@@ -106,8 +104,8 @@ class Hover(Task):
         return (TABLE.goals[goal if self._hidden is None else self._hidden].pose,)
 
     def reached(self, pose: Pose, waypoint: Pose) -> bool:
-        """Whether the tool is within `HERE_M`."""
-        return bool(np.linalg.norm(pose.position - waypoint.position) <= HERE_M)
+        """Whether the tool is near enough, in any orientation."""
+        return bool(np.linalg.norm(pose.position - waypoint.position) <= REACHED_DISTANCE)
 
     def demonstrate(self, episodes: int, rng: np.random.Generator) -> Demonstrations:
         """See the base class."""

@@ -42,7 +42,7 @@ def table_of(rows: Sequence[Row]) -> str:
     )
 
 
-def command_of(name: str, options: Any, seed: int) -> str:
+def repeated_by(name: str, options: Any, seed: int) -> str:
     """The command that repeats a measurement, with the options that are not as usual."""
     words = [f"latentarm measure {name}"]
     for one in fields(options):

@@ -14,6 +14,9 @@ from latentarm.models.scaling import CollapseWarning
 VALIDATION_SHARE: Final = 0.2
 """Share of the training demonstrations that is for validation."""
 
+STATE_NOISE_RAD: Final = 0.05
+"""SD of the noise on training states, rad: a driven arm leaves the demonstrated states."""
+
 
 def validation_episodes(demonstrations: Demonstrations) -> range:
     """The last episodes, for validation."""

@@ -70,9 +70,9 @@ def send_people(definition: Definition, request: Request[Sizes], grid: Grid) -> 
     people = draw_people(request.preset.simulated, request.seed)
     cells = _session_cells(definition, request, people)
     missing = {_trained_as(cell) for cell in cells if KEEP_SESSIONS.read(request.out, cell) is None}
-    training = _training_cells(definition, request, people, missing)
+    fits = _training_cells(definition, request, people, missing)
     trained: Mapping[str, Trained] = {
-        one.task: one for one in grid.run("Demonstrations and models", train, training, _task_label)
+        one.task: one for one in grid.run("Demonstrations and models", train, fits, _task_label)
     }
     cells = [replace(cell, trained=trained.get(_trained_as(cell))) for cell in cells]
     sessions = grid.run("Sessions of simulated people", go_through, cells, _session_label, KEEP_SESSIONS)

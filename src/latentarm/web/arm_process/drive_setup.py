@@ -11,6 +11,7 @@ from latentarm.alignment.contract import Seat
 from latentarm.arms.address import is_address
 from latentarm.arms.catalogue import check_named
 from latentarm.arms.contract import Arm, SceneArm
+from latentarm.assistance.belief import BELIEF_PERIOD_S
 from latentarm.assistance.boltzmann import BoltzmannBelief
 from latentarm.assistance.controllers.end_effector import EndEffectorController
 from latentarm.assistance.controllers.joined import JoinedController
@@ -44,9 +45,6 @@ SEEDS: Final = 2**31
 
 PERIOD_S: Final = 0.01
 """Period of the control loop: 100 Hz, the highest rate at which Python drives a real arm."""
-
-BELIEF_PERIOD_S: Final = 0.1
-"""How often the belief is updated, s."""
 
 INPUT_GRACE_S: Final = 0.07
 """If the connection drops for no longer than `INPUT_TIMEOUT_S` plus this, the arm slows down and need not be

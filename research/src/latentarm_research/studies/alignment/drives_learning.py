@@ -26,7 +26,6 @@ from latentarm.runs.asking import FASTEST, SimulatedPerson
 from latentarm.runs.questions import Scene, ask
 from latentarm.tasks.table_top import TableTop
 from latentarm_research.alignment.training import FitConfig, fit_alignments
-from latentarm_research.drives.drive import STATE_NOISE_RAD
 from latentarm_research.people.expectation import Expectation, displacements, main_directions
 from latentarm_research.studies.alignment.cell import ideal_config
 from latentarm_research.studies.alignment.preset import (
@@ -39,7 +38,7 @@ from latentarm_research.studies.alignment.preset import (
     Preset,
     Stream,
 )
-from latentarm_research.studies.fitting import fit_model
+from latentarm_research.studies.fitting import STATE_NOISE_RAD, fit_model
 from latentarm_research.studies.streams import generator, integer, sequence
 
 TASK: Final = "table_top"

@@ -6,9 +6,8 @@ from typing import Final, Literal, NamedTuple
 from scipy import stats
 
 from latentarm.core.types import FloatArray
+from latentarm_research.studies.means_test import CONFIDENCE
 from latentarm_research.studies.statistics import bootstrap_interval
-
-CONFIDENCE: Final = 0.95
 
 FEWEST_SEEDS: Final = 3
 """From this many on, seeds are the units; with fewer there is no spread to estimate, so drives are."""

@@ -1,0 +1,33 @@
+"""Commands of other distributions join ours, and take nothing away."""
+
+import pytest
+
+from latentarm.commands import catalogue
+from latentarm.commands.catalogue import OWN, CommandSet, Entry, all_commands
+from latentarm.core.plugins import PluginWarning
+
+THEIRS = Entry("theirs:run", "Theirs.")
+
+
+class Registered:
+    def __init__(self, commands: dict[str, Entry], groups: dict[str, str]) -> None:
+        self.added = CommandSet(commands, groups)
+
+    def usable(self) -> dict[str, CommandSet]:
+        return {"theirs": self.added}
+
+
+def test_a_command_in_a_group_of_its_own_joins(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(catalogue, "COMMAND_SETS", Registered({"lab walk": THEIRS}, {"lab": "Of a lab."}))
+    found = all_commands()
+    assert found.commands == {**OWN.commands, "lab walk": THEIRS}
+    assert found.groups["lab"] == "Of a lab."
+
+
+@pytest.mark.parametrize("words", ["train", "lab walk"])
+def test_a_command_that_is_taken_or_lacks_its_group_is_left_out(
+    monkeypatch: pytest.MonkeyPatch, words: str
+) -> None:
+    monkeypatch.setattr(catalogue, "COMMAND_SETS", Registered({words: THEIRS}, {}))
+    with pytest.warns(PluginWarning, match=f"'{words}'"):
+        assert all_commands() == OWN
