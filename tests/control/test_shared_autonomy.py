@@ -19,6 +19,7 @@ from latentarm.control.journal import read_journal
 from latentarm.control.recorder import EpisodeHeader, Recorder
 from latentarm.control.shared_autonomy import Choices
 from latentarm.control.step import Step
+from latentarm.core.errors import UserError
 from latentarm.core.types import Context, Goal, Input
 from latentarm.safety.config import SafetyConfig
 from latentarm_research.assistance.bound import radius
@@ -376,3 +377,23 @@ class TestChoices:
             z, action = choices.chosen(u)
             np.testing.assert_array_equal(z, u)
             np.testing.assert_allclose(action, u @ matrix)
+
+
+class TestGoalsThatMove:
+    def test_help_leads_to_where_they_are_now_and_the_belief_stays(self, make, arm):
+        step = make(FixedAlpha(0.5))
+        (before,), _ = run(step, PUSH, arm.home, 1)
+        believed = step.belief
+        step.move_goals(np.stack([arm.home + 0.3, arm.home + 0.4]))
+        (after,), _ = run(step, PUSH, arm.home, 1)
+        assert step.belief.tolist() == believed.tolist()
+        assert (before.action_assist < 0.0).all()  # towards the likelier one, at -0.2
+        assert after.action_assist == pytest.approx(believed @ [0.3, 0.4])
+
+    @pytest.mark.parametrize("wrong", [np.zeros((1, 7)), np.zeros((2, 6)), np.full((2, 7), np.nan)])
+    def test_others_are_refused(self, make, arm, wrong):
+        step = make(FixedAlpha(0.5))
+        with pytest.raises(UserError, match="2 finite configurations"):
+            step.move_goals(wrong)
+        (record,), _ = run(step, PUSH, arm.home, 1)
+        assert record.command.stop is None

@@ -10,7 +10,6 @@ from latentarm.core.errors import UserError
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.kinematics.resolved_rates import Damping
 from latentarm_research.assistance.catalogue import published_assistance, published_belief
-from latentarm_research.assistance.expected_help import ExpectedHelp
 from latentarm_research.assistance.hindsight import HindsightOptimisation
 from latentarm_research.assistance.hindsight_belief import TICK_S, HindsightBelief
 from latentarm_research.assistance.interpolation import WEIGHTS, Interpolation
@@ -87,7 +86,7 @@ class TestExpectedHelp:
     @settings(max_examples=15)
     @given(beliefs, near_home, velocities)
     def test_it_is_the_mean_over_goals_within_the_published_gains(self, belief, state, action):
-        expected = ExpectedHelp(GOALS, PANDA)
+        expected = HindsightOptimisation(GOALS, PANDA)
         twist = expected.twist(action, state, belief)
         each = np.stack([expected.twist(action, state, one) for one in np.eye(3)])
         assert twist == pytest.approx(belief @ each)
@@ -95,14 +94,14 @@ class TestExpectedHelp:
         assert np.linalg.norm(twist[3:]) <= 0.4
 
     def test_the_tool_moves_with_that_twist(self):
-        expected = ExpectedHelp(GOALS, PANDA)
+        expected = HindsightOptimisation(GOALS, PANDA)
         jacobian = PANDA.chain.jacobian(PANDA.home)
         assert np.linalg.svd(jacobian, compute_uv=False)[-1] > Damping().threshold
         moved = jacobian @ expected.action(np.zeros(7), PANDA.home, EVEN)
         assert moved == pytest.approx(expected.twist(np.zeros(7), PANDA.home, EVEN))
 
     def test_it_leads_to_a_goal_that_is_certain_and_stays_there(self):
-        expected = ExpectedHelp(GOALS, PANDA)
+        expected = HindsightOptimisation(GOALS, PANDA)
         state, certain = PANDA.home.copy(), np.array([0.0, 0.0, 1.0])
         for _ in range(1500):
             state = state + 0.02 * expected.action(np.zeros(7), state, certain)
@@ -150,7 +149,7 @@ class TestWays:
         unsure = way.contribution(PUSH, action, PANDA.home, np.array([0.6, 0.2, 0.2]))
         assert np.array_equal(unsure.with_person(action), action)
         sure = way.contribution(PUSH, action, PANDA.home, np.array([0.61, 0.2, 0.19]))
-        certain = ExpectedHelp(GOALS, PANDA).action(action, PANDA.home, np.array([1.0, 0.0, 0.0]))
+        certain = HindsightOptimisation(GOALS, PANDA).action(action, PANDA.home, np.array([1.0, 0.0, 0.0]))
         assert sure.with_person(action) == pytest.approx(action + certain)
         alone = PolicyBlending(GOALS[:1], PANDA)
         assert alone.contribution(PUSH, action, PANDA.home, np.ones(1)).added == 1.0

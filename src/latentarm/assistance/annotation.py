@@ -10,6 +10,7 @@ from latentarm.assistance.boltzmann import BoltzmannBelief
 from latentarm.core.context import BELIEF, Named, feature_names
 from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations, Episode, FloatArray
+from latentarm.tasks.step_goals import GoalMove
 
 _STANDSTILL = 0.02
 """Joint speed ‖a‖, rad/s, below which a demonstration counts as still and is no evidence."""
@@ -30,15 +31,19 @@ def annotate(demonstrations: Demonstrations, rule: Rule = BoltzmannBelief) -> De
     goals = np.stack([goal.configuration for goal in demonstrations.goals])
     belief = rule(goals, period_s=1 / demonstrations.rate_hz)
     return replace(
-        demonstrations, episodes=tuple(_annotated(episode, belief) for episode in demonstrations.episodes)
+        demonstrations, episodes=tuple(annotated(episode, belief, {}) for episode in demonstrations.episodes)
     )
 
 
-def _annotated(episode: Episode, belief: Belief) -> Episode:
+def annotated(episode: Episode, belief: Belief, moves: Mapping[int, GoalMove]) -> Episode:
+    """One episode of `annotate`, whose goals may move, by the index of the sample from which they have."""
     beliefs = [belief.initial()]
     velocity = np.diff(episode.state, axis=0) / np.diff(episode.timestamp)[:, None]
-    for state, action in zip(episode.state, velocity, strict=False):
+    for index, (state, action) in enumerate(zip(episode.state, velocity, strict=False)):
         seen = beliefs[-1]
+        if (move := moves.get(index)) is not None:
+            belief = belief.over(move.goals)
+            seen = belief.initial() if move.anew else seen
         speed = float(np.linalg.norm(action))
         if speed > _STANDSTILL:
             straight = _towards(belief.goals, state, speed, belief.horizon_s)

@@ -2,7 +2,7 @@
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import Protocol, final
+from typing import Protocol, Self, final
 
 from latentarm.core.types import FloatArray
 
@@ -51,6 +51,10 @@ class Assistance(ABC):
         The person's input ``u`` is (d,), their action ``a_h`` (n,), rad/s (zero where the input is), the
         state (n,), rad, and the belief over goals (G,).
         """
+
+    @abstractmethod
+    def over(self, goals: FloatArray) -> Self:
+        """The same help after its goals have moved to ``goals`` (G, n), rad."""
 
     @abstractmethod
     def bound_rad(self, given: Contribution, state: FloatArray, belief: FloatArray, sigma_h: float) -> float:

@@ -1,8 +1,10 @@
 """Belief over goals (equation 9): the base class of all rules, and the inputs that form a choice."""
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
-from typing import Final, Protocol, TypedDict, final
+from copy import copy
+from typing import Final, Protocol, Self, TypedDict, final
 
 import numpy as np
 
@@ -34,6 +36,7 @@ class BeliefOptions(TypedDict, total=False):
     prior: FloatArray | None
     floor: float
     most: float
+    memory_s: float
 
 
 class Belief(ABC):
@@ -54,6 +57,10 @@ class Belief(ABC):
         floor: smallest probability of any goal, in [0, 1/G).
         most: largest probability of any goal, in (1/G, 1]; what is over is shared evenly among the others.
             A single goal keeps its whole belief.
+        memory_s: evidence fades by e in this time of updates, s: with each, ``log b(g)`` returns towards the
+            prior by the share ``1 - exp(-period_s / memory_s)``. Bayes' rule alone is an integrator, whose
+            confidence grows with every consistent input and takes as many to undo (Aronson and Short 2024);
+            infinite here is Bayes' rule alone.
 
     Raises:
         UserError: a parameter is not finite or out of its range.
@@ -67,6 +74,7 @@ class Belief(ABC):
         prior: FloatArray | None = None,
         floor: float = 0.01,
         most: float = 1.0,
+        memory_s: float = math.inf,
     ) -> None:
         self.goals = np.ascontiguousarray(goals, dtype=float)
         if self.goals.ndim != 2 or not self.goals.size or not np.isfinite(self.goals).all():
@@ -80,9 +88,25 @@ class Belief(ABC):
             raise UserError(f"The belief's most must be in (1/{len(self.goals)}, 1], not {most}.")
         self.floor = floor
         self.most = most
+        if not memory_s > 0:
+            raise UserError(f"The belief's memory_s must be positive, not {memory_s}.")
+        self._kept = math.exp(-period_s / memory_s)
         self._share = period_s / self.horizon_s
         self._above_floors = 1.0 - floor * len(self.goals)
         self._prior = self._checked_prior(prior)
+        self._log_prior = np.log(np.maximum(self._prior, _LEAST))
+
+    def over(self, goals: FloatArray) -> Self:
+        """The same belief after its goals have moved to ``goals`` (G, n), rad; their number and prior stay.
+
+        Raises:
+            ValueError: these are not as many configurations of as many joints, or not finite.
+        """
+        if goals.shape != self.goals.shape or not np.isfinite(goals).all():
+            raise ValueError(f"goals of shape {goals.shape} cannot take the place of {self.goals.shape}")
+        moved = copy(self)
+        moved.goals = goals
+        return moved
 
     @abstractmethod
     def log_likelihood(self, state: FloatArray, actions: FloatArray) -> FloatArray:
@@ -131,7 +155,10 @@ class Belief(ABC):
     def _posterior(self, belief: FloatArray, state: FloatArray, actions: FloatArray) -> FloatArray:
         """Bayes' rule in log space; an overflow counts as no evidence."""
         # log(0) for a goal without probability; this substitute leaves it without.
-        score = np.log(np.maximum(belief, _LEAST)) + self._share * self.log_likelihood(state, actions)
+        before = np.log(np.maximum(belief, _LEAST))
+        if self._kept < 1.0:
+            before = self._log_prior + self._kept * (before - self._log_prior)
+        score = before + self._share * self.log_likelihood(state, actions)
         weight = np.exp(score - np.maximum.reduce(score, axis=-1, keepdims=True))
         after = self._kept_within(weight / np.add.reduce(weight, axis=-1, keepdims=True))
         sound_actions, sound_score = np.isfinite(actions), np.isfinite(score)

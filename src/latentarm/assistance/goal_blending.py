@@ -2,7 +2,7 @@
 
 import math
 from functools import partial
-from typing import final
+from typing import Self, final
 
 import numpy as np
 
@@ -30,6 +30,10 @@ class GoalBlending(Assistance):
         """Equation 3, as much as the arbitration says."""
         alpha = float(self._arbitration.alpha(u, belief))
         return Contribution(assistive_action(state, belief, self._goals), alpha)
+
+    def over(self, goals: FloatArray) -> Self:
+        """See `Assistance.over`."""
+        return type(self)(goals, self._arbitration)
 
     def bound_rad(self, given: Contribution, state: FloatArray, belief: FloatArray, sigma_h: float) -> float:
         """Equation 14: `assistance.bound.radius` for one moment, in a quarter of its time."""

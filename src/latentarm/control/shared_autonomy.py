@@ -113,6 +113,13 @@ class SharedAutonomy:
         self._updates_since_bound = 0
         self._bound_rad: float | None = None
 
+    def move_goals(self, goals: FloatArray) -> None:
+        """Go on with goals (G, n), rad, that have moved; the belief in each stays."""
+        if self._rule is not None:
+            self._rule = self._rule.over(goals)
+        if self._assistance is not None:
+            self._assistance = self._assistance.over(goals)
+
     def rest(self) -> None:
         """Record a step without help: the bound is computed again when help resumes."""
         self._bound_rad = None

@@ -289,8 +289,21 @@ class Step:
 
     @logged
     def forget(self) -> None:
-        """Return to the first belief, because a motion that nobody steered says nothing of a goal."""
+        """Return to the first belief: a motion that nobody steered, or a step that is done, says nothing."""
         self._shared.reset()
+
+    @logged
+    def move_goals(self, goals: FloatArray) -> None:
+        """From the next step on, the goals' configurations are these, (G, n), rad.
+
+        Things move, and so does what a person wants with them. The belief in each goal stays, see `forget`.
+
+        Raises:
+            UserError: these are not as many configurations as there are goals, or they are not finite.
+        """
+        if goals.shape != (len(self._shared.belief), self._dof) or not np.isfinite(goals).all():
+            raise UserError(f"Goals that moved must be {len(self._shared.belief)} finite configurations.")
+        self._shared.move_goals(goals)
 
     @logged
     def guided(self, ask: GripperAsk | None) -> None:

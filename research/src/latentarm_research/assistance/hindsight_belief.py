@@ -1,6 +1,6 @@
 """The belief of hindsight optimisation: Javdani et al., 2018, as their public implementation updates it."""
 
-from typing import Final, Unpack, final
+from typing import Final, Self, Unpack, final
 
 from latentarm.assistance.belief import Belief, BeliefOptions
 from latentarm.core.types import FloatArray
@@ -43,11 +43,17 @@ class HindsightBelief(Belief):
         published: BeliefOptions = {"period_s": TICK_S, "floor": 0.0, "most": MOST_CERTAIN}
         # The horizon of the base class is how long one full piece of evidence takes.
         super().__init__(goals, TICK_S, **(published | options))
-        self._chain = robot.chain
+        self._robot, self._poses_of = robot, poses_of
         self._poses = goal_poses(goals, robot, poses_of)
+
+    def over(self, goals: FloatArray) -> Self:
+        """See `Belief.over`."""
+        moved = super().over(goals)
+        moved._poses = goal_poses(goals, self._robot, self._poses_of)
+        return moved
 
     def log_likelihood(self, state: FloatArray, actions: FloatArray) -> FloatArray:
         """``V_g - Q_g`` of the person's own action; see `Belief.log_likelihood`."""
-        at = self._chain.forward(state)
-        after = self._chain.forward(state + LOOK_AHEAD_S * actions[..., 0, :])
+        at = self._robot.chain.forward(state)
+        after = self._robot.chain.forward(state + LOOK_AHEAD_S * actions[..., 0, :])
         return -self._poses.advantage(at, after)

@@ -4,10 +4,9 @@ Newman, Aronson, Srinivasa, Kitani and Admoni, "HARMONIC: A multimodal dataset o
 collaboration", 2022.
 """
 
-import math
 from typing import Final, Literal, final
 
-from latentarm.assistance.assistance import Assistance, Contribution
+from latentarm.assistance.assistance import Contribution
 from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray
 from latentarm.robots.robot import Robot
@@ -22,7 +21,7 @@ the weight, which is 2/3; the others are read from that."""
 
 
 @final
-class Interpolation(Assistance):
+class Interpolation(ExpectedHelp):
     """``a = (1 - w) a_h + w Σ_g b(g) a_g``, where a_g is the robot's best action towards a goal.
 
     The robot's action and the belief are those of hindsight optimisation; only how they join the person's
@@ -41,7 +40,7 @@ class Interpolation(Assistance):
     def __init__(self, goals: FloatArray, robot: Robot, weight: float, poses_of: PosesOf = that_pose) -> None:
         if not 0.0 <= weight <= 1.0:
             raise UserError(f"The weight on assistance must be in [0, 1], not {weight}.")
-        self._expected = ExpectedHelp(goals, robot, poses_of)
+        super().__init__(goals, robot, poses_of)
         self._weight = weight
 
     @property
@@ -53,8 +52,4 @@ class Interpolation(Assistance):
         self, u: FloatArray, action_human: FloatArray, state: FloatArray, belief: FloatArray
     ) -> Contribution:
         """The robot's action, at its weight."""
-        return Contribution(self._expected.action(action_human, state, belief), alpha=self._weight)
-
-    def bound_rad(self, given: Contribution, state: FloatArray, belief: FloatArray, sigma_h: float) -> float:
-        """None is known: equation 14 is about help in proportion to the joints' distance."""
-        return math.nan
+        return Contribution(self.action(action_human, state, belief), alpha=self._weight)

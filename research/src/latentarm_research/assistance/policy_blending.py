@@ -4,12 +4,11 @@ Dragan and Srinivasa, "A policy-blending formalism for shared control", 2013, as
 with it.
 """
 
-import math
 from typing import final
 
 import numpy as np
 
-from latentarm.assistance.assistance import Assistance, Contribution
+from latentarm.assistance.assistance import Contribution
 from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray
 from latentarm.robots.robot import Robot
@@ -18,7 +17,7 @@ from latentarm_research.assistance.goal_poses import PosesOf, that_pose
 
 
 @final
-class PolicyBlending(Assistance):
+class PolicyBlending(ExpectedHelp):
     """The person alone, until the likeliest goal is ahead of the next by enough; then help towards it alone.
 
     This is the baseline "blend" of Javdani et al.: their public implementation adds all of the help towards
@@ -40,7 +39,7 @@ class PolicyBlending(Assistance):
     ) -> None:
         if not 0.0 <= ahead <= 1.0:
             raise UserError(f"How far a goal must be ahead must be in [0, 1], not {ahead}.")
-        self._expected = ExpectedHelp(goals, robot, poses_of)
+        super().__init__(goals, robot, poses_of)
         self._ahead = ahead
 
     @property
@@ -58,8 +57,4 @@ class PolicyBlending(Assistance):
             return Contribution(np.zeros_like(action_human), alpha=0.0)
         only = np.zeros_like(belief)
         only[likeliest] = 1.0
-        return Contribution(self._expected.action(action_human, state, only), alpha=0.0, added=1.0)
-
-    def bound_rad(self, given: Contribution, state: FloatArray, belief: FloatArray, sigma_h: float) -> float:
-        """None is known: equation 14 is about help that takes the place of the person's action."""
-        return math.nan
+        return Contribution(self.action(action_human, state, only), alpha=0.0, added=1.0)

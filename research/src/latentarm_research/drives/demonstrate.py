@@ -1,6 +1,6 @@
 """Demonstrations of a task with things: a simulated person guides the arm through its steps, in physics."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final, final
 
@@ -23,6 +23,7 @@ from latentarm.demonstrations.things import ENVIRONMENT
 from latentarm.robots.kinematics.pose_rows import stored_rows
 from latentarm.robots.scene.scene import SceneState
 from latentarm.tasks.scene_task import Beginning, SceneTask
+from latentarm.tasks.step_goals import GoalMove, StepGoals
 from latentarm.tasks.steps import Progress, Waypoint
 from latentarm_research.drives.guide import GuidingHand, Movement, guided
 
@@ -50,6 +51,8 @@ class Demonstration:
         seconds: how long it took, s.
         states: how things stood at every kept sample.
         objects: names of the things whose poses the episode holds.
+        begun: how it began.
+        moves: how the goals moved, by the index of the sample from which they had.
     """
 
     episode: Episode
@@ -57,6 +60,8 @@ class Demonstration:
     seconds: float
     states: tuple[SceneState, ...]
     objects: tuple[str, ...]
+    begun: Beginning
+    moves: Mapping[int, GoalMove]
 
 
 def demonstrate_once(
@@ -88,6 +93,8 @@ def demonstrate_once(
     clock = SimulatedClock()
     samples: list[tuple[Reading, Command]] = []
     states: list[SceneState] = []
+    goals = StepGoals(task.robot, begun.goals, begun.steps, begun.scene.names)
+    moves: dict[int, GoalMove] = {}
     with make_scene_arm(arm, task.robot, begun.state, clock.now_s, begun.scene) as driven:
         driven.enable()
         for tick in range(int(task.time_limit_s / PERIOD_S)):
@@ -98,13 +105,18 @@ def demonstrate_once(
                 watch(driven)
             command = person.command(state, reading, clock.now_s())
             if tick % SAMPLE_TICKS == 0:
+                progress = person.progress
+                move = goals.look(progress.done, progress.step, progress.waypoint, state, reading.q)
+                if move is not None:
+                    moves[len(samples)] = move
                 samples.append((reading, command))
                 states.append(state)
             if person.progress.step is None or person.progress.failure is not None:
                 break
             driven.send(command)
     episode = _episode(begun, samples, states)
-    return Demonstration(episode, person.progress, clock.now_s(), tuple(states), begun.objects)
+    took_s, seen = clock.now_s(), tuple(states)
+    return Demonstration(episode, person.progress, took_s, seen, begun.objects, begun, moves)
 
 
 def demonstrate(

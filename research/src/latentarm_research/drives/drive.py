@@ -18,13 +18,14 @@ from latentarm.assistance.boltzmann import BoltzmannBelief
 from latentarm.assistance.controllers.contract import Controller
 from latentarm.control.clock import SimulatedClock
 from latentarm.control.step import Step
-from latentarm.core.types import Input, Pose, Reading, StepRecord
+from latentarm.core.types import FloatArray, Input, Pose, Reading, StepRecord
 from latentarm.robots.kinematics.pose_rows import thing_rows
 from latentarm.robots.scene.scene import SceneState
 from latentarm.safety.config import SafetyConfig
 from latentarm.tasks.goal_task import without_things
 from latentarm.tasks.place import watched
 from latentarm.tasks.scene_task import Beginning, SceneTask
+from latentarm.tasks.step_goals import StepGoals
 from latentarm.tasks.steps import Progress
 from latentarm_research.drives.following import Following, poses_at
 from latentarm_research.drives.trace import Trace
@@ -34,6 +35,9 @@ from latentarm_research.people.person import Person, SimulatedPerson
 
 RATE_HZ: Final = 100.0
 """Rate of the simulated loop, the most that a real arm is sent from Python."""
+
+GOALS_EVERY: Final = round(BELIEF_PERIOD_S * RATE_HZ)
+"""Ticks between two looks at where the goals are."""
 
 REARM_S: Final = 2.0
 """After a stop the simulated person lets go, and enables the arm again so much later, s."""
@@ -91,6 +95,7 @@ def drive(
     clock = SimulatedClock()
     follow = Following(begun)
     step = _step(setup, begun, follow)
+    goals = StepGoals(task.robot, begun.goals, begun.steps, begun.scene.names)
     limits = LoopLimits(step.dead_zone, step.joint_speed)
     operator = SimulatedPerson(task.robot, setup.person, step.dt_s, limits)
     with _arm(setup, begun, clock) as arm:
@@ -112,6 +117,8 @@ def drive(
                 watch(arm)
             if follow.ending is not None:
                 break
+            if tick % GOALS_EVERY == 0:
+                _lead_on(step, goals, follow.progress, state, reading.q)
             if rearming.lets_go(clock.now_s()):
                 operator.reset()
                 given = Input(np.zeros(controller.input_dim))
@@ -157,6 +164,15 @@ def _step(setup: Setup, begun: Beginning, follow: Following) -> Step:
         dt_s=1.0 / RATE_HZ,
         surroundings=watched(lambda: follow.poses, setup.controller.objects),
     )
+
+
+def _lead_on(step: Step, goals: StepGoals, progress: Progress, state: SceneState, q: FloatArray) -> None:
+    """Move the goals to where the task's steps have got to, as the page does."""
+    move = goals.look(progress.done, progress.step, progress.waypoint, state, q)
+    if move is not None:
+        step.move_goals(move.goals)
+        if move.anew:
+            step.forget()
 
 
 def _given(

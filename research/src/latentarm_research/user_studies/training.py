@@ -7,10 +7,11 @@ from typing import Final, final
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from latentarm.assistance.annotation import annotate
+from latentarm.assistance.annotation import annotated
+from latentarm.assistance.boltzmann import BoltzmannBelief
 from latentarm.core.context import BELIEF
 from latentarm.core.errors import UserError
-from latentarm.core.types import Demonstrations, Goal
+from latentarm.core.types import Demonstrations, Episode
 from latentarm.models.decoder import Decoder
 from latentarm.models.kind import TrainedModel
 from latentarm.models.model import LatentActionModel
@@ -114,7 +115,8 @@ def train(cell: TrainingCell) -> Trained:
 def _demonstrated(cell: TrainingCell, task: SceneTask, belief: bool) -> tuple[Demonstrations, float]:
     """Demonstrations of as many minutes as the definition asks for at most, and how long they took, s.
 
-    A belief is that over the goals of each demonstration, which stand elsewhere in every one.
+    A belief is that over the goals of each demonstration, which stand elsewhere in every one and move on with
+    its steps.
 
     Raises:
         UserError: hardly any succeeds.
@@ -124,7 +126,6 @@ def _demonstrated(cell: TrainingCell, task: SceneTask, belief: bool) -> tuple[De
     choices = sorted(set(cell.task.choices))
     least = max(LEAST_DEMONSTRATIONS, len(choices))
     kept: list[Demonstration] = []
-    goals: list[tuple[Goal, ...]] = []
     took_s, number = 0.0, 0
     while took_s < wanted_s or len(kept) < least:
         if number >= MOST_TRIES * (len(kept) + 1):
@@ -140,16 +141,17 @@ def _demonstrated(cell: TrainingCell, task: SceneTask, belief: bool) -> tuple[De
         if took_s + shown.seconds > wanted_s and len(kept) >= least:
             break
         kept.append(replace(shown, states=()))
-        goals.append(task.begin(choice, _stream(*stream)).goals)
         took_s += shown.seconds
     dataset = dataset_of(task, [one.episode for one in kept], kept[0].objects)
     if belief:
-        with_belief = [
-            annotate(replace(dataset, episodes=(one.episode,), goals=of)).episodes[0]
-            for one, of in zip(kept, goals, strict=True)
-        ]
-        dataset = replace(dataset, episodes=tuple(with_belief))
+        episodes = tuple(_with_belief(one, 1.0 / dataset.rate_hz) for one in kept)
+        dataset = replace(dataset, episodes=episodes)
     return dataset, took_s
+
+
+def _with_belief(shown: Demonstration, period_s: float) -> Episode:
+    goals = [goal.configuration for goal in shown.begun.goals]
+    return annotated(shown.episode, BoltzmannBelief(goals, period_s=period_s), shown.moves)
 
 
 def _stream(seed: int, task: str, number: int) -> np.random.Generator:

@@ -135,6 +135,7 @@ class Drive:
         self._disengaged = Disengaged(self._step, arm, self._episodes, self._say)
         self._run = steering.run or TaskRun(setup.todo, arm, setup.task.robot.chain)
         steering.run = self._run
+        self._goals = setup.step_goals()
         self._note = note
         self._note_until_s = -math.inf if note is None else clock.now_s() + NOTE_S
         self.change: Change | None = None
@@ -326,15 +327,25 @@ class Drive:
                 self._loop.enable()
 
     def _look(self, record: StepRecord) -> None:
-        """Deferrable work: ghosts, one stretch of all directions a tick, and the loop's statistics."""
+        """Deferrable work: ghosts, one stretch of all directions a tick; goals; the loop's statistics."""
         steering = self._steering
         phase = steering.tick % _LOOK_EVERY
         if phase < STRETCHES:
             # Without a reading nobody knows the gripper, which the decoder may look at.
             if not math.isnan(record.state[0]):
                 self._ghosts.look(self._step.context(self._readings.q), self._mode_index)
+        elif phase == STRETCHES:
+            self._move_goals()
         elif steering.tick % _STATISTICS_EVERY == _LOOK_EVERY - 1:
             self._late_share = 1.0 - self._loop.statistics().met_share
+
+    def _move_goals(self) -> None:
+        move = self._run.move_goals(self._goals, self._readings.q)
+        if move is not None:
+            self._step.move_goals(move.goals)
+            self._ghosts.move_goals(move.goals)
+            if move.anew:
+                self._step.forget()
 
     @property
     def _mode_index(self) -> int:

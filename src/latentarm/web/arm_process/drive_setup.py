@@ -33,6 +33,7 @@ from latentarm.runs.tasks import usual_arm
 from latentarm.safety.config import SafetyConfig
 from latentarm.safety.zones import Zone
 from latentarm.tasks.place import Place, ScenePlace, surroundings_of, watched
+from latentarm.tasks.step_goals import StepGoals
 from latentarm.tasks.task import Task
 from latentarm.web.arm_process.help import Help
 from latentarm.web.arm_process.initial_state import RobotOptions, begin, begin_real
@@ -211,6 +212,11 @@ class DriveSetup:
     def to_pose(self) -> ToPose:
         """A controller of slow motions to a pose; to the start at first."""
         return ToPose(self.task.robot, self.start)
+
+    def step_goals(self) -> StepGoals:
+        """The goals at the steps of the task."""
+        things = () if self.scene is None else self.scene.names
+        return StepGoals(self.task.robot, self.task.goals, self.todo.steps, things)
 
     def surroundings(self, arm: Arm | None) -> Callable[[], FloatArray] | None:
         """Where the things are that the controller uses; None for ``arm`` takes their initial poses."""

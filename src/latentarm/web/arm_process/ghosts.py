@@ -82,6 +82,10 @@ class GhostPaths:
             return NO_GHOSTS
         return self._whole[1]
 
+    def move_goals(self, goals: FloatArray) -> None:
+        """From the next stretch on, the help leads to goals (G, n), rad."""
+        self._goals = goals
+
     def look(self, context: Context, mode: int) -> None:
         """Predict the next stretch; the last one renews `newest`. The first stretch's ``context`` is kept."""
         meaning = (mode, self._help.level)

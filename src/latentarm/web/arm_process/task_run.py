@@ -10,6 +10,7 @@ from latentarm.robots.kinematics.chain import Chain
 from latentarm.robots.scene.scene import SceneState
 from latentarm.tasks.goal_task import coming_to, without_things
 from latentarm.tasks.scene_task import Beginning, SceneTask
+from latentarm.tasks.step_goals import GoalMove, StepGoals
 from latentarm.tasks.steps import Failure, Progress, StepKind, TaskStep
 from latentarm.tasks.task import Task
 from latentarm.web.arm_process.fill_level import FillLevels, Vessel, vessels
@@ -76,6 +77,7 @@ class TaskRun:
         self._chain = chain
         self._progress = Progress(todo.steps, todo.failures)
         self._guide = WaypointGuide()
+        self._seen: SceneState | None = None
         self._to_go: ToGo | None = None
         self._fills = FillLevels(todo.vessels)
         self._looked_s = -math.inf
@@ -98,6 +100,12 @@ class TaskRun:
             short=self._fills.short and not self._over,
         )
 
+    def move_goals(self, goals: StepGoals, q: FloatArray) -> GoalMove | None:
+        """How the goals moved with the steps, see `StepGoals.look`; ``q``: (n,), joint positions, rad."""
+        if self._seen is None or self._over:
+            return None
+        return goals.look(self._progress.done, self._step, self._guide.waypoint, self._seen, q)
+
     def see(self, time_s: float, q: FloatArray, *, enabled: bool, steered: bool) -> None:
         """Update, in every tick; ``q``: (n,), joint positions, rad.
 
@@ -117,7 +125,7 @@ class TaskRun:
             if steered or self._arm is not None:
                 self._progress.update(state)
         if looks or self._over:
-            self._looked_s = time_s
+            self._looked_s, self._seen = time_s, state
             self._to_go = self._guide.look(self._step, state)
             self._fills.see(state, time_s)
 

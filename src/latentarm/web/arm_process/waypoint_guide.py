@@ -27,6 +27,11 @@ class WaypointGuide:
         self._index = 0
         self._arrived_s: float | None = None
 
+    @property
+    def waypoint(self) -> Waypoint | None:
+        """The tool's present target; None where nothing is left, or before the first look."""
+        return None if self._step is None else self._step.waypoints[self._index]
+
     def look(self, step: TaskStep | None, state: SceneState) -> ToGo | None:
         """The remaining way in the step; None where nothing is left to do. ``state`` has a running clock."""
         if step is not self._step:
