@@ -43,6 +43,11 @@ MEASUREMENTS: Final[Mapping[str, Measurement]] = {
         options.Help,
         {"drives": 1, "episodes": 2, "epochs": 1, "limit_s": 1.0},
     ),
+    "step-help": Measurement(
+        "Measure what help is worth at the steps of a task, with a way back and without, in physics.",
+        options.StepHelp,
+        {"tasks": ("entree",), "people": ("greedy",), "drives": 1, "episodes": 2, "epochs": 1},
+    ),
     "published-help": Measurement(
         "Measure what published kinds of help are worth to simulated people at marshmallows, in physics.",
         options.PublishedHelp,
