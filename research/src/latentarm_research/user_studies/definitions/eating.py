@@ -144,7 +144,8 @@ DEFINITION: Final = Definition(
         AGAIN,
         "The paper's shared autonomy is that of Javdani et al. (2018), whose goals are over the plates: it"
         " pulls the fork back up while a person stabs. Here both SA conditions have the help of Algorithm 1:"
-        " equations 2 and 3, with an alpha of 0.15 that fades as the stick is let go.",
+        " equations 2 and 3, with goals that move on with the steps of the dish, and an alpha of 0.15 that"
+        " fades as the stick is let go.",
         "Each dish has a model of its own, from half of the 20 minutes of demonstrations.",
         "The paper's items are not published: all items are ours.",
     ),
