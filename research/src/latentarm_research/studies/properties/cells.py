@@ -1,6 +1,6 @@
-"""Which cells of the paper's table hold: within one SD of the paper's, or beyond it in the method's favour.
+"""How each cell of the paper's table compares: within one SD of the paper's, on either side, or beyond it.
 
-The paper's claim is that models that see the context do better than models that do not. So its favour is a
+Beyond it, the side decides between the method's favour and a miss. The paper's claim is that models that see the context do better than models that do not. So its favour is a
 better figure where the decoder sees the context, and a worse one where it does not.
 """
 
@@ -24,14 +24,9 @@ HALF_A_DIGIT: Final = 0.005
 class PaperVerdict(StrEnum):
     """How a cell compares with the paper's."""
 
-    IN_FAVOUR = "in the method's favour"
     WITHIN = "within one SD"
+    IN_FAVOUR = "in the method's favour"
     MISSED = "missed"
-
-    @property
-    def holds(self) -> bool:
-        """Whether the cell holds."""
-        return self is not PaperVerdict.MISSED
 
 
 @dataclass(frozen=True)
@@ -58,13 +53,13 @@ def judge(mean: float, paper: float, sd: float, better: str, sees_context: bool)
         sees_context: whether the model's decoder does.
 
     Returns:
-        `PaperVerdict.IN_FAVOUR` where ours is the paper's mean or beyond it in the method's favour.
+        `PaperVerdict.WITHIN` where ours is within `sd` of the paper's, whichever side it is on.
     """
     upward = (better == "higher") == sees_context
     ahead = mean - paper if upward else paper - mean
-    if ahead >= 0:
-        return PaperVerdict.IN_FAVOUR
-    return PaperVerdict.WITHIN if -ahead <= sd else PaperVerdict.MISSED
+    if abs(ahead) <= sd:
+        return PaperVerdict.WITHIN
+    return PaperVerdict.IN_FAVOUR if ahead > 0 else PaperVerdict.MISSED
 
 
 def paper_cells(rows: Iterable[Row], *, means: bool = False) -> list[PaperCell]:
@@ -92,9 +87,10 @@ def paper_cells(rows: Iterable[Row], *, means: bool = False) -> list[PaperCell]:
     return cells
 
 
-def count(cells: Sequence[PaperCell]) -> tuple[int, int]:
-    """How many cells hold, and of how many."""
-    return sum(cell.verdict.holds for cell in cells), len(cells)
+def count(cells: Sequence[PaperCell]) -> tuple[int, int, int]:
+    """How many cells have each verdict, in the order of `PaperVerdict`."""
+    within, in_favour, missed = (sum(cell.verdict is one for cell in cells) for one in PaperVerdict)
+    return within, in_favour, missed
 
 
 def cells_table(cells: Sequence[PaperCell]) -> str:
@@ -121,7 +117,7 @@ def _printed(row: Row) -> str:
 
 
 def sweep_table(rows: Sequence[Row], designs: Sequence[str]) -> str:
-    """How many cells hold in each design, and which do not.
+    """How many cells have each verdict in each design, and which are missed.
 
     Args:
         rows: of the study, those of a design with its name as their condition.
@@ -131,13 +127,14 @@ def sweep_table(rows: Sequence[Row], designs: Sequence[str]) -> str:
     for design in designs:
         here = [replace(row, condition=None) for row in rows if row.condition == design]
         cells = paper_cells(here)
-        held, of = count(cells)
-        by_mean, _ = count(paper_cells(here, means=True))
+        by_median = ", ".join(map(str, count(cells)))
+        by_mean = ", ".join(map(str, count(paper_cells(here, means=True))))
         missed = [
             f"{cell.row.task} {measure_name(cell.row)} {look_of(cell.row.model or '').label}"
             f" {format_figure(cell.row.mean, None)} ({cell.row.paper_mean:.3g})"
             for cell in cells
-            if not cell.verdict.holds
+            if cell.verdict is PaperVerdict.MISSED
         ]
-        lines.append([design, f"{held} of {of}", str(by_mean), "; ".join(missed) or ABSENT])
-    return markdown_table(["design", "cells that hold", "by means", "missed: ours (the paper's)"], lines)
+        lines.append([design, by_median, by_mean, "; ".join(missed) or ABSENT])
+    header = ["design", "within one SD, in favour, missed", "by means", "missed: ours (the paper's)"]
+    return markdown_table(header, lines)
