@@ -18,7 +18,8 @@ import yaml
 from latentarm.cli import main
 
 ROOT = Path(__file__).parents[1]
-PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]
+OF_THE_ROOT = ("README.md", "CONTRIBUTING.md", "SUPPORT.md", "SECURITY.md")
+PAGES = [*(ROOT / name for name in OF_THE_ROOT), *sorted((ROOT / "docs").rglob("*.md"))]
 BLOCK = re.compile(r'^( *)```([a-z]*)(?: title="([^"]*)")?\n(.*?)^\1```$', re.DOTALL | re.MULTILINE)
 SNIPPET = re.compile(r'^--8<-- "([^"]+)"$')
 

@@ -17,6 +17,7 @@ NOT_RUN = {
     "make demo": "tests/simulation runs it in its smallest size",
     "make test": "this is it",
     "make dist": "tests/packaging builds both files",
+    'pip install "latentarm[train]"': "tests/packaging installs the wheel",
 }
 """Lines of shell blocks that no test runs, each with the reason."""
 
@@ -116,6 +117,25 @@ def test_architecture_names_every_package() -> None:
     text = (ROOT / "docs" / "architecture.md").read_text()
     packages = [path.name for path in (ROOT / "src/latentarm").iterdir() if (path / "__init__.py").exists()]
     assert [name for name in packages if f"`{name}`" not in text] == []
+
+
+def test_pages_written_by_hand_have_at_most_45000_words() -> None:
+    by_hand = [page for page in (ROOT / "docs").rglob("*.md") if "evidence" not in page.parts]
+    assert sum(len(page.read_text().split()) for page in by_hand) <= 45_000
+    assert len((ROOT / "README.md").read_text().split()) <= 600
+
+
+def test_the_lines_of_the_architecture_are_short() -> None:
+    text = (ROOT / "docs" / "architecture.md").read_text()
+    assert max(map(len, text.splitlines())) <= 200
+
+
+def test_every_file_that_the_architecture_names_exists() -> None:
+    text = (ROOT / "docs" / "architecture.md").read_text()
+    named = set(re.findall(r"`([\w/]+\.(?:py|js|pyi))`", text))
+    files = [path.as_posix() for top in ("src", "research", "tests") for path in (ROOT / top).rglob("*")]
+    there = [name for name in named if any(path.endswith(f"/{name}") for path in files)]
+    assert [name for name in named - set(there) if not (ROOT / name).exists()] == []
 
 
 def test_no_registry_host_or_absolute_path_is_named() -> None:

@@ -38,4 +38,4 @@ KINDS: Final = Catalogue(
 """Every `ModelKind`, in the order of tables and figures. Needs no torch."""
 
 DEFAULT_MODEL: Final = "homogeneous"
-"""The model of `train`, the demo and the page unless another is named; see docs/decisions/0031."""
+"""The model of `train`, the demo and the page unless another is named; see docs/decisions/0041."""

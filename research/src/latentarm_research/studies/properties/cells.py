@@ -1,7 +1,8 @@
 """How each cell of the paper's table compares: within one SD of the paper's, on either side, or beyond it.
 
-Beyond it, the side decides between the method's favour and a miss. The paper's claim is that models that see the context do better than models that do not. So its favour is a
-better figure where the decoder sees the context, and a worse one where it does not.
+Beyond it, the side decides between the method's favour and a miss. The paper's claim is that models that see
+the context do better than models that do not. So its favour is a better figure where the decoder sees the
+context, and a worse one where it does not.
 """
 
 from collections.abc import Iterable, Sequence

@@ -1,4 +1,4 @@
-"""The boxes that count what of the paper is reproduced say what docs/evidence says, by one rule."""
+"""The README's table and the boxes of the studies' pages say what docs/evidence says, by one rule."""
 
 import runpy
 
@@ -6,13 +6,13 @@ import pytest
 
 from documentation import ROOT
 
-SCRIPT = runpy.run_path(str(ROOT / "scripts" / "paper_boxes.py"))
+SCRIPT = runpy.run_path(str(ROOT / "scripts" / "docs_blocks.py"))
 WITHIN, FAVOUR, NOT, APART = SCRIPT["KINDS"]
 
 
-def test_every_box_is_current():
+def test_every_block_is_current() -> None:
     for path, text in SCRIPT["pages"]().items():
-        assert path.read_text(encoding="utf-8") == text, "run: python scripts/paper_boxes.py"
+        assert path.read_text(encoding="utf-8") == text, "run: python scripts/docs_blocks.py"
 
 
 @pytest.mark.parametrize(
@@ -33,11 +33,11 @@ def test_every_box_is_current():
         ("t(10) = 2.7", "not measured", {"same sign": "–", "same significance": "–"}, APART),
     ],
 )
-def test_one_rule_counts_alike_on_either_side(paper, ours, more, kind):
+def test_one_rule_counts_alike_on_either_side(paper: str, ours: str, more: dict[str, str], kind: str) -> None:
     row = {"the paper": paper, "ours": ours, "verdict": "", **more}
     assert SCRIPT["counts"](row) == {kind: 1}
 
 
-def test_a_claim_counts_in_each_of_its_cases():
+def test_a_claim_counts_in_each_of_its_cases() -> None:
     row = {"the paper": "in every case", "ours": "5 of 9", "verdict": ""}
     assert SCRIPT["counts"](row) == {WITHIN: 5, NOT: 4}

@@ -1,21 +1,24 @@
-"""Write the verdicts of docs/evidence on the paper's figures, and the box that counts them on each study's page.
+"""Write what pages take from docs/evidence: the README's table, and what of the paper is reproduced.
 
-    python scripts/paper_boxes.py
+    python scripts/docs_blocks.py
 
-A table with the columns `the paper`, `ours` and `verdict` is one of verdicts. One rule for all: a figure within one
-SD of the paper's, on either side, is reproduced; beyond it, the side decides. A test is reproduced if it has the same
-sign and lies on the same side of p = 0.05; a claim, in the cases in which ours shows it.
+A box on each study's page counts the verdicts of its evidence. A table with the columns `the paper`, `ours`
+and `verdict` is one of verdicts. One rule for all: a figure within one SD of the paper's, on either side, is
+reproduced; beyond it, the side decides. A test is reproduced if it has the same sign and lies on the same side
+of p = 0.05; a claim, in the cases in which ours shows it.
 """
 
 import re
 from collections import Counter
 from pathlib import Path
 
-from latentarm_research.studies.properties.cells import HALF_A_DIGIT, PaperVerdict, judge
+from latentarm_research.studies.properties.cells import PaperVerdict, judge
 
-DOCS = Path(__file__).parents[1] / "docs"
+ROOT = Path(__file__).parents[1]
+DOCS = ROOT / "docs"
+README_ROWS = ("success rate", "time (s)", "input magnitude (s)", "mode switches")
 STUDIES = ("properties", "shared_autonomy", "alignment", "tasks", "studies")
-BEGIN, END = "<!-- box: written by scripts/paper_boxes.py -->", "<!-- box: end -->"
+BEGIN, END = "<!-- written by scripts/docs_blocks.py -->", "<!-- end -->"
 REPRODUCED, IN_FAVOUR, NOT, NOT_COMPARABLE = KINDS = (
     "reproduced",
     "in the method's favour",
@@ -52,7 +55,8 @@ def counts(row: dict[str, str]) -> Counter[str]:
         over = int(seconds[1]) > 60 * int(bound[2])
         return Counter({REPRODUCED if over == (bound[1] == "over") else NOT: 1})
     if (theirs := FIGURE.fullmatch(paper)) and (mine := FIGURE.fullmatch(ours)):
-        sd = float(theirs[2] or HALF_A_DIGIT)
+        decimals = len(theirs[1].partition(".")[2])
+        sd = float(theirs[2] or 0.5 * 10**-decimals)  # without an SD, half of the last digit
         found = judge(float(mine[1]), float(theirs[1]), sd, row["better"], sees_context=True)
         return Counter({OF_THE_STUDY[str(found)]: 1})
     return Counter({NOT_COMPARABLE: 1})
@@ -79,31 +83,42 @@ def box(found: Counter[str], study: str) -> str:
     """The box of a page."""
     return "\n".join(
         [
-            BEGIN,
             f'!!! abstract "Beside the paper: {found[REPRODUCED]} of {found.total()} reproduced"',
             "    | " + " | ".join(KINDS) + " |",
             "    |" + "---:|" * len(KINDS),
             "    | " + " | ".join(str(found[kind]) for kind in KINDS) + " |",
             "",
-            "    A figure is *reproduced* within one SD of the paper's, on either side; a test, with the same sign on the same side"
-            " of",
-            "    p = 0.05; a claim, in each case that shows it. Beyond one SD, better for the method is counted apart. Bars, stars"
-            " and",
-            f"    opinions cannot be compared. [Each one](evidence/{study}.md#beside-the-paper).",
-            END,
+            "    *Reproduced*: within one SD on either side; a test, the same sign and significance; a claim, in",
+            "    each case. Bars, stars and opinions cannot be compared."
+            f" [All](evidence/{study}.md#beside-the-paper).",
         ]
     )
 
 
+def demo_table() -> str:
+    """The README's table: a line for each way to steer in the demo."""
+    lines = (DOCS / "evidence" / "demo.md").read_text(encoding="utf-8").splitlines()
+    table = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines if line.startswith("| ")]
+    header = next(row for row in table if row[0] == "mean ± SD")
+    measures = {row[0]: row for row in table if len(row) == len(header)}
+    chosen = [header, *(measures[name] for name in README_ROWS)]
+    rows = ["| " + " | ".join(row[column] for row in chosen) + " |" for column in range(len(header))]
+    return "\n".join([rows[0], "|---|" + "---:|" * len(README_ROWS), *rows[1:]])
+
+
+def between_markers(text: str, block: str) -> str:
+    """A page with what stands between its markers replaced."""
+    return text[: text.index(BEGIN)] + f"{BEGIN}\n{block}\n{END}" + text[text.index(END) + len(END) :]
+
+
 def pages() -> dict[Path, str]:
-    """Each page of a study and of its evidence, as it has to be."""
-    written: dict[Path, str] = {}
+    """Each page with such a block, and the evidence of each study, as they have to be."""
+    readme = ROOT / "README.md"
+    written = {readme: between_markers(readme.read_text(encoding="utf-8"), demo_table())}
     for study in STUDIES:
         page, evidence = DOCS / f"{study}.md", DOCS / "evidence" / f"{study}.md"
         written[evidence], found = judged(evidence.read_text(encoding="utf-8"))
-        text = page.read_text(encoding="utf-8")
-        begin, end = text.index(BEGIN), text.index(END) + len(END)
-        written[page] = text[:begin] + box(found, study) + text[end:]
+        written[page] = between_markers(page.read_text(encoding="utf-8"), box(found, study))
     return written
 
 
