@@ -4,8 +4,8 @@
 
 A box on each study's page counts the verdicts of its evidence. A table with the columns `the paper`, `ours`
 and `verdict` is one of verdicts. One rule for all: a figure within one SD of the paper's, on either side, is
-reproduced; beyond it, the side decides. A test is reproduced if it has the same sign and lies on the same side
-of p = 0.05; a claim, in the cases in which ours shows it.
+reproduced; beyond it, the side decides. A test is reproduced if it has the same sign and lies on the same
+side of p = 0.05; a claim, in the cases in which ours shows it.
 """
 
 import re
@@ -88,8 +88,8 @@ def box(found: Counter[str], study: str) -> str:
             "    |" + "---:|" * len(KINDS),
             "    | " + " | ".join(str(found[kind]) for kind in KINDS) + " |",
             "",
-            "    *Reproduced*: within one SD on either side; a test, the same sign and significance; a claim, in",
-            "    each case. Bars, stars and opinions cannot be compared."
+            "    *Reproduced*: within one SD on either side; a test, same sign and significance; a claim,",
+            "    in each case. Bars, stars and opinions cannot be compared."
             f" [All](evidence/{study}.md#beside-the-paper).",
         ]
     )

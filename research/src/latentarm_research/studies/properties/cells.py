@@ -97,7 +97,7 @@ def count(cells: Sequence[PaperCell]) -> tuple[int, int, int]:
 def cells_table(cells: Sequence[PaperCell]) -> str:
     """Every cell: the paper's, ours, and how they compare."""
     return markdown_table(
-        ["task", "measure", "model", "the paper's", "ours", "verdict"],
+        ["task", "measure", "model", "the paper", "ours", "verdict"],
         [
             [
                 cell.row.task or ABSENT,
