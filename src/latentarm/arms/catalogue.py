@@ -67,8 +67,7 @@ def make_arm(name: str, robot: Robot, state: FloatArray, now_s: Callable[[], flo
         now_s: the clock of readings, s; never goes back. A simulated arm moves as it goes on.
 
     Raises:
-        UserError: there is no such arm, it does not load, it cannot be made for this robot, or it is not an
-        arm.
+        UserError: there is no such arm, it does not load, it cannot be made for this robot, or it is none.
     """
     if is_address(name):
         return make_real_arm(name, robot, now_s)
