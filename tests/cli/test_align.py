@@ -2,6 +2,8 @@
 
 import io
 import json
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -55,6 +57,30 @@ def test_a_simulated_person_is_asked_and_drives(run: Run, trained: Path) -> None
     assert about == {"with": "ada", "without": None}
     driven = {name: rows_in(Path(name, "drives.json")) for name in about}
     assert driven["with"] != driven["without"]
+
+
+WITHOUT_TRAINING = """
+import sys
+
+class Missing:
+    def find_spec(self, name, path=None, target=None):
+        if name.split(".")[0] in ("torch", "sklearn", "joblib"):
+            raise ModuleNotFoundError(f"No module named {name!r}", name=name)
+
+sys.meta_path.insert(0, Missing())
+from latentarm.cli import main
+sys.exit(main(sys.argv[1:]))
+"""
+
+
+def test_a_person_is_aligned_where_nothing_that_trains_is_installed(run: Run, trained: Path) -> None:
+    command = ("align", "mine", "--simulated", "--answers", "3", "--json", "--name")
+    words = [sys.executable, "-c", WITHOUT_TRAINING, *command, "bare"]
+    bare = subprocess.run(words, capture_output=True, text=True, check=False)
+    assert bare.returncode == 0, bare.stderr
+    code, out, _ = run(*command, "full")
+    assert code == 0
+    assert errors(bare.stdout) == errors(out)
 
 
 def test_json_is_one_document_and_the_same_seed_gives_the_same(run: Run, trained: Path) -> None:

@@ -36,7 +36,7 @@ def scene():
     demonstrations = task.demonstrate(4, np.random.default_rng(0))
     chain, rng = task.robot.chain, np.random.default_rng(1)
     motions = shown(demonstrations, "state", chain, rng)
-    return Scene(PCA(latent_dim=2).fit(demonstrations), 0, chain, motions)
+    return Scene(PCA(latent_dim=2).fit(demonstrations).decoder(), chain, motions)
 
 
 def asked(scene, *replies, count=2):

@@ -7,7 +7,7 @@ import numpy as np
 
 from latentarm.alignment.answers import Answers
 from latentarm.core.types import FloatArray
-from latentarm.models.model import LatentActionModel
+from latentarm.models.encoder import Encoder
 
 
 @final
@@ -23,13 +23,12 @@ class AffineAlignment:
         return u @ self.matrix.T + self.offset
 
 
-def fit_affine(model: LatentActionModel, answers: Answers, seed_index: int = 0) -> AffineAlignment:
+def fit_affine(encoder: Encoder, answers: Answers) -> AffineAlignment:
     """The affine map that best fits the answers to the encoded motions; the smallest of several.
 
-    Raises UserError where the model is not fitted, has no such seed, or the answers do not fit it.
+    Raises UserError where the kind of model has no encoder in NumPy.
     """
-    model.decoder(seed_index)  # refuses a seed that is not there
-    z = model.encode(answers.motions.context, answers.motions.action)[seed_index]
+    z = encoder.encode(answers.motions.context, answers.motions.action)
     inputs = np.concatenate([answers.u, np.ones((len(answers), 1))], axis=1)
-    solution = np.linalg.lstsq(inputs, z, rcond=None)[0]
+    solution = np.asarray(np.linalg.lstsq(inputs, z, rcond=None)[0], dtype=np.float64)
     return AffineAlignment(matrix=solution[:-1].T, offset=solution[-1])

@@ -8,11 +8,14 @@ import numpy as np
 from latentarm.alignment.answers import Motions
 from latentarm.alignment.poses import pose_vectors
 from latentarm.alignment.twists import motion_twists
-from latentarm.core.types import FloatArray
+from latentarm.core.types import FloatArray, IntArray
 from latentarm.robots.kinematics.chain import Chain
 
 REGIONS: Final = 24
 """Regions that the demonstrated places are divided into, at most."""
+
+SETTLED: Final = 1e-4
+"""Means of clusters that all together move by less than this have settled, as a share of the variance."""
 
 FASTEST: Final = 0.99
 """This share of the demonstrated motions is slower than a fast one."""
@@ -34,13 +37,10 @@ class Surroundings:
 
         A direction counts as outside by how much less it was demonstrated than the d-th most.
         """
-        from sklearn.cluster import KMeans  # takes a second, and only learning needs it
-
         place, twist = pose_vectors(chain, motions.start), motion_twists(chain, motions)
         regions = min(REGIONS, max(1, len(motions) // (2 * latent)))
-        found = KMeans(regions, n_init="auto", random_state=0).fit(place)
-        middles = np.asarray(found.cluster_centers_, dtype=np.float64)
-        outside = np.stack([_outside(twist[found.labels_ == region], latent) for region in range(regions)])
+        middles, nearest = _clusters(place, regions)
+        outside = np.stack([_outside(twist[nearest == region], latent) for region in range(regions)])
         apart = np.linalg.norm(middles[:, None] - middles, axis=-1) + np.diag(np.full(regions, np.inf))
         width = float(np.median(apart.min(axis=1))) if regions > 1 else 1.0
         speed = float(np.quantile(np.linalg.norm(twist, axis=-1), FASTEST))
@@ -57,6 +57,37 @@ class Surroundings:
     def planes(self, latent: int) -> FloatArray:
         """The d main directions of each region, (K, 6 k, d)."""
         return np.linalg.eigh(self.outside)[1][..., :latent]
+
+
+def _clusters(points: FloatArray, count: int) -> tuple[FloatArray, IntArray]:
+    """Means (K, k) of clusters of points (N, k), and the cluster of each point, (N,).
+
+    Lloyd's k-means from the start of greedy k-means++ (Arthur and Vassilvitskii 2007), with the draws of
+    scikit-learn's ``KMeans(count, random_state=0)``, so that the clusters are the same.
+    """
+    rng, centred = np.random.RandomState(0), points - points.mean(axis=0)
+    tries, many = 2 + int(np.log(count)), len(points)
+    means = centred[rng.choice(many, 1, p=np.full(many, 1 / many))]
+    near = _squared_distances(centred, means)[:, 0]
+    while len(means) < count:
+        drawn = np.searchsorted(np.cumsum(near), rng.uniform(size=tries) * near.sum()).clip(max=many - 1)
+        nearer = np.minimum(near[:, None], _squared_distances(centred, centred[drawn]))
+        best = nearer.sum(axis=0).argmin()
+        means, near = np.concatenate([means, centred[drawn[best], None]]), nearer[:, best]
+    shift = np.inf
+    while shift > SETTLED * points.var(axis=0).mean():
+        nearest, before = _squared_distances(centred, means).argmin(axis=1), means
+        means = np.stack(
+            [centred[nearest == one].mean(axis=0) if one in nearest else means[one] for one in range(count)]
+        )
+        shift = np.square(means - before).sum()
+    nearest = _squared_distances(centred, means).argmin(axis=1)
+    return means + points.mean(axis=0), nearest
+
+
+def _squared_distances(points: FloatArray, means: FloatArray) -> FloatArray:
+    """(N, K) of points (N, k) and means (K, k)."""
+    return np.square(points[:, None] - means).sum(axis=-1)
 
 
 def _outside(twist: FloatArray, latent: int) -> FloatArray:

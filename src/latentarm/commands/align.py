@@ -72,7 +72,7 @@ def _person(config: AlignOptions, scene: "Scene", say: Say) -> Person:
     """The person to ask."""
     if not config.simulated:
         return PersonAtTerminal(say, read_line)
-    chain, motions, axes = scene.chain, scene.motions, scene.model.latent_dim
+    chain, motions, axes = scene.chain, scene.motions, scene.decoder.latent_dim
     moved = chain.forward(motions.end).position - chain.forward(motions.start).position
     speed = float(np.quantile(np.abs(moved[:, :axes]).max(axis=1), FASTEST)) / motions.duration_s
     preference = ToolAxes(chain, axes, speed)

@@ -53,6 +53,14 @@ class Runtime(ABC):
         return None
 
 
+class SearchingRuntime(Runtime, ABC):
+    """phi of a model whose encoder searches for the ``nearest`` action."""
+
+    @abstractmethod
+    def nearest(self, action: FloatArray, context: FloatArray) -> FloatArray:
+        """The inputs (N, d) whose actions come nearest to actions (N, m), rad/s, in contexts (N, c)."""
+
+
 @final
 @dataclass(frozen=True, kw_only=True)
 class ModelKind:
@@ -66,8 +74,8 @@ class ModelKind:
         runtime: the decoder in NumPy.
         decoder: layer widths, input first, by network, of the networks that decode.
         encoder: ``projection`` onto the columns of the decoder or the ``nearest`` action that it can
-            decode (neither has weights), or a network of (c, a) whose output is z
-            (``deterministic``) or (mu, log sigma^2) (``gaussian``).
+            decode (neither has weights; the latter needs a `SearchingRuntime`), or a network of (c, a)
+            whose output is z (``deterministic``) or (mu, log sigma^2) (``gaussian``).
         rests_at_zero: whether z = 0 means rest, phi(0, c) = 0, by the model's definition, so that it must
             stay u = 0. Where it does not, u = 0 is the mean latent action of the demonstrations.
         reverses: whether it rests, and the opposite input goes back, by construction.

@@ -19,7 +19,9 @@ from latentarm.core.types import Row
 from latentarm.demonstrations.split import select_episodes
 from latentarm.evaluation.measures import unit_of
 from latentarm.evaluation.results import as_document
-from latentarm.models.estimators import load_model
+from latentarm.models.decoder import Decoder
+from latentarm.models.encoder import Encoder
+from latentarm.models.saving import read_model
 from latentarm.runs.folder import Run, read_run, robot_of
 from latentarm.runs.person import Kind
 from latentarm.runs.questions import Scene
@@ -37,6 +39,8 @@ class Alignable:
 
     run: Run
     fingerprint: str  # of the model and the seed that decodes
+    seed_index: int
+    encoder: Encoder
     scene: Scene
     seed: int
 
@@ -65,10 +69,10 @@ def alignable(folder: Path, seed_index: int = 0, seed: int = 0, dataset: Path | 
     Raises UserError where the run cannot be aligned.
     """
     run = read_run(folder)
-    model = load_model(folder)
+    trained = read_model(folder)
     fingerprint = model_fingerprint(folder, seed_index)
     chain = robot_of(run).chain
-    decoder = model.decoder(seed_index)
+    decoder = Decoder(trained, seed_index)
     if decoder.action_dim != chain.dof:
         raise UserError(f"{folder} was trained for {decoder.action_dim} joints; its robot has {chain.dof}.")
     rng = np.random.default_rng([ALIGN_STREAM, seed])
@@ -78,19 +82,18 @@ def alignable(folder: Path, seed_index: int = 0, seed: int = 0, dataset: Path | 
     else:
         demonstrations = prepared(run.dataset(dataset, "motions to ask about"), run.context)
         training = np.setdiff1d(np.arange(len(demonstrations.episodes)), run.held_out)
-        motions = shown(select_episodes(demonstrations, training), model.context, chain, rng)
-    scene = Scene(model, seed_index, chain, motions)
-    return Alignable(run, fingerprint, scene, seed)
+        motions = shown(select_episodes(demonstrations, training), decoder.layout.features, chain, rng)
+    scene = Scene(decoder, chain, motions)
+    return Alignable(run, fingerprint, seed_index, Encoder(trained, seed_index), scene, seed)
 
 
 def learn(known: Alignable, answers: Answers, name: str, kind: Kind) -> Learned:
     """Learn a person's alignment from their answers."""
-    scene = known.scene
-    decoder = scene.model.decoder(scene.seed_index)
+    scene, decoder = known.scene, known.scene.decoder
     tool_space = scene.learn(answers)
     alignments = {
         NO_ALIGN: identity,
-        "manual_align": fit_affine(scene.model, answers, scene.seed_index),
+        "manual_align": fit_affine(known.encoder, answers),
         PROFILE: tool_space.with_arm(decoder, scene.chain),
     }
     rows = [
@@ -119,4 +122,4 @@ def learn(known: Alignable, answers: Answers, name: str, kind: Kind) -> Learned:
         },
         **as_document(rows),
     }
-    return Learned(tool_space, known.fingerprint, scene.seed_index, rows, about)
+    return Learned(tool_space, known.fingerprint, known.seed_index, rows, about)

@@ -14,7 +14,7 @@ from latentarm.alignment.surroundings import Surroundings
 from latentarm.alignment.tool_space import ToolSpace
 from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray
-from latentarm.models.model import LatentActionModel
+from latentarm.models.decoder import Decoder
 from latentarm.robots.kinematics.chain import Chain
 from latentarm.runs.person import Person, Question, Say
 
@@ -22,10 +22,9 @@ from latentarm.runs.person import Person, Question, Say
 @final
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """The model, the arm and the demonstrated motions that a person is asked about."""
+    """The decoder, the arm and the demonstrated motions that a person is asked about."""
 
-    model: LatentActionModel
-    seed_index: int
+    decoder: Decoder
     chain: Chain
     motions: Motions
 
@@ -37,7 +36,7 @@ class Scene:
     @cached_property
     def surroundings(self) -> Surroundings:
         """The demonstrated directions in each place."""
-        return Surroundings.of_motions(self.motions, self.chain, self.model.latent_dim)
+        return Surroundings.of_motions(self.motions, self.chain, self.decoder.latent_dim)
 
     def posterior(self, answers: Answers) -> Posterior:
         """The person's meaning, learned from answers."""
@@ -66,9 +65,8 @@ def ask(scene: Scene, person: Person, count: int, say: Say, stopping: StoppingRu
         row = next_motion(design.worth(asked), asked)
         asked.append(row)
         motion = motions[np.array([row])]
-        reply = person.answer(
-            Question(len(answered) + 1, count, motion, chain, reach_m, scene.model.latent_dim)
-        )
+        axes = scene.decoder.latent_dim
+        reply = person.answer(Question(len(answered) + 1, count, motion, chain, reach_m, axes))
         if isinstance(reply, str):
             for again in asked[-2:]:
                 answered.pop(again, None)

@@ -16,9 +16,8 @@ from latentarm.core.errors import UserError
 from latentarm.core.files import written_whole
 from latentarm.core.types import Demonstrations, FloatArray, IntArray
 from latentarm.demonstrations.split import select_episodes
-from latentarm.evaluation.evaluation import Probe, take_probe
+from latentarm.evaluation.evaluation import Probe, TrainedModel, take_probe
 from latentarm.evaluation.samples import StartGoalPairs
-from latentarm.models.model import LatentActionModel
 from latentarm.models.reading import Section
 from latentarm.models.saving import CONFIG_LIMIT, CONFIG_NAME, read_tensors
 from latentarm.robots.kinematics.chain import Chain
@@ -54,7 +53,7 @@ class Samples:
 
 
 def take_samples(
-    model: LatentActionModel,
+    model: TrainedModel,
     demonstrations: Demonstrations,
     training: IntArray,
     held_out: IntArray,

@@ -140,7 +140,7 @@ class TestProfile:
         scene = (asked := alignable(run)).scene
         motions = scene.candidates
         action = (motions.end - motions.start) / motions.duration_s
-        z = scene.model.encode(motions.context, action)[0]
+        z = asked.encoder.encode(motions.context, action)
         answers = Answers(motions, np.clip(z, -1.0, 1.0) * [-1.0, 1.0])
         learn(asked, answers, "mia", "simulated person").save(new_profile_folder(run, "mia"))
         with start_server(tmp_path, str(run)) as address:

@@ -1,22 +1,11 @@
 """Directions of the stick in torch: their odd degrees, and the search for the one that explains an action."""
 
-from typing import Final
-
 import numpy as np
 import torch
 from torch import Tensor
 
-from latentarm.models.homogeneous.runtime import ORDERS
+from latentarm.models.homogeneous.runtime import HALF_TURN, ORDERS, REFINEMENTS, directions
 from latentarm.models.numpy_networks import NORM_FLOOR
-
-HALF_TURN: Final = 64
-"""Directions that the encoder tries for d = 2, over half a turn: each stands for its opposite too."""
-
-DIRECTIONS: Final = 128
-"""Directions that it tries for d > 2."""
-
-REFINEMENTS: Final = 2
-"""Rounds of refinement of the best direction, each four times finer than the last."""
 
 
 def odd_degrees(direction: Tensor) -> Tensor:
@@ -63,13 +52,13 @@ def _explained(columns: Tensor, target: Tensor, direction: Tensor) -> Tensor:
 
 
 def _best_fixed(columns: Tensor, target: Tensor, latent_dim: int) -> Tensor:
-    """The directions (S, d, B) among `_directions` that explain most.
+    """The directions (S, d, B) among `directions` that explain most.
 
     `_explained` of all of them, ``(a^T C e)^2 / ‖C e‖^2``, from ``C^T C`` and ``C^T a`` alone.
     """
     every = torch.cat([columns, target[:, None]], dim=1).permute(0, 3, 1, 2).contiguous()
     gram = every @ every.mT
-    fixed = _directions(latent_dim).to(target)
+    fixed = _fixed(latent_dim).to(target)
     degrees = odd_degrees(fixed.mT[None])[0]
     products = (degrees[:, None] * degrees).flatten(0, 1)
     along = gram[..., -1, :-1] @ degrees
@@ -83,13 +72,9 @@ def _unit(vectors: Tensor) -> Tensor:
     return torch.where(length > 1e-6, vectors / length.clamp_min(NORM_FLOOR), 0.0)
 
 
-def _directions(latent_dim: int) -> Tensor:
-    """Unit vectors (K, d), spread over half of all directions."""
-    if latent_dim == 1:
-        return torch.ones(1, 1)
-    if latent_dim == 2:
+def _fixed(latent_dim: int) -> Tensor:
+    """`directions` in torch."""
+    if latent_dim == 2:  # in single precision, as models have been trained
         angle = torch.arange(HALF_TURN) * (np.pi / HALF_TURN)
         return torch.stack([angle.cos(), angle.sin()], dim=-1)
-    drawn = np.random.default_rng(0).normal(size=(DIRECTIONS, latent_dim))
-    axes = np.concatenate([np.eye(latent_dim), drawn / np.linalg.norm(drawn, axis=-1, keepdims=True)])
-    return torch.from_numpy(axes)
+    return torch.from_numpy(directions(latent_dim))

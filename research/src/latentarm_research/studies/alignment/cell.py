@@ -12,6 +12,7 @@ from latentarm.alignment.answers import Answers
 from latentarm.alignment.contract import identity
 from latentarm.alignment.queries import order_of_questions
 from latentarm.core.types import FloatArray
+from latentarm.models.encoder import Encoder
 from latentarm_research.alignment.priors import NO_PRIORS
 from latentarm_research.alignment.training import FitConfig
 from latentarm_research.studies.alignment.preset import (
@@ -88,10 +89,10 @@ def _measure(cell: AlignmentCell, scene: Scene) -> AlignmentErrors:
     def ask(count: int) -> list[Answers]:
         return [scene.ask(count, cell.noise, Stream.QUESTIONS, Stream.ANSWERS, run) for run in runs]
 
-    few = ask(preset.answers)
+    few, encoder = ask(preset.answers), Encoder(scene.model.trained_)
     errors = {
         NO_ALIGN: scene.errors([identity]),
-        MANUAL: scene.errors([fit_affine(scene.model, answers) for answers in few]),
+        MANUAL: scene.errors([fit_affine(encoder, answers) for answers in few]),
     }
     learn_s: dict[str, float] = {}
     for name, priors in LEARNED.items():

@@ -155,7 +155,7 @@ def _alignments(
     drawing = _generator(cell, Stream.CANDIDATES, seed_index)
     motions = shown(training, "state", person.chain, drawing)
     unlabelled = demonstrated_motions(training, cell.preset.unlabelled, drawing).context
-    scene = Scene(model, seed_index, person.chain, motions)
+    scene = Scene(model.decoder(seed_index), person.chain, motions)
     count = cell.preset.drives.answers
     # Asking never stops early, so that every model has the same number of answers.
     stopping = StoppingRule(share=0.0, patience=count)
