@@ -12,7 +12,7 @@ from pathlib import Path
 os.environ.setdefault("MUJOCO_GL", "egl")  # before MuJoCo is imported
 
 from latentarm.core.errors import UserError
-from latentarm.core.parallel.grid import run_grid
+from latentarm.core.parallel import run_grid
 from latentarm.core.style import save_figure
 from latentarm.core.untrusted.documents import read_object
 from latentarm.evaluation.looks import look_of
@@ -42,7 +42,7 @@ CAMERAS: dict[str, Camera] = dict.fromkeys(("avoid", "pour", "reach_and_pour", "
 def learned(task: str, model: str, preset: Preset, seed: int, jobs: int) -> Driver:
     """The models of the study, trained anew."""
     cells = [ShownCell(task, Stream.DEMONSTRATIONS, number, seed) for number in range(preset.demonstrations)]
-    shown = run_grid(show, cells, jobs=jobs, backend="joblib", label=lambda cell: task, bars=True)
+    shown = run_grid(show, cells, jobs=jobs, label=lambda cell: task, bars=True)
     condition = Condition(preset.context, model, way_back=True)
     return train(ModelCell(task, condition, training_set(task, shown), preset, seed)).driver
 

@@ -10,10 +10,10 @@ from latentarm.assistance.blending import ConfidenceAlpha, FixedAlpha
 from latentarm.assistance.catalogue import BELIEFS
 from latentarm.cli import main
 from latentarm.commands.catalogue import all_commands
-from latentarm.core.parallel.backends import BACKENDS
 from latentarm_research.measurements.catalogue import MEASUREMENTS
 from latentarm_research.studies.alignment import preset as alignment_preset
 from latentarm_research.studies.alignment import study as alignment
+from latentarm_research.studies.backends import BACKENDS
 from latentarm_research.studies.catalogue import load_study
 from latentarm_research.studies.properties.preset import PRESETS
 from latentarm_research.studies.shared_autonomy import preset as shared_autonomy

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from latentarm.core.errors import UserError
-from latentarm.core.parallel.grid import CellError
+from latentarm.core.parallel import CellError
 from latentarm.core.style import new_figure
 from latentarm.core.types import Row
 from latentarm.runs.results_folder import CONFIG

@@ -11,11 +11,11 @@ from tyro.conf import Positional, arg
 from latentarm.alignment.preference import AXES, ToolAxes
 from latentarm.alignment.queries import StoppingRule
 from latentarm.commands.configuration import write_options
-from latentarm.commands.options import Json, MovedDataset, Seed
 from latentarm.commands.output import say, show
 from latentarm.core.types import Row
 from latentarm.runs.asking import FASTEST, PersonAtTerminal, SimulatedPerson
 from latentarm.runs.checks import check_count, check_seed
+from latentarm.runs.options import Json, MovedDataset, Seed
 from latentarm.runs.person import Person, Say
 from latentarm.runs.stick_line import read_line
 

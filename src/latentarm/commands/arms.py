@@ -13,10 +13,11 @@ from latentarm.arms.catalogue import ARMS
 from latentarm.arms.checking import look_at
 from latentarm.arms.real import Findings
 from latentarm.arms.real_catalogue import REAL_ARMS, address_form, make_real_arm
-from latentarm.commands.options import EndEffector, JointSpeed, Json, LimitsFile, LinkSpeed
+from latentarm.commands.options import JointSpeed, LimitsFile, LinkSpeed
 from latentarm.commands.output import print_renderables, refuse, say
 from latentarm.control.clock import MonotonicClock
 from latentarm.core.errors import UserError
+from latentarm.runs.options import EndEffector, Json
 from latentarm.web.arm_process.speeds import Speeds
 
 if TYPE_CHECKING:

@@ -12,11 +12,11 @@ from rich.text import Text
 from tyro.conf import Positional, arg
 
 from latentarm.commands.configuration import write_options
-from latentarm.commands.options import Json
 from latentarm.commands.output import print_renderables, say
 from latentarm.core.errors import UserError
 from latentarm.core.untrusted.terminal import visible
 from latentarm.demonstrations.folders import check_vacant
+from latentarm.runs.options import Json
 
 if TYPE_CHECKING:
     from latentarm.control.recordings import Recording

@@ -6,9 +6,10 @@ from typing import Annotated
 from tyro.conf import Positional, arg
 
 from latentarm.commands.configuration import write_options
-from latentarm.commands.options import EndEffector, Json, LimitsFile, RobotName
+from latentarm.commands.options import LimitsFile, RobotName
 from latentarm.commands.output import note, print_renderables, say, show
 from latentarm.demonstrations.import_options import ImportOptions
+from latentarm.runs.options import EndEffector, Json
 
 
 def import_demonstrations(

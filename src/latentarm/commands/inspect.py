@@ -11,13 +11,13 @@ from rich.text import Text
 from tyro.conf import Positional, arg
 
 from latentarm.commands.configuration import write_options
-from latentarm.commands.options import Json
 from latentarm.commands.output import note, say, show
 from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations, Provenance
 from latentarm.core.untrusted.terminal import visible
 from latentarm.demonstrations.summary import Summary, summarise
 from latentarm.robots.robot import Robot
+from latentarm.runs.options import Json
 
 _FINGERPRINT_LENGTH: Final = 64
 """Digits of a SHA-256."""

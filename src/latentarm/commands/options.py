@@ -1,18 +1,12 @@
 """Options that several commands share."""
 
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated
 
 from tyro.conf import arg
 
 from latentarm.alignment.contract import Seat
 from latentarm.arms.catalogue import ARMS
-from latentarm.runs.options import EndEffector as EndEffector
-from latentarm.runs.options import Jobs as Jobs
-from latentarm.runs.options import Json as Json
-from latentarm.runs.options import MovedDataset as MovedDataset
-from latentarm.runs.options import Seed as Seed
 
 _ARMS = ",".join(ARMS)
 Arm = Annotated[
@@ -51,20 +45,3 @@ Seated = Annotated[
         " or away in the page's first view. None leaves it as the model learned it, z = u."
     ),
 ]
-Backend = Annotated[
-    Literal["joblib", "ray", "dask"],
-    arg(
-        help="Processes of this machine, or a cluster: that of RAY_ADDRESS or DASK_SCHEDULER_ADDRESS,"
-        " or else a new one here."
-    ),
-]
-
-
-@dataclass(frozen=True)
-class StudyOptions:
-    """Options of every study."""
-
-    seed: Seed = 0
-    jobs: Jobs = -1
-    backend: Backend = "joblib"
-    json: Json = False

@@ -6,8 +6,8 @@ from typing import Annotated
 
 from tyro.conf import Positional, arg
 
-from latentarm.commands.options import Json
 from latentarm.commands.output import say
+from latentarm.runs.options import Json
 
 
 def replay(

@@ -7,13 +7,14 @@ from typing import Annotated
 from rich.table import Table
 from tyro.conf import Positional, arg
 
-from latentarm.commands.options import EndEffector, Json, LimitsFile
+from latentarm.commands.options import LimitsFile
 from latentarm.commands.output import print_renderables
 from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray
 from latentarm.robots.limits import QUANTITIES, Quantity, Source
 from latentarm.robots.notices import notices
 from latentarm.robots.robot import Robot
+from latentarm.runs.options import EndEffector, Json
 
 _SOURCES: dict[Source, str] = {
     "model": "from the model",

@@ -9,19 +9,10 @@ from typing import Annotated
 from tyro.conf import Positional, UseAppendAction, arg
 
 from latentarm.commands.configuration import write_options
-from latentarm.commands.options import (
-    AnyArm,
-    EndEffector,
-    JointSpeed,
-    Json,
-    LimitsFile,
-    LinkSpeed,
-    Seated,
-    Seed,
-)
+from latentarm.commands.options import AnyArm, JointSpeed, LimitsFile, LinkSpeed, Seated
 from latentarm.commands.output import draws_blocks, say
 from latentarm.core.errors import UserError
-from latentarm.runs.options import TaskName
+from latentarm.runs.options import EndEffector, Json, Seed, TaskName
 
 
 def teleop(

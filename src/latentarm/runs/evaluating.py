@@ -13,7 +13,7 @@ from threadpoolctl import threadpool_limits
 
 from latentarm.assistance.annotation import prepared
 from latentarm.core.errors import UserError
-from latentarm.core.parallel.grid import check_processes, run_grid
+from latentarm.core.parallel import check_jobs, run_grid
 from latentarm.core.style import save_figure
 from latentarm.core.types import Demonstrations, FloatArray, Row
 from latentarm.core.untrusted.documents import read_object
@@ -97,7 +97,7 @@ def evaluate_run(options: EvaluateOptions) -> Evaluation:
             results.
     """
     folder, out, dataset, seed = options.run, options.folder, options.demonstrations, options.seed
-    check_processes(options.jobs, "joblib")
+    check_jobs(options.jobs)
     run = read_run(folder)
     model = load_model(folder)
     robot = robot_of(run)
@@ -141,7 +141,6 @@ def evaluate_run(options: EvaluateOptions) -> Evaluation:
             _measure_fold,
             cells,
             jobs=options.jobs,
-            backend="joblib",
             label=_fold_name,
             bars=options.bars,
             unit="folds",

@@ -5,8 +5,8 @@ from typing import Annotated
 
 from tyro.conf import arg
 
-from latentarm.commands.options import Json, Seed
 from latentarm.commands.output import show
+from latentarm.runs.options import Json, Seed
 
 
 def bench(

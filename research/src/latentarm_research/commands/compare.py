@@ -7,8 +7,9 @@ from typing import Annotated, Literal
 from tyro.conf import arg
 
 from latentarm.commands.configuration import write_options
-from latentarm.commands.options import Backend, Jobs, Json, Seed
 from latentarm.commands.output import say, show
+from latentarm.runs.options import Jobs, Json, Seed
+from latentarm_research.commands.study_options import Backend
 
 
 def compare(

@@ -9,9 +9,9 @@ from typing import Annotated
 from tyro.conf import arg
 
 from latentarm.commands.configuration import write_options
-from latentarm.commands.options import Json, Seed
 from latentarm.commands.output import say, show
 from latentarm.runs.checks import check_count, check_seed
+from latentarm.runs.options import Json, Seed
 
 
 @dataclass(frozen=True)

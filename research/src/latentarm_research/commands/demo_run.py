@@ -19,7 +19,7 @@ from latentarm.assistance.goal_blending import blending
 from latentarm.core.context import JOINTS, OBJECTS_IN_TOOL
 from latentarm.core.errors import UserError
 from latentarm.core.files import write_text
-from latentarm.core.parallel.grid import run_grid
+from latentarm.core.parallel import run_grid
 from latentarm.core.style import save_figure
 from latentarm.core.types import Row
 from latentarm.core.untrusted.console import VisibleConsole
@@ -192,7 +192,6 @@ def _learn_all(config: "DemoOptions", sizes: Sizes) -> list[Row]:
         _learn,
         calls,
         jobs=config.jobs,
-        backend="joblib",
         label=lambda call: call.model,
         bars=config.bars,
         unit="models",

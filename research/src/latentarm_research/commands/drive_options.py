@@ -8,11 +8,11 @@ from typing import Annotated, Final, Literal
 from tyro.conf import Positional, arg
 
 from latentarm.arms.catalogue import check_simulated
-from latentarm.commands.options import Arm, EndEffector, Jobs, Json, LimitsFile, MovedDataset, Seated, Seed
+from latentarm.commands.options import Arm, LimitsFile, Seated
 from latentarm.core.errors import UserError
 from latentarm.core.types import Row
 from latentarm.runs.checks import check_count, check_positive, check_seed
-from latentarm.runs.options import BeliefName, TaskName
+from latentarm.runs.options import BeliefName, EndEffector, Jobs, Json, MovedDataset, Seed, TaskName
 from latentarm_research.assistance.catalogue import AssistanceName
 from latentarm_research.people.names import OperatorName
 
@@ -113,10 +113,10 @@ class DriveOptions:
     json: Json = False
 
     def __post_init__(self) -> None:
-        from latentarm.core.parallel.grid import check_processes
+        from latentarm.core.parallel import check_jobs
 
         check_seed(self.seed)
-        check_processes(self.jobs, "joblib")
+        check_jobs(self.jobs)
         check_count("drives for each goal", self.drives)
         check_positive("rationality beta", self.beta)
         if self.arm is not None:

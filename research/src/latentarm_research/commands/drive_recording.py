@@ -9,7 +9,7 @@ from latentarm.assistance.controllers.contract import Controller
 from latentarm.control.export import export_journal
 from latentarm.control.recorder import EpisodeHeader, Recorder
 from latentarm.core.errors import UserError
-from latentarm.core.parallel.grid import counting_bar
+from latentarm.core.parallel import counting_bar
 from latentarm.core.types import Goal, StepRecord
 from latentarm.demonstrations.folders import check_vacant
 from latentarm.demonstrations.provenance import provenance_now

@@ -8,8 +8,8 @@ from typing import Annotated, Any
 from tyro.conf import arg
 
 from latentarm.commands.configuration import Command, write_options
-from latentarm.commands.options import Jobs, Json, Seed
 from latentarm.commands.output import note, say, show
+from latentarm.runs.options import Jobs, Json, Seed
 from latentarm_research.measurements.catalogue import MEASUREMENTS, load_measurement
 
 
@@ -55,7 +55,7 @@ def command_of(name: str) -> Command:
 def _measure(name: str, own: Any, common: Common, out: Path) -> int:
     """Measure, write and print; 1 where a limit is broken."""
     from latentarm.core.files import write_text
-    from latentarm.core.parallel.grid import check_processes
+    from latentarm.core.parallel import check_jobs
     from latentarm.evaluation.results import write_results
     from latentarm.runs.checks import check_seed
     from latentarm.runs.results_folder import ResultsFolder, write_json
@@ -63,7 +63,7 @@ def _measure(name: str, own: Any, common: Common, out: Path) -> int:
     from latentarm_research.measurements.page import page_of, repeated_by
 
     check_seed(common.seed)
-    check_processes(common.jobs, "joblib")
+    check_jobs(common.jobs)
     words = f"measure {name}"
     command = repeated_by(name, own, common.seed)
     about = {"study": words, "command": command}

@@ -8,9 +8,9 @@ from typing import Annotated
 from tyro.conf import UseAppendAction, arg
 
 from latentarm.commands.configuration import Command, write_options
-from latentarm.commands.options import StudyOptions
 from latentarm.commands.output import say, show, tables_by_task
 from latentarm.core.errors import UserError
+from latentarm_research.commands.study_options import StudyOptions
 from latentarm_research.studies.catalogue import STUDIES, load_study
 
 ALL = "all"

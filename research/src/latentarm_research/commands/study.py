@@ -9,10 +9,11 @@ from rich.table import Table
 from tyro.conf import Positional, arg
 
 from latentarm.commands.configuration import write_options
-from latentarm.commands.options import Json, StudyOptions
 from latentarm.commands.output import print_renderables, say, show
 from latentarm.core.errors import UserError
+from latentarm.runs.options import Json
 from latentarm_research.commands.study_name import StudyName
+from latentarm_research.commands.study_options import StudyOptions
 from latentarm_research.user_studies.catalogue import NAMES, load_definition
 from latentarm_research.user_studies.definition import Definition
 from latentarm_research.user_studies.own.definition_file import find_definition

@@ -8,11 +8,11 @@ from typing import Annotated
 from tyro.conf import Positional, arg
 
 from latentarm.commands.configuration import write_options
-from latentarm.commands.options import Json, Seed
 from latentarm.commands.output import note, say, show
 from latentarm.core.errors import UserError
 from latentarm.core.untrusted.opening import read_bytes
 from latentarm.demonstrations.bounds import MAX_TEXT_BYTES
+from latentarm.runs.options import Json, Seed
 from latentarm_research.commands.study_name import StudyName
 from latentarm_research.user_studies.own.definition_file import find_definition
 

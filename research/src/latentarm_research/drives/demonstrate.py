@@ -9,7 +9,7 @@ import numpy as np
 from latentarm.arms.catalogue import make_scene_arm
 from latentarm.arms.contract import SceneArm
 from latentarm.control.clock import SimulatedClock
-from latentarm.core.parallel.grid import run_grid
+from latentarm.core.parallel import run_grid
 from latentarm.core.types import (
     Command,
     Demonstrations,
@@ -138,9 +138,7 @@ def demonstrate(
         UserError: the arm cannot be used.
     """
     calls = [_Call(task, index, seed) for index in range(episodes)]
-    all_of_them = run_grid(
-        _demonstrate, calls, jobs=jobs, backend="joblib", label=_name_of, bars=bars, unit="demonstrations"
-    )
+    all_of_them = run_grid(_demonstrate, calls, jobs=jobs, label=_name_of, bars=bars, unit="demonstrations")
     succeeded = [one.episode for one in all_of_them if one.progress.succeeded]
     return dataset_of(task, succeeded, all_of_them[0].objects), all_of_them
 

@@ -7,7 +7,7 @@ from typing import Final, final
 import numpy as np
 
 from latentarm.arms.contract import Arm
-from latentarm.core.parallel.grid import run_grid
+from latentarm.core.parallel import run_grid
 from latentarm.tasks.goal_task import GoalTask
 from latentarm_research.drives.drive import Record, Setup, drive
 from latentarm_research.drives.trace import Trace
@@ -81,7 +81,6 @@ def drive_all(conditions: Sequence[Sequence[Planned]], jobs: int, *, bars: bool 
             Planned.drive,
             [planned for condition in conditions for planned in condition],
             jobs=jobs,
-            backend="joblib",
             label=_name_of,
             bars=bars,
             unit="drives",

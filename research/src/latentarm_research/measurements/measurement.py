@@ -59,9 +59,9 @@ class Work:
 
     def each(self, function: Callable[[Cell], Result], cells: Sequence[Cell]) -> list[Result]:
         """Results of a function of picklable cells, in their order."""
-        from latentarm.core.parallel.grid import run_grid  # brings joblib, which no help needs
+        from latentarm.core.parallel import run_grid  # brings joblib, which no help needs
 
-        return run_grid(function, cells, jobs=self.jobs, backend="joblib", label=str, bars=self.bars)
+        return run_grid(function, cells, jobs=self.jobs, label=str, bars=self.bars)
 
 
 @final

@@ -10,13 +10,14 @@ from typing import TYPE_CHECKING, Any, Final, Generic, Protocol, TypeVar
 
 from latentarm.core.errors import UserError
 from latentarm.core.files import write_text
-from latentarm.core.parallel.grid import check_processes, run_grid
+from latentarm.core.parallel import check_jobs, run_grid
 from latentarm.core.style import save_figure
 from latentarm.core.types import Row
 from latentarm.core.untrusted.console import VisibleConsole
 from latentarm.evaluation.results import write_results
 from latentarm.runs.checks import check_seed
 from latentarm.runs.results_folder import ResultsFolder, write_json
+from latentarm_research.studies.backends import BACKENDS, check_backend
 from latentarm_research.studies.html import html_page
 from latentarm_research.studies.page import SMOKE
 from latentarm_research.studies.printing import HTML, PDF, print_page
@@ -66,7 +67,7 @@ class Request(Generic[Preset]):
         tasks: which of the study's tasks; all of them where empty.
         seed: of everything random.
         jobs: processes side by side; -1 is one per core.
-        backend: where they run, a name in `latentarm.core.parallel.backends.BACKENDS`.
+        backend: where they run, a name in `BACKENDS`.
         quiet: say nothing while working.
         bars: show how far the grids are.
 
@@ -85,7 +86,8 @@ class Request(Generic[Preset]):
 
     def __post_init__(self) -> None:
         check_seed(self.seed)
-        check_processes(self.jobs, self.backend)
+        check_jobs(self.jobs)
+        check_backend(self.backend)
 
 
 @dataclass(frozen=True)
@@ -125,7 +127,7 @@ class Grid:
         label: Callable[[Cell], str],
         keep: Keep[Cell, Result] | None = None,
     ) -> list[Result]:
-        """Measure cells side by side; see `latentarm.core.parallel.grid.run_grid`.
+        """Measure cells side by side; see `latentarm.core.parallel.run_grid`.
 
         Args:
             what: the grid in a few words.
@@ -145,7 +147,7 @@ class Grid:
                 function,
                 missing,
                 jobs=self._request.jobs,
-                backend=self._request.backend,
+                backend=BACKENDS[self._request.backend],
                 label=label,
                 bars=self._request.bars,
                 keep=None if keep is None else lambda cell, result: keep.write(out, cell, result),

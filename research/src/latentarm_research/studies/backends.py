@@ -1,32 +1,23 @@
-"""Backends for the cells of a grid: processes of this machine, or a cluster.
-
-joblib is the one interface; Ray and Dask are joblib's own backends. Each of the context managers here
-makes its backend the active one and ends what it has started, and nothing else.
-"""
+"""Where the cells of a study run: processes of this machine, or a cluster of Ray or Dask, by joblib."""
 
 import logging
 import os
 import socket
-from collections.abc import Callable, Generator
-from contextlib import AbstractContextManager, contextmanager
+from collections.abc import Generator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, Final, cast
 
 import joblib
 
 from latentarm.core.errors import UserError
+from latentarm.core.parallel import Backend, processes
 
 if TYPE_CHECKING:
     from dask.distributed import Client
 
-EXTRA: Final = "pip install 'latentarm[cluster]'"
+EXTRA: Final = "pip install 'latentarm-research[cluster]'"
 
 ANSWER_S: Final = 10.0  # for a cluster to answer at its address
-
-
-@contextmanager
-def _processes(jobs: int) -> Generator[int]:
-    with joblib.parallel_config("loky"):
-        yield _available(jobs)
 
 
 @contextmanager
@@ -45,7 +36,7 @@ def _ray(jobs: int) -> Generator[int]:
         register_ray()
         with joblib.parallel_config("ray"):
             # Ray's pool refuses to have more processes than the cluster has cores.
-            yield _at_most(jobs, _available(-1))
+            yield _at_most(jobs)
     finally:
         if started:
             ray.shutdown()
@@ -85,7 +76,7 @@ def _dask(jobs: int) -> Generator[int]:
     address: str | None = dask.config.get("scheduler-address", None)
     processes = _dask_processes(jobs) if address is None else _dask_cluster(address)
     with processes as client, joblib.parallel_config("dask", client=client):
-        yield _at_most(jobs, _available(-1))
+        yield _at_most(jobs)
 
 
 @contextmanager
@@ -116,17 +107,15 @@ def _dask_cluster(address: str) -> Generator["Client"]:
         yield client
 
 
-def _available(jobs: int) -> int:
-    return cast(int, joblib.effective_n_jobs(jobs))
-
-
-def _at_most(jobs: int, cores: int) -> int:
+def _at_most(jobs: int) -> int:
+    cores = cast(int, joblib.effective_n_jobs(-1))
     return cores if jobs == -1 else min(jobs, cores)
 
 
-BACKENDS: Final[dict[str, Callable[[int], AbstractContextManager[int]]]] = {
-    "joblib": _processes,
-    "ray": _ray,
-    "dask": _dask,
-}
-"""Each takes the processes wanted (-1: one per core) and yields how many there will be."""
+BACKENDS: Final[dict[str, Backend]] = {"joblib": processes, "ray": _ray, "dask": _dask}
+
+
+def check_backend(name: str) -> None:
+    """Raise a UserError unless there is a backend of that name."""
+    if name not in BACKENDS:
+        raise UserError(f"There is no backend {name!r}: choose from {', '.join(BACKENDS)}.")

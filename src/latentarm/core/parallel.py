@@ -5,21 +5,32 @@ A cell carries everything that it depends on, its seeds too: its result does not
 
 import traceback
 import warnings
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar, cast
 
-from joblib import Parallel, delayed
+from joblib import Parallel, delayed, effective_n_jobs, parallel_config
 from joblib.parallel import get_active_backend
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
 from latentarm.core.errors import UserError
-from latentarm.core.parallel.backends import BACKENDS
 from latentarm.core.untrusted.console import VisibleConsole
 
 Cell = TypeVar("Cell")
 Result = TypeVar("Result")
+
+Backend = Callable[[int], AbstractContextManager[int]]
+"""Makes one of joblib's backends the active one: from the processes wanted, -1 for one per core, to how many
+there will be. It ends what it has started, and nothing else."""
+
+
+@contextmanager
+def processes(jobs: int) -> Generator[int]:
+    """The `Backend` of processes on this machine."""
+    with parallel_config("loky"):
+        yield cast(int, effective_n_jobs(jobs))
 
 
 class CellError(Exception):
@@ -38,7 +49,7 @@ def run_grid(
     cells: Sequence[Cell],
     *,
     jobs: int,
-    backend: str,
+    backend: Backend = processes,
     label: Callable[[Cell], str],
     bars: bool,
     unit: str = "cells",
@@ -52,19 +63,19 @@ def run_grid(
         function: measures one cell; importable by name for other processes.
         cells: picklable.
         jobs: processes side by side, as far as a cluster has them; -1 is one per core.
-        backend: a name in `BACKENDS`.
+        backend: where the processes are.
         label: names a cell in errors and warnings.
         bars: show progress on standard error.
         unit: word for a cell on the bar.
         keep: called with each cell and its result as soon as there is one, in any order; with Ray at the end.
 
     Raises:
-        UserError: jobs or backend are invalid, the backend is not available, one of joblib's processes was
+        UserError: jobs is invalid, the backend is not available, one of joblib's processes was
             killed, or a cell raised one; the message names the cell.
         CellError: a cell raised anything else.
     """
-    check_processes(jobs, backend)
-    with BACKENDS[backend](jobs) as workers, counting_bar(bars) as bar:
+    check_jobs(jobs)
+    with backend(jobs) as workers, counting_bar(bars) as bar:
         # One cell at a time per process: a cell takes seconds, and the bar then advances with each.
         one_by_one: dict[str, Any] = {"batch_size": 1, "pre_dispatch": workers}
         active: Any = get_active_backend()[0]
@@ -94,12 +105,10 @@ def run_grid(
     return [entry.result for entry in results]
 
 
-def check_processes(jobs: int, backend: str) -> None:
-    """Check jobs and backend before any work is done."""
+def check_jobs(jobs: int) -> None:
+    """Check the number of processes before any work is done; UserError where it is none."""
     if jobs != -1 and jobs < 1:
         raise UserError(f"The number of jobs is {jobs}: it must be at least 1, or -1 for one per core.")
-    if backend not in BACKENDS:
-        raise UserError(f"There is no backend {backend!r}: choose from {', '.join(BACKENDS)}.")
 
 
 def _measure(function: Callable[[Cell], Result], index: int, cell: Cell, name: str) -> _Measured[Result]:
