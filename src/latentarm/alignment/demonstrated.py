@@ -16,11 +16,8 @@ from latentarm.robots.kinematics.stillness import moving_range
 DURATION_S: Final = 0.5
 """How long a shown motion takes, s: long enough to be seen, short enough to be one push of the stick."""
 
-CANDIDATES: Final = 100
-"""Motions that may be asked about."""
-
-KEPT: Final = 1000
-"""Motions that show the directions of a place; the first of them may be asked about."""
+CANDIDATES: Final = 100  # motions that may be asked about
+KEPT: Final = 1000  # motions that show the directions of a place; the first of them may be asked about
 
 
 def demonstrated_motions(

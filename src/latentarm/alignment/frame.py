@@ -24,20 +24,14 @@ CAMERAS: Final[dict[Seat, tuple[float, float, float]]] = {
 }
 """The camera of the page's first view, in the base frame."""
 
-FLAT: Final = (0.0, -0.01, 1.0)
-"""The same where the whole arm moves in one plane."""
-
-FLAT_SHARE: Final = 0.1
-"""An arm whose height is below this share of its reach is shown like that."""
+FLAT: Final = (0.0, -0.01, 1.0)  # the same where the whole arm moves in one plane
+FLAT_SHARE: Final = 0.1  # an arm whose height is below this share of its reach is shown like that
 
 STEEPEST_RAD_M: Final = 5.0
 """The most that the stick turns per distance between poses, see `pose_vectors`, rad/m."""
 
-LENGTH_M: Final = 0.3
-"""Distance between poses over which the turn changes."""
-
-ROUGHNESS: Final = 0.01
-"""Weight of the turn's roughness at first, where perfect agreement weighs 2."""
+LENGTH_M: Final = 0.3  # distance between poses over which the turn changes
+ROUGHNESS: Final = 0.01  # weight of the turn's roughness at first, where perfect agreement weighs 2
 
 CONTEXTS: Final = 500
 CENTRES: Final = 32

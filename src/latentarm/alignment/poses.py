@@ -11,8 +11,7 @@ from latentarm.robots.kinematics.chain import Chain
 ROTATION_WEIGHT_M: Final = 0.2
 """A turn of a tool by 1 rad counts like the motion of a point of the hand this far from the tool point, m."""
 
-POSE_SIZE: Final = 12
-"""Entries for each tool: its position, and its weighted rotation matrix row by row."""
+POSE_SIZE: Final = 12  # entries for each tool: its position, and its weighted rotation matrix row by row
 
 
 def pose_weights(tools: int) -> tuple[float, float]:

@@ -46,11 +46,8 @@ SCHEMA: Final = 2
 NETWORK_SCHEMA: Final = 1
 """Older profiles hold a network; they are still read."""
 
-MOST_PLACES: Final = 10_000
-"""Most answers and most regions; a profile of ours keeps some tens."""
-
-NAMED: Final = re.compile(r"\w[\w-]{0,63}")
-"""Names that are also the name of their folder."""
+MOST_PLACES: Final = 10_000  # most answers and most regions; a profile of ours keeps some tens
+NAMED: Final = re.compile(r"\w[\w-]{0,63}")  # names that are also the name of their folder
 
 MOST_CHARACTERS: Final = 64
 

@@ -17,14 +17,12 @@ from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray
 from latentarm.robots.kinematics.chain import Chain
 
-TOO_FEW: Final = 2
-"""Answers after which asking may stop."""
+TOO_FEW: Final = 2  # answers after which asking may stop
 
 LENGTH_M: Final = 0.3
 """Distance over which the meaning of an input may change with the place, when questions are chosen."""
 
-VARIATION: Final = 0.1
-"""Coefficient of variation of the answers, when questions are chosen."""
+VARIATION: Final = 0.1  # coefficient of variation of the answers, when questions are chosen
 
 
 @final

@@ -8,8 +8,7 @@ from latentarm.core.types import FloatArray
 from latentarm.models.kind import Shape
 from latentarm.models.numpy_networks import Layer, halve_hidden, propagate
 
-NETWORK: Final = "alignment"
-"""The network's name in ``<network>.<layer>.weight``."""
+NETWORK: Final = "alignment"  # the network's name in ``<network>.<layer>.weight``
 
 
 def layer_shapes(latent: int, context: int, hidden: tuple[int, ...]) -> dict[str, Shape]:

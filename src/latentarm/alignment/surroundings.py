@@ -11,14 +11,12 @@ from latentarm.alignment.twists import motion_twists
 from latentarm.core.types import FloatArray, IntArray
 from latentarm.robots.kinematics.chain import Chain
 
-REGIONS: Final = 24
-"""Regions that the demonstrated places are divided into, at most."""
+REGIONS: Final = 24  # regions that the demonstrated places are divided into, at most
 
 SETTLED: Final = 1e-4
 """Means of clusters that all together move by less than this have settled, as a share of the variance."""
 
-FASTEST: Final = 0.99
-"""This share of the demonstrated motions is slower than a fast one."""
+FASTEST: Final = 0.99  # this share of the demonstrated motions is slower than a fast one
 
 
 @final

@@ -14,8 +14,7 @@ from latentarm.core.types import FloatArray
 from latentarm.models.decoder import Decoder
 from latentarm.robots.kinematics.chain import Chain
 
-OUTSIDE: Final = 1.0
-"""Weight of motion that was not demonstrated in a place, as a share of a full push."""
+OUTSIDE: Final = 1.0  # weight of motion that was not demonstrated in a place, as a share of a full push
 
 RIDGES: Final = (1.0, 0.3, 0.1, 0.03, 0.01, 0.01, 0.01)
 """Weight of ‖z‖^2 in each step. It falls, so that of several z that do the same, one near rest is found."""
@@ -29,8 +28,7 @@ ACROSS: Final = (0.1, 0.15)
 """By how much the second path has to miss less than the first before its z counts, and counts alone, in
 squared full pushes. In between z is a mixture, so that it changes continuously with the place."""
 
-REACH: Final = 0.5
-"""The farthest that one step goes in z."""
+REACH: Final = 0.5  # the farthest that one step goes in z
 
 
 @final

@@ -12,8 +12,7 @@ from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations, Episode, FloatArray
 from latentarm.tasks.step_goals import GoalMove
 
-_STANDSTILL = 0.02
-"""Joint speed ‖a‖, rad/s, below which a demonstration counts as still and is no evidence."""
+_STANDSTILL = 0.02  # joint speed ‖a‖, rad/s, below which a demonstration counts as still and is no evidence
 
 
 def annotate(demonstrations: Demonstrations, rule: Rule = BoltzmannBelief) -> Demonstrations:

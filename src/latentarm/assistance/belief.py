@@ -14,11 +14,8 @@ from latentarm.core.types import FloatArray
 ActionOf = Callable[[FloatArray], FloatArray]
 """Inputs (..., K, d) to the actions ``a_h`` (..., K, n), rad/s, that they would cause in these states."""
 
-BELIEF_PERIOD_S: Final = 0.1
-"""How often the belief is updated, s, on the page and in simulated drives."""
-
-_LEAST = 1e-300
-"""Stands in for a probability of zero, which has no logarithm."""
+BELIEF_PERIOD_S: Final = 0.1  # how often the belief is updated, s, on the page and in simulated drives
+_LEAST = 1e-300  # stands in for a probability of zero, which has no logarithm
 
 
 class Rule(Protocol):

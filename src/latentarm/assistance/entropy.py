@@ -16,15 +16,13 @@ from latentarm.models.term import LossTerm, Situation
 from latentarm.robots.kinematics.chain import Chain
 from latentarm.robots.kinematics.torch_chain import TorchChain
 
-CONTEXTS: Final = 4096
-"""Contexts that a training draws from."""
+CONTEXTS: Final = 4096  # contexts that a training draws from
 
 NEAR_RAD: Final = 0.1
 """Nearer to a goal than this, progress towards it counts in proportion to the distance that is left: at the
 goal there is no direction to it."""
 
-NEAR_M: Final = 0.03
-"""The same for the tool."""
+NEAR_M: Final = 0.03  # the same for the tool
 
 SLOWEST_M: Final = 0.05
 """Least speed of the tool, per unit of joint speed, that its progress is measured in: an arm that goes

@@ -27,8 +27,7 @@ from latentarm.runs.options import EvaluateOptions
 if TYPE_CHECKING:
     from latentarm.runs.evaluating import Evaluation
 
-GROUPS = ("", EXPRESSED, ENCODED, PROPERTIES, AT_REST)
-"""Headings in the order of the table."""
+GROUPS = ("", EXPRESSED, ENCODED, PROPERTIES, AT_REST)  # headings in the order of the table
 
 
 def evaluation_table(evaluation: "Evaluation") -> RenderableType:

@@ -19,8 +19,7 @@ from latentarm.demonstrations.summary import Summary, summarise
 from latentarm.robots.robot import Robot
 from latentarm.runs.options import Json
 
-_FINGERPRINT_LENGTH: Final = 64
-"""Digits of a SHA-256."""
+_FINGERPRINT_LENGTH: Final = 64  # digits of a SHA-256
 
 
 def known_robot(demonstrations: Demonstrations) -> Robot | None:

@@ -22,8 +22,7 @@ from latentarm.robots.limits import JointLimits
 NO_BOUND = -1.0
 """Stands for "no bound" in a dataset, whose numbers are all finite: a radius is never negative."""
 
-_SHORTEST = 2
-"""An episode with fewer samples has no motion in it."""
+_SHORTEST = 2  # an episode with fewer samples has no motion in it
 
 
 @final

@@ -13,8 +13,7 @@ from typing_extensions import override
 from latentarm.control.clock import Clock
 from latentarm.core.types import FloatArray, GripperAsk, Input
 
-NONCE_LIFE_S = 0.2
-"""An input must echo a nonce no older than this."""
+NONCE_LIFE_S = 0.2  # an input must echo a nonce no older than this
 
 _KEPT_NONCES = 1024
 

@@ -20,8 +20,7 @@ from latentarm.robots.kinematics.pose_rows import STORED
 from latentarm.robots.limits import JointLimits
 from latentarm.robots.limits_file import limits_document
 
-LIMITS = ("lower", "upper", "velocity", "acceleration", "jerk")
-"""The fields of a header's joint limits."""
+LIMITS = ("lower", "upper", "velocity", "acceleration", "jerk")  # the fields of a header's joint limits
 
 SCHEMA_VERSION = 5
 """Version 2 made samples compact, version 3 gave them a gripper, version 4 things, version 5 a co-pilot's

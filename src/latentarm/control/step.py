@@ -39,18 +39,14 @@ from latentarm.safety.yielding import YIELDING, Yielding
 _ABSURD = 2.0
 """Inputs slightly above 1 come from a stick's corners and are clipped; above this the interface is broken."""
 
-_ASTRAY = 2.0 * math.pi
-"""A reading this far outside the limits is wrong, rad."""
-
-STEADY_S = 1.0
-"""After a jump, readings must be steady for this long before the arm can be enabled, s."""
+_ASTRAY = 2.0 * math.pi  # a reading this far outside the limits is wrong, rad
+STEADY_S = 1.0  # after a jump, readings must be steady for this long before the arm can be enabled, s
 
 _MISSHAPEN = Stop(
     "The controller gave a latent action or an action of the wrong size.", code="controller_invalid"
 )
 
-_FALTERING = (Freshness.name,)
-"""The limit of an arm whose inputs are missing for a moment."""
+_FALTERING = (Freshness.name,)  # the limit of an arm whose inputs are missing for a moment
 
 
 @final

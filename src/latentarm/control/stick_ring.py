@@ -6,14 +6,9 @@ import numpy as np
 
 from latentarm.core.types import FloatArray
 
-DIRECTIONS: Final = 32
-"""Of a stick with two axes, counter-clockwise from the right."""
-
-AHEAD_S: Final = 1.0
-"""How far ahead the ring shows the tool, s."""
-
-STRETCHES: Final = 6
-"""This time is cut into so many equal stretches; the action is constant in each."""
+DIRECTIONS: Final = 32  # of a stick with two axes, counter-clockwise from the right
+AHEAD_S: Final = 1.0  # how far ahead the ring shows the tool, s
+STRETCHES: Final = 6  # this time is cut into so many equal stretches; the action is constant in each
 
 
 def full_pushes(axes: int) -> FloatArray:

@@ -4,8 +4,7 @@ from collections.abc import Generator
 from contextlib import contextmanager
 from typing import Final
 
-TRAINING: Final = ("torch", "sklearn", "joblib")
-"""Packages of the extra ``train``."""
+TRAINING: Final = ("torch", "sklearn", "joblib")  # packages of the extra ``train``
 
 
 class UserError(Exception):

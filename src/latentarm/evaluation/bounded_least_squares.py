@@ -6,14 +6,9 @@ import numpy as np
 
 from latentarm.core.types import BoolArray, FloatArray
 
-NEWTON_STEPS: Final = 50
-"""At most; a convex problem within bounds needs a few."""
-
-RIDGE: Final = 1e-12
-"""Added to a curvature, relative to it."""
-
-ROUNDING: Final = 1e-12
-"""A smaller change of z ends the search."""
+NEWTON_STEPS: Final = 50  # at most; a convex problem within bounds needs a few
+RIDGE: Final = 1e-12  # added to a curvature, relative to it
+ROUNDING: Final = 1e-12  # a smaller change of z ends the search
 
 
 def bounded_least_squares(

@@ -20,8 +20,7 @@ BASE_AXES = "xyz"
 AWAY_M = 0.04
 """The way back is drawn from this far off the starts, m."""
 
-AROUND = 6
-"""Directions in which the way back is drawn."""
+AROUND = 6  # directions in which the way back is drawn
 
 
 class LeadsBack(Protocol):

@@ -10,17 +10,13 @@ from torch import Tensor
 
 from latentarm.core.types import FloatArray
 
-ELSEWHERE: Final = 32
-"""Most contexts without demonstrated actions in a step, for terms that ask for them."""
-
-ELSEWHERE_JUDGED: Final = 256
-"""The same for validation, which always uses the first ones."""
+ELSEWHERE: Final = 32  # most contexts without demonstrated actions in a step, for terms that ask for them
+ELSEWHERE_JUDGED: Final = 256  # the same for validation, which always uses the first ones
 
 JUDGED_AT_ONCE: Final = 400
 """Validation pairs per seed that are judged together, so that they fit into the processor's cache."""
 
-FEWEST_STEPS: Final = 16
-"""Steps of an epoch, at least: a small dataset is cut into smaller batches."""
+FEWEST_STEPS: Final = 16  # steps of an epoch, at least: a small dataset is cut into smaller batches
 
 
 class Batch(NamedTuple):

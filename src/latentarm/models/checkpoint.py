@@ -19,8 +19,7 @@ from latentarm.core.types import BoolArray, FloatArray, IntArray
 from latentarm.core.untrusted.opening import check_file
 from latentarm.models.optimiser import FlatAdam
 
-_HEADER_BYTES: Final = 1 << 26
-"""Bytes that the names and the loss history may take: 64 MiB."""
+_HEADER_BYTES: Final = 1 << 26  # bytes that the names and the loss history may take: 64 MiB
 
 METADATA_KEY: Final = "latentarm_training"
 

@@ -26,8 +26,7 @@ import numpy as np
 
 from latentarm.core.types import FloatArray
 
-ROUNDING: Final = 1e-9
-"""Relative margin for rounding, many times that of float64 in networks of these sizes."""
+ROUNDING: Final = 1e-9  # relative margin for rounding, many times that of float64 in networks of these sizes
 
 CELLS_PER_AXIS: Final = {1: 16, 2: 8, 3: 4}
 """Cells along each axis of z, by d, as many as a control loop has time for. One cell in larger spaces."""
@@ -38,8 +37,7 @@ MOST_CORNERS_OF: Final = 6
 TURNING_POINT: Final = 1.19967
 """Just below where s'' = 2 sech² h (1 - h tanh h) changes its sign. Up to there it falls from 2 to 0."""
 
-BEYOND: Final = 0.15
-"""|s''| stays below this beyond the turning point; its maximum there is 0.1477."""
+BEYOND: Final = 0.15  # |s''| stays below this beyond the turning point; its maximum there is 0.1477
 
 
 @final

@@ -15,8 +15,7 @@ from latentarm.core.types import FloatArray
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
-LARGEST: Final = 2**31 - 1
-"""The largest whole-numbered parameter or seed."""
+LARGEST: Final = 2**31 - 1  # the largest whole-numbered parameter or seed
 
 Count = Annotated[int, Field(ge=1, le=LARGEST)]
 Seed = Annotated[int, Field(ge=0, le=LARGEST)]

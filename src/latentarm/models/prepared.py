@@ -17,8 +17,7 @@ from latentarm.models.tool_contexts import ToolContexts
 from latentarm.models.tool_frame import ToolFrame
 from latentarm.robots.kinematics.chain import Chain
 
-AHEAD_S: Final = 0.1
-"""Models that look ahead look this far, s: as long as a short press of the stick."""
+AHEAD_S: Final = 0.1  # models that look ahead look this far, s: as long as a short press of the stick
 
 
 @final

@@ -105,14 +105,12 @@ def action_normaliser(action: FloatArray) -> Normaliser:
     return Normaliser(centre=np.zeros(1), scale=np.sqrt(np.square(action).mean()).reshape(1))
 
 
-SPAN_QUANTILE: Final = 0.99
-"""u in [-1, 1] spans this share of the demonstrations; the rest are outliers."""
+SPAN_QUANTILE: Final = 0.99  # u in [-1, 1] spans this share of the demonstrations; the rest are outliers
 
 EFFECT_SAMPLES: Final = 512
 """Training contexts, at most, in which the effect of a latent dimension is measured."""
 
-SMALLEST_SCALE: Final = 1e-9
-"""Least range of a latent dimension, so that a dead one does not divide by zero."""
+SMALLEST_SCALE: Final = 1e-9  # least range of a latent dimension, so that a dead one does not divide by zero
 
 DEAD_EFFECT: Final = 0.01
 """A dimension whose full deflection changes the action by less than this share of the demonstrated speed is

@@ -15,11 +15,8 @@ from latentarm.models.scaling import SPAN_QUANTILE, Normaliser, context_normalis
 from latentarm.robots.kinematics.chain import Chain
 from latentarm.robots.kinematics.pose_rows import pose_rows
 
-TWIST: Final = 6
-"""Entries of a tool's twist: 3 of velocity, 3 of angular velocity."""
-
-PLACE: Final = 9
-"""Numbers of a tool's place: its position and the first two columns of its rotation."""
+TWIST: Final = 6  # entries of a tool's twist: 3 of velocity, 3 of angular velocity
+PLACE: Final = 9  # numbers of a tool's place: its position and the first two columns of its rotation
 
 ROTATION_WEIGHT_M: Final = 0.05
 """Weight of a tool's turn by 1 rad relative to a motion by 1 m. Low, so that directions of z differ mainly in

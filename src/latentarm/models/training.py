@@ -26,11 +26,8 @@ from latentarm.models.replay import Replay, UnreplayableError
 Report = Callable[[int, int, float], None]
 """Called after each epoch with the epochs done, the most there will be, and the validation loss so far."""
 
-THREADED_WORK: Final = 40_000
-"""Hidden units per layer and step above which a second thread pays off."""
-
-REPLAYED_STEPS: Final = 100
-"""Steps from which recording one and replaying it pays off."""
+THREADED_WORK: Final = 40_000  # hidden units per layer and step above which a second thread pays off
+REPLAYED_STEPS: Final = 100  # steps from which recording one and replaying it pays off
 
 
 @dataclass(frozen=True)

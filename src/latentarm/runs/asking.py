@@ -14,8 +14,7 @@ from latentarm.robots.kinematics.rotations import rotation_vector
 from latentarm.runs.person import Kind, Person, Question, Say
 from latentarm.runs.stick_line import parse
 
-CELLS: Final = 4
-"""Cells of the figure from its middle to each edge."""
+CELLS: Final = 4  # cells of the figure from its middle to each edge
 
 STILL_M: Final = 5e-4
 STILL_DEG: Final = 0.5
@@ -69,8 +68,7 @@ def _moves(before: Pose, after: Pose) -> bool:
     return bool(way > STILL_M or np.rad2deg(turn) > STILL_DEG)
 
 
-FASTEST: Final = 0.99
-"""Share of the motions that the simulated person can ask for without pushing beyond 1."""
+FASTEST: Final = 0.99  # share of the motions that the simulated person can ask for without pushing beyond 1
 
 
 @final

@@ -47,17 +47,10 @@ from latentarm.runs.options import EvaluateOptions
 from latentarm.runs.results_folder import refuse_other_results, write_json
 from latentarm.runs.samples import load_samples
 
-FOLDS: Final = 5
-"""Number of folds where there are few episodes."""
-
-OVER_FOLDS: Final = "over folds"
-"""Condition of the rows whose SD is over folds and not over seeds."""
-
-FOLD_STREAM: Final = 3
-"""Stream of the seed that chooses the folds."""
-
-DRAWN_STATES = 3
-"""States from which the effect of each latent axis is drawn."""
+FOLDS: Final = 5  # number of folds where there are few episodes
+OVER_FOLDS: Final = "over folds"  # condition of the rows whose SD is over folds and not over seeds
+FOLD_STREAM: Final = 3  # stream of the seed that chooses the folds
+DRAWN_STATES = 3  # states from which the effect of each latent axis is drawn
 
 
 @dataclass(frozen=True)

@@ -30,11 +30,8 @@ from latentarm.robots.model_copy import COPIES, load_copy
 from latentarm.robots.robot import Robot
 from latentarm.tasks.catalogue import HELD_OUT, SCENE_TASKS, TASKS
 
-ROBOT: Final = "robot"
-"""Folder of a run that holds the copy of its robot's model."""
-
-_LARGEST_WEIGHTS: Final = 1 << 30
-"""Bytes."""
+ROBOT: Final = "robot"  # folder of a run that holds the copy of its robot's model
+_LARGEST_WEIGHTS: Final = 1 << 30  # bytes
 
 
 @dataclass(frozen=True, eq=False)

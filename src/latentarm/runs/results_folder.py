@@ -14,14 +14,12 @@ from latentarm.core.files import write_text
 from latentarm.core.untrusted.documents import read_object
 from latentarm.runs.folder import git_commit
 
-CONFIG: Final = "config.json"
-"""The options; written first, and used to recognise a study's folders."""
+CONFIG: Final = "config.json"  # the options; written first, and used to recognise a study's folders
 
 PACKAGES: Final = ("latentarm", "numpy", "scikit-learn", "scipy", "statsmodels", "torch")
 """Packages on whose versions the figures may depend."""
 
-SHORT: Final = 40
-"""Characters of a value in a sentence, at most."""
+SHORT: Final = 40  # characters of a value in a sentence, at most
 
 
 @dataclass(frozen=True)

@@ -26,8 +26,7 @@ SAMPLES_NAME: Final = "samples.safetensors"
 ALIGN_STREAM: Final = 3
 """Stream of a seed that draws the motions that a person is asked about."""
 
-MOST_ROWS: Final = 100_000
-"""Most rows of an array; a run of ours keeps some thousands."""
+MOST_ROWS: Final = 100_000  # most rows of an array; a run of ours keeps some thousands
 
 _WIDTHS: Final = {
     "unlabelled": "context",  # runs of earlier versions have it

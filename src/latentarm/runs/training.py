@@ -41,11 +41,8 @@ CHECKPOINT: Final = "training.safetensors"
 JOINED: Final = "demonstrations"
 """Folder of a run with the datasets that it was trained on, where there were several."""
 
-MOST_NUMBERS = 200_000
-"""Most numbers in the routes of a run's ``config.json``."""
-
-HOLD_OUT_STREAM = 1
-"""Stream of the seed that chooses the held-out episodes."""
+MOST_NUMBERS = 200_000  # most numbers in the routes of a run's ``config.json``
+HOLD_OUT_STREAM = 1  # stream of the seed that chooses the held-out episodes
 
 
 @dataclass(frozen=True)

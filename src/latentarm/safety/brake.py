@@ -9,8 +9,7 @@ from ruckig import ControlInterface, InputParameter, Result, Ruckig, Trajectory
 from latentarm.core.types import FloatArray
 from latentarm.safety.small import any_nonzero, largest
 
-AT_REST_S = 1e-9
-"""A brake shorter than this is, in float64, indistinguishable from standing still."""
+AT_REST_S = 1e-9  # a brake shorter than this is, in float64, indistinguishable from standing still
 
 
 @final

@@ -14,8 +14,7 @@ from latentarm.safety.proximity import Contacts, Proximity
 from latentarm.safety.small import any_nonzero, largest, smallest
 from latentarm.safety.zone_distances import ZoneDistances
 
-_DRIFT_RAD = 0.05
-"""A placement computed farther away than this is not reused."""
+_DRIFT_RAD = 0.05  # a placement computed farther away than this is not reused
 
 
 @final

@@ -12,8 +12,7 @@ OPENS_AFTER_S: Final = 1.0
 
 _ASKS: Final = (None, *get_args(GripperAsk))
 
-_ASTRAY: Final = 0.01
-"""A reading this far outside the gripper's range is wrong, m."""
+_ASTRAY: Final = 0.01  # a reading this far outside the gripper's range is wrong, m
 
 
 @final

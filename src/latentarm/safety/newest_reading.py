@@ -5,8 +5,7 @@ from typing import final
 
 from latentarm.core.types import Reading, Stop
 
-_ROUNDING_S = 1e-9
-"""Times that differ by less are the same, s."""
+_ROUNDING_S = 1e-9  # times that differ by less are the same, s
 
 
 @final

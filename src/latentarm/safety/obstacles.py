@@ -10,8 +10,7 @@ from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray
 from latentarm.robots.kinematics.obstacles import Box, Capsule, HalfSpace, Obstacle, Sphere
 
-_FAR_M = 100.0
-"""Coordinates beyond this are a mistake in units, not an obstacle."""
+_FAR_M = 100.0  # coordinates beyond this are a mistake in units, not an obstacle
 
 
 def table(height: float) -> HalfSpace:

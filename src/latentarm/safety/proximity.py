@@ -14,11 +14,8 @@ from latentarm.safety.small import any_nonzero, largest
 _CROSSING_M = 1e-9
 """Segments closer than this intersect, so the line between their closest points has no direction."""
 
-_STALE_RAD = 0.02
-"""Contacts older than this are measured again, because their planes have tilted."""
-
-_STILL_M = 1e-9
-"""A capsule whose points no joint moves further than this per rad cannot approach anything."""
+_STALE_RAD = 0.02  # contacts older than this are measured again, because their planes have tilted
+_STILL_M = 1e-9  # a capsule whose points no joint moves further than this per rad cannot approach anything
 
 
 @final

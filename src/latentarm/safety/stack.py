@@ -26,8 +26,7 @@ from latentarm.safety.ramp import Ramp
 from latentarm.safety.small import any_nonzero, largest, smallest
 from latentarm.safety.zone_speed import ZoneSpeed
 
-_SAME_RAD_S = 1e-9
-"""Velocities closer than this differ by rounding only."""
+_SAME_RAD_S = 1e-9  # velocities closer than this differ by rounding only
 
 
 @final

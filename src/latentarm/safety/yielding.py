@@ -11,11 +11,8 @@ from latentarm.safety.body import Body
 from latentarm.safety.bounds import Bounds
 from latentarm.safety.small import largest
 
-YIELDING: Final = "yielding"
-"""Stands among the limits of each command that draws back."""
-
-FARTHEST_M: Final = 0.03
-"""Once a point of the arm has gone back this far, the arm slows down and rests."""
+YIELDING: Final = "yielding"  # stands among the limits of each command that draws back
+FARTHEST_M: Final = 0.03  # once a point of the arm has gone back this far, the arm slows down and rests
 
 LONGEST_S: Final = 1.0
 """No command draws back for longer than this, s; the last one is ramped down as any other."""
@@ -23,8 +20,7 @@ LONGEST_S: Final = 1.0
 PACE: Final = 0.5
 """Commands are taken back at this share of their speed, and joints go to where they are at this share."""
 
-LOOK_S: Final = 0.5
-"""An arm that does not stand still so long after its stop does not draw back, s."""
+LOOK_S: Final = 0.5  # an arm that does not stand still so long after its stop does not draw back, s
 
 _STILL_RAD: Final = 2e-3
 _REMEMBERED_S: Final = LOOK_S + 1.0

@@ -11,8 +11,7 @@ from latentarm.safety.filter import HEADROOM, SafetyFilter, Situation
 from latentarm.safety.small import any_nonzero, smallest
 from latentarm.safety.zones import zone_filter_name
 
-_NOTHING = 1e-300
-"""Keeps a divisor from zero where a part stands still."""
+_NOTHING = 1e-300  # keeps a divisor from zero where a part stands still
 
 
 @final

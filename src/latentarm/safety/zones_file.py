@@ -36,8 +36,7 @@ from latentarm.safety.config import SafetyConfig
 from latentarm.safety.obstacles import checked_obstacle
 from latentarm.safety.zones import MOST_ZONES, Zone, check_name, checked_zones
 
-MOST_BYTES: Final = 100_000
-"""A longer file is refused: a zone takes some 200 bytes."""
+MOST_BYTES: Final = 100_000  # a longer file is refused: a zone takes some 200 bytes
 
 _SLOW: Final = "zones"
 _KEEP_OUT: Final = "keep_out"

@@ -13,11 +13,8 @@ from latentarm.testing.fault_trials import FAULTS, Fault, try_fault
 
 DT_S = 0.02
 
-ZERO_COMMAND_S = 0.15
-"""From a fault to a command of zero, s."""
-
-REST_S = 0.4
-"""From a fault until the arm stands still, s."""
+ZERO_COMMAND_S = 0.15  # from a fault to a command of zero, s
+REST_S = 0.4  # from a fault until the arm stands still, s
 
 
 class ArmContract(ArmLaws):

@@ -40,11 +40,8 @@ FAULTS: Final[dict[Fault, str]] = {
 
 PERIOD_S: Final = 0.01
 
-_STOPPED_S: Final = 0.6
-"""From the fault until it is repaired, s."""
-
-_WAITING_S: Final = 0.3
-"""From then on the stick is still pushed, without anybody having enabled the arm, s."""
+_STOPPED_S: Final = 0.6  # from the fault until it is repaired, s
+_WAITING_S: Final = 0.3  # from then on the stick is still pushed, without anybody having enabled the arm, s
 
 _TOO_LATE_S: Final = 0.06
 

@@ -43,8 +43,7 @@ CONTEXTS: Final[Mapping[tuple[str, ...], int]] = {
 SMALL: Final[dict[str, Any]] = {"seeds": 2, "epochs": 2, "hidden": (8, 8), "window": 2}
 """Parameters of a training that takes a second or less."""
 
-FEW: Final = 16
-"""Samples of a motion where it does not matter how well the model learns."""
+FEW: Final = 16  # samples of a motion where it does not matter how well the model learns
 
 
 def ring(rng: np.random.Generator, samples: int = 80, rate_hz: float = 20.0) -> Episode:

@@ -12,11 +12,8 @@ from latentarm.core.types import Command, FloatArray, GripperCommand
 from latentarm.robots.robot import Robot
 from latentarm.testing.arm_laws import ArmLaws
 
-HOLD_S = 0.05
-"""How long a command of these tests lasts, as on the page, s."""
-
-RATE_HZ = 100.0
-"""How often they send one, if the arm takes so many."""
+HOLD_S = 0.05  # how long a command of these tests lasts, as on the page, s
+RATE_HZ = 100.0  # how often they send one, if the arm takes so many
 
 
 class StandIn(ABC):

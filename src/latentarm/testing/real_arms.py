@@ -19,8 +19,7 @@ from latentarm.testing.real_arm_rig import HOLD_S, StandIn
 
 __all__ = ["RealArmContract", "StandIn"]
 
-QUICK_S = 0.005
-"""A call that does not wait for the arm takes no longer than this, s."""
+QUICK_S = 0.005  # a call that does not wait for the arm takes no longer than this, s
 
 
 class RealArmContract(GuidingLaws):

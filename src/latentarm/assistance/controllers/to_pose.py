@@ -10,11 +10,8 @@ from latentarm.core.errors import UserError
 from latentarm.core.types import Context, FloatArray
 from latentarm.robots.robot import Robot
 
-JOINT_SPEED: Final = 0.35
-"""Of the fastest joint, rad/s."""
-
-TOOL_SPEED: Final = 0.15
-"""Of the tool, m/s: as fast as a full push of the stick along a straight line."""
+JOINT_SPEED: Final = 0.35  # of the fastest joint, rad/s
+TOOL_SPEED: Final = 0.15  # of the tool, m/s: as fast as a full push of the stick along a straight line
 
 _SLOWING: Final = 3.0
 """Near the pose, the speed of the farthest joint for each rad that it has still to go, 1/s."""

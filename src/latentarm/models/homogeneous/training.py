@@ -23,8 +23,7 @@ STRAIGHT_START: Final = 8.0
 """Size of the first guess of M_1(c), where what an untrained network adds is about 0.5: large enough that
 every seed starts with the same orientation everywhere, without a jump between M_1 and -M_1."""
 
-BEND_START: Final = 4.0
-"""The same of the bends."""
+BEND_START: Final = 4.0  # the same of the bends
 
 
 def principal_start(data: TrainingData, dimensions: Dimensions) -> dict[str, FloatArray]:

@@ -12,21 +12,15 @@ from latentarm.models.tool_contexts import PLACE, TWIST
 
 DAMPING_M2: Final = 1e-2
 
-BEND_SIZE: Final = 0.3
-"""Factor of the network's bend, so that it starts small."""
-
-RADII: Final = 10
-"""Values of ‖z‖ that the encoder tries before it refines the best."""
-
-REFINEMENTS: Final = 3
-"""Rounds of refinement, each six times finer than the one before."""
+BEND_SIZE: Final = 0.3  # factor of the network's bend, so that it starts small
+RADII: Final = 10  # values of ‖z‖ that the encoder tries before it refines the best
+REFINEMENTS: Final = 3  # rounds of refinement, each six times finer than the one before
 
 LEAST_RADIUS: Final = 1e-4
 MOST_RADIUS: Final = 1.5
 """The encoder's smallest and largest ‖z‖; the fastest hundredth of the demonstrations lies beyond 1."""
 
-CELLS: Final = 8
-"""Cells that the length of an input is cut into for the enclosure."""
+CELLS: Final = 8  # cells that the length of an input is cut into for the enclosure
 
 
 @final

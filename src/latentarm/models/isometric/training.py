@@ -32,8 +32,7 @@ STRAIGHT_START: Final = 2.0
 seed starts with the same orientation everywhere. M and -M reconstruct equally well, and a network that chose
 between them at random in different places would keep a jump between the two that training cannot remove."""
 
-SATURATION_START: Final = 1.0
-"""First guess of kappa, before softplus."""
+SATURATION_START: Final = 1.0  # first guess of kappa, before softplus
 
 
 def principal_start(data: TrainingData, dimensions: Dimensions) -> dict[str, FloatArray]:
