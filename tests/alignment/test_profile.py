@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from safetensors.numpy import save
 
+from latentarm.alignment.demonstrated_directions import DemonstratedDirections
 from latentarm.alignment.meaning import Meaning
 from latentarm.alignment.poses import pose_vectors
 from latentarm.alignment.profile import (
@@ -25,7 +26,6 @@ from latentarm.alignment.profile import (
     save_profile,
     trial_folder,
 )
-from latentarm.alignment.surroundings import Surroundings
 from latentarm.alignment.tool_space import ToolSpace
 from latentarm.assistance.controllers.latent import LatentController
 from latentarm.core.errors import UserError
@@ -45,7 +45,7 @@ def known(arm, answered) -> ToolSpace:
     place = pose_vectors(arm.chain, answers.motions.start)
     rng = np.random.default_rng(0)
     meaning = Meaning(rng.normal(size=(2, 6)), place, rng.normal(size=len(place)), 0.7)
-    return ToolSpace(meaning, Surroundings.of_motions(many, arm.chain, 2), 0.5)
+    return ToolSpace(meaning, DemonstratedDirections.of_motions(many, arm.chain, 2), 0.5)
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ import pytest
 
 from latentarm.alignment.answers import Motions
 from latentarm.alignment.demonstrated import demonstrated_motions, noticeable
-from latentarm.alignment.queries import Design, StoppingRule, next_motion
+from latentarm.alignment.queries import QuestionDesign, StoppingRule, next_motion
 from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations, Episode
 
@@ -15,7 +15,7 @@ from latentarm.core.types import Demonstrations, Episode
 def test_what_was_asked_or_its_opposite_teaches_little_and_another_direction_much(slides):
     """Slides: poses are states."""
     way = np.array([[0.1, 0, 0], [0.1, 0, 0], [-0.1, 0, 0], [0, 0.09, 0]])
-    design = Design(slides.chain, Motions(np.zeros((4, 3)), way, 0.5))
+    design = QuestionDesign(slides.chain, Motions(np.zeros((4, 3)), way, 0.5))
     first = design.worth([])
     np.testing.assert_allclose(first[:3], first[0])
     assert next_motion(first, []) == 0  # it tells of three motions
@@ -27,7 +27,7 @@ def test_what_was_asked_or_its_opposite_teaches_little_and_another_direction_muc
 
 def test_the_same_direction_in_another_place_teaches_more_than_in_the_same(slides):
     start = np.array([[0.0, 0, 0], [0.01, 0, 0], [0.8, 0, 0]])
-    worth = Design(slides.chain, Motions(start, start + np.array([0, 0.1, 0]), 0.5)).worth([0])
+    worth = QuestionDesign(slides.chain, Motions(start, start + np.array([0, 0.1, 0]), 0.5)).worth([0])
     assert worth[2] > 1.5 * worth[1]
 
 

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from latentarm.alignment.answers import Answers, Motions
+from latentarm.alignment.demonstrated_directions import DemonstratedDirections
 from latentarm.alignment.error import relative_alignment_error
 from latentarm.alignment.meaning import Meaning, rotations
 from latentarm.alignment.posterior import fit_meaning
-from latentarm.alignment.surroundings import Surroundings
 from latentarm.alignment.tool_space import ToolSpace
 from latentarm.core.errors import UserError
 
@@ -33,7 +33,7 @@ def plane(columns):
 
 @pytest.fixture(scope="module")
 def surroundings(motions, slides):
-    return Surroundings.of_motions(motions, slides.chain, 2)
+    return DemonstratedDirections.of_motions(motions, slides.chain, 2)
 
 
 def said(motions, plane, turn, noise=0.0, seed=0):
@@ -134,7 +134,7 @@ def test_z_is_bounded_however_much_is_meant(linear_model, slides, motions, known
 
 def test_a_small_change_of_place_or_input_changes_z_a_little(curved_model, arm, answered):
     many = answered(4, count=60, seed=1).motions
-    surroundings = Surroundings.of_motions(many, arm.chain, 2)
+    surroundings = DemonstratedDirections.of_motions(many, arm.chain, 2)
     matrix = np.random.default_rng(0).normal(size=(2, 6))
     known = ToolSpace(Meaning(matrix, np.zeros((1, 12)), np.zeros(1), 1.0), surroundings, 0.5)
     alignment = known.with_arm(curved_model.decoder(), arm.chain)

@@ -14,7 +14,7 @@ from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations, Episode
 from latentarm.models.autoencoders.training import CAE
 from latentarm.models.pca.training import PCA
-from latentarm.models.term import Situation
+from latentarm.models.term import TermContexts
 from latentarm.robots.kinematics.torch_chain import TorchChain
 from latentarm.robots.planar import planar
 
@@ -57,7 +57,7 @@ def test_a_uniform_choice_has_the_highest_entropy_and_none_has_none():
 
 
 def situation(action_of):
-    return Situation(torch.zeros(1, 1, 2, dtype=torch.float64), action_of, 0.5, 1)
+    return TermContexts(torch.zeros(1, 1, 2, dtype=torch.float64), action_of, 0.5, 1)
 
 
 def along(speed_there, speed_back):

@@ -3,14 +3,14 @@
 import pytest
 
 from latentarm.commands import catalogue
-from latentarm.commands.catalogue import OWN, CommandSet, Entry, all_commands
+from latentarm.commands.catalogue import OWN, CommandEntry, CommandSet, all_commands
 from latentarm.core.plugins import PluginWarning
 
-THEIRS = Entry("theirs:run", "Theirs.")
+THEIRS = CommandEntry("theirs:run", "Theirs.")
 
 
 class Registered:
-    def __init__(self, commands: dict[str, Entry], groups: dict[str, str]) -> None:
+    def __init__(self, commands: dict[str, CommandEntry], groups: dict[str, str]) -> None:
         self.added = CommandSet(commands, groups)
 
     def usable(self) -> dict[str, CommandSet]:

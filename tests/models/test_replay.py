@@ -8,7 +8,7 @@ import torch
 
 from latentarm.models.batches import TrainingData
 from latentarm.models.networks import mlp
-from latentarm.models.replay import Replay, UnreplayableError
+from latentarm.models.replay import RecordedStep, UnreplayableError
 from latentarm.models.training import TrainingConfig, train
 
 CPU = torch.device("cpu")
@@ -16,7 +16,7 @@ CPU = torch.device("cpu")
 
 def replayed(compute, inputs, result):
     """The result of a replay after the inputs have changed, and what it should be."""
-    replay = Replay(compute, inputs, CPU)
+    replay = RecordedStep(compute, inputs, CPU)
     for tensor in inputs:
         tensor.data.uniform_(-1, 1, generator=torch.Generator().manual_seed(1))
     result.zero_()
@@ -79,7 +79,7 @@ def test_memory_is_used_again_only_where_nothing_reads_it_any_more():
 def test_what_depends_on_values_is_refused(depends):
     x = torch.rand(4)
     with pytest.raises(UnreplayableError, match="depends on values"):
-        Replay(lambda: depends(x), [x], CPU)
+        RecordedStep(lambda: depends(x), [x], CPU)
 
 
 def test_an_objective_that_depends_on_more_than_its_arguments_is_not_replayed():

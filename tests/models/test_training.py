@@ -21,7 +21,7 @@ from latentarm.models.batches import seed_generator
 from latentarm.models.checkpoint import TrainingState
 from latentarm.models.estimators import MODELS
 from latentarm.models.optimiser import FlatAdam
-from latentarm.models.replay import Replay
+from latentarm.models.replay import RecordedStep
 from latentarm.models.training import epoch_bar
 
 NEURAL = [name for name in MODELS if name != "pca"]
@@ -37,7 +37,9 @@ def test_a_seeds_result_depends_neither_on_the_seeds_beside_it_nor_on_replays(
     alone = MODELS[name](seeds=1, seed=13, **SMALL).fit(few)
     replayed = []
     monkeypatch.setattr(training, "REPLAYED_STEPS", 0)
-    monkeypatch.setattr(Replay, "__call__", lambda self: (replayed.append(self), Replay.run(self)))
+    monkeypatch.setattr(
+        RecordedStep, "__call__", lambda self: (replayed.append(self), RecordedStep.run(self))
+    )
     together = MODELS[name](seeds=5, seed=10, **SMALL).fit(few)
     assert len(replayed) > 1, "no step was replayed"
     np.testing.assert_allclose(alone.decode(z, context)[0], together.decode(z, context)[3], rtol=0, atol=1e-9)

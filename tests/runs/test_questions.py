@@ -7,14 +7,14 @@ from latentarm.alignment.demonstrated import shown
 from latentarm.alignment.queries import StoppingRule
 from latentarm.core.errors import UserError
 from latentarm.models.pca.training import PCA
-from latentarm.runs.person import Person
-from latentarm.runs.questions import Scene, ask
+from latentarm.runs.person import Respondent
+from latentarm.runs.questions import AlignmentProblem, ask
 from latentarm.tasks.table_top import TableTop
 
 NEVER = StoppingRule(share=0.0, patience=100)
 
 
-class Scripted(Person):
+class Scripted(Respondent):
     """Says one thing after the other, and remembers what it was asked."""
 
     def __init__(self, *replies):
@@ -36,7 +36,7 @@ def scene():
     demonstrations = task.demonstrate(4, np.random.default_rng(0))
     chain, rng = task.robot.chain, np.random.default_rng(1)
     motions = shown(demonstrations, "state", chain, rng)
-    return Scene(PCA(latent_dim=2).fit(demonstrations).decoder(), chain, motions)
+    return AlignmentProblem(PCA(latent_dim=2).fit(demonstrations).decoder(), chain, motions)
 
 
 def asked(scene, *replies, count=2):

@@ -17,10 +17,10 @@ from latentarm.safety.config import SafetyConfig, Workspace
 from latentarm.safety.filter import (
     Finite,
     Freshness,
+    GuardedArm,
     JointVelocity,
     LinkSpeed,
     Situation,
-    Surroundings,
 )
 from latentarm.safety.halfspaces import slide
 from latentarm.safety.obstacles import table
@@ -40,13 +40,13 @@ def surroundings(arm):
         obstacles=(table(0.0), Sphere("ball", np.array([0.5, 0.2, 0.4]), 0.1)),
         workspace=Workspace(np.array([-0.6, -0.6, 0.0]), np.array([0.6, 0.6, 0.9])),
     )
-    return Surroundings(Bounds(config, arm, 0.01), Body(arm))
+    return GuardedArm(Bounds(config, arm, 0.01), Body(arm))
 
 
 @pytest.fixture(scope="module")
 def alone(arm):
     arm = replace(arm, self_pairs=arm.self_pairs[:0])
-    return Surroundings(Bounds(SafetyConfig(), arm, 0.01), Body(arm))
+    return GuardedArm(Bounds(SafetyConfig(), arm, 0.01), Body(arm))
 
 
 def situation(surroundings, seed=0, age=0.0, state=None):

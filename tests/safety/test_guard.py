@@ -11,8 +11,8 @@ from latentarm.robots.kinematics.obstacles import Box, Capsule, HalfSpace, Spher
 from latentarm.safety.body import Body, Placement
 from latentarm.safety.bounds import Bounds
 from latentarm.safety.config import SafetyConfig, Workspace
-from latentarm.safety.filter import Situation, Surroundings
-from latentarm.safety.guard import Guard, Path
+from latentarm.safety.filter import GuardedArm, Situation
+from latentarm.safety.guard import Guard, StoppingPath
 
 
 def beside(robot, q, rng, oracle):
@@ -84,7 +84,7 @@ def test_what_passes_is_safe_all_the_way(arm, two_arms, gantry, oracle, seed, na
     link_speed = rng.choice([0.25, 0.02])
     config = SafetyConfig(obstacles=obstacles, workspace=workspace, link_speed=link_speed)
     bounds = Bounds(config, robot, 0.01)
-    surroundings = Surroundings(bounds, Body(robot))
+    surroundings = GuardedArm(bounds, Body(robot))
     measure = oracle(robot, obstacles)
     before = measure.distances(q)
     passed = 0
@@ -149,7 +149,7 @@ def test_an_old_placement_never_makes_the_links_look_slower(request, name):
         earlier = Placement(body, q + drift)
         true = Placement(body, q).speeds(velocity).max()
         looked_slower += earlier.speeds(velocity).max() < 0.995 * true
-        path = Path(velocity, bounds.brake(velocity, rest), bounds.hold_s)
+        path = StoppingPath(velocity, bounds.brake(velocity, rest), bounds.hold_s)
         assert Guard._exceeds(velocity, path, earlier, np.abs(drift), 0.999 * true)
     assert looked_slower > 10
 
@@ -167,7 +167,7 @@ def test_links_that_speed_up_while_a_command_lasts_are_foreseen(request, name):
         here = Placement(body, q)
         later = Placement(body, q + bounds.hold_s * velocity).speeds(velocity).max()
         sped_up += later > 1.002 * here.speeds(velocity).max()
-        path = Path(velocity, bounds.brake(velocity, rest), bounds.hold_s)
+        path = StoppingPath(velocity, bounds.brake(velocity, rest), bounds.hold_s)
         assert Guard._exceeds(velocity, path, here, rest, 0.999 * later)
     assert sped_up > 10
 
@@ -193,7 +193,7 @@ def test_no_joint_goes_further_than_it_is_given_room_for(arm, seed, share):
     bounds = Bounds(SafetyConfig(), arm, 0.01)
     velocity = rng.uniform(-0.5, 0.5, 7) * rng.choice([0.001, 0.1, 1.0])
     brake = bounds.brake(velocity, share * rng.uniform(-1.0, 1.0, 7) * bounds.acceleration)
-    path = Path(velocity, brake, bounds.hold_s)
+    path = StoppingPath(velocity, brake, bounds.hold_s)
     times = np.concatenate(
         [
             np.linspace(0.0, brake.settle_s, 200, endpoint=False),
@@ -215,7 +215,7 @@ def test_no_joint_goes_further_than_it_is_given_room_for(arm, seed, share):
 
 def test_rest_is_always_allowed(arm):
     bounds = Bounds(SafetyConfig(), arm, 0.01)
-    surroundings = Surroundings(bounds, Body(arm))
+    surroundings = GuardedArm(bounds, Body(arm))
     rest = np.zeros(7)
     for q in (arm.home, arm.limits.upper + 1.0, np.full(7, 100.0)):
         assert (
@@ -225,7 +225,7 @@ def test_rest_is_always_allowed(arm):
 
 def test_what_goes_too_far_or_too_fast_is_named(arm):
     plane = HalfSpace("plane", point=np.array([0, 0, 0.1]), normal=np.array([0.0, 0.0, 1.0]))
-    surroundings = Surroundings(Bounds(SafetyConfig(obstacles=(plane,)), arm, 0.01), Body(arm))
+    surroundings = GuardedArm(Bounds(SafetyConfig(obstacles=(plane,)), arm, 0.01), Body(arm))
 
     def objection(q, velocity):
         rest = np.zeros(7)
@@ -255,7 +255,7 @@ def test_the_path_ends_where_the_command_and_its_brake_lead(arm, seed, share):
     bounds = Bounds(SafetyConfig(), arm, 0.01)
     velocity = rng.uniform(-0.5, 0.5, 7)
     brake = bounds.brake(velocity, share * rng.uniform(-1.0, 1.0, 7) * bounds.acceleration)
-    path = Path(velocity, brake, bounds.hold_s)
+    path = StoppingPath(velocity, brake, bounds.hold_s)
     settling = np.linspace(0.0, brake.settle_s, 50)
     ramp = np.linspace(brake.settle_s, brake.duration_s, 300)
     covered = velocity * bounds.hold_s

@@ -11,7 +11,7 @@ from latentarm.robots.planar import planar
 from latentarm.safety.body import Body
 from latentarm.safety.bounds import BUFFER_M, BUFFER_RAD, Bounds
 from latentarm.safety.config import SafetyConfig, Workspace
-from latentarm.safety.filter import Situation, Surroundings
+from latentarm.safety.filter import GuardedArm, Situation
 from latentarm.safety.halfspaces import slide
 from latentarm.safety.stack import SafetyStack
 from latentarm.safety.zones import Zone
@@ -73,7 +73,7 @@ def corner(robot, rng):
 def near(config, robot, q):
     """Unit rows of all distances and joints that are too near their limits or just before them, (C, n)."""
     bounds = Bounds(config, robot, 0.01)
-    situation = Situation(Surroundings(bounds, Body(robot)), q, np.zeros(robot.dof), np.zeros(robot.dof))
+    situation = Situation(GuardedArm(bounds, Body(robot)), q, np.zeros(robot.dof), np.zeros(robot.dof))
     contacts = situation.contacts(np.full(robot.dof, 0.5))
     placement, eye = situation.placement, np.eye(robot.dof)
     rows = [eye, -eye, contacts.row.reshape(-1, robot.dof)]

@@ -17,7 +17,7 @@ from latentarm.alignment.preference import ToolAxes
 from latentarm.core.errors import UserError
 from latentarm.core.types import Pose
 from latentarm.robots.planar import planar
-from latentarm.runs.asking import CELLS, PersonAtTerminal, SimulatedPerson, describe, draw, moved
+from latentarm.runs.asking import CELLS, PersonAtTerminal, SimulatedRespondent, describe, draw, moved
 from latentarm.runs.person import Question
 from latentarm.runs.stick_line import parse, read_line
 
@@ -199,7 +199,7 @@ def test_someone_who_leaves_is_no_answer(question):
 def test_the_simulated_person_answers_by_the_axes_of_the_base(question, two_arms):
     preference = ToolAxes(two_arms.chain, 2, speed_m_s=0.5)
     heard = []
-    u = SimulatedPerson(preference, heard.append).answer(question)
+    u = SimulatedRespondent(preference, heard.append).answer(question)
     motion = question.motion
     moved = two_arms.chain.forward(motion.end[0]).position - two_arms.chain.forward(motion.start[0]).position
     np.testing.assert_allclose(u, np.clip(moved[:2] / (0.5 * 0.5), -1, 1))

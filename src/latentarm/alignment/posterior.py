@@ -19,9 +19,9 @@ import numpy as np
 from scipy.special import log_ndtr
 
 from latentarm.alignment.answers import Answers, Motions
+from latentarm.alignment.demonstrated_directions import DemonstratedDirections
 from latentarm.alignment.meaning import Meaning, rotations
 from latentarm.alignment.poses import pose_vectors
-from latentarm.alignment.surroundings import Surroundings
 from latentarm.alignment.twists import motion_twists
 from latentarm.core.types import BoolArray, FloatArray
 from latentarm.robots.kinematics.chain import Chain
@@ -76,7 +76,9 @@ class Posterior:
     """Unknown: RMS of the input's SD for motions that might be asked about, over RMS of the input."""
 
 
-def fit_meaning(answers: Answers, chain: Chain, surroundings: Surroundings, motions: Motions) -> Posterior:
+def fit_meaning(
+    answers: Answers, chain: Chain, surroundings: DemonstratedDirections, motions: Motions
+) -> Posterior:
     """Learn a person's meaning; its uncertainty is judged on the motions that might be asked about."""
     every = settings(answers.u.shape[1])
     fits = _Fits(answers, chain, surroundings, every, *_starts(answers, chain, surroundings, every))
@@ -95,7 +97,7 @@ def fit_meaning(answers: Answers, chain: Chain, surroundings: Surroundings, moti
 
 
 def _starts(
-    answers: Answers, chain: Chain, surroundings: Surroundings, every: Sequence[Setting]
+    answers: Answers, chain: Chain, surroundings: DemonstratedDirections, every: Sequence[Setting]
 ) -> list[FloatArray]:
     """The first fit by least squares, shrunk a little, and one with a direction of it mirrored.
 
@@ -121,7 +123,7 @@ class _Fits:
         self,
         answers: Answers,
         chain: Chain,
-        surroundings: Surroundings,
+        surroundings: DemonstratedDirections,
         settings: Sequence[Setting],
         *starts: FloatArray,
     ) -> None:

@@ -16,10 +16,10 @@ import numpy as np
 from safetensors.numpy import save
 
 from latentarm.alignment.contract import Alignment
+from latentarm.alignment.demonstrated_directions import DemonstratedDirections
 from latentarm.alignment.meaning import Meaning
 from latentarm.alignment.poses import POSE_SIZE
 from latentarm.alignment.runtime import LearnedAlignment, tensor_shapes
-from latentarm.alignment.surroundings import Surroundings
 from latentarm.alignment.tool_space import ToolSpace
 from latentarm.core.errors import UserError
 from latentarm.core.files import sync_folder, write_text, written_whole
@@ -269,6 +269,6 @@ def _tool_space(tensors: Mapping[str, FloatArray]) -> ToolSpace:
     length_m, width_m, fast_m_s, duration_s = map(float, tensors[SCALES])
     return ToolSpace(
         Meaning(tensors["meaning"], tensors["answers.place"], tensors["answers.turn"], length_m),
-        Surroundings(tensors["regions.place"], tensors["regions.outside"], width_m, fast_m_s),
+        DemonstratedDirections(tensors["regions.place"], tensors["regions.outside"], width_m, fast_m_s),
         duration_s,
     )

@@ -26,7 +26,7 @@ VARIATION: Final = 0.1  # coefficient of variation of the answers, when question
 
 
 @final
-class Design:
+class QuestionDesign:
     """The value of an answer about each of N motions."""
 
     def __init__(self, chain: Chain, motions: Motions) -> None:
@@ -87,7 +87,7 @@ class StoppingRule:
 
 def order_of_questions(chain: Chain, motions: Motions, most: int) -> list[int]:
     """Rows of at most ``most`` motions in the order of asking; no answer changes it."""
-    design, asked = Design(chain, motions), list[int]()
+    design, asked = QuestionDesign(chain, motions), list[int]()
     while len(asked) < most:
         asked.append(next_motion(design.worth(asked), asked))
     return asked

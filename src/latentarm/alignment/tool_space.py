@@ -5,9 +5,9 @@ from typing import Final, final
 
 import numpy as np
 
+from latentarm.alignment.demonstrated_directions import DemonstratedDirections
 from latentarm.alignment.meaning import Meaning
 from latentarm.alignment.poses import pose_vectors_at
-from latentarm.alignment.surroundings import Surroundings
 from latentarm.alignment.twists import tool_jacobian
 from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray
@@ -37,7 +37,7 @@ class ToolSpace:
     """A person's meaning, without the decoder and the arm that it is used with."""
 
     meaning: Meaning
-    surroundings: Surroundings  # of the demonstrations that the person was asked about
+    surroundings: DemonstratedDirections  # of the demonstrations that the person was asked about
     duration_s: float  # of the motions that they were asked about, s
 
     def with_arm(self, decoder: Decoder, chain: Chain) -> "ToolSpaceAlignment":
@@ -56,10 +56,10 @@ class ToolSpaceAlignment:
     """``z = argmin ‖Q(c) J phi(z, c) - u‖^2 + ‖N(c) J phi(z, c)‖^2 + r ‖z‖^2``.
 
     The first term is the person's meaning (`Meaning`), the second keeps to the demonstrated directions in the
-    place (`Surroundings`, N in full pushes), and J is the Jacobian of the tools half way through a motion as
-    long as those that were asked about. The minimum is sought on two paths of a fixed number of damped
-    Gauss-Newton steps from z = 0, so the time is bounded, nothing is remembered between calls, and z is
-    bounded.
+    place (`DemonstratedDirections`, N in full pushes), and J is the Jacobian of the tools half way through a
+    motion as long as those that were asked about. The minimum is sought on two paths of a fixed number of
+    damped Gauss-Newton steps from z = 0, so the time is bounded, nothing is remembered between calls, and z
+    is bounded.
     """
 
     def __init__(self, known: ToolSpace, decoder: Decoder, chain: Chain) -> None:

@@ -12,7 +12,7 @@ from torch import Tensor
 
 from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray
-from latentarm.models.term import LossTerm, Situation
+from latentarm.models.term import LossTerm, TermContexts
 from latentarm.robots.kinematics.chain import Chain
 from latentarm.robots.kinematics.torch_chain import TorchChain
 
@@ -132,7 +132,7 @@ class GoalEntropy(LossTerm):
             state = share * state + (1 - share) * other[:, :joints]
         return np.concatenate([state, belief], axis=1)
 
-    def __call__(self, situation: Situation) -> Tensor:
+    def __call__(self, situation: TermContexts) -> Tensor:
         """``lambda_2`` times the negative entropy, mean over contexts: (S,)."""
         state = situation.state
         goals = torch.as_tensor(self.goals, dtype=state.dtype, device=state.device)

@@ -13,14 +13,14 @@ from latentarm.alignment.queries import StoppingRule
 from latentarm.commands.configuration import write_options
 from latentarm.commands.output import say, show
 from latentarm.core.types import Row
-from latentarm.runs.asking import FASTEST, PersonAtTerminal, SimulatedPerson
+from latentarm.runs.asking import FASTEST, PersonAtTerminal, SimulatedRespondent
 from latentarm.runs.checks import check_count, check_seed
 from latentarm.runs.options import Json, MovedDataset, Seed
-from latentarm.runs.person import Person, Say
+from latentarm.runs.person import Respondent, Say
 from latentarm.runs.stick_line import read_line
 
 if TYPE_CHECKING:
-    from latentarm.runs.questions import Scene
+    from latentarm.runs.questions import AlignmentProblem
 
 
 @dataclass(frozen=True)
@@ -68,7 +68,7 @@ def align_run(config: AlignOptions, say: Say) -> list[Row]:
     return learned.rows
 
 
-def _person(config: AlignOptions, scene: "Scene", say: Say) -> Person:
+def _person(config: AlignOptions, scene: "AlignmentProblem", say: Say) -> Respondent:
     """The person to ask."""
     if not config.simulated:
         return PersonAtTerminal(say, read_line)
@@ -78,7 +78,7 @@ def _person(config: AlignOptions, scene: "Scene", say: Say) -> Person:
     preference = ToolAxes(chain, axes, speed)
     meant = ", ".join(f"axis {axis + 1} is {name}" for axis, name in enumerate(AXES[:axes]))
     say(f"A simulated person answers, for whom {meant} of the tool; a full push is {speed:.2f} m/s.")
-    return SimulatedPerson(preference, say)
+    return SimulatedRespondent(preference, say)
 
 
 def align(options: AlignOptions) -> int:

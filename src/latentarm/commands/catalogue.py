@@ -16,7 +16,7 @@ from latentarm.core.plugins import Catalogue, PluginWarning
 
 @final
 @dataclass(frozen=True)
-class Entry:
+class CommandEntry:
     """A command as the command line lists it."""
 
     place: str  # its function, as ``package.module:function``
@@ -32,12 +32,12 @@ class Entry:
 class CommandSet:
     """Commands of one distribution."""
 
-    commands: Mapping[str, Entry]  # by the words that run each, in the order of the help
+    commands: Mapping[str, CommandEntry]  # by the words that run each, in the order of the help
     groups: Mapping[str, str]  # words that have commands under them, and their help
 
 
-def _ours(module: str, summary: str) -> Entry:
-    return Entry(f"latentarm.commands.{module}", summary)
+def _ours(module: str, summary: str) -> CommandEntry:
+    return CommandEntry(f"latentarm.commands.{module}", summary)
 
 
 OWN: Final = CommandSet(

@@ -19,14 +19,14 @@ from latentarm.demonstrations.folders import check_vacant
 from latentarm.runs.options import Json
 
 if TYPE_CHECKING:
-    from latentarm.control.recordings import Recording
+    from latentarm.control.recordings import NumberedEpisode
 
 UNKNOWN = "–"
 
 
 def choose(
-    recordings: "Sequence[Recording]", ranges: Sequence[str], source: Path, *, incomplete: bool
-) -> "list[Recording]":
+    recordings: "Sequence[NumberedEpisode]", ranges: Sequence[str], source: Path, *, incomplete: bool
+) -> "list[NumberedEpisode]":
     """The episodes of some numbers; all complete ones without ranges such as ``3`` and ``5-8``.
 
     Raises UserError where a range is invalid, an episode does not exist, or it was cut short and
@@ -44,7 +44,7 @@ def choose(
     return chosen
 
 
-def describe(recordings: "Sequence[Recording]") -> list[dict[str, object]]:
+def describe(recordings: "Sequence[NumberedEpisode]") -> list[dict[str, object]]:
     """The list as plain data; unknown values are None."""
     described: list[dict[str, object]] = []
     for recording in recordings:
@@ -72,7 +72,7 @@ def describe(recordings: "Sequence[Recording]") -> list[dict[str, object]]:
     return described
 
 
-def listing(recordings: "Sequence[Recording]") -> Table:
+def listing(recordings: "Sequence[NumberedEpisode]") -> Table:
     """The list as a table for the terminal."""
     several = len({recording.journal for recording in recordings}) > 1
     about = ("episode", "task", "started (UTC)", "s", "complete", "person", "run", "profile", "mode")

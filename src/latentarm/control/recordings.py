@@ -15,7 +15,7 @@ JOURNAL_SUFFIX: Final = ".sqlite"
 
 @final
 @dataclass(frozen=True)
-class Recording:
+class NumberedEpisode:
     """One recorded episode among all those of a folder."""
 
     number: int  # counted from one over all journals, the oldest journal first
@@ -37,17 +37,21 @@ def journals_in(path: Path) -> list[Path]:
     return found
 
 
-def list_recordings(path: Path) -> list[Recording]:
+def list_recordings(path: Path) -> list[NumberedEpisode]:
     """All episodes of a journal, or of the journals in a folder.
 
     Raises:
         UserError: there is no journal, or one is damaged.
     """
     entries = [(journal, entry) for journal in journals_in(path) for entry in list_journal(journal)]
-    return [Recording(number, journal, entry) for number, (journal, entry) in enumerate(entries, start=1)]
+    return [
+        NumberedEpisode(number, journal, entry) for number, (journal, entry) in enumerate(entries, start=1)
+    ]
 
 
-def read_recordings(recordings: Sequence[Recording], *, source: str, incomplete: bool) -> Demonstrations:
+def read_recordings(
+    recordings: Sequence[NumberedEpisode], *, source: str, incomplete: bool
+) -> Demonstrations:
     """Recorded episodes from `list_recordings` as demonstrations; see `demonstrations_of`.
 
     Raises:

@@ -26,7 +26,7 @@ class ReachConfig:
 
 
 @dataclass(frozen=True)
-class Reach:
+class ReachedGoals:
     """How close the arm came to each of P goals, for each of S seeds."""
 
     tool_error_m: FloatArray  # (S, P), least distance of the tools from the goal, mean over tools, m
@@ -41,13 +41,13 @@ def reach_goals(
     step_s: float,
     config: SolverConfig,
     tools: Sequence[int] = (0,),
-) -> Reach:
+) -> ReachedGoals:
     """Drive from every start towards its goal with every decoder, in steps of ``step_s``."""
     dof = pairs.goal.shape[1]
     goal = Target(tool_places(chain, pairs.goal, tools), pairs.goal)
     came = approach(decoders, pairs.start, goal, chain, step_s, config, tools)
     first = tool_places(chain, pairs.start[:, :dof], tools)
-    return Reach(
+    return ReachedGoals(
         tool_error_m=came.distance_m,
         state_error_rad=np.linalg.norm(came.context[..., :dof] - pairs.goal, axis=-1),
         start_distance_m=mean_distance(first, goal.places),

@@ -35,7 +35,7 @@ HOLDS_S: Final = {"reversal_0_5_s": 0.5, "reversal_2_s": 2.0}
 """Measure -> how long z and -z are each held for it, s: longer than any loss looks ahead."""
 
 
-class TrainedModel(EncodesActions, Protocol):
+class MeasurableModel(EncodesActions, Protocol):
     """A fitted model together with the parameters of its training pairs."""
 
     @property
@@ -84,7 +84,7 @@ class EvaluationConfig:
 
 
 @dataclass(frozen=True)
-class Figures:
+class PropertyFigures:
     """The measures of a model for each seed, before averaging."""
 
     per_seed: Mapping[str, FloatArray]  # measure -> (S,)
@@ -97,14 +97,14 @@ class Figures:
 
 
 def measure(
-    model: TrainedModel,
+    model: MeasurableModel,
     demonstrations: Demonstrations,
     held_out: Sequence[int],
     robot: Robot,
     *,
     rng: np.random.Generator,
     config: EvaluationConfig | None = None,
-) -> Figures:
+) -> PropertyFigures:
     """Measure every seed of a fitted model on held-out episodes of the dataset that it was trained on.
 
     PCA is fitted to all episodes that are not held out, so also to validation episodes. ``rng`` draws the
@@ -132,7 +132,7 @@ class Probe:
     step_s: float  # dt of the transition, s
 
 
-def take_probe(model: TrainedModel, demonstrations: Demonstrations, held_out: Sequence[int]) -> Probe:
+def take_probe(model: MeasurableModel, demonstrations: Demonstrations, held_out: Sequence[int]) -> Probe:
     """The samples that `measure` takes by default, for a run to keep.
 
     Raises UserError as `measure` does, and where nothing moves in the held-out episodes.
@@ -152,7 +152,7 @@ def measure_behaviour(
     probe: Probe,
     robot: Robot,
     config: EvaluationConfig | None = None,
-) -> Figures:
+) -> PropertyFigures:
     """All measures of `measure` but the errors of reconstruction, which need the demonstrations.
 
     ``z`` (S, L, d) are the inputs whose actions are nearest to the probe's, see `nearest_latents`.
@@ -184,7 +184,7 @@ def measure_behaviour(
         figures["motion_turn"] = np.divide(
             np.nansum(turned, axis=(1, 2)), count, out=np.full(len(turned), np.nan), where=count > 0
         )
-    return Figures(per_seed=figures, start_distance_m=reach.start_distance_m)
+    return PropertyFigures(per_seed=figures, start_distance_m=reach.start_distance_m)
 
 
 def _probe(
@@ -203,7 +203,7 @@ def _probe(
 
 
 def _measure_accuracy(
-    model: TrainedModel,
+    model: MeasurableModel,
     demonstrations: Demonstrations,
     held_out: Sequence[int],
     rng: np.random.Generator,

@@ -29,7 +29,7 @@ class MovesTool(Protocol):
 
 
 @dataclass(frozen=True)
-class Turning:
+class TurnRatios:
     """Turn of the motion per turn of the stick, NaN where nothing moves."""
 
     joints: FloatArray  # (S, N, K), of the joints' velocity
@@ -42,7 +42,7 @@ def turning(
     chain: MovesTool,
     directions: int = DIRECTIONS,
     tool: int = 0,
-) -> Turning:
+) -> TurnRatios:
     """Lead a full push of a two-axis stick once around, in every context (N, c)."""
     if any(decoder.latent_dim != 2 for decoder in decoders):
         raise ValueError("A stick that is led around has two axes.")
@@ -52,7 +52,7 @@ def turning(
     action = np.stack([decoder.decode(z, context[:, None]) for decoder in decoders])
     velocity = chain.jacobian(context[:, : action.shape[-1]], tool)[:, :3]
     step = 2.0 * np.pi / directions
-    return Turning(
+    return TurnRatios(
         joints=_turned(action) / step, tool=_turned(np.einsum("nij,snkj->snki", velocity, action)) / step
     )
 

@@ -1,9 +1,9 @@
 """A computation on fixed tensors, recorded once and repeated.
 
 The networks here are so small that a step of training in torch spends much of its time outside the
-arithmetic: on Python, on the graph for the gradient, on memory. A `Replay` runs the arithmetic alone: it
-records the operations of torch (ATen) that a computation and its gradient consist of, below autograd, and
-runs them again into memory that was laid out once. Views cost nothing in a replay, and what does not
+arithmetic: on Python, on the graph for the gradient, on memory. A `RecordedStep` runs the arithmetic alone:
+it records the operations of torch (ATen) that a computation and its gradient consist of, below autograd,
+and runs them again into memory that was laid out once. Views cost nothing in a replay, and what does not
 depend on the inputs is not computed again. The kernels are the same, and so are the results.
 
 This is to the CPU what a CUDA graph is to a GPU; on a GPU the replay is captured as one.
@@ -88,7 +88,7 @@ class _Recorder(TorchDispatchMode):
 
 
 @final
-class Replay:
+class RecordedStep:
     """Repeats a computation that writes its results in place into tensors outside it."""
 
     def __init__(self, compute: Callable[[], None], inputs: Sequence[Tensor], device: torch.device) -> None:

@@ -15,7 +15,7 @@ from latentarm.models.scaling import Normaliser
 
 @final
 @dataclass(frozen=True, eq=False)
-class Situation:
+class TermContexts:
     """E contexts during training, and the actions of the S decoders for any input there."""
 
     state: Tensor  # (S, E, n), rad
@@ -40,7 +40,7 @@ class LossTerm(ABC):
         """
 
     @abstractmethod
-    def __call__(self, situation: Situation) -> Tensor:
+    def __call__(self, situation: TermContexts) -> Tensor:
         """The loss (S,)."""
 
 
@@ -74,7 +74,7 @@ class ScaledTerm:
         joints = slice(self.joints)
         state = context[..., joints] * constant(self.contexts.scale[joints])
         state = state + constant(self.contexts.centre[joints])
-        return self.term(Situation(state, action_of, self.speed, span.centre.shape[-1]))
+        return self.term(TermContexts(state, action_of, self.speed, span.centre.shape[-1]))
 
 
 @final

@@ -21,7 +21,7 @@ from latentarm.models.checkpoint import TrainingState, fingerprint, read_checkpo
 from latentarm.models.kind import Shape
 from latentarm.models.networks import FlatNetworks, Networks
 from latentarm.models.optimiser import FlatAdam, falling_rate
-from latentarm.models.replay import Replay, UnreplayableError
+from latentarm.models.replay import RecordedStep, UnreplayableError
 
 Report = Callable[[int, int, float], None]
 """Called after each epoch with the epochs done, the most there will be, and the validation loss so far."""
@@ -142,7 +142,7 @@ def _gradient(
     state: TrainingState,
     config: TrainingConfig,
 ) -> Callable[[], None]:
-    """Fills in the current batch's gradient: a `Replay`, if it pays off and proves to be right."""
+    """Fills in the current batch's gradient: a `RecordedStep`, if it pays off and proves to be right."""
 
     def compute() -> None:
         networks.fill_gradient(objective(networks.networks, batches.batch).sum())
@@ -151,7 +151,7 @@ def _gradient(
     if (config.epochs - state.epoch) * batches.steps < REPLAYED_STEPS or next(upcoming, None) is None:
         return compute
     try:
-        replay = Replay(compute, [*batches.batch, networks.values], device)
+        replay = RecordedStep(compute, [*batches.batch, networks.values], device)
     except UnreplayableError:
         return compute
     # On other pairs, so that an objective that depends on more than its arguments is noticed.

@@ -36,7 +36,7 @@ class AmbiguousEndEffectorError(UserError):
 
 @final
 @dataclass(frozen=True)
-class Moved:
+class EndEffectorCandidate:
     """A site or body that could be the end-effector."""
 
     name: str
@@ -105,7 +105,7 @@ def followers(model: mujoco.MjModel) -> dict[int, int]:
     }
 
 
-def _choices(model: mujoco.MjModel, found: list[Moved]) -> str:
+def _choices(model: mujoco.MjModel, found: list[EndEffectorCandidate]) -> str:
     """Candidates, those moved by the most joints first."""
     palms = {int(model.body_parentid[model.jnt_bodyid[joint]]) for joint in finger_joints(model)}
     found = [*found, *(_moved(model, model.body(palm).name, palm) for palm in sorted(palms))]
@@ -128,13 +128,15 @@ def _leaves(model: mujoco.MjModel) -> list[tuple[str, int]]:
     return [(model.body(i).name, i) for i in range(1, model.nbody) if i not in parents]
 
 
-def _moved(model: mujoco.MjModel, name: str, body: int) -> Moved:
+def _moved(model: mujoco.MjModel, name: str, body: int) -> EndEffectorCandidate:
     joints: set[int] = set()
     while body > 0:
         first = int(model.body_jntadr[body])
         joints |= set(range(first, first + int(model.body_jntnum[body])))
         body = int(model.body_parentid[body])
-    return Moved(name, frozenset(joints) & arm_joints(model), frozenset(joints) & finger_joints(model))
+    return EndEffectorCandidate(
+        name, frozenset(joints) & arm_joints(model), frozenset(joints) & finger_joints(model)
+    )
 
 
 def _joint_name(model: mujoco.MjModel, joint: int) -> str:

@@ -24,7 +24,7 @@ from latentarm.models.encoder import Encoder
 from latentarm.models.saving import read_model
 from latentarm.runs.folder import Run, read_run, robot_of
 from latentarm.runs.person import Kind
-from latentarm.runs.questions import Scene
+from latentarm.runs.questions import AlignmentProblem
 from latentarm.runs.samples import ALIGN_STREAM, load_samples
 
 NO_ALIGN: Final = "no_align"
@@ -41,13 +41,13 @@ class Alignable:
     fingerprint: str  # of the model and the seed that decodes
     seed_index: int
     encoder: Encoder
-    scene: Scene
+    scene: AlignmentProblem
     seed: int
 
 
 @final
 @dataclass(frozen=True, eq=False)
-class Learned:
+class LearnedProfile:
     """A learned alignment of a person."""
 
     known: ToolSpace
@@ -83,11 +83,11 @@ def alignable(folder: Path, seed_index: int = 0, seed: int = 0, dataset: Path | 
         demonstrations = prepared(run.dataset(dataset, "motions to ask about"), run.context)
         training = np.setdiff1d(np.arange(len(demonstrations.episodes)), run.held_out)
         motions = shown(select_episodes(demonstrations, training), decoder.layout.features, chain, rng)
-    scene = Scene(decoder, chain, motions)
+    scene = AlignmentProblem(decoder, chain, motions)
     return Alignable(run, fingerprint, seed_index, Encoder(trained, seed_index), scene, seed)
 
 
-def learn(known: Alignable, answers: Answers, name: str, kind: Kind) -> Learned:
+def learn(known: Alignable, answers: Answers, name: str, kind: Kind) -> LearnedProfile:
     """Learn a person's alignment from their answers."""
     scene, decoder = known.scene, known.scene.decoder
     tool_space = scene.learn(answers)
@@ -122,4 +122,4 @@ def learn(known: Alignable, answers: Answers, name: str, kind: Kind) -> Learned:
         },
         **as_document(rows),
     }
-    return Learned(tool_space, known.fingerprint, known.seed_index, rows, about)
+    return LearnedProfile(tool_space, known.fingerprint, known.seed_index, rows, about)

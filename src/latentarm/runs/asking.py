@@ -11,7 +11,7 @@ from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray, Pose
 from latentarm.robots.kinematics.chain import Chain
 from latentarm.robots.kinematics.rotations import rotation_vector
-from latentarm.runs.person import Kind, Person, Question, Say
+from latentarm.runs.person import Kind, Question, Respondent, Say
 from latentarm.runs.stick_line import parse
 
 CELLS: Final = 4  # cells of the figure from its middle to each edge
@@ -72,7 +72,7 @@ FASTEST: Final = 0.99  # share of the motions that the simulated person can ask 
 
 
 @final
-class SimulatedPerson(Person):
+class SimulatedRespondent(Respondent):
     """Answers by a stated preference, and prints that."""
 
     def __init__(self, preference: Preference, say: Say) -> None:
@@ -96,7 +96,7 @@ class SimulatedPerson(Person):
 
 
 @final
-class PersonAtTerminal(Person):
+class PersonAtTerminal(Respondent):
     """Sees each motion as numbers and as a small figure, and answers with a line or the arrow keys."""
 
     def __init__(self, say: Say, read: Callable[[int], str]) -> None:

@@ -23,8 +23,8 @@ from latentarm.demonstrations.split import make_folds, select_episodes
 from latentarm.evaluation.effects import axis_effects, axis_grid
 from latentarm.evaluation.evaluation import (
     EvaluationConfig,
-    Figures,
     Probe,
+    PropertyFigures,
     measure,
     measure_behaviour,
     take_probe,
@@ -164,7 +164,7 @@ def findings_row(evaluation: Evaluation) -> Row:
 class _Measured:
     """A run on its own split, and the input of its figures."""
 
-    figures: Figures
+    figures: PropertyFigures
     probe: Probe
     starts: FloatArray  # (N, c), contexts from which the effects of the axes are drawn
     path: FloatArray | None = None  # (T, n), an episode to draw behind them, rad, or None
@@ -230,7 +230,7 @@ def _folds(
     ]
 
 
-def _measure_fold(cell: _FoldCell) -> Figures:
+def _measure_fold(cell: _FoldCell) -> PropertyFigures:
     """Fit the model anew without a fold's episodes, and measure it on them."""
     robot = robot_of(cell.run)
     others = [index for index in range(len(cell.demonstrations.episodes)) if index not in set(cell.held_out)]
@@ -247,7 +247,7 @@ def _fold_name(cell: _FoldCell) -> str:
     return f"fold {cell.index}"
 
 
-def _rows_over_folds(subject: Subject, figures: Sequence[Figures]) -> list[Row]:
+def _rows_over_folds(subject: Subject, figures: Sequence[PropertyFigures]) -> list[Row]:
     """Mean over folds of the mean over seeds, and SD over folds."""
     means = [
         {row.measure: math.nan if row.mean is None else row.mean for row in one.rows(subject)}

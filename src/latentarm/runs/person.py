@@ -31,7 +31,7 @@ class Question:
     axes: int
 
 
-class Person(ABC):
+class Respondent(ABC):
     """A person who answers questions."""
 
     @property

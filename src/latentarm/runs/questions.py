@@ -8,20 +8,20 @@ import numpy as np
 
 from latentarm.alignment.answers import Answers, Motions
 from latentarm.alignment.demonstrated import CANDIDATES
+from latentarm.alignment.demonstrated_directions import DemonstratedDirections
 from latentarm.alignment.posterior import Posterior, fit_meaning
-from latentarm.alignment.queries import TOO_FEW, Design, StoppingRule, next_motion
-from latentarm.alignment.surroundings import Surroundings
+from latentarm.alignment.queries import TOO_FEW, QuestionDesign, StoppingRule, next_motion
 from latentarm.alignment.tool_space import ToolSpace
 from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray
 from latentarm.models.decoder import Decoder
 from latentarm.robots.kinematics.chain import Chain
-from latentarm.runs.person import Person, Question, Say
+from latentarm.runs.person import Question, Respondent, Say
 
 
 @final
 @dataclass(frozen=True, eq=False)
-class Scene:
+class AlignmentProblem:
     """The decoder, the arm and the demonstrated motions that a person is asked about."""
 
     decoder: Decoder
@@ -34,9 +34,9 @@ class Scene:
         return self.motions[np.arange(min(CANDIDATES, len(self.motions)))]
 
     @cached_property
-    def surroundings(self) -> Surroundings:
+    def surroundings(self) -> DemonstratedDirections:
         """The demonstrated directions in each place."""
-        return Surroundings.of_motions(self.motions, self.chain, self.decoder.latent_dim)
+        return DemonstratedDirections.of_motions(self.motions, self.chain, self.decoder.latent_dim)
 
     def posterior(self, answers: Answers) -> Posterior:
         """The person's meaning, learned from answers."""
@@ -47,7 +47,7 @@ class Scene:
         return ToolSpace(self.posterior(answers).meaning, self.surroundings, answers.motions.duration_s)
 
 
-def ask(scene: Scene, person: Person, count: int, say: Say, stopping: StoppingRule) -> Answers:
+def ask(scene: AlignmentProblem, person: Respondent, count: int, say: Say, stopping: StoppingRule) -> Answers:
     """Ask about the motion that teaches most, again and again, until enough is known.
 
     At most ``count`` questions are answered; ``stopping`` may end the asking earlier.
@@ -57,7 +57,7 @@ def ask(scene: Scene, person: Person, count: int, say: Say, stopping: StoppingRu
     motions, chain = scene.candidates, scene.chain
     places = [chain.forward(state).position for state in (motions.start, motions.end)]
     reach_m = float(np.linalg.norm(places[1] - places[0], axis=-1).max())
-    design = Design(chain, motions)
+    design = QuestionDesign(chain, motions)
     asked: list[int] = []
     answered: dict[int, FloatArray] = {}
     history: list[float] = []

@@ -16,7 +16,7 @@ from latentarm.core.errors import UserError
 from latentarm.core.files import written_whole
 from latentarm.core.types import Demonstrations, FloatArray, IntArray
 from latentarm.demonstrations.split import select_episodes
-from latentarm.evaluation.evaluation import Probe, TrainedModel, take_probe
+from latentarm.evaluation.evaluation import MeasurableModel, Probe, take_probe
 from latentarm.evaluation.samples import StartGoalPairs
 from latentarm.models.reading import Section
 from latentarm.models.saving import CONFIG_LIMIT, CONFIG_NAME, read_tensors
@@ -52,7 +52,7 @@ class Samples:
 
 
 def take_samples(
-    model: TrainedModel,
+    model: MeasurableModel,
     demonstrations: Demonstrations,
     training: IntArray,
     held_out: IntArray,

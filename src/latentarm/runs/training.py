@@ -46,7 +46,7 @@ HOLD_OUT_STREAM = 1  # stream of the seed that chooses the held-out episodes
 
 
 @dataclass(frozen=True)
-class Training:
+class TrainedRun:
     """The result of a training."""
 
     rows: list[Row]  # the normalised loss on the validation episodes: mean and SD over seeds
@@ -54,7 +54,7 @@ class Training:
     import_warnings: list[str]
 
 
-def train_run(options: TrainOptions, report: Report | None = None) -> Training:
+def train_run(options: TrainOptions, report: Report | None = None) -> TrainedRun:
     """Train a model on a dataset and write its run folder.
 
     Raises UserError where the dataset cannot be read or lacks something, the folder holds a run already, or a
@@ -117,7 +117,7 @@ def train_run(options: TrainOptions, report: Report | None = None) -> Training:
     loss = model.validation_loss_
     spread = float(loss.std(ddof=1)) if len(loss) > 1 else None
     row = Row("train", "validation_loss", "1", float(loss.mean()), spread, len(loss), model=options.model)
-    return Training([row], len(demonstrations.episodes), demonstrations.warnings)
+    return TrainedRun([row], len(demonstrations.episodes), demonstrations.warnings)
 
 
 def _joined_dataset(datasets: Sequence[Path], run: Path) -> Path:

@@ -18,7 +18,7 @@ _DRIFT_RAD = 0.05  # a placement computed farther away than this is not reused
 
 
 @final
-class Surroundings:
+class GuardedArm:
     """One arm with its limits, everything it must keep clear of, and where it was placed last."""
 
     def __init__(self, bounds: Bounds, body: Body) -> None:
@@ -47,7 +47,7 @@ class Situation:
 
     def __init__(
         self,
-        surroundings: Surroundings,
+        surroundings: GuardedArm,
         state: FloatArray,
         velocity: FloatArray,
         acceleration: FloatArray,

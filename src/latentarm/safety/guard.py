@@ -19,7 +19,7 @@ _NONE: IntArray = np.zeros(0, dtype=np.int64)
 
 
 @final
-class Path:
+class StoppingPath:
     """The path of a command with no successor: it is held for its full duration, then the brake follows.
 
     The arm's joints move by ``way = v hold + v+ stop`` along a line that is straight but for a kink of
@@ -87,7 +87,7 @@ class Guard:
 
     def objection(self, velocity: FloatArray, brake: Brake, situation: Situation) -> str | None:
         """The limit that the command (n,), rad/s, or the stop after it would break, or None."""
-        path = Path(velocity, brake, situation.bounds.hold_s)
+        path = StoppingPath(velocity, brake, situation.bounds.hold_s)
         if self._passes_joint_limits(velocity, path, situation):
             return "joint position"
         if self._too_fast(velocity, path, situation):
@@ -103,7 +103,7 @@ class Guard:
         return None
 
     @staticmethod
-    def _passes_joint_limits(velocity: FloatArray, path: Path, situation: Situation) -> bool:
+    def _passes_joint_limits(velocity: FloatArray, path: StoppingPath, situation: Situation) -> bool:
         # In phase one each joint's velocity lies between v and v+: counted with both, it is bounded by them.
         before_s, after_s = path.before_s, path.after_s + path.brake.settle_s
         if largest(path.fastest) * (before_s + after_s) < situation.nearest_limit:
@@ -115,7 +115,7 @@ class Guard:
         below = lowest < np.minimum(room[0], 0.0) - _NUMERIC_RAD
         return any_nonzero(above) or any_nonzero(below)
 
-    def _too_fast(self, velocity: FloatArray, path: Path, situation: Situation) -> bool:
+    def _too_fast(self, velocity: FloatArray, path: StoppingPath, situation: Situation) -> bool:
         nearby, drift = situation.nearby()
         if not self._exceeds(velocity, path, nearby, drift, situation.bounds.config.link_speed):
             return False
@@ -127,7 +127,7 @@ class Guard:
 
     @staticmethod
     def _exceeds(
-        velocity: FloatArray, path: Path, placement: Placement, drift: FloatArray, limit: float
+        velocity: FloatArray, path: StoppingPath, placement: Placement, drift: FloatArray, limit: float
     ) -> bool:
         """Whether a point could be too fast, judged from a placement that is ``drift`` away."""
         body, brake = placement.body, path.brake
@@ -147,7 +147,9 @@ class Guard:
         top = (grown + bends / brake.rate) ** 2 * brake.rate / (4.0 * np.maximum(bends, 1e-300))
         return bool((top[bends > brake.rate * grown] > limit).any())
 
-    def _too_fast_for_a_zone(self, velocity: FloatArray, path: Path, situation: Situation) -> Zone | None:
+    def _too_fast_for_a_zone(
+        self, velocity: FloatArray, path: StoppingPath, situation: Situation
+    ) -> Zone | None:
         """A zone that a part could reach into too fast, or None."""
         config, zones = situation.bounds.config, situation.surroundings.zones
         least, _ = situation.zone_distances()
@@ -168,7 +170,11 @@ class Guard:
 
     @staticmethod
     def _fastest(
-        velocity: FloatArray, path: Path, placement: Placement, drift: FloatArray, zones: ZoneDistances
+        velocity: FloatArray,
+        path: StoppingPath,
+        placement: Placement,
+        drift: FloatArray,
+        zones: ZoneDistances,
     ) -> FloatArray:
         """(K + T,), bounds of the parts' speeds on the path, m/s, from a placement that is ``drift`` away."""
         body = placement.body
@@ -179,14 +185,16 @@ class Guard:
         return zones.of_parts(grown)
 
     @staticmethod
-    def _entered(distance: FloatArray, speed: FloatArray, path: Path, situation: Situation) -> IntArray:
+    def _entered(
+        distance: FloatArray, speed: FloatArray, path: StoppingPath, situation: Situation
+    ) -> IntArray:
         """Indices of the zones that a part reaches into on the path, and is too fast for."""
         near = distance - (path.before_s + path.after_s) * speed <= situation.bounds.config.clearance
         harmful = (speed > situation.surroundings.zones.limit) & near
         return np.flatnonzero(harmful.any(axis=1)) if any_nonzero(harmful.ravel()) else _NONE
 
     @staticmethod
-    def _too_close(path: Path, situation: Situation) -> bool:
+    def _too_close(path: StoppingPath, situation: Situation) -> bool:
         proximity, clearance = situation.surroundings.proximity, situation.bounds.config.clearance
         contacts = situation.contacts(path.fastest)
         if not contacts.pair.size:
@@ -207,7 +215,7 @@ class Guard:
         return _worsens(contacts.height, change, contacts.height + change - after, clearance)
 
     @staticmethod
-    def _leaves_workspace(path: Path, situation: Situation) -> bool:
+    def _leaves_workspace(path: StoppingPath, situation: Situation) -> bool:
         workspace = situation.bounds.config.workspace
         if workspace is None:
             return False

@@ -15,11 +15,11 @@ from latentarm.safety.config import SafetyConfig
 from latentarm.safety.filter import (
     Finite,
     Freshness,
+    GuardedArm,
     JointVelocity,
     LinkSpeed,
     SafetyFilter,
     Situation,
-    Surroundings,
 )
 from latentarm.safety.guard import Guard
 from latentarm.safety.ramp import Ramp
@@ -53,7 +53,7 @@ class SafetyStack:
     def __init__(self, config: SafetyConfig, robot: Robot, dt_s: float) -> None:
         self.bounds = bounds = Bounds(config, robot, dt_s)
         self.body = Body(robot)
-        self._surroundings = Surroundings(bounds, self.body)
+        self._surroundings = GuardedArm(bounds, self.body)
         self._first: tuple[SafetyFilter, ...] = (Finite(), Freshness(), JointVelocity())
         zones = [ZoneSpeed(bounds, index) for index in range(len(config.zones))]
         # Sliding along one thing can speed a joint up.

@@ -48,7 +48,7 @@ _TOO_LATE_S: Final = 0.06
 
 @final
 @dataclass(frozen=True)
-class Trial:
+class FaultTrial:
     """One fault in motion.
 
     Attributes:
@@ -80,7 +80,7 @@ class _Stick(InputSource):
         return Input(self._push if self.pushed else np.zeros_like(self._push)), 0.0
 
 
-def try_fault(make: ArmFactory, robot: Robot, fault: Fault, seed: int, late_s: float = 0.0) -> Trial:
+def try_fault(make: ArmFactory, robot: Robot, fault: Fault, seed: int, late_s: float = 0.0) -> FaultTrial:
     """Drive an arm by its tool, let a fault happen in motion, and look at what follows.
 
     Args:
@@ -123,7 +123,7 @@ def try_fault(make: ArmFactory, robot: Robot, fault: Fault, seed: int, late_s: f
     since = truth[at].time_s
     commands = np.array([np.abs(record.command.velocity).max() for record in records])
     speeds = np.array([np.abs(reading.dq).max() for reading in truth])
-    return Trial(
+    return FaultTrial(
         zero_command_s=records[_last(commands[:repaired] > 0.0) + 1].time_s - since,
         rest_s=truth[_last(speeds[:repaired] > STILL_RAD_S) + 1].time_s - since,
         moved_rad=float(np.abs(truth[again].q - truth[repaired].q).max()),

@@ -2,13 +2,13 @@
 
 from typing import Final
 
-from latentarm.commands.catalogue import CommandSet, Entry
+from latentarm.commands.catalogue import CommandEntry, CommandSet
 from latentarm_research.measurements.catalogue import MEASUREMENTS
 from latentarm_research.studies.catalogue import STUDIES
 
 
-def _ours(module: str, summary: str) -> Entry:
-    return Entry(f"latentarm_research.commands.{module}", summary)
+def _ours(module: str, summary: str) -> CommandEntry:
+    return CommandEntry(f"latentarm_research.commands.{module}", summary)
 
 
 COMMANDS: Final = CommandSet(

@@ -14,7 +14,7 @@ import numpy as np
 from latentarm.arms.catalogue import ARMS
 from latentarm.core.errors import UserError
 from latentarm.robots.panda import panda
-from latentarm.testing.fault_trials import FAULTS, PERIOD_S, Fault, Trial, try_fault
+from latentarm.testing.fault_trials import FAULTS, PERIOD_S, Fault, FaultTrial, try_fault
 from latentarm_research.measurements.measurement import Outcome, Work, line
 from latentarm_research.measurements.options import Stops
 
@@ -52,6 +52,6 @@ def measure(options: Stops, work: Work) -> Outcome:
     return Outcome(rows, broken)
 
 
-def tried(arm: str, fault: Fault, late_s: float, seed: int) -> Trial:
+def tried(arm: str, fault: Fault, late_s: float, seed: int) -> FaultTrial:
     """One fault of one arm of the catalogue."""
     return try_fault(ARMS[arm], panda(), fault, seed, late_s)

@@ -7,7 +7,7 @@ from typing import Annotated, Final, Literal, final
 import numpy as np
 from pydantic import Field, TypeAdapter
 
-from latentarm.runs.person import Kind, Person, Question, Reply
+from latentarm.runs.person import Kind, Question, Reply, Respondent
 from latentarm.web.jobs.job import Job, Wire
 from latentarm.web.protocol.notice import Message, Notice
 from latentarm.web.protocol.personalise_messages import Personalise, ShownMotion
@@ -143,7 +143,7 @@ class PersonaliseJob:
 
 
 @final
-class PersonOnPage(Person):
+class PersonOnPage(Respondent):
     """A person who sees motions on a page and answers there, through the parent process."""
 
     def __init__(self, wire: Wire) -> None:

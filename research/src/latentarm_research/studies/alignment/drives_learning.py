@@ -22,8 +22,8 @@ from latentarm.core.types import Demonstrations, FloatArray
 from latentarm.demonstrations.split import select_episodes, split_episodes
 from latentarm.models.model import LatentActionModel
 from latentarm.robots.kinematics.chain import Chain
-from latentarm.runs.asking import FASTEST, SimulatedPerson
-from latentarm.runs.questions import Scene, ask
+from latentarm.runs.asking import FASTEST, SimulatedRespondent
+from latentarm.runs.questions import AlignmentProblem, ask
 from latentarm.tasks.table_top import TableTop
 from latentarm_research.alignment.training import FitConfig, fit_alignments
 from latentarm_research.people.expectation import Expectation, displacements, main_directions
@@ -155,11 +155,11 @@ def _alignments(
     drawing = _generator(cell, Stream.CANDIDATES, seed_index)
     motions = shown(training, "state", person.chain, drawing)
     unlabelled = demonstrated_motions(training, cell.preset.unlabelled, drawing).context
-    scene = Scene(model.decoder(seed_index), person.chain, motions)
+    scene = AlignmentProblem(model.decoder(seed_index), person.chain, motions)
     count = cell.preset.drives.answers
     # Asking never stops early, so that every model has the same number of answers.
     stopping = StoppingRule(share=0.0, patience=count)
-    answers = ask(scene, SimulatedPerson(person, _unheard), count, _unheard, stopping)
+    answers = ask(scene, SimulatedRespondent(person, _unheard), count, _unheard, stopping)
 
     def learn(answers: Answers, config: FitConfig) -> Alignment:
         return fit_alignments(model, person.chain, [answers], unlabelled, config, seed_index=seed_index).best

@@ -12,11 +12,11 @@ from threadpoolctl import threadpool_limits
 from latentarm.alignment.answers import Answers, Motions
 from latentarm.alignment.contract import Alignment
 from latentarm.alignment.demonstrated import CANDIDATES, demonstrated_motions, noticeable
+from latentarm.alignment.demonstrated_directions import DemonstratedDirections
 from latentarm.alignment.error import lengths, outcome, relative_alignment_error
 from latentarm.alignment.poses import pose_vectors
 from latentarm.alignment.posterior import Posterior, fit_meaning
 from latentarm.alignment.preference import ByPlace, HeightAndTilt, Imprecise, Preference, ToolAxes
-from latentarm.alignment.surroundings import Surroundings
 from latentarm.alignment.tool_space import ToolSpace, ToolSpaceAlignment
 from latentarm.core.types import Demonstrations, FloatArray
 from latentarm.models.decoder import Decoder
@@ -149,7 +149,7 @@ class Scene:
     shown: Motions
     unlabelled: FloatArray
     test: Answers
-    surroundings: Surroundings
+    surroundings: DemonstratedDirections
 
     @property
     def model(self) -> LatentActionModel:
@@ -247,5 +247,5 @@ def scene_of(learned: LearnedDecoder) -> Scene:
         shown=shown,
         unlabelled=demonstrated_motions(training, cell.preset.unlabelled, draw(Stream.UNLABELLED)).context,
         test=Answers(test, preference.inputs(test)),
-        surroundings=Surroundings.of_motions(some, chain, 2),
+        surroundings=DemonstratedDirections.of_motions(some, chain, 2),
     )

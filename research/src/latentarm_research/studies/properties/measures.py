@@ -23,7 +23,7 @@ from latentarm.evaluation.accuracy import pca_error, percent_of, reconstruction_
 from latentarm.evaluation.approach import SolverConfig, Target, approach
 from latentarm.evaluation.consistency import consistency
 from latentarm.evaluation.contract import DecodesActions, EncodesActions
-from latentarm.evaluation.controllability import Reach, reach_goals
+from latentarm.evaluation.controllability import ReachedGoals, reach_goals
 from latentarm.evaluation.disentanglement import disentanglement_deg
 from latentarm.evaluation.drift import drift
 from latentarm.evaluation.effects import axis_effects, axis_grid, axis_turns
@@ -149,7 +149,7 @@ def control_figures(
         does not depend on the model. Percentages are NaN where PCA's distance is below `RESOLUTION_M`.
     """
 
-    def driven(some: Sequence[DecodesActions]) -> Reach:
+    def driven(some: Sequence[DecodesActions]) -> ReachedGoals:
         return reach_goals(some, goals, motion.robot.chain, STEP_S, _solver(motion), _tools(motion))
 
     def percent(left: FloatArray, by_pca: float) -> FloatArray:

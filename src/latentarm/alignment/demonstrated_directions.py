@@ -21,7 +21,7 @@ FASTEST: Final = 0.99  # this share of the demonstrated motions is slower than a
 
 @final
 @dataclass(frozen=True, eq=False)
-class Surroundings:
+class DemonstratedDirections:
     """Directions of demonstrated motions by place."""
 
     place: FloatArray  # (K, 12 k), the middles of regions, see `pose_vectors`, m
