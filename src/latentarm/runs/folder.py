@@ -36,39 +36,28 @@ _LARGEST_WEIGHTS: Final = 1 << 30  # bytes
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """A trained run, without its weights.
-
-    Attributes:
-        demonstrations: where the dataset was that the model was trained on.
-        model: the model's name.
-        context: the features that its decoder sees, in order.
-        robot: name or model file of the robot, or "" where it is unknown.
-        end_effector: which site, body or link of a model file is the end-effector.
-        fingerprint: of the dataset's states, so that another dataset is not taken for it.
-        limits: limits of the robot that a person stated, or None.
-        robot_model: name of the copy of the robot's model file in the folder `ROBOT`; None for a robot of the
-            catalogue, and where no copy was kept.
-        task: the task that it was trained for; None in older runs, which kept none.
-        routes: the ways of the held-out episodes, see `latentarm.tasks.replay.routes_of`; None where the run
-            does not keep them.
-        open_at: what the gripper does along them, see `latentarm.tasks.replay.GripperRoutes`; empty where the
-            model does not see it.
-    """
+    """A trained run, without its weights."""
 
     folder: Path
-    demonstrations: Path
+    demonstrations: Path  # where the dataset was that the model was trained on
     held_out: tuple[int, ...]
-    model: str
-    context: tuple[str, ...]
-    robot: str
-    end_effector: str | None
-    fingerprint: str
-    limits: StatedLimits | None = None
+    model: str  # the model's name
+    context: tuple[str, ...]  # the features that its decoder sees, in order
+    robot: str  # name or model file of the robot, or "" where it is unknown
+    end_effector: str | None  # which site, body or link of a model file is the end-effector
+    fingerprint: str  # of the dataset's states, so that another dataset is not taken for it
+    limits: StatedLimits | None = None  # limits of the robot that a person stated, or None
     robot_model: str | None = None
-    task: str | None = None
+    """Name of the copy of the robot's model file in the folder `ROBOT`; None for a robot of the catalogue,
+    and where no copy was kept."""
+    task: str | None = None  # the task that it was trained for; None in older runs, which kept none
     goals: tuple[Goal, ...] = ()
     routes: tuple[FloatArray, ...] | None = None
+    """The ways of the held-out episodes, see `latentarm.tasks.replay.routes_of`; None where the run does not
+    keep them."""
     open_at: tuple[FloatArray, ...] = ()
+    """What the gripper does along them, see `latentarm.tasks.replay.GripperRoutes`; empty where the model
+    does not see it."""
 
     def dataset(self, moved_to: Path | None = None, wanted: str = "", option: bool = True) -> Demonstrations:
         """The dataset that the model was trained on, or ``moved_to`` if it was moved.

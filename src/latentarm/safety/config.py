@@ -18,16 +18,12 @@ from latentarm.safety.zones import Zone, checked_zones
 class Workspace:
     """A box, along the axes of the base frame, that the tool and every link point must stay in.
 
-    Attributes:
-        lower: (3,), m.
-        upper: (3,), m.
-
     Raises:
         UserError: a bound is not a finite number, or lower is not below upper.
     """
 
-    lower: FloatArray
-    upper: FloatArray
+    lower: FloatArray  # (3,), m
+    upper: FloatArray  # (3,), m
 
     def __post_init__(self) -> None:
         for name in ("lower", "upper"):

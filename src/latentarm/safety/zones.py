@@ -25,16 +25,12 @@ class Zone:
     The names are free. The page has words for three: ``face`` (a ball or a box at the head), ``table`` (a
     slab over the table's top) and ``self`` (the person's body or wheelchair).
 
-    Attributes:
-        shape: the solid, in the base frame, with the zone's name.
-        speed: the largest speed of any point of a part that reaches into the zone, m/s.
-
     Raises:
         UserError: the shape is no solid, its name is not one, or the speed is not a number in its range.
     """
 
-    shape: Obstacle
-    speed: float
+    shape: Obstacle  # the solid, in the base frame, with the zone's name
+    speed: float  # the largest speed of any point of a part that reaches into the zone, m/s
 
     def __post_init__(self) -> None:
         if not isinstance(self.shape, Obstacle):  # pyright: ignore[reportUnnecessaryIsInstance]

@@ -49,22 +49,15 @@ _TOO_LATE_S: Final = 0.06
 @final
 @dataclass(frozen=True)
 class FaultTrial:
-    """One fault in motion.
+    """One fault in motion."""
 
-    Attributes:
-        zero_command_s: from the fault to the first command of zero that only zeros follow, s.
-        rest_s: from the fault until every joint stands still for good, as the arm itself knows it, s.
-        moved_rad: how far a joint moved once the fault was repaired, with the stick still pushed and before
-            anybody enabled the arm, rad.
-        moves_again: whether the arm moves once the stick was let go and the arm was enabled.
-        reason: what the person read.
-    """
-
-    zero_command_s: float
-    rest_s: float
+    zero_command_s: float  # from the fault to the first command of zero that only zeros follow, s
+    rest_s: float  # from the fault until every joint stands still for good, as the arm itself knows it, s
     moved_rad: float
-    moves_again: bool
-    reason: str
+    """How far a joint moved once the fault was repaired, with the stick still pushed and before anybody
+    enabled the arm, rad."""
+    moves_again: bool  # whether the arm moves once the stick was let go and the arm was enabled
+    reason: str  # what the person read
 
 
 @final
