@@ -1,4 +1,7 @@
-"""Every measure in one table: unit, label, which direction is better, and its definition."""
+"""Every measure of a model in one table: unit, label, which direction is better, and its definition.
+
+Other distributions may add theirs when they are imported.
+"""
 
 from dataclasses import dataclass
 from typing import Final, Literal
@@ -207,119 +210,11 @@ MEASURES: Final[dict[str, Measure]] = {
         " rest does not count",
     ),
     "findings": Measure("1", "findings", "lower", "how many thresholds of the verdict the model misses"),
-    "success_rate": Measure("1", "success rate", "higher", "share of the drives that did the task"),
-    "time_s": Measure("s", "time", "lower", "duration of a drive, failed ones included"),
-    "idle_s": Measure("s", "time without input", "lower", "time of a drive in which the input is zero"),
-    "turned_round": Measure(
-        "1",
-        "share of the time turned round",
-        "lower",
-        "share of the time in which the stick is more than 90° from where it was within the last 0.5 s",
-    ),
-    "steps_done": Measure("1", "steps done", "higher", "share of the steps of a task that were done"),
-    "preference_alignment": Measure(
-        "1",
-        "preference alignment",
-        "higher",
-        "mean dot product of the direction in which the tool points and the one needed at that moment",
-    ),
-    "table_force_n": Measure(
-        "N", "force on table", "lower", "largest force of the tool on the table or a dish in a drive"
-    ),
-    "food_force_n": Measure("N", "force on food", None, "largest force of the tool on food in a drive"),
-    "spilled_share": Measure("1", "spilled", "lower", "share of the grains that were spilled"),
-    "goal_error_m_s": Measure(
-        "m s", "goal error, total", "lower", "integral over time of the tool's distance to the closest goal"
-    ),
-    "goal_error_m": Measure(
-        "m", "goal error, mean", "lower", "mean over time of the tool's distance to the closest goal"
-    ),
-    "input_magnitude": Measure(
-        "s", "input magnitude", "lower", "integral of ‖u‖ over time, seconds of full deflection of one axis"
-    ),
-    "attempts": Measure("1", "attempts", "lower", "how often a task was begun in a trial"),
-    "mode_switches": Measure("1", "mode switches", "lower", "how often the controller's mode changed"),
-    "stops": Measure("1", "stops", "lower", "how often the arm was stopped and had to be enabled again"),
-    "path_length": Measure("m", "path length", "lower", "length of the tool's path"),
-    "path_length_percent_of_vae": Measure(
-        "%", "path length, of the VAE's", "lower", "the same in % of the VAE's"
-    ),
-    "path_over_straight": Measure(
-        "1",
-        "path, over the straight way",
-        "lower",
-        "length of the tool's path over that of the straight line",
-    ),
-    "undone_share": Measure(
-        "1", "share of the path undone", "lower", "share of the tool's path that was gone back over"
-    ),
-    "demonstrated_undone_share": Measure(
-        "1", "the same of the demonstration", None, "the same of the demonstrated episode itself"
-    ),
-    "progress": Measure(
-        "1", "share of the waypoints reached", "higher", "share of the waypoints that were reached"
-    ),
-    "final_distance": Measure("m", "final distance", "lower", "of the tool from the target at the end"),
-    "final_distance_percent_of_vae": Measure(
-        "%", "final distance, of the VAE's", "lower", "the same in % of the VAE's"
-    ),
     "relative_alignment_error": Measure(
         "1",
         "relative alignment error",
         "lower",
         "error of the poses that inputs lead to, relative to the length of the motions asked about",
-    ),
-    "answers": Measure(
-        "1", "answers until asking stops", "lower", "questions answered until enough is known"
-    ),
-    "final_state_error": Measure(
-        "1", "final state error", "lower", "distance of the final state from the goal"
-    ),
-    "final_tool_error": Measure(
-        "1", "final tool error", "lower", "distance of the final tool from the goal's"
-    ),
-    "arrival_rate": Measure(
-        "1", "share that arrives", "higher", "share of the drives that arrive at the goal"
-    ),
-    "extra_time_percent": Measure(
-        "%", "time of LA beyond LA+SA's", None, "extra time of latent actions without shared autonomy"
-    ),
-    "final_belief": Measure(
-        "1", "belief in the true goal at the end", "higher", "probability that the robot gives the true goal"
-    ),
-    "goal_entropy": Measure("nat", "entropy over goals", None, "entropy of the belief over goals"),
-    "goal_open_share": Measure(
-        "1",
-        "steps with the true goal open",
-        "higher",
-        "share of the steps from which the true goal can be reached",
-    ),
-    "certified_share_eq_14": Measure(
-        "1", "steps certified by equation 14", "higher", "share of the steps that equation 14 certifies"
-    ),
-    "certified_share_eq_13": Measure(
-        "1", "steps certified by equation 13", "higher", "share of the steps that equation 13 certifies"
-    ),
-    "certified_share_known_help": Measure(
-        "1", "steps certified, help known", "higher", "share of the steps certified with the help known"
-    ),
-    "certified_share_decoder": Measure(
-        "1",
-        "steps certified, help and decoder known",
-        "higher",
-        "share of the steps certified with the help and what the decoder can do against the goal known",
-    ),
-    "certified_share_tools": Measure(
-        "1",
-        "steps certified, in the metric of the tools",
-        "higher",
-        "share of the steps certified with help and decoder known, the distance in the metric of the tools",
-    ),
-    "bound_slack": Measure(
-        "1",
-        "slack of sigma_h",
-        "lower",
-        "how far the proven sigma_h is above the largest action among a few inputs, relative to it",
     ),
 }
 """Every measure by name; that of a single latent axis (``r2_axis_0``) is that of the measure."""
