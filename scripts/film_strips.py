@@ -17,11 +17,11 @@ from latentarm.core.style import save_figure
 from latentarm.core.untrusted.documents import read_object
 from latentarm.evaluation.looks import look_of
 from latentarm.models.saving import read_model
-from latentarm.runs.results_folder import CONFIG
 from latentarm.tasks.catalogue import SCENE_TASKS, make_scene_task
 from latentarm_research.drives.drive import Setup, drive
 from latentarm_research.drives.film import Camera, Film, strip
 from latentarm_research.people.catalogue import PEOPLE
+from latentarm_research.studies.results_folder import CONFIG
 from latentarm_research.studies.streams import generator
 from latentarm_research.studies.tasks.cell import ModelCell, ShownCell, show, train, training_set
 from latentarm_research.studies.tasks.condition import Condition

@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 
 from latentarm.alignment.answers import Motions
-from latentarm.alignment.preference import ByPlace, HeightAndTilt, Imprecise, ToolAxes
+from latentarm.alignment.preference import ToolAxes
 from latentarm.core.errors import UserError
 from latentarm.robots.catalogue import load_robot
 from latentarm.tasks.inverse_kinematics import solve
+from latentarm_research.alignment.preferences import ByPlace, HeightAndTilt, Imprecise
 from latentarm_research.tasks.pouring.task import HOME_RAD
 from latentarm_research.tasks.pouring.tool_path import ToolPath
 

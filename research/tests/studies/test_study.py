@@ -10,10 +10,10 @@ from latentarm.core.errors import UserError
 from latentarm.core.parallel import CellError
 from latentarm.core.style import new_figure
 from latentarm.core.types import Row
-from latentarm.runs.results_folder import CONFIG
 from latentarm_research.studies import printing
 from latentarm_research.studies.page import plain
 from latentarm_research.studies.printing import HTML, PDF, print_page
+from latentarm_research.studies.results_folder import CONFIG
 from latentarm_research.studies.study import ALWAYS_MADE, Report, Request, Study, again, run_study
 from result_rows import rows_in
 

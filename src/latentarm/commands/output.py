@@ -26,19 +26,6 @@ def show(rows: "Sequence[Row]", json: bool, *tables: "RenderableType") -> None:
         print_renderables(rich_tables(rows, width=VisibleConsole().width))
 
 
-def tables_by_task(rows: "Sequence[Row]") -> "list[RenderableType]":
-    """One table per task, of the rows without a condition."""
-    from latentarm.core.untrusted.console import VisibleConsole
-    from latentarm.evaluation.table import rich_tables
-
-    width = VisibleConsole().width
-    main_rows = [row for row in rows if row.condition is None]
-    return [
-        rich_tables([row for row in main_rows if row.task == task], title=f"{task}, simulated", width=width)
-        for task in dict.fromkeys(row.task for row in main_rows)
-    ]
-
-
 def say(sentence: str, json: bool) -> None:
     """Print a message at once; with ``--json`` on standard error, to keep standard output one document."""
     print(visible(sentence), file=sys.stderr if json else sys.stdout, flush=True)

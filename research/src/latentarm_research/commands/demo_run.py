@@ -31,7 +31,7 @@ from latentarm.models.catalogue import DEFAULT_MODEL
 from latentarm.models.saving import load_decoder
 from latentarm.runs.evaluating import evaluate_run
 from latentarm.runs.options import EvaluateOptions, TrainOptions
-from latentarm.runs.results_folder import ResultsFolder, vacant_name
+from latentarm.runs.results_folder import vacant_name
 from latentarm.runs.training import train_run
 from latentarm.tasks.eating.marshmallows import Marshmallows
 from latentarm.tasks.place import ScenePlace
@@ -47,6 +47,7 @@ from latentarm_research.metrics.drives import drive_rows
 from latentarm_research.people.catalogue import PEOPLE
 from latentarm_research.people.names import OperatorName
 from latentarm_research.studies.fitting import STATE_NOISE_RAD
+from latentarm_research.studies.results_folder import ResultsFolder
 
 if TYPE_CHECKING:
     from latentarm_research.commands.demo import DemoOptions

@@ -13,7 +13,7 @@ from latentarm.robots.limits_file import read_limits
 from latentarm.robots.notices import notices
 from latentarm.robots.robot import Robot
 from latentarm.runs.folder import Run, read_run
-from latentarm.runs.results_folder import ResultsFolder, write_json
+from latentarm.runs.results_folder import write_json
 from latentarm.runs.tasks import task_of_run, task_without_run
 from latentarm.tasks.catalogue import HELD_OUT, SCENE_TASKS, make_scene_task
 from latentarm.tasks.goal_task import GoalTask
@@ -28,6 +28,7 @@ from latentarm_research.drives.drive_table import drive_entries, write_drives_cs
 from latentarm_research.drives.drives import Planned, drive_all, plan_drives
 from latentarm_research.drives.trace import Trace
 from latentarm_research.metrics.drives import drive_rows
+from latentarm_research.studies.results_folder import ResultsFolder
 
 MADE: Final = ("drives.json", "drives.csv", "paths.png")
 """Every file of the folder except its options and a recording's journal."""

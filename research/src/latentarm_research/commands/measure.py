@@ -58,9 +58,10 @@ def _measure(name: str, own: Any, common: Common, out: Path) -> int:
     from latentarm.core.parallel import check_jobs
     from latentarm.evaluation.results import write_results
     from latentarm.runs.checks import check_seed
-    from latentarm.runs.results_folder import ResultsFolder, write_json
+    from latentarm.runs.results_folder import write_json
     from latentarm_research.measurements.measurement import Work
     from latentarm_research.measurements.page import page_of, repeated_by
+    from latentarm_research.studies.results_folder import ResultsFolder
 
     check_seed(common.seed)
     check_jobs(common.jobs)

@@ -2,16 +2,22 @@
 
 import inspect
 import sys
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from tyro.conf import UseAppendAction, arg
 
 from latentarm.commands.configuration import Command, write_options
-from latentarm.commands.output import say, show, tables_by_task
+from latentarm.commands.output import say, show
 from latentarm.core.errors import UserError
 from latentarm_research.commands.study_options import StudyOptions
 from latentarm_research.studies.catalogue import STUDIES, load_study
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+    from latentarm.core.types import Row
 
 ALL = "all"
 
@@ -85,7 +91,7 @@ def _reproduce(
     )
     report = run_study(study, request)
     write_options(out, study.command)
-    show(report.rows, options.json, *(report.tables or tables_by_task(report.rows)))
+    show(report.rows, options.json, *(report.tables or _tables_by_task(report.rows)))
     if preset == SMOKE:
         say(f"The preset {preset} only shows that the study runs: nothing is judged.", options.json)
     say(f"Page, figures and results.json are in {out}/ (begin with {out}/results.md).", options.json)
@@ -98,3 +104,16 @@ def __getattr__(name: str) -> Command:
     if words not in STUDIES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return command_of(words)
+
+
+def _tables_by_task(rows: "Sequence[Row]") -> "list[RenderableType]":
+    """One table per task, of the rows without a condition."""
+    from latentarm.core.untrusted.console import VisibleConsole
+    from latentarm.evaluation.table import rich_tables
+
+    width = VisibleConsole().width
+    main_rows = [row for row in rows if row.condition is None]
+    return [
+        rich_tables([row for row in main_rows if row.task == task], title=f"{task}, simulated", width=width)
+        for task in dict.fromkeys(row.task for row in main_rows)
+    ]

@@ -123,7 +123,8 @@ def power_of_study(
 
     For example: latentarm study power harmonic --results studies/harmonic
     """
-    from latentarm.runs.results_folder import ResultsFolder, write_json
+    from latentarm.runs.results_folder import write_json
+    from latentarm_research.studies.results_folder import ResultsFolder
     from latentarm_research.studies.study import Grid
     from latentarm_research.user_studies.kept import SESSIONS
     from latentarm_research.user_studies.power import TARGETS, power_of

@@ -64,7 +64,7 @@ def analyse_study(
 
     For example: latentarm study analyse studies/harmonic
     """
-    from latentarm.runs.results_folder import ResultsFolder
+    from latentarm_research.studies.results_folder import ResultsFolder
     from latentarm_research.studies.study import REPORTED, write_report
     from latentarm_research.user_studies.answers.reading import read_answers
     from latentarm_research.user_studies.answers.scales import rate

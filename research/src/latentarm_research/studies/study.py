@@ -16,11 +16,12 @@ from latentarm.core.types import Row
 from latentarm.core.untrusted.console import VisibleConsole
 from latentarm.evaluation.results import write_results
 from latentarm.runs.checks import check_seed
-from latentarm.runs.results_folder import ResultsFolder, write_json
+from latentarm.runs.results_folder import write_json
 from latentarm_research.studies.backends import BACKENDS, check_backend
 from latentarm_research.studies.html import html_page
 from latentarm_research.studies.page import SMOKE
 from latentarm_research.studies.printing import HTML, PDF, print_page
+from latentarm_research.studies.results_folder import ResultsFolder
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

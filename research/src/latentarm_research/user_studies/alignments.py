@@ -10,13 +10,13 @@ from latentarm.alignment.answers import Answers, Motions
 from latentarm.alignment.contract import Alignment
 from latentarm.alignment.demonstrated import CANDIDATES, demonstrated_motions, shown
 from latentarm.alignment.poses import ROTATION_WEIGHT_M
-from latentarm.alignment.preference import Imprecise
 from latentarm.alignment.queries import order_of_questions
 from latentarm.alignment.twists import motion_twists
 from latentarm.core.types import Demonstrations, FloatArray
 from latentarm.models.model import LatentActionModel
 from latentarm.robots.kinematics.chain import Chain
 from latentarm.runs.asking import FASTEST
+from latentarm_research.alignment.preferences import Imprecise
 from latentarm_research.alignment.priors import NO_PRIORS, Priors
 from latentarm_research.alignment.training import FitConfig, fit_alignments
 from latentarm_research.people.own_directions import InOwnDirections

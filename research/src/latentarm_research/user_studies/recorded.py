@@ -7,9 +7,9 @@ from typing import Any, Final, Literal, cast, final
 
 from latentarm.core.errors import UserError
 from latentarm.core.untrusted.documents import read_object
-from latentarm.runs.results_folder import CONFIG
 from latentarm_research.people.population import draw_people
 from latentarm_research.people.traits import Traits
+from latentarm_research.studies.results_folder import CONFIG
 from latentarm_research.user_studies.catalogue import NAMES, load_definition
 from latentarm_research.user_studies.definition import PREFIX, Definition
 from latentarm_research.user_studies.own.definition_file import read_definition

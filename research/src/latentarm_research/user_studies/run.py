@@ -5,10 +5,10 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from latentarm.runs.results_folder import package_versions
 from latentarm_research.people.population import draw_people
 from latentarm_research.people.traits import Traits
 from latentarm_research.studies import fitting, streams
+from latentarm_research.studies.results_folder import package_versions
 from latentarm_research.studies.source import source_digest
 from latentarm_research.studies.streams import generator
 from latentarm_research.studies.study import Grid, Report, Request, Study, again

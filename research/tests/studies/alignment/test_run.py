@@ -7,7 +7,6 @@ import pytest
 from rich.console import Console
 
 from latentarm.evaluation.measures import MEASURES
-from latentarm.runs.results_folder import CONFIG
 from latentarm_research.studies.alignment.preset import (
     CONDITIONS,
     IDEAL,
@@ -20,6 +19,7 @@ from latentarm_research.studies.alignment.preset import (
 from latentarm_research.studies.alignment.study import STUDY, TASKS
 from latentarm_research.studies.alignment.tables import summary_tables
 from latentarm_research.studies.printing import PDF
+from latentarm_research.studies.results_folder import CONFIG
 from latentarm_research.studies.study import ALWAYS_MADE, Request, run_study
 
 TINY = Preset(

@@ -5,9 +5,9 @@ from pathlib import Path
 import pytest
 
 from latentarm.core.errors import UserError
-from latentarm.runs.results_folder import CONFIG
 from latentarm_research.studies.properties.preset import PRESETS, Preset
 from latentarm_research.studies.properties.study import STUDY
+from latentarm_research.studies.results_folder import CONFIG
 from latentarm_research.studies.study import ALWAYS_MADE, Request, run_study
 
 TINY = Preset(

@@ -12,11 +12,11 @@ from figure_faults import faults
 from latentarm.core.errors import UserError
 from latentarm.core.untrusted.documents import read_object
 from latentarm.models.saving import load_decoder
-from latentarm.runs.results_folder import CONFIG
 from latentarm.tasks.catalogue import SCENE_TASKS, make_scene_task
 from latentarm.tasks.eating.marshmallows import Marshmallows
 from latentarm.tasks.scene_task import SceneTask
 from latentarm_research.studies.printing import PDF
+from latentarm_research.studies.results_folder import CONFIG
 from latentarm_research.studies.study import ALWAYS_MADE, Request, again, run_study
 from latentarm_research.studies.tasks.cell import TaskRunResult, show, training_set
 from latentarm_research.studies.tasks.condition import DEMONSTRATOR, ORIENTED, SWITCHING, Condition

@@ -16,12 +16,13 @@ from latentarm.alignment.demonstrated_directions import DemonstratedDirections
 from latentarm.alignment.error import lengths, outcome, relative_alignment_error
 from latentarm.alignment.poses import pose_vectors
 from latentarm.alignment.posterior import Posterior, fit_meaning
-from latentarm.alignment.preference import ByPlace, HeightAndTilt, Imprecise, Preference, ToolAxes
+from latentarm.alignment.preference import Preference, ToolAxes
 from latentarm.alignment.tool_space import ToolSpace, ToolSpaceAlignment
 from latentarm.core.types import Demonstrations, FloatArray
 from latentarm.models.decoder import Decoder
 from latentarm.models.model import LatentActionModel
 from latentarm.robots.kinematics.chain import Chain
+from latentarm_research.alignment.preferences import ByPlace, HeightAndTilt, Imprecise
 from latentarm_research.alignment.training import FitConfig, FittedAlignments, fit_alignments
 from latentarm_research.studies.alignment.preset import Preset, Stream
 from latentarm_research.studies.fitting import fit_model, validation_episodes

@@ -9,10 +9,11 @@ from threadpoolctl import threadpool_limits
 
 from latentarm.alignment.answers import Answers, Motions
 from latentarm.alignment.meaning import rotations
-from latentarm.alignment.preference import Imprecise, Preference
+from latentarm.alignment.preference import Preference
 from latentarm.alignment.queries import order_of_questions
 from latentarm.core.types import FloatArray
 from latentarm.robots.kinematics.chain import Chain
+from latentarm_research.alignment.preferences import Imprecise
 from latentarm_research.alignment.training import FitConfig
 from latentarm_research.studies.alignment.cell import ideal_config
 from latentarm_research.studies.alignment.curves import AT_RANDOM, PRIORS_AT_RANDOM
