@@ -64,8 +64,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _app(words: Sequence[str]) -> SubcommandApp:
     """Return all commands; the one to run has its defaults from ``--config``.
 
-    Raises:
-        UserError: the file does not hold options of that command.
+    Raises UserError where the file does not hold options of that command.
     """
     app, known = SubcommandApp(), all_commands()
     groups: dict[str, SubcommandApp] = {}

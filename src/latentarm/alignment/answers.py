@@ -14,8 +14,7 @@ from latentarm.core.types import FloatArray, IntArray
 class Motions:
     """N motions ``(s, s*)`` of one arm, in ``duration_s`` each.
 
-    Raises:
-        UserError: sizes do not fit each other, there is no motion, or a number is not finite.
+    Raises UserError where sizes do not fit each other, there is no motion, or a number is not finite.
     """
 
     start: FloatArray  # (N, n), states before, rad
@@ -63,8 +62,7 @@ class Motions:
 class Answers:
     """A person's answers: the input with which they would ask for each of N motions.
 
-    Raises:
-        UserError: sizes do not match, or an input is invalid.
+    Raises UserError where sizes do not match, or an input is invalid.
     """
 
     motions: Motions

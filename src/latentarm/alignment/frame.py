@@ -48,8 +48,7 @@ class StickFrame:
     While the tools move by a distance e between poses, a held push u turns by `STEEPEST_RAD_M` e at most, and
     z changes by at most ``max(‖u‖, ‖u‖^2)`` times that.
 
-    Raises:
-        UserError: the stick would turn more steeply, or it is not a turned and perhaps mirrored one.
+    Raises UserError where the stick would turn more steeply, or it is not a turned and perhaps mirrored one.
     """
 
     turning: Meaning  # ``R(theta(x)) M``, (2, 2) by place

@@ -29,8 +29,7 @@ class ToolAxes:
 
     They consider where the tool goes and ignore how it turns.
 
-    Raises:
-        UserError: there are more axes than directions, or the speed is not positive.
+    Raises UserError where there are more axes than directions, or the speed is not positive.
     """
 
     chain: Chain  # the arm, of which the first tool counts

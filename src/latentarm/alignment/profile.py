@@ -143,8 +143,7 @@ def folder_of(run: Path, name: str) -> Path:
 def keep_trial(run: Path, name: str) -> None:
     """Keep the profile on trial under a person's name.
 
-    Raises:
-        UserError: it is no name or has been given already, or there is nothing to keep.
+    Raises UserError where it is no name or has been given already, or there is nothing to keep.
     """
     folder = new_profile_folder(run, name)
     try:
@@ -195,9 +194,8 @@ def save_profile(
 def load_profile(run: Path, name: str) -> Profile:
     """Read and check a person's profile of a run.
 
-    Raises:
-        UserError: there is no such profile, its files are broken or foreign, or it was learned for another
-            model.
+    Raises UserError where there is no such profile, its files are broken or foreign, or it was learned for
+    another model.
     """
     folder = folder_of(run, name)
     if not folder.is_dir():

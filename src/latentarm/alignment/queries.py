@@ -62,8 +62,7 @@ def next_motion(worth: FloatArray, asked: Sequence[int]) -> int:
 class StoppingRule:
     """A rule for when to stop asking.
 
-    Raises:
-        UserError: a figure is out of its range.
+    Raises UserError where a figure is out of its range.
     """
 
     share: float = 0.1  # enough is known below this share of unknown inputs (`Posterior.share`)

@@ -27,8 +27,7 @@ if TYPE_CHECKING:
 class AlignOptions:
     """Options of `latentarm align`.
 
-    Raises:
-        UserError: a figure is out of its range.
+    Raises UserError where a figure is out of its range.
     """
 
     run: Annotated[Positional[Path], arg(metavar="RUN", help="Folder that `latentarm train` wrote.")]

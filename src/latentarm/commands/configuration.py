@@ -135,8 +135,7 @@ def write_options(folder: Path, name: str, **resolved: object) -> None:
     The file is ``<command>-options.yaml``. A command that another one calls writes nothing. ``out`` is
     written as the folder of the results; ``resolved`` has values that were chosen automatically.
 
-    Raises:
-        UserError: the file cannot be written.
+    Raises UserError where the file cannot be written.
     """
     asked = _ASKED.get()
     if asked is None or asked[0] != name:

@@ -65,9 +65,8 @@ def demonstrations_of(
     Warns:
         ImplausibleWarning: an episode was cut, or skipped because too little of it remained.
 
-    Raises:
-        UserError: no episode is complete and long enough, or the episodes are of different robots, goals or
-            things, or of an arm with a gripper and one without.
+    Raises UserError where no episode is complete and long enough, or the episodes are of different robots,
+    goals or things, or of an arm with a gripper and one without.
     """
     usable = [_until_implausible(episode) for episode in episodes if incomplete or episode.complete]
     kept = [episode for episode in usable if len(episode.records) >= _SHORTEST]

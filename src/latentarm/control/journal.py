@@ -61,8 +61,7 @@ def read_journal(path: Path, only: Collection[int] | None = None) -> list[Journa
         path: of a journal. Its ``-wal`` file, where one is left, belongs to it.
         only: numbers of the episodes to read, from `list_journal`; all where None.
 
-    Raises:
-        UserError: there is no such file, it is damaged, or it is no journal.
+    Raises UserError where there is no such file, it is damaged, or it is no journal.
     """
     with _opened(path) as database:
         (verdict,) = database.execute("PRAGMA quick_check(1)").fetchone()
@@ -75,8 +74,7 @@ def read_journal(path: Path, only: Collection[int] | None = None) -> list[Journa
 def list_journal(path: Path) -> list[JournalEntry]:
     """A journal's table of contents, oldest episode first; quick, however long the episodes are.
 
-    Raises:
-        UserError: there is no such file, it is damaged, or it is no journal.
+    Raises UserError where there is no such file, it is damaged, or it is no journal.
     """
     with _opened(path) as database:
         rows = database.execute(

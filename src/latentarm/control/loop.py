@@ -159,8 +159,7 @@ class ControlLoop:
             ticks: how many, or None for no end.
             mode: index of the controller's mode to begin in.
 
-        Raises:
-            UserError: the controller has no such mode.
+        Raises UserError where the controller has no such mode.
         """
         self._step.reset(self._arm.read().q)
         self._step.choose_mode(mode)

@@ -95,8 +95,7 @@ class Recorder:
         path: the journal, a new file or one that `Recorder` wrote.
         limits: how much room the journal may take.
 
-    Raises:
-        UserError: the file cannot be written, or is no journal.
+    Raises UserError where the file cannot be written, or is no journal.
     """
 
     def __init__(self, path: StrPath, limits: JournalLimits | None = None) -> None:
@@ -257,8 +256,7 @@ class Recorder:
         Args:
             device: kind of input device that was used, where that is only known now.
 
-        Raises:
-            UserError: the journal cannot be written, or no episode is under way.
+        Raises UserError where the journal cannot be written, or no episode is under way.
         """
         if self._episode is None:
             raise UserError(f"{self._path} has no episode under way: begin one before ending it.")
@@ -279,8 +277,7 @@ class Recorder:
     def drop_episode(self) -> None:
         """Delete the episode under way, where there is one.
 
-        Raises:
-            UserError: the journal cannot be written; the episode then stays incomplete.
+        Raises UserError where the journal cannot be written; the episode then stays incomplete.
         """
         number, self._episode = self._episode, None
         try:
@@ -303,8 +300,7 @@ def _limits_as_json(limits: JointLimits) -> dict[str, list[float]]:
 def check_is_journal(database: sqlite3.Connection, path: Path, *, may_be_empty: bool) -> None:
     """Check that an open database is one of our journals.
 
-    Raises:
-        UserError: it is not, or of a later version.
+    Raises UserError where it is not, or of a later version.
     """
     (version,) = database.execute("PRAGMA user_version").fetchone()
     (tables,) = database.execute("SELECT count(*) FROM sqlite_master").fetchone()

@@ -26,8 +26,7 @@ class NumberedEpisode:
 def journals_in(path: Path) -> list[Path]:
     """A journal itself, or the journals of a folder by name: ``teleop`` names them after their time.
 
-    Raises:
-        UserError: no journal was found.
+    Raises UserError where no journal was found.
     """
     if not path.is_dir():
         return [path]
@@ -40,8 +39,7 @@ def journals_in(path: Path) -> list[Path]:
 def list_recordings(path: Path) -> list[NumberedEpisode]:
     """All episodes of a journal, or of the journals in a folder.
 
-    Raises:
-        UserError: there is no journal, or one is damaged.
+    Raises UserError where there is no journal, or one is damaged.
     """
     entries = [(journal, entry) for journal in journals_in(path) for entry in list_journal(journal)]
     return [
@@ -54,8 +52,7 @@ def read_recordings(
 ) -> Demonstrations:
     """Recorded episodes from `list_recordings` as demonstrations; see `demonstrations_of`.
 
-    Raises:
-        UserError: a journal is damaged, or `demonstrations_of` refuses.
+    Raises UserError where a journal is damaged, or `demonstrations_of` refuses.
     """
     wanted: dict[Path, list[int]] = {}
     for recording in recordings:

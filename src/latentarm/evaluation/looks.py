@@ -67,8 +67,7 @@ _MODELS: Final[dict[str, tuple[str, str, str | tuple[float, tuple[float, ...]]]]
 def look_of(name: str) -> Look:
     """The look of a model, condition or task; a plain one under its own name for any other.
 
-    Raises:
-        UserError: it is a plug-in's model that does not load.
+    Raises UserError where it is a plug-in's model that does not load.
     """
     if name in KINDS:
         return Look(KINDS[name].label, *_MODELS.get(name, _PLAIN))

@@ -34,8 +34,7 @@ def evenly_spread(count: int, total: int) -> IntArray:
 def moving_episodes(demonstrations: Demonstrations, held_out: Sequence[int]) -> tuple[Episode, ...]:
     """The held-out episodes without the still samples at their ends, as the training pairs are drawn.
 
-    Raises:
-        UserError: none are held out, an index names no episode, or nothing moves in any of them.
+    Raises UserError where none are held out, an index names no episode, or nothing moves in any of them.
     """
     if len(held_out) == 0:
         raise UserError("No episode is held out, so there is nothing to measure on: hold out at least one.")

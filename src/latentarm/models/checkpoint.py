@@ -91,8 +91,7 @@ def fingerprint(settings: Mapping[str, object], arrays: Sequence[FloatArray]) ->
 def write_checkpoint(path: Path, print_of: str, state: TrainingState) -> None:
     """Write the state, replacing an older checkpoint whole.
 
-    Raises:
-        UserError: the file cannot be written.
+    Raises UserError where the file cannot be written.
     """
     progress = {
         "fingerprint": print_of,
@@ -112,8 +111,7 @@ def write_checkpoint(path: Path, print_of: str, state: TrainingState) -> None:
 def read_checkpoint(path: Path, print_of: str, state: TrainingState) -> None:
     """Fill ``state`` from the file.
 
-    Raises:
-        UserError: the file is broken, foreign, or of another training.
+    Raises UserError where the file is broken, foreign, or of another training.
     """
     check_file(path, _HEADER_BYTES + sum(tensor.nbytes for tensor in state.tensors().values()))
     try:

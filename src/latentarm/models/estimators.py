@@ -39,9 +39,8 @@ MODELS: Final = _Estimators()
 def load_model(folder: StrPath) -> "LatentActionModel":
     """Read a model that was saved to a folder, to encode with or to fit anew. Imports torch.
 
-    Raises:
-        UserError: a file is missing, broken, foreign, of another version, or does not agree with the
-            other, or the distribution that the model came from is not installed.
+    Raises UserError where a file is missing, broken, foreign, of another version, or does not agree with the
+    other, or the distribution that the model came from is not installed.
     """
     # pydantic is slow to load, and a list of names does not need it.
     from latentarm.models.parameters import check_parameters

@@ -39,8 +39,7 @@ def _types(model: "type[DataclassInstance]") -> dict[str, TypeAdapter[Any]]:
 def check_parameters(model: "type[DataclassInstance]", parameters: Mapping[str, object]) -> None:
     """Check a model's parameters against the types of its fields, also for models of plug-ins.
 
-    Raises:
-        UserError: a value has the wrong type or lies outside its range.
+    Raises UserError where a value has the wrong type or lies outside its range.
     """
     types = _types(model)
     for name, value in parameters.items():

@@ -103,8 +103,7 @@ def write_model(folder: Path, trained: TrainedModel, run: Mapping[str, object]) 
 def read_model(folder: Path) -> TrainedModel:
     """Read and check a model.
 
-    Raises:
-        UserError: a file is missing, foreign, of another version, or does not agree with the other.
+    Raises UserError where a file is missing, foreign, of another version, or does not agree with the other.
     """
     path = folder / CONFIG_NAME
     section = Section.of_file(path, CONFIG_LIMIT).section("model")
@@ -260,7 +259,6 @@ def load_decoder(folder: StrPath, seed: int = 0) -> Decoder:
         folder: holds ``config.json`` and ``model.safetensors``.
         seed: index of the seed, 0..S-1.
 
-    Raises:
-        UserError: the files are missing, broken or foreign, or there is no such seed.
+    Raises UserError where the files are missing, broken or foreign, or there is no such seed.
     """
     return Decoder(read_model(Path(folder)), seed)

@@ -86,8 +86,7 @@ def train(
     from, if it exists, and to write to; one of another ``identity`` is refused. ``report`` is also called
     before the first epoch, with an infinite loss.
 
-    Raises:
-        UserError: a seed diverged, or the checkpoint is not this training's.
+    Raises UserError where a seed diverged, or the checkpoint is not this training's.
     """
     networks = FlatNetworks(shapes, device)
     adam = FlatAdam(networks.values)

@@ -124,8 +124,7 @@ def attach(robot: Robot, attachment: str) -> Robot:
         robot: any robot; its end-effector is the hand, whose z axis points away from the arm.
         attachment: a name in `ATTACHMENTS`.
 
-    Raises:
-        UserError: there is no such attachment, or the robot has one already.
+    Raises UserError where there is no such attachment, or the robot has one already.
     """
     if attachment not in ATTACHMENTS:
         raise UserError(f"There is no attachment {attachment!r}: use one of {', '.join(ATTACHMENTS)}.")

@@ -84,10 +84,8 @@ def evaluate_run(options: EvaluateOptions) -> Evaluation:
 
     Without the dataset all is measured but the errors of reconstruction, on the samples that the run keeps.
 
-    Raises:
-        UserError: the folder is not a run, its dataset is gone or does not fit it, its robot is not
-            available, there are too few episodes for the folds, or the folder for metrics holds other
-            results.
+    Raises UserError where the folder is not a run, its dataset is gone or does not fit it, its robot is not
+    available, there are too few episodes for the folds, or the folder for metrics holds other results.
     """
     folder, out, dataset, seed = options.run, options.folder, options.demonstrations, options.seed
     check_jobs(options.jobs)

@@ -120,8 +120,7 @@ def run_facts(run: Run) -> dict[str, object]:
 def read_run(folder: StrPath) -> Run:
     """Read a run folder's own description; the model itself is checked when it is loaded.
 
-    Raises:
-        UserError: the folder is not a run, or its ``config.json`` is damaged.
+    Raises UserError where the folder is not a run, or its ``config.json`` is damaged.
     """
     folder = Path(folder)
     path = folder / "config.json"

@@ -38,8 +38,7 @@ MovedDataset = Annotated[
 class TrainOptions:
     """Options of `latentarm train`; those named like a parameter of the model are that parameter.
 
-    Raises:
-        UserError: the seed is out of its range.
+    Raises UserError where the seed is out of its range.
     """
 
     demonstrations: Annotated[
@@ -123,8 +122,7 @@ class TrainOptions:
 class EvaluateOptions:
     """Options of `latentarm evaluate`.
 
-    Raises:
-        UserError: the seed is out of its range.
+    Raises UserError where the seed is out of its range.
     """
 
     run: Annotated[Positional[Path], arg(metavar="RUN", help="Folder that `latentarm train` wrote.")]

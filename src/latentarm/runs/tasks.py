@@ -93,9 +93,8 @@ def make_task(
     ``robot`` is a robot's name or model file; where None, the task's own or, for tasks of any robot,
     ``usual`` or a Panda. ``end_effector`` is a site, body or link of a model file.
 
-    Raises:
-        UserError: there is no such task, it does not load, the robot cannot be loaded, or the task is for
-            another robot.
+    Raises UserError where there is no such task, it does not load, the robot cannot be loaded, or the task is
+    for another robot.
     """
     task_class = TASKS.find(name, "--task")
     if task_class.any_robot:

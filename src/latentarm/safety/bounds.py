@@ -47,8 +47,7 @@ class Bounds:
         nearest_m: distance that shaping keeps from obstacles and from the arm itself, m.
         horizon_s: a distance that lasts longer than this at the current speed does not limit it, s.
 
-    Raises:
-        UserError: a figure is above what the hardware can do, or stopping takes too long.
+    Raises UserError where a figure is above what the hardware can do, or stopping takes too long.
     """
 
     def __init__(self, config: SafetyConfig, robot: Robot, dt_s: float) -> None:

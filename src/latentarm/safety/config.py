@@ -18,8 +18,7 @@ from latentarm.safety.zones import Zone, checked_zones
 class Workspace:
     """A box, along the axes of the base frame, that the tool and every link point must stay in.
 
-    Raises:
-        UserError: a bound is not a finite number, or lower is not below upper.
+    Raises UserError where a bound is not a finite number, or lower is not below upper.
     """
 
     lower: FloatArray  # (3,), m
@@ -83,8 +82,7 @@ class SafetyConfig:
         zones: where the arm is slower than link_speed; that begins where a part of it is nearer to a zone
             than clearance.
 
-    Raises:
-        UserError: a figure is not a number, not finite, or out of its range.
+    Raises UserError where a figure is not a number, not finite, or out of its range.
     """
 
     joint_speed: float = 0.5

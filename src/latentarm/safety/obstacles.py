@@ -16,8 +16,7 @@ _FAR_M = 100.0  # coordinates beyond this are a mistake in units, not an obstacl
 def table(height: float) -> HalfSpace:
     """A table top (or floor) that fills everything below ``height``, m, in the base frame.
 
-    Raises:
-        UserError: the height is not finite.
+    Raises UserError where the height is not finite.
     """
     plane = HalfSpace(name="table", point=np.array([0.0, 0.0, height]), normal=np.array([0.0, 0.0, 1.0]))
     checked_obstacle(plane)
@@ -27,9 +26,8 @@ def table(height: float) -> HalfSpace:
 def checked_obstacle(obstacle: object) -> Obstacle:
     """The obstacle with float arrays, validated.
 
-    Raises:
-        UserError: a figure is not finite or absurd, a size is not positive, a normal is not of unit
-            length, or a rotation is not one.
+    Raises UserError where a figure is not finite or absurd, a size is not positive, a normal is not of unit
+    length, or a rotation is not one.
     """
     # An obstacle without a case below would be ignored silently.
     if not isinstance(obstacle, Obstacle):

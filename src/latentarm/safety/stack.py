@@ -46,8 +46,7 @@ class SafetyStack:
     The output is the first of these that is proven safe: the shaped and ramped velocity; a small step to it;
     an ordinary deceleration; the stop that was proven with the previous command. See `Guard` for the proof.
 
-    Raises:
-        UserError: the limits do not suit the robot or the loop's period ``dt_s``, see `Bounds`.
+    Raises UserError where the limits do not suit the robot or the loop's period ``dt_s``, see `Bounds`.
     """
 
     def __init__(self, config: SafetyConfig, robot: Robot, dt_s: float) -> None:

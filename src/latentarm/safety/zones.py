@@ -56,8 +56,7 @@ class Zone:
 def check_name(name: str, what: str) -> None:
     """Refuse a name that a page could not list; ``what`` is the subject of the message.
 
-    Raises:
-        UserError: it has commas, spaces around it, or characters that cannot be shown.
+    Raises UserError where it has commas, spaces around it, or characters that cannot be shown.
     """
     if "," in name or clean_name(name) != name:
         raise UserError(f"{what} needs another name: without commas, and without spaces around it.")
@@ -66,8 +65,7 @@ def check_name(name: str, what: str) -> None:
 def checked_zones(value: object) -> tuple[Zone, ...]:
     """The zones of a safety configuration, as a tuple.
 
-    Raises:
-        UserError: these are no zones, too many, or two have the same name.
+    Raises UserError where these are no zones, too many, or two have the same name.
     """
     if not isinstance(value, tuple | list):
         raise UserError("The safety limit zones must be a tuple of zones.")

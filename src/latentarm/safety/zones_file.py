@@ -57,8 +57,7 @@ class StatedZones:
 def read_zones(path: Path) -> StatedZones:
     """Read a zones file.
 
-    Raises:
-        UserError: the file cannot be read or is invalid; the message names the key.
+    Raises UserError where the file cannot be read or is invalid; the message names the key.
     """
     text = read_bytes(path, MOST_BYTES)
     try:
@@ -72,9 +71,8 @@ def read_zones(path: Path) -> StatedZones:
 def parse_zones(document: object, where: str) -> StatedZones:
     """Validate the document of a zones file; ``where`` names the file in messages.
 
-    Raises:
-        UserError: a key is missing or unknown, a value cannot be used, two zones have the same name, or there
-            are too many.
+    Raises UserError where a key is missing or unknown, a value cannot be used, two zones have the same name,
+    or there are too many.
     """
     top = table_of(document, where, "")
     check_keys(top, (_SLOW, _KEEP_OUT), where, "")

@@ -26,8 +26,7 @@ class Scene:
         bonds: things that are one until a cut parts them.
         table_m: height of the table top in the arm's base frame, m.
 
-    Raises:
-        UserError: two of its parts have one name, or a bond names a thing that is not there.
+    Raises UserError where two of its parts have one name, or a bond names a thing that is not there.
     """
 
     things: tuple[Thing, ...] = ()
