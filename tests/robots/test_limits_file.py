@@ -91,9 +91,9 @@ def test_a_bad_file_is_refused_with_the_key_named(written, text, sentence):
     ("name", "text", "sentence"),
     [
         ("a.txt", TOML, "must be TOML or YAML"),
-        ("a.yaml", "joints: &a {b: *a}", "aliases"),
-        ("a.yaml", "joints: [", "cannot be read"),
-        ("a.yaml", "!!python/object/apply:os.system ['true']", "cannot be read"),
+        ("a.yaml", "joints: &a {b: *a}", "alias"),
+        ("a.yaml", "joints: [", "is not a limits file that can be read"),
+        ("a.yaml", "!!python/object/apply:os.system ['true']", "could not determine a constructor"),
         ("a.yaml", "[" * 20_000, "too deeply"),
         ("a.toml", "a = " + "[" * 20_000, "cannot be read"),
         ("a.yaml", "joints: {1: 2}", "joints must be a table of names"),

@@ -19,22 +19,17 @@ An example in TOML::
 """
 
 import math
-import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Final, cast
 
 import numpy as np
-import yaml
 
 from latentarm.core.errors import UserError
 from latentarm.core.types import StatedGripper, StatedJointLimits, StatedLimits
-from latentarm.core.untrusted.hand_written import check_keys, number_of, table_of
-from latentarm.core.untrusted.opening import read_bytes
+from latentarm.core.untrusted.hand_written import MOST_BYTES, check_keys, number_of, read_toml, table_of
+from latentarm.core.untrusted.yaml_file import read_yaml
 from latentarm.robots.limits import JointLimits, LimitSources, Quantity, Source
-
-MOST_BYTES: Final = 100_000  # a joint takes some 200
-_DEEPEST: Final = 4  # level of tables in YAML; the parser's time is quadratic in it
 
 TOOL_SPEED: Final = "tool_speed_m_per_s"
 
@@ -54,30 +49,13 @@ _UNITS: Final = {"rad": 1.0, "deg": math.pi / 180.0, "m": 1.0}
 
 def read_limits(path: Path) -> StatedLimits:
     """Read a limits file, which ends in .toml, .yaml or .yml."""
-    text = read_bytes(path, MOST_BYTES)
-    try:
-        if path.suffix.lower() == ".toml":
-            document: object = tomllib.loads(text.decode("utf-8"))
-        elif path.suffix.lower() in (".yaml", ".yml"):
-            _check_plain(text, path)
-            document = yaml.safe_load(text)
-        else:
-            raise UserError(f"The limits file {path} must be TOML or YAML: name it .toml, .yaml or .yml.")
-    except (UnicodeDecodeError, tomllib.TOMLDecodeError, yaml.YAMLError, RecursionError) as error:
-        what = "nested too deeply" if isinstance(error, RecursionError) else " ".join(str(error).split())
-        raise UserError(f"The limits file {path} cannot be read: {what}.") from error
+    if path.suffix.lower() == ".toml":
+        document = read_toml(path, "limits file")
+    elif path.suffix.lower() in (".yaml", ".yml"):
+        document = read_yaml(path, MOST_BYTES, "a limits file that can be read")
+    else:
+        raise UserError(f"The limits file {path} must be TOML or YAML: name it .toml, .yaml or .yml.")
     return parse_limits(document, str(path))
-
-
-def _check_plain(text: bytes, path: Path) -> None:
-    """Refuse deeply nested YAML and aliases before parsing it into objects."""
-    depth = 0
-    for event in yaml.parse(text, yaml.SafeLoader):
-        if isinstance(event, yaml.AliasEvent):
-            raise UserError(f"{path} uses YAML's aliases (*name): write the figures out.")
-        depth += isinstance(event, yaml.CollectionStartEvent) - isinstance(event, yaml.CollectionEndEvent)
-        if depth > _DEEPEST:
-            raise UserError(f"{path} nests its tables too deeply: give figures under joints and their names.")
 
 
 def parse_limits(document: object, where: str) -> StatedLimits:

@@ -19,7 +19,6 @@ Shapes and their keys: ``sphere`` (``centre_m``, ``radius_m``), ``capsule`` (``s
 order, where it is turned) and ``half_space`` (``point_m`` and ``normal``, out of the solid).
 """
 
-import tomllib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -29,14 +28,11 @@ import numpy as np
 
 from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray
-from latentarm.core.untrusted.hand_written import check_keys, number_of, table_of
-from latentarm.core.untrusted.opening import read_bytes
+from latentarm.core.untrusted.hand_written import check_keys, number_of, read_toml, table_of
 from latentarm.robots.kinematics.obstacles import Box, Capsule, HalfSpace, Obstacle, Sphere
 from latentarm.safety.config import SafetyConfig
 from latentarm.safety.obstacles import checked_obstacle
 from latentarm.safety.zones import MOST_ZONES, Zone, check_name, checked_zones
-
-MOST_BYTES: Final = 100_000  # a longer file is refused: a zone takes some 200 bytes
 
 _SLOW: Final = "zones"
 _KEEP_OUT: Final = "keep_out"
@@ -59,13 +55,7 @@ def read_zones(path: Path) -> StatedZones:
 
     Raises UserError where the file cannot be read or is invalid; the message names the key.
     """
-    text = read_bytes(path, MOST_BYTES)
-    try:
-        document = tomllib.loads(text.decode("utf-8"))
-    except (UnicodeDecodeError, tomllib.TOMLDecodeError, RecursionError) as error:
-        what = "nested too deeply" if isinstance(error, RecursionError) else " ".join(str(error).split())
-        raise UserError(f"The zones file {path} cannot be read as TOML: {what}.") from error
-    return parse_zones(document, str(path))
+    return parse_zones(read_toml(path, "zones file"), str(path))
 
 
 def parse_zones(document: object, where: str) -> StatedZones:

@@ -1,9 +1,24 @@
 """Tables that people write by hand: errors name the file and the key."""
 
+import tomllib
 from collections.abc import Mapping, Sequence
-from typing import Any, cast
+from pathlib import Path
+from typing import Any, Final, cast
 
 from latentarm.core.errors import UserError
+from latentarm.core.untrusted.opening import read_bytes
+
+MOST_BYTES: Final = 100_000  # of a file; an entry takes some 200
+
+
+def read_toml(path: Path, kind: str) -> object:
+    """The document of a TOML file; ``kind`` names the file in errors, such as ``limits file``."""
+    text = read_bytes(path, MOST_BYTES)
+    try:
+        return tomllib.loads(text.decode("utf-8"))
+    except (UnicodeDecodeError, tomllib.TOMLDecodeError, RecursionError) as error:
+        what = "nested too deeply" if isinstance(error, RecursionError) else " ".join(str(error).split())
+        raise UserError(f"The {kind} {path} cannot be read as TOML: {what}.") from error
 
 
 def table_of(value: object, where: str, key: str) -> Mapping[str, Any]:
