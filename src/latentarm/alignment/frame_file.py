@@ -1,23 +1,20 @@
 """The frames of the stick that a run keeps, for each of its seeds and each seat of a person."""
 
-import hashlib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Final, get_args
 
 import numpy as np
-from safetensors.numpy import save
 
 from latentarm.alignment.contract import Seat
 from latentarm.alignment.frame import CENTRES, LENGTH_M, StickFrame, fit_frame
 from latentarm.alignment.meaning import Meaning
 from latentarm.alignment.poses import POSE_SIZE
 from latentarm.core.errors import UserError
-from latentarm.core.files import written_whole
 from latentarm.core.types import FloatArray
 from latentarm.models.decoder import Decoder
 from latentarm.models.reading import Section
-from latentarm.models.saving import CONFIG_LIMIT, CONFIG_NAME, read_tensors
+from latentarm.models.saving import CONFIG_LIMIT, CONFIG_NAME, read_tensors, write_tensors
 from latentarm.robots.kinematics.chain import Chain
 
 FRAME_NAME: Final = "frame.safetensors"
@@ -37,14 +34,8 @@ def save_frames(
         tensors["place"] = turning[0].place  # the same for all: they come from the contexts alone
         tensors[f"{seat}.matrix"] = np.stack([one.matrix for one in turning])
         tensors[f"{seat}.turn"] = np.stack([one.turn_rad for one in turning])
-    content = save({name: np.ascontiguousarray(tensors[name]) for name in sorted(tensors)})
-    with written_whole(folder / FRAME_NAME) as part:
-        part.write_bytes(content)
-    return {
-        "seeds": len(decoders),
-        "places": len(tensors["place"]),
-        "sha256": hashlib.sha256(content).hexdigest(),
-    }
+    sha256 = write_tensors(folder / FRAME_NAME, tensors)
+    return {"seeds": len(decoders), "places": len(tensors["place"]), "sha256": sha256}
 
 
 def load_frame(folder: Path, seed_index: int, seat: Seat, chain: Chain) -> StickFrame | None:

@@ -13,7 +13,6 @@ from pathlib import Path
 from typing import Final, final
 
 import numpy as np
-from safetensors.numpy import save
 
 from latentarm.alignment.contract import Alignment
 from latentarm.alignment.demonstrated_directions import DemonstratedDirections
@@ -22,7 +21,7 @@ from latentarm.alignment.poses import POSE_SIZE
 from latentarm.alignment.runtime import LearnedAlignment, tensor_shapes
 from latentarm.alignment.tool_space import ToolSpace
 from latentarm.core.errors import UserError
-from latentarm.core.files import sync_folder, write_text, written_whole
+from latentarm.core.files import sync_folder, write_text
 from latentarm.core.types import FloatArray
 from latentarm.core.untrusted.names import clean_name
 from latentarm.core.untrusted.opening import read_bytes
@@ -37,6 +36,7 @@ from latentarm.models.saving import (
     WEIGHTS_LIMIT,
     WEIGHTS_NAME,
     read_tensors,
+    write_tensors,
 )
 from latentarm.robots.kinematics.chain import Chain
 
@@ -172,10 +172,8 @@ def save_profile(
 
     Raises UserError where the folder is there already, or cannot be written.
     """
-    tensors = _tensors(known)
-    content = save({name: np.ascontiguousarray(tensors[name]) for name in sorted(tensors)})
     inputs, twist = known.meaning.matrix.shape
-    section = {
+    section: dict[str, object] = {
         "schema": SCHEMA,
         "fingerprint": fingerprint,
         "seed_index": seed_index,
@@ -183,11 +181,9 @@ def save_profile(
         "tools": twist // 6,
         "answers": len(known.meaning.place),
         "regions": len(known.surroundings.place),
-        "sha256": hashlib.sha256(content).hexdigest(),
     }
     with staged_folder(folder) as staging:
-        with written_whole(staging / ALIGNMENT_NAME) as part:
-            part.write_bytes(content)
+        section["sha256"] = write_tensors(staging / ALIGNMENT_NAME, _tensors(known))
         write_text(staging / CONFIG_NAME, json.dumps({"profile": section, **about}, indent=2) + "\n")
 
 

@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping, Sequence
 from contextvars import ContextVar
 from dataclasses import fields, is_dataclass
 from pathlib import Path
-from typing import Annotated, Any, Final, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, Final, cast, get_args, get_origin, get_type_hints
 
 from tyro.conf import arg
 
@@ -30,6 +30,7 @@ ConfigFile = Annotated[
 ]
 
 OPTION: Final = "config"
+MOST_BYTES: Final = 1 << 16  # of a file of options
 
 NOT_KEPT: Final = (OPTION, "json", "resume")
 """Options of reporting and resuming, which do not change results; they are not written."""
@@ -98,11 +99,9 @@ def read_options(path: Path, command: Command, name: str) -> dict[str, object]:
     """
     from pydantic import TypeAdapter, ValidationError
 
-    from latentarm.commands.yaml_file import read_mapping
-
     known = options_of(command)
     options: dict[str, object] = {}
-    for key, value in read_mapping(path).items():
+    for key, value in _mapping_in(path).items():
         parameter = key.replace("-", "_")
         if parameter not in known:
             near = difflib.get_close_matches(parameter, known, n=1, cutoff=0.0)
@@ -159,3 +158,22 @@ def _plain(value: object) -> object:
     if isinstance(value, tuple):
         return [_plain(entry) for entry in value]  # pyright: ignore[reportUnknownVariableType]
     return value
+
+
+def _mapping_in(path: Path) -> dict[str, Any]:
+    """The mapping from names to numbers, texts and lists of these in a YAML file; UserError for any other."""
+    from latentarm.core.untrusted.yaml_file import read_yaml  # most commands get no file
+
+    value = read_yaml(path, MOST_BYTES, "a YAML file of options")
+    if value is None:
+        return {}
+    if not isinstance(value, dict):
+        raise UserError(f"{path} must have one option a line, such as `seed: 0`.")
+    mapping = cast(dict[object, object], value)
+    for key, entry in mapping.items():
+        entries = cast(list[object], entry) if isinstance(entry, list) else [entry]
+        if not isinstance(key, str):
+            raise UserError(f"{path}: {key!r} is not the name of an option.")
+        if not all(one is None or isinstance(one, str | bool | int | float) for one in entries):
+            raise UserError(f"{path}: the option {key!r} must be a number, a string, or a list of these.")
+    return cast(dict[str, Any], value)

@@ -15,6 +15,7 @@ from latentarm.core.errors import UserError
 from latentarm.core.journal_limits import JournalFullError, JournalLimits, JournalWatch
 from latentarm.core.types import NO_THINGS, Goal, Provenance, StatedLimits, StepRecord, StrPath
 from latentarm.core.untrusted.opening import check_file, is_missing
+from latentarm.demonstrations.info import goals_document
 from latentarm.demonstrations.provenance import provenance_json
 from latentarm.robots.kinematics.pose_rows import STORED
 from latentarm.robots.limits import JointLimits
@@ -162,15 +163,7 @@ class Recorder:
             "end_effector": header.end_effector,
             "limits": None if header.limits is None else limits_document(header.limits),
             "joint_limits": None if header.joint_limits is None else _limits_as_json(header.joint_limits),
-            "goals": [
-                {
-                    "name": goal.name,
-                    "configuration": goal.configuration.tolist(),
-                    "position": goal.pose.position.tolist(),
-                    "rotation": goal.pose.rotation.tolist(),
-                }
-                for goal in header.goals
-            ],
+            "goals": goals_document(header.goals),
             "provenance": provenance_json(header.provenance),
             "things": list(header.things),
             "objects": list(header.objects),

@@ -55,9 +55,7 @@ def write_model(folder: Path, trained: TrainedModel, run: Mapping[str, object]) 
 
     Raises UserError where the files cannot be written.
     """
-    content = save({name: np.ascontiguousarray(trained.tensors[name]) for name in sorted(trained.tensors)})
-    with written_whole(folder / WEIGHTS_NAME) as part:
-        part.write_bytes(content)
+    sha256 = write_tensors(folder / WEIGHTS_NAME, trained.tensors)
     dimensions, summary = trained.dimensions, trained.summary
     origin = KINDS.origin(trained.kind.name)
     section = {
@@ -94,7 +92,7 @@ def write_model(folder: Path, trained: TrainedModel, run: Mapping[str, object]) 
         "tensors": {
             name: {"shape": list(array.shape), "dtype": "F64"} for name, array in trained.tensors.items()
         },
-        "sha256": hashlib.sha256(content).hexdigest(),
+        "sha256": sha256,
         "versions": {"python": platform.python_version(), **_versions(origin)},
     }
     write_text(folder / CONFIG_NAME, json.dumps({**run, "model": section}, indent=2) + "\n")
@@ -193,6 +191,17 @@ def _checked(layout: ContextLayout, dimensions: Dimensions, where: str) -> Conte
 def _renamed(section: Section) -> Section:
     """The section with today's names for what schema 2 called otherwise."""
     return Section(section.where, {OLD_NAMES.get(key, key): value for key, value in section.values.items()})
+
+
+def write_tensors(path: Path, tensors: Mapping[str, FloatArray]) -> str:
+    """Write tensors to a safetensors file, whole or not at all; its SHA-256, for the file that describes it.
+
+    Raises UserError where it cannot be written.
+    """
+    content = save({name: np.ascontiguousarray(tensors[name]) for name in sorted(tensors)})
+    with written_whole(path) as part:
+        part.write_bytes(content)
+    return hashlib.sha256(content).hexdigest()
 
 
 def read_tensors(path: Path, shapes: Mapping[str, Shape], sha256: str) -> dict[str, FloatArray]:

@@ -1,6 +1,5 @@
 """Samples of the demonstrations that a run keeps: to ask people about, and to measure its model on."""
 
-import hashlib
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass
@@ -8,18 +7,16 @@ from pathlib import Path
 from typing import Any, Final, final
 
 import numpy as np
-from safetensors.numpy import save
 
 from latentarm.alignment.answers import Motions
 from latentarm.alignment.demonstrated import shown
 from latentarm.core.errors import UserError
-from latentarm.core.files import written_whole
 from latentarm.core.types import Demonstrations, FloatArray, IntArray
 from latentarm.demonstrations.split import select_episodes
 from latentarm.evaluation.evaluation import MeasurableModel, Probe, take_probe
 from latentarm.evaluation.samples import StartGoalPairs
 from latentarm.models.reading import Section
-from latentarm.models.saving import CONFIG_LIMIT, CONFIG_NAME, read_tensors
+from latentarm.models.saving import CONFIG_LIMIT, CONFIG_NAME, read_tensors, write_tensors
 from latentarm.robots.kinematics.chain import Chain
 
 SAMPLES_NAME: Final = "samples.safetensors"
@@ -86,14 +83,11 @@ def save_samples(folder: Path, samples: Samples) -> Mapping[str, object]:
             "probe.context": probe.context,
             "probe.action": probe.action,
         }
-    content = save({name: np.ascontiguousarray(tensors[name]) for name in sorted(tensors)})
-    with written_whole(folder / SAMPLES_NAME) as part:
-        part.write_bytes(content)
     return {
         "shapes": {name: list(array.shape) for name, array in tensors.items()},
         "duration_s": None if motions is None else motions.duration_s,
         "step_s": None if probe is None else probe.step_s,
-        "sha256": hashlib.sha256(content).hexdigest(),
+        "sha256": write_tensors(folder / SAMPLES_NAME, tensors),
     }
 
 
