@@ -162,9 +162,10 @@ def _plain(value: object) -> object:
 
 def _mapping_in(path: Path) -> dict[str, Any]:
     """The mapping from names to numbers, texts and lists of these in a YAML file; UserError for any other."""
-    from latentarm.core.untrusted.yaml_file import read_yaml  # most commands get no file
+    from latentarm.core.untrusted.opening import read_bytes
+    from latentarm.core.untrusted.yaml_file import parse_yaml  # most commands get no file
 
-    value = read_yaml(path, MOST_BYTES, "a YAML file of options")
+    value = parse_yaml(read_bytes(path, MOST_BYTES), path, "a YAML file of options")
     if value is None:
         return {}
     if not isinstance(value, dict):

@@ -21,8 +21,8 @@ import numpy as np
 
 from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations, Episode, FloatArray, Pose
-from latentarm.core.untrusted.opening import is_missing
-from latentarm.core.untrusted.yaml_file import read_yaml
+from latentarm.core.untrusted.opening import is_missing, read_bytes
+from latentarm.core.untrusted.yaml_file import parse_yaml
 from latentarm.demonstrations.bounds import MAX_EPISODES, check_values
 from latentarm.demonstrations.csv_lines import CsvTable
 from latentarm.demonstrations.source import SourceData
@@ -163,7 +163,7 @@ def _held(path: Path, names: Sequence[str], time_s: FloatArray) -> FloatArray:
 
 def _within(path: Path, time_s: FloatArray) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
     """Whether each time lies within the run, by its file."""
-    listed = read_yaml(path, _MOST_YAML_BYTES, "the YAML file of a run")
+    listed = parse_yaml(read_bytes(path, _MOST_YAML_BYTES), path, "the YAML file of a run")
     pairs = cast(list[object], listed) if isinstance(listed, list) else None
     if pairs is None or not all(isinstance(one, list) and len(cast(list[object], one)) == 2 for one in pairs):
         raise UserError(f"{path} must be a list of pairs of a name and a value.")
@@ -179,7 +179,7 @@ def _within(path: Path, time_s: FloatArray) -> np.ndarray[tuple[int], np.dtype[n
 
 
 def _mapping(path: Path) -> Mapping[str, object]:
-    value = read_yaml(path, _MOST_YAML_BYTES, "the YAML file of morsels")
+    value = parse_yaml(read_bytes(path, _MOST_YAML_BYTES), path, "the YAML file of morsels")
     if not isinstance(value, dict):
         raise UserError(f"{path} must name morsels, the stated goal and the success.")
     return {str(key): entry for key, entry in cast(dict[object, object], value).items()}

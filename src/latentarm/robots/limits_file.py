@@ -27,8 +27,9 @@ import numpy as np
 
 from latentarm.core.errors import UserError
 from latentarm.core.types import StatedGripper, StatedJointLimits, StatedLimits
-from latentarm.core.untrusted.hand_written import MOST_BYTES, check_keys, number_of, read_toml, table_of
-from latentarm.core.untrusted.yaml_file import read_yaml
+from latentarm.core.untrusted.hand_written import MOST_BYTES, check_keys, number_of, parse_toml, table_of
+from latentarm.core.untrusted.opening import read_bytes
+from latentarm.core.untrusted.yaml_file import parse_yaml
 from latentarm.robots.limits import JointLimits, LimitSources, Quantity, Source
 
 TOOL_SPEED: Final = "tool_speed_m_per_s"
@@ -50,9 +51,9 @@ _UNITS: Final = {"rad": 1.0, "deg": math.pi / 180.0, "m": 1.0}
 def read_limits(path: Path) -> StatedLimits:
     """Read a limits file, which ends in .toml, .yaml or .yml."""
     if path.suffix.lower() == ".toml":
-        document = read_toml(path, "limits file")
+        document = parse_toml(read_bytes(path, MOST_BYTES), path, "limits file")
     elif path.suffix.lower() in (".yaml", ".yml"):
-        document = read_yaml(path, MOST_BYTES, "a limits file that can be read")
+        document = parse_yaml(read_bytes(path, MOST_BYTES), path, "a limits file that can be read")
     else:
         raise UserError(f"The limits file {path} must be TOML or YAML: name it .toml, .yaml or .yml.")
     return parse_limits(document, str(path))

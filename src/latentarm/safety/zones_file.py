@@ -28,7 +28,8 @@ import numpy as np
 
 from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray
-from latentarm.core.untrusted.hand_written import check_keys, number_of, read_toml, table_of
+from latentarm.core.untrusted.hand_written import MOST_BYTES, check_keys, number_of, parse_toml, table_of
+from latentarm.core.untrusted.opening import read_bytes
 from latentarm.robots.kinematics.obstacles import Box, Capsule, HalfSpace, Obstacle, Sphere
 from latentarm.safety.config import SafetyConfig
 from latentarm.safety.obstacles import checked_obstacle
@@ -55,7 +56,7 @@ def read_zones(path: Path) -> StatedZones:
 
     Raises UserError where the file cannot be read or is invalid; the message names the key.
     """
-    return parse_zones(read_toml(path, "zones file"), str(path))
+    return parse_zones(parse_toml(read_bytes(path, MOST_BYTES), path, "zones file"), str(path))
 
 
 def parse_zones(document: object, where: str) -> StatedZones:

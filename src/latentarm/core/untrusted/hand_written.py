@@ -6,16 +6,14 @@ from pathlib import Path
 from typing import Any, Final, cast
 
 from latentarm.core.errors import UserError
-from latentarm.core.untrusted.opening import read_bytes
 
 MOST_BYTES: Final = 100_000  # of a file; an entry takes some 200
 
 
-def read_toml(path: Path, kind: str) -> object:
-    """The document of a TOML file; ``kind`` names the file in errors, such as ``limits file``."""
-    text = read_bytes(path, MOST_BYTES)
+def parse_toml(content: bytes, path: Path, kind: str) -> object:
+    """The document in a TOML file's content; ``kind`` names the file in errors, such as ``limits file``."""
     try:
-        return tomllib.loads(text.decode("utf-8"))
+        return tomllib.loads(content.decode("utf-8"))
     except (UnicodeDecodeError, tomllib.TOMLDecodeError, RecursionError) as error:
         what = "nested too deeply" if isinstance(error, RecursionError) else " ".join(str(error).split())
         raise UserError(f"The {kind} {path} cannot be read as TOML: {what}.") from error

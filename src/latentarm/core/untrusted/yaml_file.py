@@ -1,4 +1,4 @@
-"""YAML that this program may not have written: bounded before it is parsed, plain values only."""
+"""YAML that this program may not have written: plain values only."""
 
 import re
 from collections.abc import Hashable
@@ -8,7 +8,6 @@ from typing import Any
 import yaml
 
 from latentarm.core.errors import UserError
-from latentarm.core.untrusted.opening import read_bytes
 
 
 class _PlainLoader(yaml.SafeLoader):
@@ -33,9 +32,8 @@ _PlainLoader.add_implicit_resolver(
 )
 
 
-def read_yaml(path: Path, limit: int, kind: str) -> object:
-    """The value in a file, None where it is empty; ``kind`` names what it should be in errors."""
-    content = read_bytes(path, limit)
+def parse_yaml(content: bytes, path: Path, kind: str) -> object:
+    """The value in a file's content, None where it is empty; ``kind`` says in errors what it should be."""
     loader: _PlainLoader | None = None
     try:
         loader = _PlainLoader(content.decode())
