@@ -1,15 +1,17 @@
 """The barriers that the arm may not pass, all at once: joint limits, things, itself, the workspace."""
 
 from dataclasses import dataclass
-from typing import final
+from typing import TYPE_CHECKING, final
 
 import numpy as np
 
 from latentarm.core.types import FloatArray
 from latentarm.safety.bounds import BUFFER_M, BUFFER_RAD, MAY_BEND_M
-from latentarm.safety.filter import Situation
 from latentarm.safety.halfspaces import slide, unbent
 from latentarm.safety.small import any_nonzero, largest, smallest
+
+if TYPE_CHECKING:
+    from latentarm.safety.filter import Situation
 
 
 @final
@@ -23,7 +25,7 @@ class Distances:
     curvature: FloatArray  # (C, n, n): bound of their second derivatives, see `Body`
 
 
-def past_barriers(velocity: FloatArray, situation: Situation, limited_by: list[str]) -> FloatArray:
+def past_barriers(velocity: FloatArray, situation: "Situation", limited_by: list[str]) -> FloatArray:
     """Slow a velocity (n,), rad/s, before it passes a barrier, and keep its part along the barrier.
 
     The speed towards a barrier is at most the distance left times ``damping_per_s``, which ordinary motion
@@ -56,7 +58,7 @@ def past_barriers(velocity: FloatArray, situation: Situation, limited_by: list[s
     return slid if share == 1.0 else share * slid
 
 
-def _contacts(velocity: FloatArray, situation: Situation) -> Distances | None:
+def _contacts(velocity: FloatArray, situation: "Situation") -> Distances | None:
     """Distances to obstacles, and of the arm to itself."""
     bounds, proximity = situation.bounds, situation.surroundings.proximity
     contacts = situation.contacts(np.abs(velocity))
@@ -72,7 +74,7 @@ def _contacts(velocity: FloatArray, situation: Situation) -> Distances | None:
     return Distances("clearance", contacts.row.reshape(-1, bounds.dof), room, curvature)
 
 
-def _faces(situation: Situation) -> Distances | None:
+def _faces(situation: "Situation") -> Distances | None:
     """Distances to the faces of the workspace box."""
     bounds, workspace = situation.bounds, situation.bounds.config.workspace
     if workspace is None:

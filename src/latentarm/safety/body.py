@@ -1,13 +1,15 @@
 """The arm as the safety filters see it: points fixed to links, and how far joints can move them."""
 
 from functools import cached_property
-from typing import final
+from typing import TYPE_CHECKING, final
 
 import numpy as np
 
 from latentarm.core.types import FloatArray, IntArray
 from latentarm.robots.kinematics.chain import SKEW
-from latentarm.robots.robot import Robot
+
+if TYPE_CHECKING:
+    from latentarm.robots.robot import Robot
 
 
 @final
@@ -30,7 +32,7 @@ class Body:
         lever: (P, n), m (1 where the joint is prismatic).
     """
 
-    def __init__(self, robot: Robot) -> None:
+    def __init__(self, robot: "Robot") -> None:
         self.robot = robot
         capsules, chain = robot.capsules, robot.chain
         self.capsule: IntArray = np.flatnonzero(capsules.link >= 0)

@@ -1,15 +1,17 @@
 """The configured limits resolved for one robot and loop period, as the filters use them."""
 
 import math
-from typing import final
+from typing import TYPE_CHECKING, final
 
 import numpy as np
 
 from latentarm.core.errors import UserError
-from latentarm.robots.robot import Robot
 from latentarm.safety.brake import Brake
-from latentarm.safety.config import SafetyConfig
 from latentarm.safety.obstacles import is_number
+
+if TYPE_CHECKING:
+    from latentarm.robots.robot import Robot
+    from latentarm.safety.config import SafetyConfig
 
 STOPPED_WITHIN_S = 0.15  # from the last fresh input to a command of zero
 LATE_PERIODS = 5  # readings may be late by this many periods of the loop
@@ -50,7 +52,7 @@ class Bounds:
     Raises UserError where a figure is above what the hardware can do, or stopping takes too long.
     """
 
-    def __init__(self, config: SafetyConfig, robot: Robot, dt_s: float) -> None:
+    def __init__(self, config: "SafetyConfig", robot: "Robot", dt_s: float) -> None:
         if not is_number(dt_s):
             raise UserError(f"The loop's period must be a number of seconds, not {dt_s!r}.")
         if not (math.isfinite(dt_s) and 0.001 <= dt_s <= 0.05):

@@ -2,17 +2,19 @@
 
 import math
 from abc import ABC, abstractmethod
-from typing import final
+from typing import TYPE_CHECKING, final
 
 import numpy as np
 from typing_extensions import override
 
 from latentarm.core.types import FloatArray, Stop
 from latentarm.safety.body import Body, Placement
-from latentarm.safety.bounds import Bounds
 from latentarm.safety.proximity import Contacts, Proximity
 from latentarm.safety.small import any_nonzero, largest, smallest
 from latentarm.safety.zone_distances import ZoneDistances
+
+if TYPE_CHECKING:
+    from latentarm.safety.bounds import Bounds
 
 _DRIFT_RAD = 0.05  # a placement computed farther away than this is not reused
 
@@ -21,7 +23,7 @@ _DRIFT_RAD = 0.05  # a placement computed farther away than this is not reused
 class GuardedArm:
     """One arm with its limits, everything it must keep clear of, and where it was placed last."""
 
-    def __init__(self, bounds: Bounds, body: Body) -> None:
+    def __init__(self, bounds: "Bounds", body: Body) -> None:
         self.bounds = bounds
         self.body = body
         self.proximity = Proximity(

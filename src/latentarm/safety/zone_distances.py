@@ -1,14 +1,16 @@
 """Distances of the arm's parts from the zones in which it must be slow."""
 
-from typing import final
+from typing import TYPE_CHECKING, final
 
 import numpy as np
 
 from latentarm.core.types import FloatArray, IntArray
 from latentarm.robots.kinematics.distances import box_separation, segment_distance
 from latentarm.robots.kinematics.obstacles import Box, Capsule, HalfSpace, Sphere
-from latentarm.safety.body import Body, Placement
-from latentarm.safety.zones import Zone
+
+if TYPE_CHECKING:
+    from latentarm.safety.body import Body, Placement
+    from latentarm.safety.zones import Zone
 
 
 @final
@@ -22,7 +24,7 @@ class ZoneDistances:
         limit: (Z, 1), the zones' speeds, m/s.
     """
 
-    def __init__(self, body: Body, zones: tuple[Zone, ...]) -> None:
+    def __init__(self, body: "Body", zones: "tuple[Zone, ...]") -> None:
         count = body.count
         tools = np.arange(2 * count, len(body.link))
         self.limit: FloatArray = np.array([[zone.speed] for zone in zones])
@@ -46,7 +48,7 @@ class ZoneDistances:
         change = np.abs(q - self._at) @ self._lever + self._doubt
         return self._distance - change, self._distance + change
 
-    def measured(self, zone: int, placement: Placement) -> FloatArray:
+    def measured(self, zone: int, placement: "Placement") -> FloatArray:
         """The distances to a zone, (K + T,), m; zero or less where a part reaches into it."""
         if self._measured[zone] is not placement:
             start, end = placement.points[self._start], placement.points[self._end]
@@ -55,7 +57,7 @@ class ZoneDistances:
             self._measured[zone] = placement
         return self._distance[zone]
 
-    def _to(self, zone: Zone, start: FloatArray, end: FloatArray) -> FloatArray:
+    def _to(self, zone: "Zone", start: FloatArray, end: FloatArray) -> FloatArray:
         """Distances of the parts to one zone, (K + T,), m; lower bounds where they are above zero."""
         match zone.shape:
             case HalfSpace(point=point, normal=normal):
