@@ -180,7 +180,7 @@ def ask_and_learn(wire: Wire, plan: PersonalisePlan) -> None:
     Raises:
         UserError: the run cannot be aligned, nothing was answered, or the profile cannot be written.
     """
-    # torch, which takes seconds to load: in this process alone.
+    # They take a second to load: in this process alone.
     from latentarm.alignment.queries import StoppingRule
     from latentarm.runs.aligning import NO_ALIGN, PROFILE, alignable, learn
     from latentarm.runs.questions import ask
