@@ -11,13 +11,9 @@ from latentarm.testing.real_arm_rig import RealArmRig, StandIn
 
 
 class GuidingLaws(RealArmRig):
-    """Tests of a `GuidableArm`; they are skipped for any other arm.
+    """Tests of a `GuidableArm`; they are skipped for any other arm."""
 
-    Attributes:
-        push_rad: how far the joints are pushed by hand, rad.
-    """
-
-    push_rad = 0.05
+    push_rad = 0.05  # how far the joints are pushed by hand, rad
 
     def test_guided_by_hand_it_goes_where_it_is_pushed_and_takes_no_commands(
         self, new_arm: RealArm, stand_in: StandIn, velocity: FloatArray

@@ -19,26 +19,19 @@ _KIND: Final = "sensor_msgs/msg/JointState"
 
 @final
 class JointFeed:
-    """Subscribes to the joint states; roslibpy's thread writes its attributes, others read them.
-
-    Attributes:
-        newest: the last measurement, and its time on our clock, s; None at first
-        count: number of new ones
-        repeats: number with the stamp of the one before
-        trouble: why the last message about the arm was unusable, or ""
-        jumped: whether the clock of the stamps was set; readers reset this
-        ahead_s: the newest stamp less this computer's time of day at arrival, s
-    """
+    """Subscribes to the joint states; roslibpy's thread writes its attributes, others read them."""
 
     def __init__(self, link: Link, options: Ros2Options, now_s: Callable[[], float]) -> None:
         self._now_s = now_s
         self._states = JointStates(options.joints, options.gripper_joint)
         self._clock = StampClock()
+        # the last measurement, and its time on our clock, s; None at first
         self.newest: tuple[Measured, float] | None = None
-        self.count = self.repeats = 0
-        self.trouble = ""
-        self.jumped = False
-        self.ahead_s = 0.0
+        self.count = 0  # of new ones
+        self.repeats = 0  # of those with the stamp of the one before
+        self.trouble = ""  # why the last message about the arm was unusable, or ""
+        self.jumped = False  # whether the clock of the stamps was set; readers reset this
+        self.ahead_s = 0.0  # the newest stamp less this computer's time of day at arrival, s
         link.subscribe(options.states, _KIND, self._heard)
 
     @property

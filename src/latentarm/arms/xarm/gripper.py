@@ -43,10 +43,6 @@ class GripperLink:
 
     Raises:
         LinkLostError: nobody answers there, or no gripper.
-
-    Attributes:
-        reading: the newest
-        fault: one sentence, or ""
     """
 
     def __init__(self, sdk: Sdk, host: str, port: int | None, gripper: Gripper) -> None:
@@ -65,7 +61,7 @@ class GripperLink:
         self._target: tuple[int, int] | None = None
         self._enable = self._on = False
         self._ended = False
-        self.fault = ""
+        self.fault = ""  # one sentence, or ""
         try:
             self.reading = self._read()
         except LinkLostError:

@@ -132,10 +132,6 @@ class JointReports:
 
     ``port`` None is the manufacturer's; ``timed`` says whether the firmware reports on the port with times;
     ``number`` is that of the last report of the connection before.
-
-    Attributes:
-        newest: None before the first; a report that repeats the controller's time does not count
-        came: notified at each report
     """
 
     def __init__(
@@ -156,9 +152,10 @@ class JointReports:
         self._now_s = now_s
         self.clock = ReportClock()
         self._earlier: deque[tuple[float, FloatArray]] = deque()
+        # None before the first; a report that repeats the controller's time does not count
         self.newest: JointReport | None = None
         self._number = number
-        self.came = threading.Condition()
+        self.came = threading.Condition()  # notified at each report
         self.stream = ReportStream(host, port or kind, kind, self._take)
 
     def _take(self, frame: bytes) -> None:

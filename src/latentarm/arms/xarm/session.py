@@ -51,17 +51,13 @@ def _port(name: str, given: Mapping[str, str]) -> int | None:
 
 @final
 class Session:
-    """One connection to an arm; opening and closing it moves nothing.
-
-    Attributes:
-        gripper: None where the robot has none
-    """
+    """One connection to an arm; opening and closing it moves nothing."""
 
     def __init__(
         self, sdk: Sdk, host: str, options: Options, robot: Robot, now_s: Callable[[], float]
     ) -> None:
         self._sdk, self._host, self._options, self._robot, self._now_s = sdk, host, options, robot, now_s
-        self.gripper: GripperLink | None = None
+        self.gripper: GripperLink | None = None  # None where the robot has none
         self._status: StatusReports | None = None
         self._joints: JointReports | None = None
         self.controller = Controller(sdk, host, options.command_port)

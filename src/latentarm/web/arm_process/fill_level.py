@@ -9,23 +9,18 @@ from latentarm.tasks.predicates import Poured
 from latentarm.tasks.scene_task import Beginning
 from latentarm.web.protocol.report import Fill
 
-SETTLES_S: Final = 1.0
-"""Poured grains settle within this time, s."""
+SETTLES_S: Final = 1.0  # poured grains settle within this time, s
 
 
 @final
 @dataclass(frozen=True)
 class Vessel:
-    """A vessel to pour from or into.
-
-    Attributes:
-        enough: share of the grains that must be in it, in (0, 1]; None for the vessel poured from.
-    """
+    """A vessel to pour from or into."""
 
     name: str
     room: Interior
     grains: str
-    enough: float | None
+    enough: float | None  # share of the grains that must be in it, in (0, 1]; None for the vessel poured from
 
 
 def vessels(begun: Beginning) -> tuple[Vessel, ...]:
@@ -43,18 +38,13 @@ def vessels(begun: Beginning) -> tuple[Vessel, ...]:
 
 @final
 class FillLevels:
-    """How full the vessels of a run are, and whether too little is left to pour.
-
-    Attributes:
-        now: the newest levels.
-        short: whether too little is left.
-    """
+    """How full the vessels of a run are, and whether too little is left to pour."""
 
     def __init__(self, found: tuple[Vessel, ...]) -> None:
         self._vessels = found
         self._enough_s: float | None = None
-        self.now: tuple[Fill, ...] = ()
-        self.short = False
+        self.now: tuple[Fill, ...] = ()  # the newest levels
+        self.short = False  # whether too little is left
 
     def see(self, state: SceneState, time_s: float) -> None:
         """Update from the scene at the clock's time, s."""

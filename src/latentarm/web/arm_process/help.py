@@ -24,14 +24,10 @@ time, and keeps most people from anything else."""
 
 @final
 class Help(Arbitration):
-    """Help whose level can be changed while the arm is driven.
-
-    Attributes:
-        calls: records changes; None for nowhere.
-    """
+    """Help whose level can be changed while the arm is driven."""
 
     def __init__(self) -> None:
-        self.calls: CallLog | None = None
+        self.calls: CallLog | None = None  # records changes; None for nowhere
         self.level: HelpLevel = "off"
 
     @logged

@@ -31,9 +31,7 @@ from latentarm.web.arm_process.drive_setup import DriveSetup, Spec, load_setup
 from latentarm.web.arm_process.initial_state import RobotOptions
 from latentarm.web.arm_process.speeds import Speeds
 
-KEPT_BYTES: Final = 512 << 20
-"""Size of all incident files in a folder; the oldest are deleted first."""
-
+KEPT_BYTES: Final = 512 << 20  # size of all incident files in a folder; the oldest are deleted first
 _SUFFIX: Final = ".incident.gz"
 _RUN: Final = "run"
 _LIMITS: Final = "limits"

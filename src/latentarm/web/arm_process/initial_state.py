@@ -21,12 +21,9 @@ from latentarm.tasks.catalogue import SCENE_TASKS, make_scene_task
 from latentarm.tasks.place import Place, ScenePlace
 from latentarm.web.arm_process.task_run import Todo, goal_to_reach, things_to_do
 
-FREE: Final = "free"
-"""Name of the task where none is named: nothing in particular is to be done."""
-
+FREE: Final = "free"  # name of the task where none is named: nothing in particular is to be done
 MOST_THINGS: Final = 200
-MOST_GRAINS: Final = 2000
-"""Largest numbers that fit into a tick's report."""
+MOST_GRAINS: Final = 2000  # largest numbers that fit into a tick's report
 
 
 @final
@@ -51,17 +48,12 @@ class RobotOptions:
 @final
 @dataclass(frozen=True, eq=False)
 class InitialState:
-    """The initial state of a task run.
-
-    Attributes:
-        start: (n,), where a simulated arm starts, and where the way back leads, rad.
-        scene: the things about a simulated arm; None where they do not count.
-    """
+    """The initial state of a task run."""
 
     place: Place
-    start: FloatArray
+    start: FloatArray  # (n,), where a simulated arm starts, and where the way back leads, rad
     todo: Todo
-    scene: Scene | None = None
+    scene: Scene | None = None  # the things about a simulated arm; None where they do not count
 
 
 def begin(

@@ -10,16 +10,12 @@ from latentarm.web.protocol.report import GripperState
 
 @final
 class LatestReadings:
-    """Keeps the newest valid readings.
-
-    Attributes:
-        q: (n,), joint positions, rad.
-        gripper: measurement, and whether the last command was to close; None before the first.
-    """
+    """Keeps the newest valid readings."""
 
     def __init__(self, start: FloatArray, gripper: Gripper | None) -> None:
         self._gripper = gripper
-        self.q = start
+        self.q = start  # (n,), joint positions, rad
+        # measurement, and whether the last command was to close; None before the first
         self.gripper: GripperState | None = None
 
     def see(self, record: StepRecord) -> None:

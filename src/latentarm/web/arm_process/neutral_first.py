@@ -12,16 +12,12 @@ from latentarm.web.arm_process.page_inputs import PageInputs
 
 @final
 class NeutralFirst(InputSource):
-    """The page's inputs, zero after a change of their meaning or of the deflected device.
-
-    Attributes:
-        waiting: whether the stick has yet to be let go.
-    """
+    """The page's inputs, zero after a change of their meaning or of the deflected device."""
 
     def __init__(self, inputs: PageInputs) -> None:
         self._inputs = inputs
         self._held_by: tuple[str, int] | None = None
-        self.waiting = False
+        self.waiting = False  # whether the stick has yet to be let go
 
     def demand(self) -> None:
         """Ignore deflections until the stick is let go: a push means something else from now on."""

@@ -18,11 +18,8 @@ INPUT_TIMEOUT_S: Final = 0.05
 """How long a fresh input counts: 2.5 inputs of a page that sends 50 per second. The rest of 0.15 s is for the
 stop."""
 
-LATCH_MAX_S: Final = 10.0
-"""How long a deflection counts that is latched, or constant like a dead stick's, s."""
-
-COPILOT_TIMEOUT_S: Final = 0.5
-"""How long a co-pilot's pace counts, s: five times the period of their page."""
+LATCH_MAX_S: Final = 10.0  # how long a deflection counts that is latched, or constant like a dead stick's, s
+COPILOT_TIMEOUT_S: Final = 0.5  # how long a co-pilot's pace counts, s: five times the period of their page
 
 
 @final
@@ -33,13 +30,6 @@ class PageInputs(InputSource):
         dead_zone: a smaller deflection is neutral.
         stop: stops the arm: when a deflection has lasted too long without a change, another person starts to
             drive, or the driver's co-pilot comes, goes, or is silent.
-
-    Attributes:
-        driver: number of the driver; -1 before the first.
-        fresh: whether the newest input still counts.
-        deflected: whether it is outside the dead zone.
-        held_by: kind and number of the deflected device; None for none.
-        devices: kinds of device that have moved the arm or its gripper since this was last emptied.
     """
 
     def __init__(
@@ -55,9 +45,11 @@ class PageInputs(InputSource):
         self._same_since_s = math.inf
         self._raw: tuple[float, ...] = ()
         self._paced: Paced | None = None
-        self.driver = -1
-        self.fresh = self.deflected = False
-        self.held_by: tuple[str, int] | None = None
+        self.driver = -1  # number of the driver; -1 before the first
+        self.fresh = False  # whether the newest input still counts
+        self.deflected = False  # whether it is outside the dead zone
+        self.held_by: tuple[str, int] | None = None  # kind and number of the deflected device; None for none
+        # kinds of device that have moved the arm or its gripper since this was last emptied
         self.devices: set[str] = set()
 
     def latest(self, now_s: float) -> tuple[Input, float]:

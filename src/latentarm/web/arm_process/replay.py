@@ -17,27 +17,21 @@ from latentarm.core.types import FloatArray, GripperReading, Input, Reading, Sto
 from latentarm.web.arm_process.drive_setup import DriveSetup
 from latentarm.web.arm_process.incident import computer, newest, rebuild, unpack
 
-ELSEWHERE_RAD_S: Final = 1e-9
-"""Velocities may differ by this much on another computer, rad/s."""
+ELSEWHERE_RAD_S: Final = 1e-9  # velocities may differ by this much on another computer, rad/s
 
 
 @final
 class Replay:
-    """Repeats the calls of a drive's `Step` on another one.
-
-    Attributes:
-        agreed: ticks with the same command, to the bit.
-        first: the first call with another answer: its tick, when, s from the first one, both answers.
-        largest_rad_s: the largest difference of a velocity.
-        otherwise: whether anything else differs.
-        happened: events: when, s from the first tick, and in words.
-    """
+    """Repeats the calls of a drive's `Step` on another one."""
 
     def __init__(self, setup: DriveSetup) -> None:
-        self.ticks = self.agreed = 0
+        self.ticks = 0
+        self.agreed = 0  # ticks with the same command, to the bit
+        # the first call with another answer: its tick, when, s from the first one, both answers
         self.first: dict[str, Any] | None = None
-        self.largest_rad_s, self.otherwise = 0.0, False
-        self.happened: list[tuple[float, str]] = []
+        self.largest_rad_s = 0.0  # the largest difference of a velocity
+        self.otherwise = False  # whether anything else differs
+        self.happened: list[tuple[float, str]] = []  # events: when, s from the first tick, and in words
         self._modes = (*setup.controller.modes, "way to a pose")
         self._help, self._to_pose = setup.help, setup.to_pose()
         self._poses: deque[FloatArray] = deque()

@@ -7,8 +7,7 @@ from typing import Final, Self, final
 from latentarm.core.errors import UserError
 from latentarm.safety.config import SafetyConfig
 
-SLOWEST: Final = 0.01
-"""A slower arm hardly moves, rad/s or m/s."""
+SLOWEST: Final = 0.01  # a slower arm hardly moves, rad/s or m/s
 
 
 @final
@@ -16,16 +15,12 @@ SLOWEST: Final = 0.01
 class Speeds:
     """Limits of speed.
 
-    Attributes:
-        joint: of joints that turn, rad/s.
-        link: of any point of the arm, and of joints that slide, m/s.
-
     Raises:
         UserError: one is higher than the safety limits allow, or hardly a motion.
     """
 
-    joint: float = SafetyConfig.joint_speed
-    link: float = SafetyConfig.link_speed
+    joint: float = SafetyConfig.joint_speed  # of joints that turn, rad/s
+    link: float = SafetyConfig.link_speed  # of any point of the arm, and of joints that slide, m/s
 
     def __post_init__(self) -> None:
         _check("--joint-speed", self.joint, SafetyConfig.joint_speed, "rad/s")

@@ -11,22 +11,14 @@ from latentarm.web.protocol.orders import HelpLevel, ModeName
 @final
 @dataclass
 class Steering:
-    """State that is kept from one drive to the next.
-
-    Attributes:
-        axes: which pair of the end-effector's axes.
-        help: level of help with latent actions.
-        tick: counts the ticks of all drives.
-        ending_episode: whether the episode ends as soon as the arm is at rest.
-        run: of the task; None before it begins.
-    """
+    """State that is kept from one drive to the next."""
 
     mode: ModeName
-    axes: int = 0
-    help: HelpLevel = USUAL_HELP
-    tick: int = 0
-    ending_episode: bool = False
-    run: TaskRun | None = None
+    axes: int = 0  # which pair of the end-effector's axes
+    help: HelpLevel = USUAL_HELP  # level of help with latent actions
+    tick: int = 0  # counts the ticks of all drives
+    ending_episode: bool = False  # whether the episode ends as soon as the arm is at rest
+    run: TaskRun | None = None  # of the task; None before it begins
 
     @property
     def help_now(self) -> HelpLevel:

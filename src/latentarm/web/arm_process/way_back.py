@@ -13,15 +13,9 @@ from latentarm.web.arm_process.neutral_first import NeutralFirst
 from latentarm.web.arm_process.page_inputs import PageInputs
 from latentarm.web.protocol.notice import Notice, NoticeCode
 
-ARRIVED_RAD: Final = 0.01
-"""Every joint is at the goal within this."""
-
-AT_START_RAD: Final = 0.02
-"""From nearer than this a way back is pointless."""
-
-STUCK_S: Final = 3.0
-"""The way ends after so long without progress, s."""
-
+ARRIVED_RAD: Final = 0.01  # every joint is at the goal within this
+AT_START_RAD: Final = 0.02  # from nearer than this a way back is pointless
+STUCK_S: Final = 3.0  # the way ends after so long without progress, s
 LONGEST_S: Final = 60.0
 
 _CLOSER_RAD: Final = 0.005
@@ -50,10 +44,6 @@ class WayBack(InputSource):
     So the arm stops as in any motion when the page's inputs cease. Theirs must be neutral: any push, and any
     request to the gripper, ends the way. The arm sets out once the straight way was found clear, which takes
     a fraction of a second.
-
-    Attributes:
-        on: whether the arm is on its way.
-        pose: the name of the pose that it leads to; None for the start.
     """
 
     def __init__(
@@ -64,11 +54,11 @@ class WayBack(InputSource):
         self._gate = gate
         self._inputs = inputs
         self._start = self._goal = start
-        self.pose: str | None = None
+        self.pose: str | None = None  # the name of the pose that it leads to; None for the start
         self._pushed = False
         self._began_s = self._closer_s = -math.inf
         self._closest = math.inf
-        self.on = False
+        self.on = False  # whether the arm is on its way
 
     def begin(self, time_s: float, q: FloatArray, goal: FloatArray, pose: str | None = None) -> None:
         """Check the way from ``q`` to ``goal``, (n,), rad, and set out if it is clear; ``pose`` names it."""

@@ -18,9 +18,7 @@ from latentarm.web.cameras.clock_pattern import clock_pictures
 from latentarm.web.cameras.picture import MOST_HIGH, MOST_PER_S, MOST_WIDE, Picture, fitted
 from latentarm.web.cameras.sources import CameraSource, Kind
 
-DRIFT: Final = 2e-4
-"""The camera's clock may run faster or slower than ours by this share."""
-
+DRIFT: Final = 2e-4  # the camera's clock may run faster or slower than ours by this share
 _OPEN_WITHIN_S: Final = 5.0
 _READ_WITHIN_S: Final = 3.0
 _MOST_PIXELS: Final = 4096 * 2304

@@ -10,22 +10,17 @@ MOST_WIDE: Final = 640
 MOST_HIGH: Final = 480
 """Larger pictures are scaled down, so that two cameras leave a small computer time for the arm."""
 
-MOST_PER_S: Final = 30
-"""Pictures per second that are sent at most."""
+MOST_PER_S: Final = 30  # pictures per second that are sent at most
 
 
 @final
 @dataclass(frozen=True)
 class Picture:
-    """One picture.
+    """One picture."""
 
-    Attributes:
-        planes: (3 H / 2, W) bytes, YUV 4:2:0 as one array: H rows of Y, then U and V. H and W are even.
-        captured_s: when it was taken, s; on the monotonic clock of this computer.
-    """
-
+    # (3 H / 2, W) bytes, YUV 4:2:0 as one array: H rows of Y, then U and V. H and W are even.
     planes: NDArray[np.uint8]
-    captured_s: float
+    captured_s: float  # when it was taken, s; on the monotonic clock of this computer
 
 
 def fitted(width: int, height: int) -> tuple[int, int]:

@@ -24,9 +24,7 @@ from latentarm.core.untrusted.terminal import one_line
 from latentarm.web.cameras.sources import CameraSource
 from latentarm.web.protocol.notice import NoticeError
 
-MOST_VIEWERS: Final = 4
-"""Pages that may watch the cameras at once: pictures are encoded for each."""
-
+MOST_VIEWERS: Final = 4  # pages that may watch the cameras at once: pictures are encoded for each
 CHECKED_WITHIN_S: Final = 20.0
 ANSWER_WITHIN_S: Final = 5.0
 

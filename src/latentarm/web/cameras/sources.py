@@ -12,12 +12,8 @@ from urllib.parse import urlsplit
 from latentarm.core.errors import UserError
 from latentarm.core.untrusted.names import clean_name, same_name
 
-MOST: Final = 4
-"""Cameras of one page."""
-
-TEST_PATTERN: Final = "testsrc"
-"""The address of a moving test pattern, for trying the page without a camera."""
-
+MOST: Final = 4  # cameras of one page
+TEST_PATTERN: Final = "testsrc"  # the address of a moving test pattern, for trying the page without a camera
 _LONGEST_NAME: Final = 20
 _LONGEST_ADDRESS: Final = 1000
 _NETWORK: Final = ("rtsp", "rtsps")
@@ -30,13 +26,10 @@ Kind = Literal["device", "network", "file", "pattern"]
 @final
 @dataclass(frozen=True)
 class CameraSource:
-    """One camera.
-
-    Attributes:
-        address: may hold a password: it is never shown, logged or sent, and not part of the `repr`.
-    """
+    """One camera."""
 
     name: str
+    # may hold a password: it is never shown, logged or sent, and not part of the `repr`
     address: str = field(repr=False)
 
     @property

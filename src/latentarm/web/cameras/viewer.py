@@ -25,12 +25,8 @@ from latentarm.core.untrusted.documents import parse_object
 from latentarm.web.cameras.camera import Camera
 from latentarm.web.cameras.rtp_clock import TIME_BASE, RtpClock
 
-CONNECTED_WITHIN_S: Final = 10.0
-"""A page that has not connected by then is dropped, s."""
-
-TELL_EVERY_S: Final = 0.2
-"""How often a page receives the cameras' states, s."""
-
+CONNECTED_WITHIN_S: Final = 10.0  # a page that has not connected by then is dropped, s
+TELL_EVERY_S: Final = 0.2  # how often a page receives the cameras' states, s
 _LONGEST_MESSAGE: Final = 200
 
 _ADDRESSES: Final = ("a=candidate:", "a=end-of-candidates", "a=remote-candidates")

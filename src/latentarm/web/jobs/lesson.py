@@ -14,18 +14,12 @@ from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations
 from latentarm.web.protocol.learning_messages import Lesson
 
-SHORT_SHARE: Final = 0.5
-"""A recording that moves for less than this share of the usual one is short."""
-
+SHORT_SHARE: Final = 0.5  # a recording that moves for less than this share of the usual one is short
 WEAK_SHARE: Final = 0.2
 """A direction that moves the tool less than this share of the strongest one does little."""
 
-WEAK_M_S: Final = 0.01
-"""One that moves the tool more slowly than this does little, whatever the others do."""
-
-TURN_M: Final = 0.1
-"""Turning the tool by one radian counts as moving it so far, m."""
-
+WEAK_M_S: Final = 0.01  # one that moves the tool more slowly than this does little, whatever the others do
+TURN_M: Final = 0.1  # turning the tool by one radian counts as moving it so far, m
 _MOST_SAMPLES: Final = 200
 
 

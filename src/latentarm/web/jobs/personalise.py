@@ -20,19 +20,12 @@ _STILL_M: Final = 5e-4  # A tool that moves less is not shown
 @final
 @dataclass(frozen=True)
 class PersonalisePlan:
-    """The person to ask, and the run to ask about.
-
-    Attributes:
-        run: its folder.
-        name: the person's.
-        questions: maximum number of answers.
-        out: the profile's folder, which does not exist yet.
-    """
+    """The person to ask, and the run to ask about."""
 
     run: Path
-    name: str
-    questions: int
-    out: Path
+    name: str  # the person's
+    questions: int  # maximum number of answers
+    out: Path  # the profile's folder, which does not exist yet
 
 
 @final

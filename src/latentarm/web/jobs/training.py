@@ -21,15 +21,9 @@ from latentarm.web.jobs.lesson import lesson_of, moving_seconds
 from latentarm.web.protocol.learning_messages import Lesson, Training
 from latentarm.web.protocol.notice import Message, Notice, NoticeError, sentence
 
-RATE_HZ: Final = 10.0
-"""Samples per second of motion for training: an action then looks half a second ahead."""
-
-FEWEST: Final = 3
-"""Episodes: one trains, one stops the training, and one is kept for `latentarm evaluate`."""
-
-SHORTEST_S: Final = 1.0
-"""An episode that moves for less than this shows nothing."""
-
+RATE_HZ: Final = 10.0  # samples per second of motion for training: an action then looks half a second ahead
+FEWEST: Final = 3  # episodes: one trains, one stops the training, and one is kept for `latentarm evaluate`
+SHORTEST_S: Final = 1.0  # an episode that moves for less than this shows nothing
 STATE_NOISE_RAD: Final = 0.01
 
 _FIRST_MODELS: Final = (DEFAULT_MODEL, "cvae", "cae", "homogeneous", "pca")
@@ -48,11 +42,6 @@ def model_names() -> tuple[str, ...]:
 class TrainingPlan:
     """The model to train, and the episodes to train it on.
 
-    Attributes:
-        model: a name in the catalogue of models.
-        out: folder that holds ``datasets`` and ``runs``.
-        end_effector: site, body or link, where the robot is a model file.
-
     Raises:
         NoticeError: the name cannot be a folder's or is taken, or there are too few episodes.
     """
@@ -60,10 +49,10 @@ class TrainingPlan:
     journal: Path
     episodes: tuple[int, ...]
     name: str
-    model: str
+    model: str  # a name in the catalogue of models
     latent_dim: int
-    out: Path
-    end_effector: str | None = None
+    out: Path  # folder that holds ``datasets`` and ``runs``
+    end_effector: str | None = None  # site, body or link, where the robot is a model file
 
     def __post_init__(self) -> None:
         if not _NAME.fullmatch(self.name):

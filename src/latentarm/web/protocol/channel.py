@@ -14,9 +14,7 @@ from latentarm.web.protocol.notice import Notice
 from latentarm.web.protocol.orders import Order, parse_order
 from latentarm.web.protocol.shared_memory import Flag, LatestSlot
 
-ORDER_LIMIT: Final = 4096
-"""The longest order, bytes; short enough that the pipe takes it whole or not at all."""
-
+ORDER_LIMIT: Final = 4096  # the longest order, bytes; short enough that the pipe takes it whole or not at all
 _REPORT_LIMIT: Final = 262144
 _GIVEN_LIMIT: Final = 1024
 _REASON_LIMIT: Final = 512
@@ -25,19 +23,13 @@ _REASON_LIMIT: Final = 512
 @final
 @dataclass(frozen=True)
 class Channel:
-    """The control process's side.
-
-    Attributes:
-        stop: the newest reason to stop, a `Notice`; every new one stops the arm.
-        ending: raised to make the control process bring the arm to rest and end.
-        orders: bounded, so that a slow reader loses orders and never blocks the writer.
-    """
+    """The control process's side."""
 
     given: LatestSlot
     report: LatestSlot
-    stop: LatestSlot
-    ending: Flag
-    orders: Connection
+    stop: LatestSlot  # the newest reason to stop, a `Notice`; every new one stops the arm
+    ending: Flag  # raised to make the control process bring the arm to rest and end
+    orders: Connection  # bounded, so that a slow reader loses orders and never blocks the writer
 
     def read_orders(self, most: int) -> list[Order]:
         """New orders, oldest first; invalid ones are skipped.

@@ -31,16 +31,11 @@ class EndCopilot(Message):
 
 @final
 class CopilotPace(Message):
-    """The share of the driver's speed that the co-pilot allows, 10 times a second: without it the arm stops.
-
-    Attributes:
-        pace: in [0, 1].
-        nonce: of the newest `State` that the page has seen.
-    """
+    """The share of the driver's speed that the co-pilot allows, 10 times a second, or the arm stops."""
 
     type: Literal["copilot_pace"]
     pace: Annotated[float, Field(ge=0.0, le=1.0)]
-    nonce: Annotated[str, Field(max_length=64)]
+    nonce: Annotated[str, Field(max_length=64)]  # of the newest `State` that the page has seen
 
 
 CopilotMessage = AskToCopilot | AcceptCopilot | EndCopilot | CopilotPace
@@ -56,12 +51,8 @@ class Person(Message):
 
 @final
 class CopilotState(Message):
-    """The co-pilot; ``id`` is the page's.
-
-    Attributes:
-        pace: share of the driver's speed that they allow, in [0, 1].
-    """
+    """The co-pilot; ``id`` is the page's."""
 
     id: str
     name: PersonName
-    pace: float
+    pace: float  # share of the driver's speed that they allow, in [0, 1]

@@ -14,19 +14,13 @@ TrainingPhase = Literal["exporting", "training", "done", "failed", "cancelled"]
 
 @final
 class Train(Message):
-    """Train a model on recorded episodes; from the page that drives.
-
-    Attributes:
-        name: of the new run, and of its dataset.
-        model: a kind of latent action model.
-        latent_dim: d, axes of the latent actions.
-        episodes: their numbers, see `Recorded`.
-    """
+    """Train a model on recorded episodes; from the page that drives."""
 
     type: Literal["train"]
-    name: Annotated[str, Field(max_length=200)]
-    model: ModelName
-    latent_dim: Literal[1, 2]
+    name: Annotated[str, Field(max_length=200)]  # of the new run, and of its dataset
+    model: ModelName  # a kind of latent action model
+    latent_dim: Literal[1, 2]  # d, axes of the latent actions
+    # their numbers, see `Recorded`
     episodes: Annotated[tuple[Annotated[int, Field(ge=1, le=2**31)], ...], Field(max_length=300)]
 
 
@@ -56,61 +50,37 @@ class Recorded(Message):
 
 @final
 class Lesson(Message):
-    """The result of a training in terms that a person notices.
+    """The result of a training in terms that a person notices."""
 
-    Attributes:
-        recordings: how many were chosen.
-        learned_from: how many of them its weights were fitted to; the others checked it.
-        short: numbers of the recordings that are much shorter than the others.
-        speeds_m_s: how fast a full push moves the tool along each axis of the stick, m/s.
-        weak: axes that do little, 0 for left and right, 1 for up and down.
-    """
-
-    recordings: int
-    learned_from: int
-    short: tuple[int, ...]
-    speeds_m_s: tuple[float, ...]
-    weak: tuple[int, ...]
+    recordings: int  # how many were chosen
+    learned_from: int  # how many of them its weights were fitted to; the others checked it
+    short: tuple[int, ...]  # numbers of the recordings that are much shorter than the others
+    speeds_m_s: tuple[float, ...]  # how fast a full push moves the tool along each axis of the stick, m/s
+    weak: tuple[int, ...]  # axes that do little, 0 for left and right, 1 for up and down
 
 
 @final
 class Training(Message):
-    """A training under way, or the last one.
-
-    Attributes:
-        epoch: passes over the episodes so far.
-        loss: validation loss so far, or null.
-        seconds_left: estimate, or null.
-        why: reasons of a failure, or warnings.
-        lesson: null before it is done.
-    """
+    """A training under way, or the last one."""
 
     phase: TrainingPhase
     run: str
-    epoch: int = 0
+    epoch: int = 0  # passes over the episodes so far
     epochs: int = 0
-    loss: float | None = None
-    seconds_left: float | None = None
-    why: tuple[Notice, ...] = ()
-    lesson: Lesson | None = None
+    loss: float | None = None  # validation loss so far, or null
+    seconds_left: float | None = None  # estimate, or null
+    why: tuple[Notice, ...] = ()  # reasons of a failure, or warnings
+    lesson: Lesson | None = None  # null before it is done
 
 
 @final
 class LearningState(Message):
-    """Recordings, training and runs; sent after `Welcome` and whenever it changes.
-
-    Attributes:
-        training: null before the first.
-        personalise: null where nobody was asked.
-        recordings: complete episodes of this journal.
-        run: the loaded one of ``runs``, or null.
-        profiles: people whose alignment with it can be chosen.
-    """
+    """Recordings, training and runs; sent after `Welcome` and whenever it changes."""
 
     type: Literal["learning"] = "learning"
-    training: Training | None
-    personalise: Personalise | None
-    recordings: tuple[Recorded, ...]
+    training: Training | None  # null before the first
+    personalise: Personalise | None  # null where nobody was asked
+    recordings: tuple[Recorded, ...]  # complete episodes of this journal
     runs: tuple[str, ...]
-    run: str | None
-    profiles: tuple[str, ...]
+    run: str | None  # the loaded one of ``runs``, or null
+    profiles: tuple[str, ...]  # people whose alignment with it can be chosen

@@ -9,8 +9,7 @@ from latentarm.core.types import Stop, StopCode
 from latentarm.core.untrusted.terminal import one_line
 from latentarm.web.words.catalogue import DEFAULT, languages
 
-PersonName = str | int
-"""A guest without a name is called by a number."""
+PersonName = str | int  # a guest without a name is called by a number
 
 NoticeCode = Literal[
     StopCode,
@@ -110,16 +109,12 @@ class Message(BaseModel):
 
 @final
 class Notice(Message):
-    """A notice to a person.
+    """A notice to a person."""
 
-    Attributes:
-        code: of its text.
-        parameters: of the text. ``name`` is a `PersonName` where it is a person's. ``because`` is the code of
-            another notice, whose parameters are here too. ``text`` exists only in English, such as the
-            message of an error; pages show it and never parse it.
-    """
-
-    code: NoticeCode
+    code: NoticeCode  # of its text
+    # of the text. ``name`` is a `PersonName` where it is a person's. ``because`` is the code of another
+    # notice, whose parameters are here too. ``text`` exists only in English, such as the message of an
+    # error; pages show it and never parse it.
     parameters: dict[str, str | int] = {}
 
     @property

@@ -13,8 +13,7 @@ ModeName = Literal["latent", "assisted", "end_effector"]
 
 HelpLevel = Literal["off", "low", "medium", "high"]
 
-BuiltInPose = Literal["home", "tuck"]
-"""Poses that a robot's model states."""
+BuiltInPose = Literal["home", "tuck"]  # poses that a robot's model states
 
 
 @final
@@ -32,62 +31,38 @@ class AskedGripper(Message):
 
 @final
 class Paced(Message):
-    """The share of the driver's speed that a co-pilot allows.
+    """The share of the driver's speed that a co-pilot allows."""
 
-    Attributes:
-        copilot: counts the co-pilots.
-        pace: in [0, 1].
-        nonce: the newest that the co-pilot's page had seen: it dates this message.
-    """
-
-    copilot: int
+    copilot: int  # counts the co-pilots
     pace: Annotated[float, Field(ge=0.0, le=1.0)]
-    nonce: str
+    nonce: str  # the newest that the co-pilot's page had seen: it dates this message
 
 
 @final
 class Given(Message):
-    """The driver's input.
+    """The driver's input."""
 
-    Attributes:
-        driver: counts the drivers, so that late inputs of the previous one are ignored.
-        seq: grows with every input of a driver.
-        nonce: the newest that their page has seen.
-        u: entries in [-1, 1].
-        latched: continues without being held, for a limited time.
-        source: kind of device.
-        device: number among devices of that kind.
-        raw: the device's own values; None where they are ``u``.
-        gripper: this driver's newest request; None before the first.
-        paced: the co-pilot's newest pace; None without a co-pilot.
-        opens: whether the control is held down that opens the gripper of an arm that is not enabled.
-    """
-
-    driver: int
-    seq: int
-    nonce: str
-    u: tuple[float, ...]
-    latched: bool
-    source: str = ""
-    device: int = 0
-    raw: tuple[float, ...] | None = None
-    gripper: AskedGripper | None = None
-    paced: Paced | None = None
+    driver: int  # counts the drivers, so that late inputs of the previous one are ignored
+    seq: int  # grows with every input of a driver
+    nonce: str  # the newest that their page has seen
+    u: tuple[float, ...]  # entries in [-1, 1]
+    latched: bool  # continues without being held, for a limited time
+    source: str = ""  # kind of device
+    device: int = 0  # number among devices of that kind
+    raw: tuple[float, ...] | None = None  # the device's own values; None where they are ``u``
+    gripper: AskedGripper | None = None  # this driver's newest request; None before the first
+    paced: Paced | None = None  # the co-pilot's newest pace; None without a co-pilot
+    # whether the control is held down that opens the gripper of an arm that is not enabled
     opens: bool = False
 
 
 @final
 class Enable(Message):
-    """Let the arm move, if the driver's input is neutral.
-
-    Attributes:
-        driver: the driver who asked.
-        stops: version of the stop slot as the driver knew it: a later Stop wins.
-    """
+    """Let the arm move, if the driver's input is neutral."""
 
     order: Literal["enable"] = "enable"
-    driver: int
-    stops: int
+    driver: int  # the driver who asked
+    stops: int  # version of the stop slot as the driver knew it: a later Stop wins
 
 
 @final
@@ -146,32 +121,22 @@ class Return(Message):
 
 @final
 class Record(Message):
-    """Begin an episode, or end it once the arm is at rest.
-
-    Attributes:
-        task: in words.
-        person: who does it; "" if unknown.
-        by_hand: whether the arm is guided by hand, rather than driven; ignored if it cannot be.
-    """
+    """Begin an episode, or end it once the arm is at rest."""
 
     order: Literal["record"] = "record"
     on: bool
-    task: str
-    person: str = ""
-    by_hand: bool = False
+    task: str  # in words
+    person: str = ""  # who does it; "" if unknown
+    by_hand: bool = False  # whether the arm is guided by hand, rather than driven; ignored if it cannot be
 
 
 @final
 class Guide(Message):
-    """Let the arm be guided by hand, or end that; only while it is disengaged.
-
-    Attributes:
-        stops: version of the stop slot as the driver knew it: a later Stop wins.
-    """
+    """Let the arm be guided by hand, or end that; only while it is disengaged."""
 
     order: Literal["guide"] = "guide"
     on: bool
-    stops: int
+    stops: int  # version of the stop slot as the driver knew it: a later Stop wins
 
 
 @final
@@ -198,16 +163,11 @@ class Reset(Message):
 
 @final
 class BeginTask(Message):
-    """Begin a run of the task from its start; only while the arm is disengaged.
-
-    Attributes:
-        choice: index of what is to be done; None for the same again.
-        anew: whether things are placed anew.
-    """
+    """Begin a run of the task from its start; only while the arm is disengaged."""
 
     order: Literal["begin"] = "begin"
-    choice: int | None
-    anew: bool
+    choice: int | None  # index of what is to be done; None for the same again
+    anew: bool  # whether things are placed anew
 
 
 Order = (

@@ -16,8 +16,7 @@ from latentarm.web.protocol.notice import Message
 from latentarm.web.protocol.orders import BuiltInPose, HelpLevel, ModeName
 from latentarm.web.protocol.personalise_messages import PersonaliseMessage
 
-FRAME_LIMIT: Final = 4096
-"""The longest frame from a page, bytes."""
+FRAME_LIMIT: Final = 4096  # the longest frame from a page, bytes
 
 Name = Annotated[str, Field(max_length=40)]
 Id = Annotated[str, Field(max_length=32)]
@@ -27,18 +26,12 @@ PoseName = Annotated[str, Field(max_length=80)]
 
 @final
 class Hello(Message):
-    """A page introduces itself. The first page drives; the others watch until they ask.
-
-    Attributes:
-        version: of these messages.
-        name: counts only for a person without a record.
-        person: id of their record.
-    """
+    """A page introduces itself. The first page drives; the others watch until they ask."""
 
     type: Literal["hello"]
-    version: Literal[1]
-    name: Name | None = None
-    person: Id | None = None
+    version: Literal[1]  # of these messages
+    name: Name | None = None  # counts only for a person without a record
+    person: Id | None = None  # id of their record
 
 
 @final
@@ -47,27 +40,20 @@ class DriverInput(Message):
 
     Also while they hold down the control that opens the gripper of an arm that is not enabled. The process
     that owns the arm judges, by its own clock, how long it was held.
-
-    Attributes:
-        seq: grows.
-        nonce: of the newest `State` that the page has seen.
-        u: entries in [-1, 1], right and up positive; axes that are not named are zero.
-        device: number among devices of that kind.
-        raw: right and up from the device, before shaping and smoothing; null where they are ``u``.
-        latched: continues without being held, for at most `Limits.latch_max_s`.
-        gripper: a request; only in the one input that makes it.
-        opens: whether the control is held down that opens the gripper of an arm that is not enabled.
     """
 
     type: Literal["input"]
-    seq: Annotated[int, Field(ge=0, le=2**53)]
-    nonce: Annotated[str, Field(max_length=64)]
+    seq: Annotated[int, Field(ge=0, le=2**53)]  # grows
+    nonce: Annotated[str, Field(max_length=64)]  # of the newest `State` that the page has seen
+    # entries in [-1, 1], right and up positive; axes that are not named are zero
     u: Annotated[tuple[Deflection, ...], Field(min_length=1, max_length=8)]
     source: Literal["pointer", "keyboard", "dpad", "gamepad", "switch"]
-    latched: bool
-    device: Annotated[int, Field(ge=0, le=255)] = 0
+    latched: bool  # continues without being held, for at most `Limits.latch_max_s`
+    device: Annotated[int, Field(ge=0, le=255)] = 0  # number among devices of that kind
+    # right and up from the device, before shaping and smoothing; null where they are ``u``
     raw: tuple[Deflection, Deflection] | None = None
-    gripper: GripperAsk | None = None
+    gripper: GripperAsk | None = None  # a request; only in the one input that makes it
+    # whether the control is held down that opens the gripper of an arm that is not enabled
     opens: bool = False
 
 
@@ -80,14 +66,11 @@ class PressEnable(Message):
 
 @final
 class PressStop(Message):
-    """Stop the arm, from any page.
-
-    Attributes:
-        why: a person pressed Stop, or the page can no longer be sure of its person (left, hidden, a control
-            lost, a dialog opened).
-    """
+    """Stop the arm, from any page."""
 
     type: Literal["stop"]
+    # a person pressed Stop, or the page can no longer be sure of its person (left, hidden, a control lost,
+    # a dialog opened)
     why: Literal["pressed", "page"] = "pressed"
 
 
@@ -201,16 +184,11 @@ class ReturnArm(Message):
 
 @final
 class GoToPose(Message):
-    """Move the arm slowly to a pose, as `ReturnArm` does to its start.
-
-    Attributes:
-        name: of a saved pose; for a built-in one, the page's name of it.
-        built_in: one of the robot's own; null for a saved one.
-    """
+    """Move the arm slowly to a pose, as `ReturnArm` does to its start."""
 
     type: Literal["to_pose"]
-    name: PoseName
-    built_in: BuiltInPose | None = None
+    name: PoseName  # of a saved pose; for a built-in one, the page's name of it
+    built_in: BuiltInPose | None = None  # one of the robot's own; null for a saved one
 
 
 @final
@@ -238,16 +216,12 @@ class ResetArm(Message):
 
 @final
 class BeginRun(Message):
-    """Begin the task from its start, while the arm is not enabled.
-
-    Attributes:
-        choice: index of what is to be done; null for the same again.
-        anew: whether things are placed anew.
-    """
+    """Begin the task from its start, while the arm is not enabled."""
 
     type: Literal["begin_run"]
+    # index of what is to be done; null for the same again
     choice: Annotated[int, Field(ge=0, le=10_000)] | None = None
-    anew: bool
+    anew: bool  # whether things are placed anew
 
 
 ClientMessage = (

@@ -16,28 +16,20 @@ Deflection = Annotated[float, Field(ge=-1.0, le=1.0)]
 
 @final
 class BeginPersonalise(Message):
-    """Ask a person what they mean by their stick; from the page that drives, while the arm is not enabled.
-
-    Attributes:
-        questions: maximum number of answers.
-    """
+    """Ask a person what they mean by their stick; from the page that drives, while the arm is not enabled."""
 
     type: Literal["personalise"]
     name: Annotated[str, Field(max_length=200)]
-    questions: Annotated[int, Field(ge=1, le=MOST_QUESTIONS)]
+    questions: Annotated[int, Field(ge=1, le=MOST_QUESTIONS)]  # maximum number of answers
 
 
 @final
 class AnswerQuestion(Message):
-    """The input with which the person would ask for the shown motion; from the page that drives.
-
-    Attributes:
-        question: of `Personalise`; an answer to another one is ignored.
-        u: entries in [-1, 1], right and up positive; axes that are not named are zero.
-    """
+    """The input with which the person would ask for the shown motion; from the page that drives."""
 
     type: Literal["answer"]
-    question: QuestionId
+    question: QuestionId  # of `Personalise`; an answer to another one is ignored
+    # entries in [-1, 1], right and up positive; axes that are not named are zero
     u: Annotated[tuple[Deflection, ...], Field(min_length=1, max_length=8)]
 
 
@@ -99,43 +91,27 @@ PersonaliseMessage = (
 
 @final
 class ShownMotion(Message):
-    """A motion that a person is asked about.
-
-    Attributes:
-        frames: the poses of all bodies along it, each as in `State`, evenly in time.
-        tools: the paths of the tools that move, m.
-    """
+    """A motion that a person is asked about."""
 
     duration_s: float
+    # the poses of all bodies along it, each as in `State`, evenly in time
     frames: tuple[tuple[tuple[float, ...], ...], ...]
-    tools: tuple[tuple[Point, ...], ...]
+    tools: tuple[tuple[Point, ...], ...]  # the paths of the tools that move, m
 
 
 @final
 class Personalise(Message):
-    """Progress of a person's alignment.
+    """Progress of a person's alignment."""
 
-    Attributes:
-        phase: ``thinking`` is between two questions.
-        question: number for answers to name.
-        number: answers so far, including this one.
-        of: maximum number of answers.
-        motion: the motion asked about, or null.
-        share: progress of the thinking or learning, from 0 to 1.
-        answers: how many it was learned from.
-        error: relative alignment error about the answers themselves, as learned.
-        error_without: the same with z = u.
-    """
-
-    phase: PersonalisePhase
+    phase: PersonalisePhase  # ``thinking`` is between two questions
     name: str
-    question: int = 0
-    number: int = 0
-    of: int = 0
+    question: int = 0  # number for answers to name
+    number: int = 0  # answers so far, including this one
+    of: int = 0  # maximum number of answers
     back: bool = False
-    motion: ShownMotion | None = None
-    share: float = 0.0
-    answers: int = 0
-    error: float | None = None
-    error_without: float | None = None
+    motion: ShownMotion | None = None  # the motion asked about, or null
+    share: float = 0.0  # progress of the thinking or learning, from 0 to 1
+    answers: int = 0  # how many it was learned from
+    error: float | None = None  # relative alignment error about the answers themselves, as learned
+    error_without: float | None = None  # the same with z = u
     why: Notice | None = None

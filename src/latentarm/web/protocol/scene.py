@@ -37,20 +37,16 @@ _UNMOVED: Final = np.zeros(3)
 @final
 @dataclass(frozen=True)
 class Drawable:
-    """A scene as pages get it.
+    """A scene as pages get it."""
 
-    Attributes:
-        description: ``/scene.json``. ``bodies`` are the base frame and the links, in the order of a state's
-            poses, each with its ``geoms``; a geom's ``pos`` and ``quat`` (w, x, y, z) are in its body's
-            frame, its ``size`` is MuJoCo's. ``fingers`` are those of a gripper, closed, each with its
-            ``geoms``, the index of the ``body`` that it slides on, the direction in which it ``opens`` there,
-            and how far it is open ``at`` first, m. ``zones`` are obstacles that the arm may go into, at a
-            ``speed``, m/s, and no faster. For ``things`` and ``grains`` see
-            `latentarm.web.protocol.things.described`.
-        meshes: ``/mesh/ID``: uint32 vertices, uint32 faces, float32 vertices, uint32 faces, little-endian.
-    """
-
+    # ``/scene.json``. ``bodies`` are the base frame and the links, in the order of a state's poses, each
+    # with its ``geoms``; a geom's ``pos`` and ``quat`` (w, x, y, z) are in its body's frame, its ``size``
+    # is MuJoCo's. ``fingers`` are those of a gripper, closed, each with its ``geoms``, the index of the
+    # ``body`` that it slides on, the direction in which it ``opens`` there, and how far it is open ``at``
+    # first, m. ``zones`` are obstacles that the arm may go into, at a ``speed``, m/s, and no faster. For
+    # ``things`` and ``grains`` see `latentarm.web.protocol.things.described`.
     description: dict[str, object]
+    # ``/mesh/ID``: uint32 vertices, uint32 faces, float32 vertices, uint32 faces, little-endian
     meshes: dict[int, bytes]
 
 

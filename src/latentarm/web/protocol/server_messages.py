@@ -69,59 +69,39 @@ class StepToDo(Message):
 
 @final
 class TaskToDo(Message):
-    """The task.
-
-    Attributes:
-        seed: decides where things are placed.
-        choices: names of things or goals to choose from.
-        choice: index of the one of this run.
-        steps: in order; empty where nothing counts as done.
-    """
+    """The task."""
 
     name: str
-    seed: int
-    choices: tuple[str, ...]
-    choice: int
-    steps: tuple[StepToDo, ...]
+    seed: int  # decides where things are placed
+    choices: tuple[str, ...]  # names of things or goals to choose from
+    choice: int  # index of the one of this run
+    steps: tuple[StepToDo, ...]  # in order; empty where nothing counts as done
 
 
 @final
 class Welcome(Message):
-    """The setup that is driven.
-
-    Attributes:
-        server: of the running `latentarm teleop`: each start has another one.
-        latent_dim: axes of the latent actions; 0 without a run.
-        goals: in the order of the belief.
-        things: in the order of `State.things`.
-        zones: where the arm is slow.
-        keep_out: names of obstacles that a person has added.
-        end_effector_modes: names of the pairs of axes.
-        gripper_width_m: its widest opening, m, or null where no gripper can be driven.
-        real: null if the arm is simulated.
-        poses: of the robot's model.
-    """
+    """The setup that is driven."""
 
     type: Literal["welcome"] = "welcome"
     version: Literal[1] = 1
     id: str
-    server: str
+    server: str  # of the running `latentarm teleop`: each start has another one
     dof: int
-    latent_dim: int
+    latent_dim: int  # axes of the latent actions; 0 without a run
     robot: str
     run: str | None
     profiles: tuple[str, ...]
     modes: tuple[ModeName, ...]
-    goals: tuple[NamedGoal, ...]
-    things: tuple[NamedThing, ...]
-    zones: tuple[NamedZone, ...]
-    keep_out: tuple[str, ...]
-    end_effector_modes: tuple[str, ...]
+    goals: tuple[NamedGoal, ...]  # in the order of the belief
+    things: tuple[NamedThing, ...]  # in the order of `State.things`
+    zones: tuple[NamedZone, ...]  # where the arm is slow
+    keep_out: tuple[str, ...]  # names of obstacles that a person has added
+    end_effector_modes: tuple[str, ...]  # names of the pairs of axes
     limits: Limits
-    gripper_width_m: float | None
+    gripper_width_m: float | None  # its widest opening, m, or null where no gripper can be driven
     task: TaskToDo
-    real: RealArm | None
-    poses: tuple[BuiltInPose, ...]
+    real: RealArm | None  # null if the arm is simulated
+    poses: tuple[BuiltInPose, ...]  # of the robot's model
 
 
 @final
@@ -136,47 +116,31 @@ class RecordingState(Message):
 
 @final
 class State(ArmState):
-    """The arm's state, and who drives it.
-
-    Attributes:
-        bodies: x, y, z, qw, qx, qy, qz in the order of ``/scene.json``, m.
-        belief: over the goals; null for a task without goals.
-        bound_m: how far from the likeliest goal help lets the tool be, m, to first order; or null.
-        watchers: number of other pages.
-        copilot_asking: the person who asks to be the co-pilot, or null.
-        recording: null before the first.
-        trail: counts how often the trail was emptied.
-        you: whether this page drives.
-    """
+    """The arm's state, and who drives it."""
 
     type: Literal["state"] = "state"
-    bodies: tuple[tuple[float, ...], ...]
-    belief: tuple[float, ...] | None
-    bound_m: float | None
+    bodies: tuple[tuple[float, ...], ...]  # x, y, z, qw, qx, qy, qz in the order of ``/scene.json``, m
+    belief: tuple[float, ...] | None  # over the goals; null for a task without goals
+    bound_m: float | None  # how far from the likeliest goal help lets the tool be, m, to first order; or null
     driver: str | None
     driver_name: PersonName | None
-    watchers: int
+    watchers: int  # number of other pages
     asking: str | None
     asking_name: PersonName | None
     copilot: CopilotState | None
-    copilot_asking: Person | None
-    recording: RecordingState | None
-    trail: int
-    you: bool
+    copilot_asking: Person | None  # the person who asks to be the co-pilot, or null
+    recording: RecordingState | None  # null before the first
+    trail: int  # counts how often the trail was emptied
+    you: bool  # whether this page drives
 
 
 @final
 class Poses(Message):
-    """The saved poses of a page's person for the robot that is driven.
-
-    Attributes:
-        names: in the order in which they were saved.
-        problem: why the last one could not be kept, or null.
-    """
+    """The saved poses of a page's person for the robot that is driven."""
 
     type: Literal["poses"] = "poses"
-    names: tuple[str, ...]
-    problem: Notice | None
+    names: tuple[str, ...]  # in the order in which they were saved
+    problem: Notice | None  # why the last one could not be kept, or null
 
 
 @final

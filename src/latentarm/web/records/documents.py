@@ -21,8 +21,7 @@ from latentarm.web.protocol.notice import Notice
 
 DOCUMENT_LIMIT: Final = 1 << 17
 
-ID: Final = re.compile(r"[0-9a-f]{16}")
-"""Ids of people and drives: random, and so never a path or a name."""
+ID: Final = re.compile(r"[0-9a-f]{16}")  # ids of people and drives: random, and so never a path or a name
 
 Record = TypeVar("Record", bound=BaseModel)
 

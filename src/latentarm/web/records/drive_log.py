@@ -17,18 +17,12 @@ from latentarm.web.protocol.scene import Drawable, pose_of
 from latentarm.web.records.documents import Calendar, new_id
 from latentarm.web.records.drive_record import DriveRecord, Ending, Mark, Trace, TracedThings
 
-PERIOD_S: Final = 0.1
-"""Moments of a trace are at least this far apart, s."""
-
+PERIOD_S: Final = 0.1  # moments of a trace are at least this far apart, s
 MOST_VALUES: Final = 200_000
 """Values in a trace; a longer drive keeps every second moment, repeatedly if need be."""
 
-GRAINS_S: Final = 1.0
-"""Grains are traced this often, s: there may be thousands."""
-
-LATE: Final = "input_late"
-"""Code of a stop for a late input."""
-
+GRAINS_S: Final = 1.0  # grains are traced this often, s: there may be thousands
+LATE: Final = "input_late"  # code of a stop for a late input
 _ENABLED: Final = ("ready", "moving")
 _LONGEST_TICK_S: Final = 0.5
 _DIGITS: Final = 4
@@ -61,15 +55,10 @@ class _Moment:
 @final
 @dataclass(frozen=True)
 class Logged:
-    """A drive that has ended.
+    """A drive that has ended."""
 
-    Attributes:
-        record: its figures; without the scene, which has not been kept yet.
-        scene: the things about the arm.
-    """
-
-    record: DriveRecord
-    scene: Drawable
+    record: DriveRecord  # its figures; without the scene, which has not been kept yet
+    scene: Drawable  # the things about the arm
     _chain: Chain
     _period_s: float
     _moments: list[_Moment]

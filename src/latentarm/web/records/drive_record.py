@@ -12,11 +12,8 @@ from latentarm.web.protocol.report import Point, PoseRow
 from latentarm.web.records.documents import ID
 from latentarm.web.records.people import PersonId
 
-TRACE_LIMIT: Final = 1 << 26
-"""The largest trace, unpacked, bytes."""
-
-PACKED_LIMIT: Final = 1 << 24
-"""The largest compressed trace, bytes."""
+TRACE_LIMIT: Final = 1 << 26  # the largest trace, unpacked, bytes
+PACKED_LIMIT: Final = 1 << 24  # the largest compressed trace, bytes
 
 DriveId = Annotated[str, Field(pattern=rf"^{ID.pattern}$")]
 SceneId = Annotated[str, Field(pattern=r"^[0-9a-f]{32}$")]
@@ -31,62 +28,43 @@ class DriveRecord(Message):
     """One drive: a run of a task, from when the arm is first enabled until the person ends it or leaves.
 
     Nothing is counted after the task has succeeded or failed.
-
-    Attributes:
-        person: who drove; None for a guest.
-        title: given by people; "" for none.
-        started: when the arm was first enabled, ISO 8601 in UTC.
-        time_s: from then until the task ended, or else until the arm was last enabled.
-        moving_s: for how long of that the arm moved.
-        real: whether the arm was real.
-        choice: the chosen food or cup; None where there was no choice.
-        run: its name; None without one.
-        profile: whose alignment was used; None for none.
-        inputs: kinds of device, the most used first.
-        presses: how often the input left neutral, or the gripper got a request.
-        stops: how often the arm was disengaged while it was enabled.
-        late_stops: those for a late input.
-        reasons: number of stops by code.
-        way_m: length of the tool's path, m.
-        help: the robot's share of the motion, averaged while the arm moved; None if it never moved.
-        help_level: None where there is no choice.
-        steps_done: steps of the task that were done; None where the task is not watched.
-        steps: of the task; None as above.
-        outcome: None where it was given up or the task is not watched.
-        why: code of why it failed; None if it did not.
-        ended: what ended it; ``broken_off`` if the server or the arm's process was killed, and the end of the
-            drive is unknown.
-        scene: its id; None where no trace is kept.
     """
 
     version: Literal[1] = 1
     id: DriveId
-    person: PersonId | None
-    title: Annotated[str, Field(max_length=80)] = ""
+    person: PersonId | None  # who drove; None for a guest
+    title: Annotated[str, Field(max_length=80)] = ""  # given by people; "" for none
+    # when the arm was first enabled, ISO 8601 in UTC
     started: Annotated[str, Field(pattern=r"^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d\+00:00$")]
-    time_s: Seconds
-    moving_s: Seconds
+    time_s: Seconds  # from then until the task ended, or else until the arm was last enabled
+    moving_s: Seconds  # for how long of that the arm moved
     robot: Text
-    real: bool = False
+    real: bool = False  # whether the arm was real
     task: Text
-    choice: Text | None = None
-    run: Text | None
-    profile: Annotated[str, Field(max_length=64)] | None
+    choice: Text | None = None  # the chosen food or cup; None where there was no choice
+    run: Text | None  # its name; None without one
+    profile: Annotated[str, Field(max_length=64)] | None  # whose alignment was used; None for none
     modes: Annotated[tuple[ModeName, ...], Field(max_length=8)]
+    # kinds of device, the most used first
     inputs: Annotated[tuple[Annotated[str, Field(max_length=20)], ...], Field(max_length=8)]
-    presses: Count
-    stops: Count
-    late_stops: Count
+    presses: Count  # how often the input left neutral, or the gripper got a request
+    stops: Count  # how often the arm was disengaged while it was enabled
+    late_stops: Count  # those for a late input
+    # number of stops by code
     reasons: Annotated[dict[Annotated[str, Field(max_length=60)], Count], Field(max_length=60)]
-    way_m: Annotated[float, Field(ge=0.0, le=1e9)]
+    way_m: Annotated[float, Field(ge=0.0, le=1e9)]  # length of the tool's path, m
+    # the robot's share of the motion, averaged while the arm moved; None if it never moved
     help: Annotated[float, Field(ge=0.0, le=1.0)] | None
-    help_level: Annotated[str, Field(max_length=20)] | None = None
-    steps_done: Count | None = None
-    steps: Count | None = None
+    help_level: Annotated[str, Field(max_length=20)] | None = None  # None where there is no choice
+    steps_done: Count | None = None  # steps of the task that were done; None where the task is not watched
+    steps: Count | None = None  # of the task; None as above
+    # None where it was given up or the task is not watched
     outcome: Literal["success", "failure"] | None = None
-    why: Annotated[str, Field(max_length=60)] | None = None
+    why: Annotated[str, Field(max_length=60)] | None = None  # code of why it failed; None if it did not
+    # what ended it; ``broken_off`` if the server or the arm's process was killed, and the end of the drive
+    # is unknown
     ended: Ending
-    scene: SceneId | None
+    scene: SceneId | None  # its id; None where no trace is kept
 
 
 @final
@@ -108,29 +86,19 @@ class Mark(Message):
 
 @final
 class Trace(Message):
-    """A drive to be replayed: N moments, ten a second or fewer, none where nothing changed.
-
-    Attributes:
-        period_s: moments are at least this far apart, but for the last; where they are further, nothing
-            changed until then.
-        t: N times, s since the drive began.
-        q: N rows of joint positions, rad.
-        tool: N positions, m.
-        bodies: N rows of poses in the order of the scene's description.
-        u: N inputs.
-        width_m: N openings of the gripper, m; None without one.
-        things: when they had moved.
-    """
+    """A drive to be replayed: N moments, ten a second or fewer, none where nothing changed."""
 
     version: Literal[1] = 1
+    # moments are at least this far apart, but for the last; where they are further, nothing changed until
+    # then
     period_s: Annotated[float, Field(gt=0.0, le=1e4)]
-    t: tuple[float, ...]
-    q: tuple[tuple[float, ...], ...]
-    tool: tuple[Point, ...]
-    bodies: tuple[tuple[PoseRow, ...], ...]
-    u: tuple[tuple[float, ...], ...]
-    width_m: tuple[float | None, ...]
-    things: tuple[TracedThings, ...]
+    t: tuple[float, ...]  # N times, s since the drive began
+    q: tuple[tuple[float, ...], ...]  # N rows of joint positions, rad
+    tool: tuple[Point, ...]  # N positions, m
+    bodies: tuple[tuple[PoseRow, ...], ...]  # N rows of poses in the order of the scene's description
+    u: tuple[tuple[float, ...], ...]  # N inputs
+    width_m: tuple[float | None, ...]  # N openings of the gripper, m; None without one
+    things: tuple[TracedThings, ...]  # when they had moved
     marks: tuple[Mark, ...]
 
     @model_validator(mode="after")

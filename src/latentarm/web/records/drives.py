@@ -15,35 +15,23 @@ from latentarm.web.protocol.notice import Notice, NoticeError
 from latentarm.web.records.documents import disk_errors, read_record, unreadable, write_record
 from latentarm.web.records.drive_record import PACKED_LIMIT, DriveRecord, Trace, checked_trace, packed
 
-UNDO_S: Final = 600.0
-"""How long a deletion can be undone, s."""
-
+UNDO_S: Final = 600.0  # how long a deletion can be undone, s
 DRIVES: Final = "drives"
 
-TRACE: Final = ".trace.gz"
-"""Suffix of a trace, in place of ``.json``."""
-
+TRACE: Final = ".trace.gz"  # suffix of a trace, in place of ``.json``
 _TRASH: Final = "deleted"
 
 
 @final
 @dataclass(frozen=True)
 class Wanted:
-    """A query for drives; None for any.
+    """A query for drives; None for any."""
 
-    Attributes:
-        person: id; "" for guests.
-        task: name.
-        input: a kind of device that was used.
-        since: first day, ``YYYY-MM-DD`` in UTC.
-        until: last day, as above.
-    """
-
-    person: str | None = None
-    task: str | None = None
-    input: str | None = None
-    since: str | None = None
-    until: str | None = None
+    person: str | None = None  # id; "" for guests
+    task: str | None = None  # name
+    input: str | None = None  # a kind of device that was used
+    since: str | None = None  # first day, ``YYYY-MM-DD`` in UTC
+    until: str | None = None  # last day, as above
 
     def takes(self, drive: DriveRecord) -> bool:
         """Whether a drive matches."""
@@ -62,9 +50,6 @@ class Drives:
 
     Methods other than `wanted` and `find` wait for the disk, and raise `UserError` if there is no such drive,
     or files cannot be read, written, moved or deleted. The folders need not exist yet.
-
-    Attributes:
-        problems: of records that cannot be read, one each.
     """
 
     def __init__(self, folder: Path, people: Path, now_s: Callable[[], float] = time.monotonic) -> None:
@@ -75,7 +60,7 @@ class Drives:
         self._lock = threading.Lock()
         self._drives: dict[str, DriveRecord] = {}
         self._deleted: dict[str, tuple[float, DriveRecord]] = {}
-        self.problems: list[Notice] = []
+        self.problems: list[Notice] = []  # of records that cannot be read, one each
         for path in self._trash.glob("*"):
             with suppress(OSError):
                 path.unlink()

@@ -27,9 +27,7 @@ from latentarm.web.records.drives import DRIVES, TRACE
 from latentarm.web.records.people import PERSON_NAME, PersonRecord
 from latentarm.web.records.poses import POSES_NAME, PosesRecord, SavedPose
 
-IMPORT_LIMIT: Final = 1 << 26
-"""The largest file that is imported, bytes."""
-
+IMPORT_LIMIT: Final = 1 << 26  # the largest file that is imported, bytes
 SCENES: Final = "scenes/"
 PROFILES: Final = "profiles/"
 

@@ -45,21 +45,15 @@ class KeptProfile(Message):
 
 @final
 class PersonRecord(Message):
-    """A person.
-
-    Attributes:
-        name: in any script.
-        added: ISO 8601 in UTC.
-        pin: None for none.
-    """
+    """A person."""
 
     version: Literal[1] = VERSION
     id: PersonId
-    name: Annotated[str, Field(min_length=1, max_length=MOST_CHARACTERS)]
-    added: Annotated[str, Field(max_length=40)]
+    name: Annotated[str, Field(min_length=1, max_length=MOST_CHARACTERS)]  # in any script
+    added: Annotated[str, Field(max_length=40)]  # ISO 8601 in UTC
     settings: Settings = Field(default_factory=dict)
     profiles: Annotated[tuple[KeptProfile, ...], Field(max_length=1000)] = ()
-    pin: PinHash | None = None
+    pin: PinHash | None = None  # None for none
 
 
 @final
@@ -67,9 +61,6 @@ class People:
     """Everybody's records; `find` and `all` do not wait for the disk.
 
     Other methods raise `UserError` if there is no such person, or files cannot be written or deleted.
-
-    Attributes:
-        problems: of records that cannot be read, one each.
     """
 
     def __init__(self, folder: Path, calendar: Calendar) -> None:
@@ -77,7 +68,7 @@ class People:
         self._calendar = calendar
         self._lock = threading.Lock()
         self._people: dict[str, PersonRecord] = {}
-        self.problems: list[Notice] = []
+        self.problems: list[Notice] = []  # of records that cannot be read, one each
         for unfinished in folder.glob(f"{_STAGING}*"):
             shutil.rmtree(unfinished, ignore_errors=True)
         for path in sorted(folder.glob(f"*/{PERSON_NAME}")):

@@ -11,8 +11,7 @@ from latentarm.web.protocol.notice import Message
 
 PIN: Final = r"^[0-9]{4,8}$"
 
-_N, _R, _P = 2**14, 8, 1
-"""Cost of a guess: 16 MiB and some 50 ms."""
+_N, _R, _P = 2**14, 8, 1  # cost of a guess: 16 MiB and some 50 ms
 
 
 @final

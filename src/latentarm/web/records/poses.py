@@ -10,9 +10,7 @@ from latentarm.core.untrusted.names import MOST_CHARACTERS, clean_name, same_nam
 from latentarm.web.protocol.notice import Message, NoticeError
 from latentarm.web.records.documents import read_record, write_record
 
-MOST_POSES: Final = 30
-"""Of a person, on all robots."""
-
+MOST_POSES: Final = 30  # of a person, on all robots
 POSES_NAME: Final = "poses.json"
 
 

@@ -42,22 +42,14 @@ class RecordedEpisode(Message):
 
 @final
 class RecordingFile(Message):
-    """A recording.
+    """A recording."""
 
-    Attributes:
-        name: of its file.
-        title: given by people; "" for none.
-        bytes: its size.
-        in_use: whether it may still be written to, and so not be deleted.
-        problem: why it cannot be read; None if it can.
-    """
-
-    name: str
-    title: str
+    name: str  # of its file
+    title: str  # given by people; "" for none
     bytes: int
     episodes: tuple[RecordedEpisode, ...]
-    in_use: bool
-    problem: Notice | None
+    in_use: bool  # whether it may still be written to, and so not be deleted
+    problem: Notice | None  # why it cannot be read; None if it can
 
 
 @final

@@ -33,8 +33,7 @@ from latentarm.web.records.poses import POSES_NAME, PosesRecord, read_poses, wri
 from latentarm.web.records.recordings import Recordings
 from latentarm.web.records.scenes import Scenes
 
-FOLDER: Final = "records"
-"""Name of the records' folder in the output folder."""
+FOLDER: Final = "records"  # name of the records' folder in the output folder
 
 
 @final

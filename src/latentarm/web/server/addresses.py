@@ -21,21 +21,15 @@ _OWN_PORTS: Final = {"http": 80, "https": 443}
 class TeleopConfig:
     """The options of `latentarm teleop`, see its ``--help``.
 
-    Attributes:
-        host: the address that people open: a name or a number.
-        port: 0 takes any free one.
-        certfile: for TLS, PEM.
-        keyfile: its private key, PEM.
-
     Raises:
         UserError: the address cannot be one that people open, or only one file for TLS is named.
     """
 
     spec: Spec
-    host: str = "127.0.0.1"
-    port: int = 8460
-    certfile: Path | None = None
-    keyfile: Path | None = None
+    host: str = "127.0.0.1"  # the address that people open: a name or a number
+    port: int = 8460  # 0 takes any free one
+    certfile: Path | None = None  # for TLS, PEM
+    keyfile: Path | None = None  # its private key, PEM
     pins: bool = False
     cameras: tuple[CameraSource, ...] = ()
 

@@ -12,8 +12,7 @@ from latentarm.core.errors import UserError
 from latentarm.core.untrusted.documents import parse_object
 from latentarm.web.protocol.notice import Message, NoticeError, notice_of
 
-NO_STORE: Final = {"cache-control": "no-store"}
-"""Header of answers with personal data."""
+NO_STORE: Final = {"cache-control": "no-store"}  # header of answers with personal data
 
 _STATUS: Final = {
     "person_unknown": 404,

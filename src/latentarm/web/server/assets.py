@@ -14,8 +14,7 @@ from starlette.responses import Response
 from latentarm.core.errors import UserError
 
 FOLDER: Final = Path(__file__).parent.parent / "pages"
-THREE: Final = "three/three.module.min.js"
-"""Path of three.js among the assets."""
+THREE: Final = "three/three.module.min.js"  # path of three.js among the assets
 _THREE: Final = FOLDER.parent / "three"  # filled when the package is built, see hatch_build.py
 
 _TYPES: Final = {

@@ -9,18 +9,12 @@ FULL_PACE: Final = 1.0
 
 @final
 class Copilot:
-    """At most one page is the driver's co-pilot, after it has asked and the driver has accepted.
-
-    Attributes:
-        page: id of the co-pilot's page; None without one.
-        asking: id of the page that asks; None for none.
-        paced: the co-pilot's newest pace; None without one.
-    """
+    """At most one page is the driver's co-pilot, after it has asked and the driver has accepted."""
 
     def __init__(self) -> None:
-        self.page: str | None = None
-        self.asking: str | None = None
-        self.paced: Paced | None = None
+        self.page: str | None = None  # id of the co-pilot's page; None without one
+        self.asking: str | None = None  # id of the page that asks; None for none
+        self.paced: Paced | None = None  # the co-pilot's newest pace; None without one
         self._count = 0
 
     def ask(self, page: str) -> None:

@@ -14,15 +14,9 @@ from uvicorn.config import Config
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 from uvicorn.server import ServerState
 
-RATE: Final = 100.0
-"""Frames per second that a page may send."""
-
-BURST: Final = 100.0
-"""Frames that may come at once, such as after a network outage."""
-
-TOO_MANY: Final = 1008
-"""Close code for too many frames; RFC 6455 calls it a policy violation."""
-
+RATE: Final = 100.0  # frames per second that a page may send
+BURST: Final = 100.0  # frames that may come at once, such as after a network outage
+TOO_MANY: Final = 1008  # close code for too many frames; RFC 6455 calls it a policy violation
 _BAD_REQUEST: Final = b"HTTP/1.1 400 Bad Request\r\nConnection: close\r\nContent-Length: 0\r\n\r\n"
 
 _MASK_BYTES: Final = 4

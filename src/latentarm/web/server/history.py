@@ -15,20 +15,13 @@ from latentarm.web.records.records import Records
 from latentarm.web.server.sessions import Sessions
 from latentarm.web.server.states import States
 
-SO_FAR_S: Final = 5.0
-"""How often the drive under way is written, s of the control process's clock."""
-
-PURGE_S: Final = 60.0
-"""How often deleted records are removed for good, s."""
+SO_FAR_S: Final = 5.0  # how often the drive under way is written, s of the control process's clock
+PURGE_S: Final = 60.0  # how often deleted records are removed for good, s
 
 
 @final
 class History:
-    """Logs what is driven; another thread writes it.
-
-    Attributes:
-        problem: why the last drive was not kept; None if it was.
-    """
+    """Logs what is driven; another thread writes it."""
 
     def __init__(self, states: States, sessions: Sessions, records: Records, calendar: Calendar) -> None:
         self._states = states
@@ -37,7 +30,7 @@ class History:
         self._log = DriveLog(calendar)
         self._keeping: set[asyncio.Task[None]] = set()
         self._written_s = 0.0
-        self.problem: Notice | None = None
+        self.problem: Notice | None = None  # why the last drive was not kept; None if it was
         states.heard.append(self._hear)
 
     async def follow(self) -> None:

@@ -19,18 +19,12 @@ from latentarm.web.server.states import States
 if TYPE_CHECKING:
     from latentarm.web.arm_process.process import ControlProcess
 
-LOOK_S: Final = 0.2
-"""How often jobs and recordings are checked, s."""
+LOOK_S: Final = 0.2  # how often jobs and recordings are checked, s
 
 
 @final
 class Learning:
-    """Recordings, trainings, runs, and people's alignments. ``out`` holds ``datasets`` and ``runs``.
-
-    Attributes:
-        text: the state as JSON, for pages.
-        number: changes with every change of `text`.
-    """
+    """Recordings, trainings, runs, and people's alignments. ``out`` holds ``datasets`` and ``runs``."""
 
     def __init__(self, control: "ControlProcess", states: States, run_list: RunList, out: Path) -> None:
         self._control = control
@@ -44,8 +38,8 @@ class Learning:
         self._cancelling: asyncio.Task[None] | None = None
         self._choosing: asyncio.Task[None] | None = None
         self.personalising = Personalising(self._driven, control)
-        self.text = ""
-        self.number = 0
+        self.text = ""  # the state as JSON, for pages
+        self.number = 0  # changes with every change of `text`
         self._tell(run_list.runs())
 
     @property

@@ -19,14 +19,10 @@ from latentarm.web.words.catalogue import COOKIE, Words, chosen_language, langua
 @final
 @dataclass(frozen=True)
 class Page:
-    """One page of the site.
-
-    Attributes:
-        name: of its folder in ``pages/``, of the template, script and style sheet there, and of its words.
-    """
+    """One page of the site."""
 
     path: str
-    name: str
+    name: str  # of its folder in ``pages/``, of the template, script and style sheet there, and of its words
 
     @property
     def template(self) -> str:

@@ -44,16 +44,11 @@ STICK_AXES: Final = 2
 @final
 @dataclass(frozen=True)
 class Driven:
-    """The setup that is driven, as far as Personalise needs it.
-
-    Attributes:
-        latent_dim: d; 0 without a run.
-        report: the newest; None before the first.
-    """
+    """The setup that is driven, as far as Personalise needs it."""
 
     run: Path | None
-    latent_dim: int
-    report: Report | None
+    latent_dim: int  # d; 0 without a run
+    report: Report | None  # the newest; None before the first
 
     @property
     def at_rest(self) -> bool:

@@ -11,25 +11,19 @@ from latentarm.web.protocol.notice import NoticeError
 from latentarm.web.records.people import People, PersonRecord
 from latentarm.web.records.pin import fits
 
-TRIES: Final = 5
-"""Wrong PINs of a person that a client may give before it has to wait."""
-
+TRIES: Final = 5  # wrong PINs of a person that a client may give before it has to wait
 WAIT_S: Final = 60.0
 """How long the client then waits, s; doubles with each further one, up to `LONGEST_WAIT_S`."""
 
 LONGEST_WAIT_S: Final = 3600.0
 
-FORGOTTEN_S: Final = 24 * 3600.0
-"""A client's tries are forgotten so long after its last wrong PIN, s."""
-
+FORGOTTEN_S: Final = 24 * 3600.0  # a client's tries are forgotten so long after its last wrong PIN, s
 MOST_CLIENTS: Final = 40
 """Clients that may have given wrong PINs of a person at the same time, besides those that have opened the
 record before. Together they try at most 1,400 PINs on the first day and 960 on each further one: all PINs of
 four digits take them ten days."""
 
-OPEN_S: Final = 8 * 3600.0
-"""How long a record stays open, s."""
-
+OPEN_S: Final = 8 * 3600.0  # how long a record stays open, s
 _COOKIE: Final = "latentarm_pin_"
 _MOST_KEYS: Final = 1000
 

@@ -21,9 +21,7 @@ from latentarm.web.jobs.job import Job, Wire
 from latentarm.web.protocol.notice import Message, Notice, NoticeError
 from latentarm.web.server.loaded_run import LoadedRun
 
-WITHIN_S: Final = 60.0
-"""A run that takes longer to load is refused, s."""
-
+WITHIN_S: Final = 60.0  # a run that takes longer to load is refused, s
 _LOOK_S: Final = 0.05
 _SIZE: Final = 64 << 20
 """Bytes that a run is assumed to have: those that its copy of a robot may have, see `bounded_memory`.

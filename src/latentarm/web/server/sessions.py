@@ -7,24 +7,17 @@ from typing import Final, final
 from latentarm.web.protocol.notice import PersonName
 from latentarm.web.server.copilot import Copilot
 
-MOST: Final = 16
-"""Pages that may be connected at once."""
+MOST: Final = 16  # pages that may be connected at once
 
 
 @final
 @dataclass(frozen=True)
 class Page:
-    """A connected page.
+    """A connected page."""
 
-    Attributes:
-        id: of this connection.
-        name: a guest without a name is called by a number.
-        person: id of their record; None for a guest.
-    """
-
-    id: str
-    name: PersonName
-    person: str | None = None
+    id: str  # of this connection
+    name: PersonName  # a guest without a name is called by a number
+    person: str | None = None  # id of their record; None for a guest
 
 
 @final

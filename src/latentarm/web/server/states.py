@@ -31,18 +31,10 @@ from latentarm.web.server.sessions import Page, Sessions
 if TYPE_CHECKING:
     from latentarm.web.arm_process.process import ControlProcess
 
-POLL_S: Final = 0.0025
-"""How often the report is read, s."""
-
-SILENT_S: Final = 0.5
-"""A control process that is silent for so long is considered broken, s."""
-
-NOTE_S: Final = 6.0
-"""How long a refusal is shown, s."""
-
-AWAY_PERIOD_S: Final = 0.2
-"""How often pages receive the reason why there is no new report, s."""
-
+POLL_S: Final = 0.0025  # how often the report is read, s
+SILENT_S: Final = 0.5  # a control process that is silent for so long is considered broken, s
+NOTE_S: Final = 6.0  # how long a refusal is shown, s
+AWAY_PERIOD_S: Final = 0.2  # how often pages receive the reason why there is no new report, s
 _SAME_M: Final = 1e-3
 
 
@@ -72,29 +64,21 @@ class PageMemory:
 
 @final
 class States:
-    """The newest state of the arm, for pages to wait for.
-
-    Attributes:
-        loaded: the setup that is driven.
-        loading: whether another setup is being loaded, here or in the control process.
-        report: the newest about `loaded`; None before the first.
-        standstill: why the arm may not be enabled; None if it may.
-        heard: called with every report about `loaded`.
-    """
+    """The newest state of the arm, for pages to wait for."""
 
     def __init__(
         self, loaded: LoadedRun, control: "ControlProcess", sessions: Sessions, run_list: RunList
     ) -> None:
-        self.loaded = loaded
+        self.loaded = loaded  # the setup that is driven
         self._control = control
         self._sessions = sessions
-        self.standstill: Notice | None = None
-        self.heard: list[Callable[[Report], None]] = []
+        self.standstill: Notice | None = None  # why the arm may not be enabled; None if it may
+        self.heard: list[Callable[[Report], None]] = []  # called with every report about `loaded`
         self._run_list = run_list
-        self.loading = False
+        self.loading = False  # whether another setup is being loaded, here or in the control process
         self._failed: tuple[Beginning, Notice] | None = None
         self._changing: asyncio.Task[None] | None = None
-        self.report: Report | None = None
+        self.report: Report | None = None  # the newest about `loaded`; None before the first
         self._heard_s = time.monotonic()
         self._trail = 0
         self._changed = asyncio.Event()

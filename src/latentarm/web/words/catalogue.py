@@ -15,9 +15,7 @@ from types import MappingProxyType
 from typing import Final, final
 
 DEFAULT: Final = "en"
-COOKIE: Final = "latentarm_language"
-"""Holds the language chosen under Settings."""
-
+COOKIE: Final = "latentarm_language"  # holds the language chosen under Settings
 _MOST_CHARACTERS: Final = 200  # characters of an ``Accept-Language`` header that are read
 
 _RANGE: Final = re.compile(
@@ -28,14 +26,10 @@ _RANGE: Final = re.compile(
 @final
 @dataclass(frozen=True)
 class Words:
-    """The texts of one language.
+    """The texts of one language."""
 
-    Attributes:
-        language: its code, as in ``<html lang>``.
-        texts: by key; a dictionary of plural forms where a text depends on a count.
-    """
-
-    language: str
+    language: str  # its code, as in ``<html lang>``
+    # by key; a dictionary of plural forms where a text depends on a count
     texts: Mapping[str, str | Mapping[str, str]]
 
     @property
