@@ -60,7 +60,7 @@ def _members(union: Any) -> list[Any]:
 def _interface(name: str, model: dict[str, Any]) -> str:
     required = model.get("required", [])
     fields = [
-        f"  {field}{'' if field in required else '?'}: {_type(schema)};"
+        f"  {field}{'' if field in required or 'const' in schema else '?'}: {_type(schema)};"
         for field, schema in model["properties"].items()
     ]
     return "\n".join([f"export interface {name} {{", *fields, "}"])

@@ -19,7 +19,7 @@ from latentarm.tasks.task import REACHED_DISTANCE
 from latentarm.web.arm_process.drive_setup import Spec, load_setup
 from latentarm.web.arm_process.task_run import TaskRun, Todo, goal_to_reach
 from latentarm.web.protocol.orders import BeginTask, Enable
-from latentarm.web.protocol.page_messages import BeginRun, parse_message
+from latentarm.web.protocol.page_messages import parse_message
 from latentarm.web.server.loaded_run import LoadedRun
 from latentarm.web.words.catalogue import DEFAULT, languages
 
@@ -175,7 +175,7 @@ def test_there_is_no_choice_beyond_the_last():
 
 def test_a_page_may_ask_for_another_run():
     asked = parse_message(json.dumps({"type": "begin_run", "choice": 1, "anew": True}))
-    assert asked == BeginRun(type="begin_run", choice=1, anew=True)
+    assert asked == BeginTask(choice=1, anew=True)
     for wrong in ({"choice": -1, "anew": True}, {"choice": 0.5, "anew": True}, {"choice": 0}):
         with pytest.raises(ValueError, match="begin_run"):
             parse_message(json.dumps({"type": "begin_run", **wrong}))

@@ -1,4 +1,7 @@
-"""Messages from the page's server to the control process: the driver's inputs, and orders."""
+"""Messages to the control process: the driver's inputs, and orders.
+
+The server passes the `DriverOrder` of a page on as they are, and makes the others.
+"""
 
 from typing import Annotated, Final, Literal, final
 
@@ -60,7 +63,7 @@ class Given(Message):
 class Enable(Message):
     """Let the arm move, if the driver's input is neutral."""
 
-    order: Literal["enable"] = "enable"
+    type: Literal["enable"] = "enable"
     driver: int  # the driver who asked
     stops: int  # version of the stop slot as the driver knew it: a later Stop wins
 
@@ -69,16 +72,16 @@ class Enable(Message):
 class ChooseMode(Message):
     """Steer in another way; ``axes`` is a pair of the end-effector's, None for the one before."""
 
-    order: Literal["mode"] = "mode"
+    type: Literal["mode"] = "mode"
     mode: ModeName
-    axes: int | None
+    axes: Annotated[int, Field(ge=0, le=8)] | None = None
 
 
 @final
 class ChooseHelp(Message):
-    """Set the level of help with learned motions; ``off`` is the mode ``latent``."""
+    """Set the level of help with learned motions, at any time; ``off`` is the mode ``latent``."""
 
-    order: Literal["help"] = "help"
+    type: Literal["help"] = "help"
     level: HelpLevel
 
 
@@ -86,11 +89,12 @@ class ChooseHelp(Message):
 class ChooseProfile(Message):
     """Use a person's alignment, or None for none; only while the arm is disengaged.
 
-    ``seat`` is None for where the person before sat.
+    ``seat`` is where they sit, which turns the stick of those without a profile; None for where the person
+    before sat.
     """
 
-    order: Literal["profile"] = "profile"
-    name: str | None
+    type: Literal["profile"] = "profile"
+    name: Annotated[str, Field(max_length=64)] | None
     seat: Seat | None = None
 
 
@@ -98,7 +102,7 @@ class ChooseProfile(Message):
 class ChooseRun(Message):
     """Drive another run from its start, without an alignment; only while the arm is disengaged."""
 
-    order: Literal["run"] = "run"
+    type: Literal["run"] = "run"
     run: str
 
 
@@ -114,7 +118,7 @@ class PoseToGoTo(Message):
 class Return(Message):
     """Move the arm slowly to a pose (None for its start), while the stick is let go; or end that."""
 
-    order: Literal["return"] = "return"
+    type: Literal["return"] = "return"
     on: bool
     pose: PoseToGoTo | None = None
 
@@ -123,7 +127,7 @@ class Return(Message):
 class Record(Message):
     """Begin an episode, or end it once the arm is at rest."""
 
-    order: Literal["record"] = "record"
+    type: Literal["record"] = "record"
     on: bool
     task: str  # in words
     person: str = ""  # who does it; "" if unknown
@@ -134,57 +138,49 @@ class Record(Message):
 class Guide(Message):
     """Let the arm be guided by hand, or end that; only while it is disengaged."""
 
-    order: Literal["guide"] = "guide"
+    type: Literal["guide"] = "guide"
     on: bool
     stops: int  # version of the stop slot as the driver knew it: a later Stop wins
 
 
 @final
 class KeepGuiding(Message):
-    """The page from which the arm is guided is still there; ``gripper`` is a request, or None."""
+    """Sent five times a second by the page from which the arm is guided; without it guiding ends.
 
-    order: Literal["keep_guiding"] = "keep_guiding"
+    ``gripper`` is a request, only in the one message that makes it.
+    """
+
+    type: Literal["guided"] = "guided"
     gripper: GripperAsk | None = None
 
 
 @final
 class Reconnect(Message):
-    """Make a lost connection to the arm again; it stays disabled."""
+    """Make a lost connection to the arm again; it stays disabled, and does not move."""
 
-    order: Literal["reconnect"] = "reconnect"
+    type: Literal["reconnect"] = "reconnect"
 
 
 @final
 class Reset(Message):
     """Put the simulated arm back to its start; only while it is disengaged."""
 
-    order: Literal["reset"] = "reset"
+    type: Literal["reset"] = "reset"
 
 
 @final
 class BeginTask(Message):
     """Begin a run of the task from its start; only while the arm is disengaged."""
 
-    order: Literal["begin"] = "begin"
-    choice: int | None  # index of what is to be done; None for the same again
+    type: Literal["begin_run"] = "begin_run"
+    # index of what is to be done; None for the same again
+    choice: Annotated[int, Field(ge=0, le=10_000)] | None = None
     anew: bool  # whether things are placed anew
 
 
-Order = (
-    Enable
-    | ChooseMode
-    | ChooseHelp
-    | ChooseProfile
-    | ChooseRun
-    | Return
-    | Record
-    | Guide
-    | KeepGuiding
-    | Reconnect
-    | Reset
-    | BeginTask
-)
-_ORDERS: Final[TypeAdapter[Order]] = TypeAdapter(Annotated[Order, Field(discriminator="order")])
+DriverOrder = ChooseMode | ChooseHelp | ChooseProfile | KeepGuiding | Reconnect | Reset | BeginTask
+Order = DriverOrder | Enable | ChooseRun | Return | Record | Guide
+_ORDERS: Final[TypeAdapter[Order]] = TypeAdapter(Annotated[Order, Field(discriminator="type")])
 
 
 def parse_order(message: bytes) -> Order | None:

@@ -8,12 +8,11 @@ from typing import Annotated, Final, Literal, final
 
 from pydantic import Field, TypeAdapter
 
-from latentarm.alignment.contract import Seat
 from latentarm.core.types import GripperAsk
 from latentarm.web.protocol.copilot_messages import CopilotMessage
 from latentarm.web.protocol.learning_messages import CancelTraining, PickRun, Train
 from latentarm.web.protocol.notice import Message
-from latentarm.web.protocol.orders import BuiltInPose, HelpLevel, ModeName
+from latentarm.web.protocol.orders import BuiltInPose, DriverOrder
 from latentarm.web.protocol.personalise_messages import PersonaliseMessage
 
 FRAME_LIMIT: Final = 4096  # the longest frame from a page, bytes
@@ -75,35 +74,6 @@ class PressStop(Message):
 
 
 @final
-class Mode(Message):
-    """Steer in another way; at any time."""
-
-    type: Literal["mode"]
-    mode: ModeName
-    axes: Annotated[int, Field(ge=0, le=8)] | None = None
-
-
-@final
-class HelpFromRobot(Message):
-    """Set the level of help with learned motions; at any time."""
-
-    type: Literal["help"]
-    level: HelpLevel
-
-
-@final
-class Profile(Message):
-    """Use a person's alignment, or null for none; while the arm is not enabled.
-
-    ``seat``: where they sit, which turns the stick of those without a profile.
-    """
-
-    type: Literal["profile"]
-    name: Annotated[str, Field(max_length=64)] | None
-    seat: Seat | None = None
-
-
-@final
 class AskToDrive(Message):
     """Drive if nobody does, else ask the driver to hand over."""
 
@@ -154,24 +124,6 @@ class GuideArm(Message):
 
 
 @final
-class GuidedArm(Message):
-    """Sent five times a second by the page from which the arm is guided; without it guiding ends.
-
-    ``gripper`` is a request; only in the one message that makes it.
-    """
-
-    type: Literal["guided"]
-    gripper: GripperAsk | None = None
-
-
-@final
-class ReconnectArm(Message):
-    """Renew a lost connection to the arm; the arm does not move, and is not enabled."""
-
-    type: Literal["reconnect"]
-
-
-@final
 class ReturnArm(Message):
     """Move the arm back to its start, while it is enabled and the stick is let go; or end that.
 
@@ -207,50 +159,27 @@ class DeletePose(Message):
     name: PoseName
 
 
-@final
-class ResetArm(Message):
-    """Put the simulated arm back to its start; while it is not enabled."""
-
-    type: Literal["reset"]
-
-
-@final
-class BeginRun(Message):
-    """Begin the task from its start, while the arm is not enabled."""
-
-    type: Literal["begin_run"]
-    # index of what is to be done; null for the same again
-    choice: Annotated[int, Field(ge=0, le=10_000)] | None = None
-    anew: bool  # whether things are placed anew
-
-
 ClientMessage = (
     Hello
     | DriverInput
     | PressEnable
     | PressStop
-    | Mode
-    | HelpFromRobot
-    | Profile
     | AskToDrive
     | HandOver
     | Release
     | TrailClear
     | RecordEpisode
     | GuideArm
-    | GuidedArm
-    | ReconnectArm
     | ReturnArm
     | GoToPose
     | SavePose
     | DeletePose
-    | ResetArm
-    | BeginRun
     | Train
     | CancelTraining
     | PickRun
     | PersonaliseMessage
     | CopilotMessage
+    | DriverOrder
 )
 _CLIENT: Final[TypeAdapter[ClientMessage]] = TypeAdapter(
     Annotated[ClientMessage, Field(discriminator="type")]

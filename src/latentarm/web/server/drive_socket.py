@@ -13,38 +13,27 @@ from latentarm.web.protocol.notice import Notice, NoticeCode
 from latentarm.web.protocol.orders import (
     AskedGripper,
     BeginTask,
-    ChooseHelp,
-    ChooseMode,
-    ChooseProfile,
+    DriverOrder,
     Enable,
     Given,
     Guide,
-    KeepGuiding,
-    Reconnect,
     Record,
     Reset,
     Return,
 )
 from latentarm.web.protocol.page_messages import (
     AskToDrive,
-    BeginRun,
     ClientMessage,
     DeletePose,
     DriverInput,
     GoToPose,
     GuideArm,
-    GuidedArm,
     HandOver,
     Hello,
-    HelpFromRobot,
-    Mode,
     PressEnable,
     PressStop,
-    Profile,
-    ReconnectArm,
     RecordEpisode,
     Release,
-    ResetArm,
     ReturnArm,
     SavePose,
     TrailClear,
@@ -245,10 +234,6 @@ class DriveSocket:
                 pass
             case PressEnable():
                 self._control.order(Enable(driver=self._sessions.turn, stops=self._control.stops))
-            case Mode(mode=mode, axes=axes):
-                self._control.order(ChooseMode(mode=mode, axes=axes))
-            case HelpFromRobot(level=level):
-                self._control.order(ChooseHelp(level=level))
             case AcceptCopilot(to=to):
                 copilot = self._sessions.named(to)
                 if copilot is not None and self._sessions.copilot.accept(to):
@@ -257,18 +242,12 @@ class DriveSocket:
                 copilot = self._sessions.named(self._sessions.copilot.page)
                 if self._sessions.copilot.end() and copilot is not None:
                     self._copilot_changed("copilot_ended", copilot)
-            case Profile(name=name, seat=seat):
-                self._control.order(ChooseProfile(name=name, seat=seat))
             case RecordEpisode(on=on, task=task, by_hand=by_hand):
                 self._control.order(Record(on=on, task=task, person=_recorded_as(page), by_hand=by_hand))
             case GuideArm(on=True) if self._states.loading or self._learning.personalising.standstill:
                 pass
             case GuideArm(on=on):
                 self._control.order(Guide(on=on, stops=self._control.stops))
-            case GuidedArm(gripper=ask):
-                self._control.order(KeepGuiding(gripper=ask))
-            case ReconnectArm():
-                self._control.order(Reconnect())
             case ReturnArm(on=on):
                 self._control.order(Return(on=on))
             case GoToPose(name=name, built_in=built_in):
@@ -283,12 +262,6 @@ class DriveSocket:
                 self._save_pose(page, name)
             case DeletePose(name=name):
                 self._poses.delete(page.person, self._states.loaded.robot_name, name)
-            case ResetArm():
-                self._control.order(Reset())
-                self._end_drive("reset")
-            case BeginRun(choice=choice, anew=anew):
-                self._control.order(BeginTask(choice=choice, anew=anew))
-                self._end_drive("next" if anew else "again")
             case Train():
                 self._learning.train(message)
             case CancelTraining():
@@ -301,6 +274,12 @@ class DriveSocket:
             case Release():
                 if self._sessions.release(page):
                     self._driver_changed(_of(page, "driver_released"))
+            case _ if isinstance(message, DriverOrder):
+                self._control.order(message)
+                if isinstance(message, Reset):
+                    self._end_drive("reset")
+                elif isinstance(message, BeginTask):
+                    self._end_drive("next" if message.anew else "again")
             case _ if isinstance(message, PersonaliseMessage):
                 before = self._learning.personalising.look()
                 self._learning.personalising.take(message)

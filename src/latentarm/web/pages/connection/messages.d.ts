@@ -25,7 +25,7 @@ export interface BeginPersonalise {
   questions: number;
 }
 
-export interface BeginRun {
+export interface BeginTask {
   type: "begin_run";
   choice?: number | null;
   anew: boolean;
@@ -37,6 +37,23 @@ export interface CancelPersonalise {
 
 export interface CancelTraining {
   type: "cancel_training";
+}
+
+export interface ChooseHelp {
+  type: "help";
+  level: "off" | "low" | "medium" | "high";
+}
+
+export interface ChooseMode {
+  type: "mode";
+  mode: "latent" | "assisted" | "end_effector";
+  axes?: number | null;
+}
+
+export interface ChooseProfile {
+  type: "profile";
+  name: string | null;
+  seat?: "facing" | "behind" | null;
 }
 
 export interface CopilotPace {
@@ -113,11 +130,6 @@ export interface GuideArm {
   on: boolean;
 }
 
-export interface GuidedArm {
-  type: "guided";
-  gripper?: "open" | "close" | "toggle" | null;
-}
-
 export interface HandOver {
   type: "hand_over";
   to: string;
@@ -130,13 +142,13 @@ export interface Hello {
   person?: string | null;
 }
 
-export interface HelpFromRobot {
-  type: "help";
-  level: "off" | "low" | "medium" | "high";
-}
-
 export interface KeepAlignment {
   type: "keep_alignment";
+}
+
+export interface KeepGuiding {
+  type: "guided";
+  gripper?: "open" | "close" | "toggle" | null;
 }
 
 export interface LearningState {
@@ -164,12 +176,6 @@ export interface Limits {
 export interface Lost {
   thing: string;
   step: number;
-}
-
-export interface Mode {
-  type: "mode";
-  mode: "latent" | "assisted" | "end_effector";
-  axes?: number | null;
 }
 
 export interface NamedGoal {
@@ -232,12 +238,6 @@ export interface PressStop {
   why?: "pressed" | "page";
 }
 
-export interface Profile {
-  type: "profile";
-  name: string | null;
-  seat?: "facing" | "behind" | null;
-}
-
 export interface QuestionBefore {
   type: "question_before";
   question: number;
@@ -247,7 +247,7 @@ export interface RealArm {
   facts: FoundFact[];
 }
 
-export interface ReconnectArm {
+export interface Reconnect {
   type: "reconnect";
 }
 
@@ -280,7 +280,7 @@ export interface Release {
   type: "release";
 }
 
-export interface ResetArm {
+export interface Reset {
   type: "reset";
 }
 
@@ -438,6 +438,6 @@ export interface Why {
   thing: string;
 }
 
-export type ClientMessage = Hello | DriverInput | PressEnable | PressStop | Mode | HelpFromRobot | Profile | AskToDrive | HandOver | Release | TrailClear | RecordEpisode | GuideArm | GuidedArm | ReconnectArm | ReturnArm | GoToPose | SavePose | DeletePose | ResetArm | BeginRun | Train | CancelTraining | PickRun | BeginPersonalise | AnswerQuestion | SkipQuestion | QuestionBefore | CancelPersonalise | TryAlignment | KeepAlignment | DiscardAlignment | AskToCopilot | AcceptCopilot | EndCopilot | CopilotPace;
+export type ClientMessage = Hello | DriverInput | PressEnable | PressStop | AskToDrive | HandOver | Release | TrailClear | RecordEpisode | GuideArm | ReturnArm | GoToPose | SavePose | DeletePose | Train | CancelTraining | PickRun | BeginPersonalise | AnswerQuestion | SkipQuestion | QuestionBefore | CancelPersonalise | TryAlignment | KeepAlignment | DiscardAlignment | AskToCopilot | AcceptCopilot | EndCopilot | CopilotPace | ChooseMode | ChooseHelp | ChooseProfile | KeepGuiding | Reconnect | Reset | BeginTask;
 
 export type ServerMessage = Welcome | State | LearningState | Poses | Refused;
