@@ -40,11 +40,7 @@ class MessagePort:
         return True
 
     def receive(self, wait_s: float = 0.0) -> dict[str, Any] | None:
-        """The next message within ``wait_s``, or None.
-
-        Raises:
-            EOFError: the other end is gone.
-        """
+        """The next message within ``wait_s``, or None. Raises EOFError if the other end is gone."""
         if not select.select([self._end], [], [], wait_s)[0]:
             return None
         try:

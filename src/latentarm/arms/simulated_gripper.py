@@ -19,8 +19,7 @@ class SimulatedGripper(ABC):
     def send(self, command: GripperCommand) -> None:
         """Take a command, cut to the gripper's limits.
 
-        Raises:
-            ValueError: a figure is not finite: no safety filter sends that.
+        Raises ValueError if a figure is not finite: no safety filter sends that.
         """
         figures = (command.width_m, command.speed_m_s, command.force_n)
         if not np.isfinite(figures).all():

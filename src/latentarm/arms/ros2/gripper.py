@@ -32,8 +32,7 @@ class Ros2Gripper:
     def command(self, command: GripperCommand) -> None:
         """Go to a width, unless it is the last goal already. The action has no speed; 0 halts.
 
-        Raises:
-            ValueError: a figure is not finite: no safety filter sends that.
+        Raises ValueError if a figure is not finite: no safety filter sends that.
         """
         if not np.isfinite((command.width_m, command.speed_m_s, command.force_n)).all():
             raise ValueError("a command to a gripper needs a finite width, speed and force")

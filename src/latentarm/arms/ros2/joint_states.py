@@ -44,8 +44,7 @@ class JointStates:
     def take(self, message: Mapping[str, Any]) -> Measured | None:
         """The arm's joints in a ``sensor_msgs/JointState``; None where the message is about others.
 
-        Raises:
-            UnusableStatesError: it names some of the arm's joints, but cannot be used.
+        Raises UnusableStatesError if it names some of the arm's joints, but cannot be used.
         """
         names = message.get("name")
         if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
@@ -85,8 +84,7 @@ class StampClock:
     def time_of(self, stamp_s: float, arrived_s: float) -> float | None:
         """Time of measurement on our clock, s; None for a repeated stamp, where nothing is new.
 
-        Raises:
-            ClockJumpedError: the other clock was set; what comes next is reckoned anew.
+        Raises ClockJumpedError if the other clock was set; what comes next is reckoned anew.
         """
         if stamp_s == self._stamp_s:
             return None

@@ -40,10 +40,8 @@ class RefusedError(Exception):
 class Controller:
     """Requests to the controller, one at a time; for a single thread.
 
-    ``has_error`` says whether the newest answer had an error or a warning set.
-
-    Raises:
-        LinkLostError: nobody answers there.
+    ``has_error`` says whether the newest answer had an error or a warning set. Raises LinkLostError if nobody
+    answers there.
     """
 
     def __init__(self, sdk: Sdk, host: str, port: int) -> None:
@@ -127,9 +125,8 @@ class Controller:
     ) -> list[T]:
         """Ask, and check the answer, which has at least ``figures`` figures and comes within ``within_s``.
 
-        Raises:
-            LinkLostError: no answer in time, or one that cannot be read.
-            RefusedError: the controller says that the request is invalid.
+        Raises LinkLostError if no answer comes in time, or one that cannot be read, and RefusedError if the
+        controller says that the request is invalid.
         """
         self._commands.set_timeout(within_s)
         try:

@@ -52,8 +52,7 @@ def too_different(identity: Identity, robot: Robot) -> tuple[str, ...]:
 def find_out(sdk: Sdk, session: Session, robot: Robot, *, bare: bool) -> Findings:
     """Inspect a connected arm that is not `too_different`; ``bare`` states that it carries nothing.
 
-    Raises:
-        LinkLostError: the connection is lost meanwhile.
+    Raises LinkLostError if the connection is lost meanwhile.
     """
     median_s, worst_s = session.controller.round_trips()
     number, begun_s = session.report.number, time.monotonic()

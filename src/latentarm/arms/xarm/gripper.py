@@ -39,10 +39,7 @@ class GripperLink:
     """Drives and reads the gripper in a separate thread.
 
     Its opening is assumed proportional to its position, and its speed to the manufacturer's fastest. Its
-    force cannot be set.
-
-    Raises:
-        LinkLostError: nobody answers there, or no gripper.
+    force cannot be set. Raises LinkLostError if nobody answers there, or no gripper does.
     """
 
     def __init__(self, sdk: Sdk, host: str, port: int | None, gripper: Gripper) -> None:

@@ -39,11 +39,7 @@ class Identity:
 
 
 def read_identity(told: str) -> Identity:
-    """Parse the controller's answer about its version.
-
-    Raises:
-        LinkLostError: it is no version.
-    """
+    """Parse the controller's answer about its version. Raises LinkLostError if it is no version."""
     full = _LINE.search(told)
     if full is not None:
         axes, kind, arm, box, *firmware = full.groups()

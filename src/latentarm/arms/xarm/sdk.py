@@ -5,7 +5,7 @@ import importlib
 import sys
 from dataclasses import dataclass
 from functools import cache
-from typing import Any, Protocol, cast, final
+from typing import Any, Protocol, final
 
 from latentarm.core.errors import UserError
 
@@ -26,82 +26,6 @@ class Port(Protocol):
         ...
 
 
-class Commands(Protocol):
-    """The used part of the library's ``UxbusCmdTcp``. Each answer begins with a code."""
-
-    def set_timeout(self, timeout: float) -> object:
-        """Set the time-out of answers, s."""
-        ...
-
-    def get_version(self) -> list[int]:
-        """40 characters: axes, type, serial numbers, firmware."""
-        ...
-
-    def get_state(self) -> list[int]:
-        """The state."""
-        ...
-
-    def get_err_code(self) -> list[int]:
-        """Error and warning."""
-        ...
-
-    def get_joint_pos(self) -> list[float]:
-        """7 joint angles, rad."""
-        ...
-
-    def motion_en(self, axis_id: int, enable: int) -> list[int]:
-        """Switch on the motors and release the brakes."""
-        ...
-
-    def set_mode(self, mode: int) -> list[int]:
-        """Choose the kind of commands."""
-        ...
-
-    def set_state(self, value: int) -> list[int]:
-        """0: take commands, 4: stop."""
-        ...
-
-    def clean_err(self) -> list[int]:
-        """Clear the error."""
-        ...
-
-    def clean_war(self) -> list[int]:
-        """Clear the warning."""
-        ...
-
-    def vc_set_jointv(self, jnt_v: list[float], jnt_sync: int, duration: float) -> list[int]:
-        """Move joints at 7 speeds, rad/s, for a duration, s."""
-        ...
-
-    def gripper_modbus_set_en(self, value: int) -> list[int]:
-        """Switch on the gripper."""
-        ...
-
-    def gripper_modbus_set_mode(self, value: int) -> list[int]:
-        """0: go to positions."""
-        ...
-
-    def gripper_modbus_set_posspd(self, speed: int) -> list[int]:
-        """Set its speed."""
-        ...
-
-    def gripper_modbus_set_pos(self, pulse: int) -> list[int]:
-        """Go to a position."""
-        ...
-
-    def gripper_modbus_get_pos(self) -> list[int]:
-        """Its position."""
-        ...
-
-    def gripper_modbus_get_errcode(self) -> list[int]:
-        """Its error."""
-        ...
-
-    def gripper_modbus_r16s(self, addr: int, count: int) -> list[int]:
-        """Any of its registers."""
-        ...
-
-
 @final
 @dataclass(frozen=True)
 class Sdk:
@@ -114,9 +38,9 @@ class Sdk:
     errors: dict[object, dict[str, dict[str, str]]]
     gripper_errors: dict[object, dict[str, dict[str, str]]]  # the gripper's
 
-    def commands(self, port: Port) -> Commands:
-        """Requests over a port, in the manufacturer's private protocol."""
-        return cast(Commands, self.command_class(port))
+    def commands(self, port: Port) -> Any:
+        """Requests over a port, in the manufacturer's private protocol; each answer begins with a code."""
+        return self.command_class(port)
 
     def report(self, port: int) -> Any:
         """A reader of the reports of one of the manufacturer's ports, 30000 to 30003; angles in rad."""

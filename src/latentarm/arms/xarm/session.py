@@ -70,8 +70,7 @@ class Session:
     def listen(self, first_number: int = 0) -> None:
         """Open everything besides requests, and wait for the first reports, numbered from a number on.
 
-        Raises:
-            LinkLostError: a part of it cannot be reached, or does not answer as it should.
+        Raises LinkLostError if a part of it cannot be reached, or does not answer as it should.
         """
         sdk, host, options, robot = self._sdk, self._host, self._options, self._robot
         timed = self.identity.firmware >= TIMED_REPORTS

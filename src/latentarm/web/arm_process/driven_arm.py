@@ -13,11 +13,7 @@ from latentarm.web.arm_process.drive_setup import DriveSetup
 
 
 def first_arm(setup: DriveSetup, clock: Clock) -> Arm:
-    """Make and connect the arm of a setup.
-
-    Raises:
-        UserError: it cannot be made or connected.
-    """
+    """Make and connect the arm of a setup. Raises UserError if it cannot be made or connected."""
     name, robot = setup.arm, setup.task.robot
     if setup.scene is None:
         arm = make_arm(name, robot, setup.start, clock.now_s)
@@ -36,8 +32,7 @@ def from_where_it_stands(setup: DriveSetup, arm: Arm) -> DriveSetup:
 def next_arm(setup: DriveSetup, before: DriveSetup, arm: Arm, clock: Clock) -> Arm:
     """The arm for the next setup: a simulated one is new, a real one stays.
 
-    Raises:
-        UserError: the arm is real and connected as another robot, or a simulated one cannot be made.
+    Raises UserError if the arm is real and connected as another robot, or a simulated one cannot be made.
     """
     if not setup.real:
         return first_arm(setup, clock)
@@ -53,8 +48,7 @@ def next_arm(setup: DriveSetup, before: DriveSetup, arm: Arm, clock: Clock) -> A
 def reconnect(arm: Arm) -> None:
     """Close the connection and open it again, waiting for the arm.
 
-    Raises:
-        UserError: the arm does not answer, or is refused.
+    Raises UserError if the arm does not answer, or is refused.
     """
     arm.close()
     arm.connect()

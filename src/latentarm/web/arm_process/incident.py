@@ -58,11 +58,7 @@ def begin_incident(setup: DriveSetup) -> CallLog | None:
 
 
 def newest(path: Path) -> Path:
-    """The file itself, or the newest one of a folder.
-
-    Raises:
-        UserError: the folder has none.
-    """
+    """The file itself, or the newest one of a folder. Raises UserError if the folder has none."""
     if not path.is_dir():
         return path
     if not (files := sorted(path.glob(f"*{_SUFFIX}"))):
@@ -82,8 +78,7 @@ def computer() -> str:
 def rebuild(head: Mapping[str, Any], folder: Path, where: str) -> DriveSetup:
     """Load again what the first line of a file, ``head``, and its copies in ``folder`` name.
 
-    Raises:
-        UserError: something that it names is missing here, or differs.
+    Raises UserError if something that it names is missing here, or differs.
     """
     try:
         spec: Spec = of_json(head["spec"], *_KINDS)
@@ -106,8 +101,7 @@ def rebuild(head: Mapping[str, Any], folder: Path, where: str) -> DriveSetup:
 def unpack(line: Mapping[str, Any], folder: Path, where: str) -> None:
     """Append a line's part to its copy in ``folder``.
 
-    Raises:
-        UserError: it does not belong there; ``where`` is the file's name.
+    Raises UserError if it does not belong there; ``where`` is the file's name.
     """
     path = (folder / str(line["file"])).resolve()
     if not path.is_relative_to(folder.resolve()):

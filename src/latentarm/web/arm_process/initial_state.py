@@ -37,11 +37,7 @@ class RobotOptions:
 
     @property
     def stated(self) -> StatedLimits | None:
-        """The limits file's content.
-
-        Raises:
-            UserError: the file cannot be read.
-        """
+        """The limits file's content. Raises UserError if the file cannot be read."""
         return None if self.limits is None else read_limits(self.limits)
 
 
@@ -61,10 +57,8 @@ def begin(
 ) -> InitialState:
     """Begin with a simulated arm; the same for equal arguments.
 
-    ``task`` is None for the run's own, or a table; ``choice`` is an index of what is to be done.
-
-    Raises:
-        UserError: any of these does not exist, or they do not fit each other.
+    ``task`` is None for the run's own, or a table; ``choice`` is an index of what is to be done. Raises
+    UserError if any of these does not exist, or they do not fit each other.
     """
     if task is not None and task in SCENE_TASKS:
         with_things = make_scene_task(task)
@@ -87,10 +81,8 @@ def begin_real(run: Run | None, task: str | None, choice: int, robot: RobotOptio
 
     Nothing detects the things about a real arm. Of a task with things only the robot and its obstacles count;
     goals are those of a run's demonstrations, or of a task that was named. ``task`` is None for the run's
-    own, or for nothing in particular.
-
-    Raises:
-        UserError: any of these does not exist, or they do not fit each other.
+    own, or for nothing in particular. Raises UserError if any of these does not exist, or they do not fit
+    each other.
     """
     if task is not None and task in SCENE_TASKS:
         with_things = make_scene_task(task)

@@ -48,8 +48,7 @@ T = TypeVar("T")
 def run_control(spec: Spec, channel: Channel, server: int) -> None:
     """Drive until the server, a process id, says so or is gone; then bring the arm to rest and return.
 
-    Raises:
-        UserError: something that the spec names cannot be loaded.
+    Raises UserError if something that the spec names cannot be loaded.
     """
 
     def end(number: int, frame: FrameType | None) -> None:

@@ -13,11 +13,7 @@ SLOWEST: Final = 0.01  # a slower arm hardly moves, rad/s or m/s
 @final
 @dataclass(frozen=True)
 class Speeds:
-    """Limits of speed.
-
-    Raises:
-        UserError: one is higher than the safety limits allow, or hardly a motion.
-    """
+    """Limits of speed. Raises UserError if one is higher than the safety limits allow, or hardly a motion."""
 
     joint: float = SafetyConfig.joint_speed  # of joints that turn, rad/s
     link: float = SafetyConfig.link_speed  # of any point of the arm, and of joints that slide, m/s

@@ -56,8 +56,7 @@ class CameraError(UserError):
 def open_pictures(source: CameraSource, closing: threading.Event) -> Iterator[Picture]:
     """The pictures of a camera until ``closing`` is set; a file begins again at its end.
 
-    Raises:
-        CameraError: the camera cannot be opened, or has ended.
+    Raises CameraError if the camera cannot be opened, or has ended.
     """
     if source.kind == "pattern":
         yield from clock_pictures(closing)
@@ -162,8 +161,7 @@ class _Pace:
     def of(self, frame: VideoFrame) -> Picture | None:
         """The picture of a frame; None if it follows the last one too closely.
 
-        Raises:
-            CameraError: it is too large, or so late that a new connection is quicker.
+        Raises CameraError if it is too large, or so late that a new connection is quicker.
         """
         if frame.width * frame.height > _MOST_PIXELS:
             raise CameraError(f"The pictures of camera {self._name} have become too large.")

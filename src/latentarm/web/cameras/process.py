@@ -124,8 +124,7 @@ class _Desk:
 class CameraProcess:
     """The cameras for the web server; ``host`` is the page's numeric address.
 
-    Raises:
-        UserError: a camera cannot be opened, or gives no picture.
+    Raises UserError if a camera cannot be opened, or gives no picture.
     """
 
     def __init__(self, sources: Sequence[CameraSource], host: str) -> None:
@@ -146,9 +145,8 @@ class CameraProcess:
     async def answer(self, page: str, offer: str) -> str:
         """Answer a page's WebRTC session description with ours.
 
-        Raises:
-            NoticeError: too many pages are watching, the offer is invalid, or the process of the cameras has
-                just ended.
+        Raises NoticeError if too many pages are watching, the offer is invalid, or the process of the cameras
+        has just ended.
         """
         return await asyncio.get_running_loop().run_in_executor(self._thread, self._answer, page, offer)
 

@@ -45,9 +45,8 @@ class CameraSource:
 def parse_cameras(asked: Sequence[str]) -> tuple[CameraSource, ...]:
     """The cameras of a command line, each ``NAME=ADDRESS``.
 
-    Raises:
-        UserError: one is not of that form, two have one name, there are more than `MOST`, or the extra
-            `camera` is not installed. The sentence quotes no address.
+    Raises UserError if one is not of that form, two have one name, there are more than `MOST`, or the extra
+    `camera` is not installed. The sentence quotes no address.
     """
     if len(asked) > MOST:
         raise UserError(f"{len(asked)} cameras are named: the page shows {MOST} at most.")

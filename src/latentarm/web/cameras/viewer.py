@@ -97,8 +97,7 @@ class Viewer:
     async def answer(self, offer: str) -> str:
         """Answer a page's offer to receive one video per camera, and a data channel.
 
-        Raises:
-            OfferError: it offers something else.
+        Raises OfferError if it offers something else.
         """
         try:
             await self._peer.setRemoteDescription(RTCSessionDescription(without_candidates(offer), "offer"))

@@ -45,11 +45,7 @@ class Wire:
         self._saying = saying
 
     def say(self, message: Message) -> None:
-        """Send a message to the parent.
-
-        Raises:
-            SystemExit: the parent is gone.
-        """
+        """Send a message to the parent. Raises SystemExit if the parent is gone."""
         try:
             self._saying.send_bytes(message.model_dump_json().encode())
         except OSError:
@@ -58,8 +54,7 @@ class Wire:
     def hear(self, kind: TypeAdapter[Told]) -> Told:
         """Wait for the parent's next message; invalid ones are skipped.
 
-        Raises:
-            SystemExit: the parent is gone.
+        Raises SystemExit if the parent is gone.
         """
         while True:
             try:

@@ -39,8 +39,7 @@ def moving_seconds(episode: JournalEpisode, rate_hz: float) -> float:
 def lesson_of(run: Path, demonstrations: Demonstrations, moved_s: Mapping[int, float]) -> Lesson:
     """The lesson of a new run; ``moved_s``: how long the arm moves in each recording, by number, s.
 
-    Raises:
-        UserError: the run cannot be read.
+    Raises UserError if the run cannot be read.
     """
     usual_s = median(moved_s.values())
     speeds = _speeds(run, demonstrations)

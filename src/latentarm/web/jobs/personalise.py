@@ -170,8 +170,7 @@ class PersonOnPage(Respondent):
 def ask_and_learn(wire: Wire, plan: PersonalisePlan) -> None:
     """The child's work.
 
-    Raises:
-        UserError: the run cannot be aligned, nothing was answered, or the profile cannot be written.
+    Raises UserError if the run cannot be aligned, nothing was answered, or the profile cannot be written.
     """
     # They take a second to load: in this process alone.
     from latentarm.alignment.queries import StoppingRule

@@ -42,8 +42,7 @@ def model_names() -> tuple[str, ...]:
 class TrainingPlan:
     """The model to train, and the episodes to train it on.
 
-    Raises:
-        NoticeError: the name cannot be a folder's or is taken, or there are too few episodes.
+    Raises NoticeError if the name cannot be a folder's or is taken, or there are too few episodes.
     """
 
     journal: Path
@@ -143,10 +142,8 @@ class TrainingJob:
 def train_as_planned(wire: Wire, plan: TrainingPlan) -> None:
     """The child's work. If it fails or is ended, it leaves nothing behind.
 
-    `demonstrations.pauses` prepares the episodes: motion alone, at `RATE_HZ`.
-
-    Raises:
-        UserError: the episodes are unusable, or the disk has no room.
+    `demonstrations.pauses` prepares the episodes: motion alone, at `RATE_HZ`. Raises UserError if the
+    episodes are unusable, or the disk has no room.
     """
     from latentarm.demonstrations.pauses import without_pauses
 

@@ -32,11 +32,7 @@ class Channel:
     orders: Connection  # bounded, so that a slow reader loses orders and never blocks the writer
 
     def read_orders(self, most: int) -> list[Order]:
-        """New orders, oldest first; invalid ones are skipped.
-
-        Raises:
-            EOFError: the other side is gone.
-        """
+        """New orders, oldest first; invalid ones are skipped. Raises EOFError if the other side is gone."""
         found: list[Order] = []
         while len(found) < most and self.orders.poll(0):
             try:

@@ -189,7 +189,6 @@ _CLIENT: Final[TypeAdapter[ClientMessage]] = TypeAdapter(
 def parse_message(frame: str) -> ClientMessage:
     """Parse a page's message.
 
-    Raises:
-        ValueError: the text is not a valid message (as pydantic's ``ValidationError``).
+    Raises ValueError if the text is not a valid message (as pydantic's ``ValidationError``).
     """
     return _CLIENT.validate_json(frame)

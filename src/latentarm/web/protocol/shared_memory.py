@@ -36,8 +36,7 @@ class LatestSlot:
     def write(self, message: bytes) -> None:
         """Replace the message; only one process may do so.
 
-        Raises:
-            ValueError: the message is too long for the slot.
+        Raises ValueError if the message is too long for the slot.
         """
         if len(message) > self._size:
             raise ValueError(f"a message of {len(message)} bytes is too long for {self._size}")

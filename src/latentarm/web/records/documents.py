@@ -34,8 +34,7 @@ def new_id() -> str:
 def read_record(kind: type[Record], path: Path) -> Record:
     """A record from its file.
 
-    Raises:
-        UserError: the file is missing, too large, damaged or not such a record.
+    Raises UserError if the file is missing, too large, damaged or not such a record.
     """
     return parse_record(kind, read_bytes(path, DOCUMENT_LIMIT), str(path))
 
@@ -43,8 +42,7 @@ def read_record(kind: type[Record], path: Path) -> Record:
 def parse_record(kind: type[Record], content: bytes, where: str) -> Record:
     """A record from UTF-8 JSON; errors call it ``where``.
 
-    Raises:
-        UserError: it is damaged or not such a record.
+    Raises UserError if it is damaged or not such a record.
     """
     parse_object(content, where)
     try:
@@ -68,11 +66,7 @@ def unreadable(error: UserError) -> Notice:
 
 
 def write_record(record: BaseModel, path: Path) -> None:
-    """Write a record to its file.
-
-    Raises:
-        UserError: see `write_text`.
-    """
+    """Write a record to its file. Raises UserError as `write_text` does."""
     write_text(path, record.model_dump_json(indent=1) + "\n")
 
 

@@ -120,8 +120,7 @@ def packed(trace: Trace) -> bytes:
 def checked_trace(content: bytes, where: str) -> Trace:
     """Unpack and check a trace from `packed`; errors call it ``where``.
 
-    Raises:
-        UserError: it is damaged, too large, or no trace.
+    Raises UserError if it is damaged, too large, or no trace.
     """
     unpacker = zlib.decompressobj(wbits=31)
     try:

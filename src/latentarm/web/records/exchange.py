@@ -40,11 +40,7 @@ _FIRST_DATE: Final = (1980, 1, 1, 0, 0, 0)
 
 
 def write_zip(path: Path, contents: Iterator[tuple[str, bytes]]) -> None:
-    """Write a zip from names and contents.
-
-    Raises:
-        UserError: it cannot be written.
-    """
+    """Write a zip from names and contents. Raises UserError if it cannot be written."""
     with disk_errors(path, "written"), zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, content in contents:
             archive.writestr(zipfile.ZipInfo(name, _FIRST_DATE), content, zipfile.ZIP_DEFLATED)
@@ -100,11 +96,7 @@ def drives_of(files: Mapping[str, bytes]) -> list[tuple[DriveRecord, bytes | Non
 
 
 def write_drives(drives: list[tuple[DriveRecord, bytes | None]], folder: Path, person: str) -> None:
-    """Write drives into a new person's folder, under new ids.
-
-    Raises:
-        UserError: they cannot be written.
-    """
+    """Write drives into a new person's folder, under new ids. Raises UserError if they cannot be written."""
     for drive, trace in drives:
         path = folder / DRIVES / f"{new_id()}.json"
         if trace is not None:

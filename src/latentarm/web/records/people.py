@@ -100,11 +100,7 @@ class People:
         return self._folder / person
 
     def add(self, name: str, settings: dict[str, bool | float | str] | None = None) -> PersonRecord:
-        """Add a person.
-
-        Raises:
-            UserError: the name is invalid or taken, or there are too many people.
-        """
+        """Add a person. Raises UserError if the name is invalid or taken, or there are too many people."""
         with self._lock:
             if len(self._people) >= MOST_PEOPLE:
                 raise NoticeError("too_many_people", count=MOST_PEOPLE)

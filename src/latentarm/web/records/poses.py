@@ -47,8 +47,7 @@ def with_pose(
 ) -> tuple[SavedPose, ...]:
     """The poses with one more; replaces one of that name for that robot.
 
-    Raises:
-        UserError: the name is invalid, or there are too many.
+    Raises UserError if the name is invalid, or there are too many.
     """
     try:
         clean = clean_name(name)

@@ -21,8 +21,7 @@ _OWN_PORTS: Final = {"http": 80, "https": 443}
 class TeleopConfig:
     """The options of `latentarm teleop`, see its ``--help``.
 
-    Raises:
-        UserError: the address cannot be one that people open, or only one file for TLS is named.
+    Raises UserError if the address cannot be one that people open, or only one file for TLS is named.
     """
 
     spec: Spec
@@ -59,11 +58,7 @@ class TeleopConfig:
 
 
 def listen(config: TeleopConfig) -> socket.socket:
-    """Open a listening socket.
-
-    Raises:
-        UserError: the address is taken, or is not this machine's.
-    """
+    """Open a listening socket. Raises UserError if the address is taken, or is not this machine's."""
     try:
         family, kind, protocol, _, address = socket.getaddrinfo(
             config.host, config.port, type=socket.SOCK_STREAM
@@ -86,11 +81,7 @@ def listen(config: TeleopConfig) -> socket.socket:
 
 
 def check_certificate(config: TeleopConfig) -> None:
-    """Check that the certificate and its key can be used.
-
-    Raises:
-        UserError: they cannot.
-    """
+    """Check that the certificate and its key can be used. Raises UserError if they cannot."""
     if config.certfile is None or config.keyfile is None:
         return
     try:

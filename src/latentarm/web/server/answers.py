@@ -59,11 +59,7 @@ def json_answer(content: object, status: int = 200) -> Response:
 
 
 def object_in(body: bytes) -> dict[str, object]:
-    """The JSON object of a request.
-
-    Raises:
-        NoticeError: the body is not a JSON object.
-    """
+    """The JSON object of a request. Raises NoticeError if the body is not a JSON object."""
     try:
         return parse_object(body, "The request")
     except UserError as error:
@@ -71,11 +67,7 @@ def object_in(body: bytes) -> dict[str, object]:
 
 
 async def body_of(request: Request, kind: type[Asked]) -> Asked:
-    """A request's body, validated.
-
-    Raises:
-        NoticeError: the body is invalid.
-    """
+    """A request's body, validated. Raises NoticeError if the body is invalid."""
     body = await request.body()
     object_in(body)
     try:

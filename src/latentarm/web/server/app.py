@@ -78,11 +78,9 @@ def serve(
     """Serve the page until Ctrl-C, then say how to use what was recorded.
 
     ``say`` prints a line for the person who started the server. ``ready`` is called once with the address to
-    open first: the page's, or a one-time link. ``draws``: whether the terminal can show a QR code.
-
-    Raises:
-        UserError: the run or profile cannot be loaded, another server records to the folder, the address is
-            taken, a file for TLS is broken, or a camera gives no picture.
+    open first: the page's, or a one-time link. ``draws``: whether the terminal can show a QR code. Raises
+    UserError if the run or profile cannot be loaded, another server records to the folder, the address is
+    taken, a file for TLS is broken, or a camera gives no picture.
     """
     check_certificate(config)
     setup = load_setup(config.spec)
@@ -344,11 +342,7 @@ def server_config(
 
 
 async def serve_on(listening: socket.socket, server: uvicorn.Server, limits: ConnectionLimits) -> None:
-    """Serve until the server is asked to exit.
-
-    Raises:
-        OSError: no connections can be accepted any more.
-    """
+    """Serve until the server is asked to exit. Raises OSError if no connections can be accepted any more."""
 
     async def accept() -> None:
         while not server.started:

@@ -63,8 +63,7 @@ class Assets:
     def path(self, name: str) -> str:
         """The URL of an asset, by its path in the folder of the pages.
 
-        Raises:
-            KeyError: there is no such asset.
+        Raises KeyError if there is no such asset.
         """
         if name not in self._assets:
             raise KeyError(name)

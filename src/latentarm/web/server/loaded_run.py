@@ -114,11 +114,7 @@ class LoadedRun:
 
 
 def load_reported_run(spec: Spec, report: Report, name: str | None) -> LoadedRun:
-    """Load the run that a report names, called ``name`` on pages.
-
-    Raises:
-        UserError: see `load_setup`.
-    """
+    """Load the run that a report names, called ``name`` on pages. Raises UserError as `load_setup` does."""
     run = None if report.run is None else Path(report.run)
     begun = replace(spec, run=run, profile=None, seed=report.seed, choice=report.task.choice)
     return LoadedRun(load_setup(begun), name)

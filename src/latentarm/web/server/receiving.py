@@ -23,10 +23,8 @@ class ExpiredError(Exception):
 async def receive(socket: WebSocket) -> ClientMessage:
     """The next message.
 
-    Raises:
-        ViolationError: it is invalid, or there are too many.
-        ExpiredError: the page's cookie has expired.
-        WebSocketDisconnect: the page has gone.
+    Raises ViolationError if it is invalid, or there are too many. Raises ExpiredError if the page's cookie
+    has expired. Raises WebSocketDisconnect if the page has gone.
     """
     event = await socket.receive()
     if event["type"] == "websocket.disconnect":

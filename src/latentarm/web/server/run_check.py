@@ -48,8 +48,7 @@ async def why_not_drivable(spec: Spec, run: Path, name: str) -> Notice | None:
 def try_to_load(wire: Wire, spec: Spec, name: str) -> None:
     """The child's work: load all that the control process and the server will load.
 
-    Raises:
-        UserError: see `load_setup`.
+    Raises UserError as `load_setup` does.
     """
     try:
         with bounded_memory(f"The run {name}", _SIZE):

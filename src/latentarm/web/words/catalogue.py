@@ -40,8 +40,7 @@ class Words:
     def say(self, key: str, parameters: Mapping[str, str | int] = MappingProxyType({})) -> str:
         """A text; with a ``count`` of 1 the singular is taken where there is one.
 
-        Raises:
-            KeyError: there is no such text, or it names other parameters.
+        Raises KeyError if there is no such text, or it names other parameters.
         """
         text = self.texts[key]
         if not isinstance(text, str):
