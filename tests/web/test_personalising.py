@@ -15,11 +15,14 @@ from latentarm.web.jobs.personalise import PersonaliseJob, PersonalisePlan
 from latentarm.web.protocol.orders import ChooseProfile
 from latentarm.web.protocol.page_messages import parse_message
 from latentarm.web.protocol.personalise_messages import (
+    AnswerQuestion,
     BeginPersonalise,
     CancelPersonalise,
     DiscardAlignment,
     KeepAlignment,
     Personalise,
+    QuestionBefore,
+    SkipQuestion,
     TryAlignment,
 )
 from latentarm.web.server import personalising
@@ -56,6 +59,10 @@ def question(job, after):
     return wait_for(found)
 
 
+def answer(to, u):
+    return AnswerQuestion(type="answer", question=to, u=u)
+
+
 def ended(job):
     return wait_for(lambda: job.look() if job.look().phase in ("learned", "failed") else None)
 
@@ -67,19 +74,19 @@ def test_a_person_answers_skips_goes_back_and_is_learned_from(job, run):
     assert first.motion.duration_s == 0.5
     assert len(first.motion.frames[0]) == 8
     assert len(first.motion.tools) == 1
-    job.answer(first.question, (0.5, 0.0))
+    job.reply(answer(first.question, (0.5, 0.0)))
     assert job.look().phase == "thinking"
-    job.answer(first.question, (1.0, 1.0))  # the same answer twice counts once
+    job.reply(answer(first.question, (1.0, 1.0)))  # the same answer twice counts once
 
     second = question(job, first.question)
     assert (second.number, second.back) == (2, True)
-    job.skip(second.question)
+    job.reply(SkipQuestion(type="skip_question", question=second.question))
     third = question(job, second.question)
     assert (third.number, third.motion != second.motion) == (2, True)
-    job.back(third.question)
+    job.reply(QuestionBefore(type="question_before", question=third.question))
     again = question(job, third.question)
     assert again.motion == second.motion
-    job.answer(again.question, (0.0, -0.5))
+    job.reply(answer(again.question, (0.0, -0.5)))
 
     learned = ended(job)
     assert learned.phase == "learned", learned.why
@@ -98,7 +105,7 @@ def test_whoever_knows_nothing_is_told_so(run):
     while job.look().phase != "failed":
         if job.look().phase == "asking" and job.look().question > asked_last:
             asked_last = job.look().question
-            job.skip(asked_last)
+            job.reply(SkipQuestion(type="skip_question", question=asked_last))
         time.sleep(0.002)
     assert "No question was answered" in job.look().why.text
     assert not trial_folder(run).exists()

@@ -115,7 +115,7 @@ def test_an_axis_that_moves_nothing_is_named(tmp_path):
     lesson = wire.said[-1].lesson
     assert len(lesson.weak) == 1
     assert (lesson.recordings, lesson.learned_from) == (3, 1)
-    assert wire.said[-1].warned == ()
+    assert wire.said[-1].why == ()
 
 
 def test_a_full_disk_is_said_and_leaves_nothing(tmp_path):

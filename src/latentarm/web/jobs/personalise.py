@@ -2,19 +2,31 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Final, Literal, final
+from typing import Annotated, Final, final
 
 import numpy as np
 from pydantic import Field, TypeAdapter
 
 from latentarm.runs.person import Kind, Question, Reply, Respondent
 from latentarm.web.jobs.job import Job, Wire
-from latentarm.web.protocol.notice import Message, Notice
-from latentarm.web.protocol.personalise_messages import Personalise, ShownMotion
+from latentarm.web.protocol.notice import Notice
+from latentarm.web.protocol.personalise_messages import (
+    AnswerQuestion,
+    Personalise,
+    QuestionBefore,
+    QuestionReply,
+    ShownMotion,
+    SkipQuestion,
+)
 from latentarm.web.protocol.scene import pose_of
 
 _FRAMES: Final = 16  # poses along a motion; pages interpolate
-_STILL_M: Final = 5e-4  # A tool that moves less is not shown
+_STILL_M: Final = 5e-4  # a tool that moves less is not shown
+
+_STATE: Final = TypeAdapter(Personalise)
+_REPLIES: Final[TypeAdapter[QuestionReply]] = TypeAdapter(
+    Annotated[QuestionReply, Field(discriminator="type")]
+)
 
 
 @final
@@ -29,52 +41,11 @@ class PersonalisePlan:
 
 
 @final
-class _Asked(Message):
-    type: Literal["asked"] = "asked"
-    number: int
-    of: int
-    back: bool
-    motion: ShownMotion
-
-
-@final
-class _Learning(Message):
-    type: Literal["learning"] = "learning"
-
-
-@final
-class _Learned(Message):
-    type: Literal["learned"] = "learned"
-    answers: int
-    error: float
-    error_without: float
-
-
-_Said = _Asked | _Learning | _Learned
-_SAID: Final[TypeAdapter[_Said]] = TypeAdapter(Annotated[_Said, Field(discriminator="type")])
-
-
-@final
-class _Answer(Message):
-    type: Literal["answer"] = "answer"
-    u: tuple[float, ...]
-
-
-@final
-class _Instead(Message):
-    type: Literal["skip", "back"]
-
-
-_Told = _Answer | _Instead
-_TOLD: Final[TypeAdapter[_Told]] = TypeAdapter(Annotated[_Told, Field(discriminator="type")])
-
-
-@final
 class PersonaliseJob:
     """A person being asked, for the page's server."""
 
     def __init__(self, plan: PersonalisePlan) -> None:
-        self._job = Job(ask_and_learn, (plan,), _SAID, "asking")
+        self._job = Job(ask_and_learn, (plan,), _STATE, "asking")
         self._state = Personalise(phase="preparing", name=plan.name, of=plan.questions)
 
     @property
@@ -87,49 +58,23 @@ class PersonaliseJob:
         if not self.under_way:
             return self._state
         alive = self._job.alive  # read before its messages: a child that has ended sends no more
-        for said in self._job.heard():
-            match said:
-                case _Asked(number=number, of=of, back=back, motion=motion):
-                    self._change(
-                        phase="asking",
-                        question=self._state.question + 1,
-                        number=number,
-                        of=of,
-                        back=back,
-                        motion=motion,
-                    )
-                case _Learning():
-                    self._change(phase="learning", motion=None)
-                case _Learned(answers=answers, error=error, error_without=error_without):
-                    self._change(
-                        phase="learned", answers=answers, error=error, error_without=error_without, share=1.0
-                    )
+        for state in self._job.heard():
+            self._state = state
         if not alive and self.under_way:
             failure = self._job.failure or Notice(code="work_broke_off")
             self._change(phase="failed", motion=None, why=failure)
         return self._state
 
-    def answer(self, question: int, u: tuple[float, ...]) -> None:
-        """Pass an answer on, if it belongs to the current question."""
-        self._reply(question, _Answer(u=u))
-
-    def skip(self, question: int) -> None:
-        """Skip the question."""
-        self._reply(question, _Instead(type="skip"))
-
-    def back(self, question: int) -> None:
-        """Go back to the previous question."""
-        self._reply(question, _Instead(type="back"))
+    def reply(self, reply: QuestionReply) -> None:
+        """Pass a reply on, if it belongs to the current question."""
+        asked = self._state.phase == "asking" and reply.question == self._state.question
+        # If the child does not accept it, the question stays for the person to answer again.
+        if asked and self._job.say(reply):
+            self._change(phase="thinking", motion=None, share=0.0)
 
     def end(self) -> None:
         """End it; waits two seconds at most."""
         self._job.end()
-
-    def _reply(self, question: int, reply: _Told) -> None:
-        asked = self._state.phase == "asking" and question == self._state.question
-        # If the child does not accept it, the question stays for the person to answer again.
-        if asked and self._job.say(reply):
-            self._change(phase="thinking", motion=None, share=0.0)
 
     def _change(self, **fields: object) -> None:
         self._state = self._state.model_copy(update=fields)
@@ -139,9 +84,15 @@ class PersonaliseJob:
 class PersonOnPage(Respondent):
     """A person who sees motions on a page and answers there, through the parent process."""
 
-    def __init__(self, wire: Wire) -> None:
+    def __init__(self, wire: Wire, plan: PersonalisePlan) -> None:
         self._wire = wire
         self._behind = 0
+        self._state = Personalise(phase="preparing", name=plan.name, of=plan.questions)
+
+    def say(self, **fields: object) -> None:
+        """Tell the page what has changed."""
+        self._state = self._state.model_copy(update=fields)
+        self._wire.say(self._state)
 
     @property
     def kind(self) -> Kind:
@@ -150,18 +101,22 @@ class PersonOnPage(Respondent):
 
     def answer(self, question: Question) -> Reply:
         """Wait for the page's answer, without a time limit."""
-        motion = shown_motion(question)
-        self._wire.say(
-            _Asked(number=question.number, of=question.total, back=self._behind > 0, motion=motion)
+        self.say(
+            phase="asking",
+            question=self._state.question + 1,
+            number=question.number,
+            of=question.total,
+            back=self._behind > 0,
+            motion=shown_motion(question),
         )
-        match self._wire.hear(_TOLD):
-            case _Instead(type="back"):
+        match self._wire.hear(_REPLIES):
+            case QuestionBefore():
                 self._behind = max(self._behind - 1, 0)
                 return "back"
-            case _Instead():
+            case SkipQuestion():
                 self._behind += 1
                 return None
-            case _Answer(u=u):
+            case AnswerQuestion(u=u):
                 self._behind += 1
                 named = np.array(u)[: question.axes]
                 return np.pad(named, (0, question.axes - len(named)))
@@ -178,13 +133,19 @@ def ask_and_learn(wire: Wire, plan: PersonalisePlan) -> None:
     from latentarm.runs.questions import ask
 
     known = alignable(plan.run)
-    person = PersonOnPage(wire)
+    person = PersonOnPage(wire, plan)
     answers = ask(known.scene, person, plan.questions, lambda text: None, StoppingRule())
-    wire.say(_Learning())
+    person.say(phase="learning", motion=None)
     learned = learn(known, answers, plan.name, person.kind)
     learned.save(plan.out)
     errors = {row.condition: float(row.mean or 0.0) for row in learned.rows}
-    wire.say(_Learned(answers=len(answers), error=errors[PROFILE], error_without=errors[NO_ALIGN]))
+    person.say(
+        phase="learned",
+        answers=len(answers),
+        error=errors[PROFILE],
+        error_without=errors[NO_ALIGN],
+        share=1.0,
+    )
 
 
 def shown_motion(question: Question) -> ShownMotion:

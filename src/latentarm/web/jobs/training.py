@@ -5,12 +5,11 @@ import re
 import shutil
 import time
 import warnings
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Final, Literal, final
+from typing import Final, final
 
-from pydantic import Field, TypeAdapter
+from pydantic import TypeAdapter
 
 from latentarm.control.export import ImplausibleWarning, demonstrations_of
 from latentarm.control.journal import read_journal
@@ -18,8 +17,8 @@ from latentarm.core.types import Demonstrations
 from latentarm.models.catalogue import DEFAULT_MODEL, KINDS
 from latentarm.web.jobs.job import Job, Wire
 from latentarm.web.jobs.lesson import lesson_of, moving_seconds
-from latentarm.web.protocol.learning_messages import Lesson, Training
-from latentarm.web.protocol.notice import Message, Notice, NoticeError, sentence
+from latentarm.web.protocol.learning_messages import Training
+from latentarm.web.protocol.notice import Notice, NoticeError, sentence
 
 RATE_HZ: Final = 10.0  # samples per second of motion for training: an action then looks half a second ahead
 FEWEST: Final = 3  # episodes: one trains, one stops the training, and one is kept for `latentarm evaluate`
@@ -30,6 +29,7 @@ _FIRST_MODELS: Final = (DEFAULT_MODEL, "cvae", "cae", "homogeneous", "pca")
 
 _NAME: Final = re.compile(r"\w[\w .-]{0,58}\w|\w")
 _TELL_EVERY_S: Final = 0.1
+_TRAINING: Final = TypeAdapter(Training)
 
 
 def model_names() -> tuple[str, ...]:
@@ -76,33 +76,13 @@ class TrainingPlan:
 
 
 @final
-class _Epoch(Message):
-    type: Literal["epoch"] = "epoch"
-    epoch: int
-    epochs: int
-    loss: float | None
-    seconds_left: float | None
-
-
-@final
-class _Finished(Message):
-    type: Literal["finished"] = "finished"
-    warned: tuple[Notice, ...]
-    lesson: Lesson
-
-
-_Said = _Epoch | _Finished
-_SAID: Final[TypeAdapter[_Said]] = TypeAdapter(Annotated[_Said, Field(discriminator="type")])
-
-
-@final
 class TrainingJob:
     """A training under way, for the page's server."""
 
     def __init__(self, plan: TrainingPlan) -> None:
-        self._job = Job(train_as_planned, (plan,), _SAID, "training")
+        self._job = Job(train_as_planned, (plan,), _TRAINING, "training")
         self._state = Training(phase="exporting", run=plan.name)
-        self._finished = self._cancelled = False
+        self._cancelled = False
 
     @property
     def under_way(self) -> bool:
@@ -114,29 +94,18 @@ class TrainingJob:
         if not self.under_way:
             return self._state
         alive = self._job.alive  # read before its messages: a child that has ended sends no more
-        for said in self._job.heard():
-            match said:
-                case _Epoch(epoch=epoch, epochs=epochs, loss=loss, seconds_left=seconds_left):
-                    self._change(
-                        phase="training", epoch=epoch, epochs=epochs, loss=loss, seconds_left=seconds_left
-                    )
-                case _Finished(warned=warned, lesson=lesson):
-                    self._finished = True
-                    self._change(why=warned, lesson=lesson)
-        if self._finished or not alive:
-            phase = "done" if self._finished else "cancelled" if self._cancelled else "failed"
-            self._change(phase=phase, seconds_left=None)
-            failure = self._job.failure
-            self._change(why=self._state.why if failure is None else (failure,))
+        for state in self._job.heard():
+            self._state = state
+        if self.under_way and not alive:
+            phase = "cancelled" if self._cancelled else "failed"
+            why = () if self._job.failure is None else (self._job.failure,)
+            self._state = self._state.model_copy(update={"phase": phase, "seconds_left": None, "why": why})
         return self._state
 
     def cancel(self) -> None:
         """End it, and wait until it has tidied up, two seconds at most."""
         self._cancelled = True
         self._job.end()
-
-    def _change(self, **fields: object) -> None:
-        self._state = self._state.model_copy(update=fields)
 
 
 def train_as_planned(wire: Wire, plan: TrainingPlan) -> None:
@@ -165,14 +134,15 @@ def train_as_planned(wire: Wire, plan: TrainingPlan) -> None:
             numbers=", ".join(map(str, too_short)),
         )
     demonstrations = without_pauses(recorded, RATE_HZ)
+    progress = _Progress(wire, plan.name)
     try:
-        warned = _train(wire, plan, demonstrations)
+        warned = _train(progress, plan, demonstrations)
         lesson = lesson_of(plan.run, demonstrations, moved_s)
     except BaseException:
         shutil.rmtree(plan.run, ignore_errors=True)
         shutil.rmtree(plan.dataset, ignore_errors=True)
         raise
-    wire.say(_Finished(warned=(*cut, *warned), lesson=lesson))
+    progress.say(phase="done", seconds_left=None, why=(*cut, *warned), lesson=lesson)
 
 
 def _cut(warning: ImplausibleWarning) -> Notice:
@@ -181,7 +151,7 @@ def _cut(warning: ImplausibleWarning) -> Notice:
     return Notice(code="recording_cut", parameters={"task": warning.task, "kept_s": f"{warning.kept_s:.1f}"})
 
 
-def _train(wire: Wire, plan: TrainingPlan, demonstrations: Demonstrations) -> list[Notice]:
+def _train(progress: "_Progress", plan: TrainingPlan, demonstrations: Demonstrations) -> list[Notice]:
     # pyarrow, and then torch, which take seconds to load: in this process alone.
     from latentarm.demonstrations.dataset import write_dataset
 
@@ -201,7 +171,7 @@ def _train(wire: Wire, plan: TrainingPlan, demonstrations: Demonstrations) -> li
     )
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", UserWarning)
-        train_run(options, _report_to(wire))
+        train_run(options, progress)
     # The lesson says which direction does little.
     return [
         sentence(str(one.message))
@@ -210,21 +180,28 @@ def _train(wire: Wire, plan: TrainingPlan, demonstrations: Demonstrations) -> li
     ]
 
 
-def _report_to(wire: Wire) -> Callable[[int, int, float], None]:
-    """Send epochs to the parent, at most ten times a second."""
-    begun_s = time.monotonic()
-    told_s = -math.inf
+@final
+class _Progress:
+    """Tells the parent how far the training is, at most ten times a second."""
 
-    def report(epoch: int, epochs: int, loss: float) -> None:
-        nonlocal begun_s, told_s
+    def __init__(self, wire: Wire, run: str) -> None:
+        self._wire = wire
+        self._state = Training(phase="training", run=run)
+        self._begun_s = time.monotonic()
+        self._told_s = -math.inf
+
+    def say(self, **fields: object) -> None:
+        """Tell what has changed."""
+        self._state = self._state.model_copy(update=fields)
+        self._wire.say(self._state)
+
+    def __call__(self, epoch: int, epochs: int, loss: float) -> None:
         now_s = time.monotonic()
         if epoch == 0:
-            begun_s = now_s
-        if now_s - told_s < _TELL_EVERY_S and epoch < epochs:
+            self._begun_s = now_s
+        if now_s - self._told_s < _TELL_EVERY_S and epoch < epochs:
             return
-        told_s = now_s
-        left_s = (now_s - begun_s) / epoch * (epochs - epoch) if epoch else None
+        self._told_s = now_s
+        left_s = (now_s - self._begun_s) / epoch * (epochs - epoch) if epoch else None
         finite = loss if math.isfinite(loss) else None
-        wire.say(_Epoch(epoch=epoch, epochs=epochs, loss=finite, seconds_left=left_s))
-
-    return report
+        self.say(epoch=epoch, epochs=epochs, loss=finite, seconds_left=left_s)

@@ -77,15 +77,9 @@ class DiscardAlignment(Message):
     type: Literal["discard_alignment"]
 
 
+QuestionReply = AnswerQuestion | SkipQuestion | QuestionBefore
 PersonaliseMessage = (
-    BeginPersonalise
-    | AnswerQuestion
-    | SkipQuestion
-    | QuestionBefore
-    | CancelPersonalise
-    | TryAlignment
-    | KeepAlignment
-    | DiscardAlignment
+    BeginPersonalise | QuestionReply | CancelPersonalise | TryAlignment | KeepAlignment | DiscardAlignment
 )
 
 

@@ -112,15 +112,9 @@ class Personalising:
         match message:
             case BeginPersonalise(name=name, questions=questions):
                 self._begin(name.strip(), questions)
-            case AnswerQuestion(question=question, u=u):
+            case AnswerQuestion() | SkipQuestion() | QuestionBefore():
                 if self._job is not None:
-                    self._job.answer(question, u)
-            case SkipQuestion(question=question):
-                if self._job is not None:
-                    self._job.skip(question)
-            case QuestionBefore(question=question):
-                if self._job is not None:
-                    self._job.back(question)
+                    self._job.reply(message)
             case CancelPersonalise():
                 if self._state is None or self._state.phase != "learned":
                     self._forget()
