@@ -14,16 +14,8 @@ from latentarm.web.protocol.report import ArmState, Point
 
 
 @final
-class NamedGoal(Message):
-    """A goal: its name and the tool's position at it, m."""
-
-    name: str
-    position: Point
-
-
-@final
-class NamedThing(Message):
-    """A thing about the arm: its name and its position at the start, m."""
+class NamedPlace(Message):
+    """A goal with the tool's position there, or a thing with its position at the start, m."""
 
     name: str
     position: Point
@@ -92,8 +84,8 @@ class Welcome(Message):
     run: str | None
     profiles: tuple[str, ...]
     modes: tuple[ModeName, ...]
-    goals: tuple[NamedGoal, ...]  # in the order of the belief
-    things: tuple[NamedThing, ...]  # in the order of `State.things`
+    goals: tuple[NamedPlace, ...]  # in the order of the belief
+    things: tuple[NamedPlace, ...]  # in the order of `State.things`
     zones: tuple[NamedZone, ...]  # where the arm is slow
     keep_out: tuple[str, ...]  # names of obstacles that a person has added
     end_effector_modes: tuple[str, ...]  # names of the pairs of axes

@@ -16,8 +16,7 @@ from latentarm.web.protocol.scene import drawable
 from latentarm.web.protocol.server_messages import (
     FoundFact,
     Limits,
-    NamedGoal,
-    NamedThing,
+    NamedPlace,
     NamedZone,
     RealArm,
     StepToDo,
@@ -87,11 +86,11 @@ class LoadedRun:
             profiles=self.profiles,
             modes=setup.modes,
             goals=tuple(
-                NamedGoal(name=goal.name, position=tuple(goal.pose.position.tolist()))
+                NamedPlace(name=goal.name, position=tuple(goal.pose.position.tolist()))
                 for goal in setup.task.goals
             ),
             things=tuple(
-                NamedThing(name=thing.name, position=tuple(thing.pose.position.tolist()))
+                NamedPlace(name=thing.name, position=tuple(thing.pose.position.tolist()))
                 for thing in (() if setup.shown is None else setup.shown.things)
             ),
             zones=tuple(NamedZone(name=zone.name, speed=zone.speed) for zone in setup.spec.zones),

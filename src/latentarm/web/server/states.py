@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, final
+from typing import TYPE_CHECKING, Any, Final, final
 
 import numpy as np
 
@@ -15,8 +15,8 @@ from latentarm.core.errors import UserError
 from latentarm.core.untrusted.terminal import one_line
 from latentarm.robots.kinematics.pose_rows import STORED
 from latentarm.web.protocol.copilot_messages import CopilotState, Person
-from latentarm.web.protocol.notice import Notice, notice_of
-from latentarm.web.protocol.report import Ghosts, Report, Things
+from latentarm.web.protocol.notice import Message, Notice, notice_of
+from latentarm.web.protocol.report import ArmState, Ghosts, Report, Things
 from latentarm.web.protocol.scene import pose_of
 from latentarm.web.protocol.server_messages import RecordingState, State
 from latentarm.web.server.loaded_run import (
@@ -36,6 +36,16 @@ SILENT_S: Final = 0.5  # a control process that is silent for so long is conside
 NOTE_S: Final = 6.0  # how long a refusal is shown, s
 AWAY_PERIOD_S: Final = 0.2  # how often pages receive the reason why there is no new report, s
 _SAME_M: Final = 1e-3
+
+_UNKNOWN: Final[dict[str, object]] = {
+    "phase": "disengaged",
+    "reason": None,
+    "held_back": None,
+    "zone": None,
+    "returning": False,
+    "bound_for": None,
+}
+"""What pages see of an arm of which there is no news."""
 
 
 @final
@@ -195,34 +205,24 @@ class States:
         would = self._sessions.named(self._sessions.copilot.asking)
         recording = report.recording
         away = self._away(time.monotonic())
+        arm = _fields_of(ArmState, report)
+        if away:
+            arm |= _UNKNOWN | {"guiding": "offered" if report.guiding == "on" else report.guiding}
+        arm |= {
+            "note": self._why_away() if away else self._shown_note(report),
+            "tool": _rounded(report.tool),
+            "things": self._things if things else None,
+            "ghosts": report.ghosts if ghosts else None,
+            "alpha": round(report.alpha, 3),
+            "late_share": round(report.late_share, 5),
+        }
+        if report.gripper is not None:
+            width_m = round(report.gripper.width_m, 4)
+            arm["gripper"] = report.gripper.model_copy(update={"width_m": width_m})
         return State(
-            nonce=report.nonce,
-            tick=report.tick,
-            phase="disengaged" if away else report.phase,
-            note=self._why_away() if away else self._shown_note(report),
-            reason=None if away else report.reason,
-            held_back=None if away else report.held_back,
-            zone=None if away else report.zone,
-            returning=report.returning and not away,
-            bound_for=None if away else report.bound_for,
-            at_start=report.at_start,
-            guiding="offered" if away and report.guiding == "on" else report.guiding,
-            lost=report.lost,
-            let_go_first=report.let_go_first,
-            late_stops=report.late_stops,
-            mode=report.mode,
-            axes=report.axes,
-            help=report.help,
-            profile=report.profile,
+            **arm,
             bodies=self._bodies(report),
-            tool=_rounded(report.tool),
-            gripper=report.gripper
-            and report.gripper.model_copy(update={"width_m": round(report.gripper.width_m, 4)}),
-            task=report.task,
-            things=self._things if things else None,
-            ghosts=report.ghosts if ghosts else None,
             belief=tuple(round(share, 4) for share in report.belief) or None,
-            alpha=round(report.alpha, 3),
             bound_m=self._bound_m(report),
             driver=None if driver is None else driver.id,
             driver_name=None if driver is None else driver.name,
@@ -231,15 +231,8 @@ class States:
             asking_name=None if asking is None else asking.name,
             copilot=self._copilot(),
             copilot_asking=None if would is None else Person(id=would.id, name=would.name),
-            recording=recording
-            and RecordingState(
-                on=recording.on,
-                samples=recording.samples,
-                episodes=recording.episodes,
-                problem=recording.problem,
-            ),
+            recording=recording and RecordingState(**_fields_of(RecordingState, recording)),
             trail=self._trail,
-            late_share=round(report.late_share, 5),
             you=False,
         )
 
@@ -280,6 +273,11 @@ class States:
             return None
         likeliest = int(np.argmax(report.belief))
         return round(report.bound_rad * self.loaded.goals_m_per_rad[likeliest], 4)
+
+
+def _fields_of(kind: type[Message], message: Message) -> dict[str, Any]:
+    """The fields of a message that another kind has, too."""
+    return {name: getattr(message, name) for name in kind.model_fields}
 
 
 def _moved(before: Ghosts, after: Ghosts) -> float:

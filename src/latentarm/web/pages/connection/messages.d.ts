@@ -178,12 +178,7 @@ export interface Lost {
   step: number;
 }
 
-export interface NamedGoal {
-  name: string;
-  position: [number, number, number];
-}
-
-export interface NamedThing {
+export interface NamedPlace {
   name: string;
   position: [number, number, number];
 }
@@ -421,8 +416,8 @@ export interface Welcome {
   run: string | null;
   profiles: string[];
   modes: ("latent" | "assisted" | "end_effector")[];
-  goals: NamedGoal[];
-  things: NamedThing[];
+  goals: NamedPlace[];
+  things: NamedPlace[];
   zones: NamedZone[];
   keep_out: string[];
   end_effector_modes: string[];
