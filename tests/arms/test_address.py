@@ -3,7 +3,7 @@
 import pytest
 
 from latentarm.arms.address import ArmAddress, is_address, parse_address
-from latentarm.arms.real_catalogue import make_real_arm
+from latentarm.arms.catalogue import make_real_arm
 from latentarm.core.errors import UserError
 
 

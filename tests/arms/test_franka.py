@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from franka_server import START, FrankaStandIn
 
+from latentarm.arms.catalogue import make_real_arm
 from latentarm.arms.contract import check_arm
 from latentarm.arms.franka.link import has_realtime
-from latentarm.arms.real_catalogue import make_real_arm
 from latentarm.control.clock import MonotonicClock
 from latentarm.core.errors import UserError
 from latentarm.core.types import Command, FloatArray, GripperCommand

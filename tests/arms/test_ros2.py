@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 from rosbridge_server import GRIPPER_JOINT, RosbridgeServer, Setup, load_watchdog, silent_port
 
 from latentarm.arms.address import parse_address
+from latentarm.arms.catalogue import make_real_arm
 from latentarm.arms.real import RealArm
-from latentarm.arms.real_catalogue import make_real_arm
 from latentarm.arms.ros2 import link
 from latentarm.arms.ros2.joint_states import ClockJumpedError, JointStates, StampClock, UnusableStatesError
 from latentarm.arms.ros2.options import read_options

@@ -13,8 +13,8 @@ import pytest
 
 from arms.xarm_rig import drive, enable, slow, wait_for, xarm7
 from arms.xarm_server import CONTROL, PLAIN, STATUS, TIMED, XArmServer, serving
+from latentarm.arms.catalogue import make_real_arm
 from latentarm.arms.real import RealArm
-from latentarm.arms.real_catalogue import make_real_arm
 from latentarm.control.clock import MonotonicClock
 from latentarm.core.errors import UserError
 from latentarm.core.types import Command

@@ -7,8 +7,8 @@ import pytest
 
 from arms.xarm_rig import xarm7
 from arms.xarm_server import XArmServer, serving
+from latentarm.arms.catalogue import make_real_arm
 from latentarm.arms.real import RealArm
-from latentarm.arms.real_catalogue import make_real_arm
 from latentarm.control.clock import MonotonicClock
 from latentarm.core.types import FloatArray
 from latentarm.robots.robot import Robot

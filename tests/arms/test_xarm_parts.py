@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 from arms.xarm_rig import xarm7
 from latentarm.arms.address import parse_address
+from latentarm.arms.catalogue import make_real_arm
 from latentarm.arms.contract import check_arm
-from latentarm.arms.real_catalogue import make_real_arm
 from latentarm.arms.xarm.control_socket import ControlSocket
 from latentarm.arms.xarm.controller import LinkLostError
 from latentarm.arms.xarm.gripper import units_of, width_of

@@ -15,7 +15,7 @@ MARK: Final = "://"  # marks the address of a real arm
 class ArmAddress:
     """The address of a real arm."""
 
-    scheme: str  # a driver's name in `latentarm.arms.real_catalogue.REAL_ARMS`
+    scheme: str  # a driver's name in `latentarm.arms.catalogue.REAL_ARMS`
     host: str  # a host name, an IP address, or a path for some drivers
     port: int | None  # None for the driver's default
     options: Mapping[str, str]  # of the driver

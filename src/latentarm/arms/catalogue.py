@@ -1,17 +1,19 @@
-"""Arms by name: ours, and those that other distributions register."""
+"""Arms by name, and real ones by the scheme of their address: ours, and those that others register."""
 
 import inspect
 from collections.abc import Callable
-from typing import Final, Protocol, cast
+from typing import Any, Final, Protocol, TypeVar, cast
 
-from latentarm.arms.address import is_address
+from latentarm.arms.address import ArmAddress, is_address, parse_address
 from latentarm.arms.contract import Arm, SceneArm
-from latentarm.arms.real_catalogue import check_address, make_real_arm
+from latentarm.arms.real import RealArm
 from latentarm.core.errors import UserError
 from latentarm.core.plugins import Catalogue
 from latentarm.core.types import FloatArray
 from latentarm.robots.robot import Robot
 from latentarm.robots.scene.scene import Scene
+
+T = TypeVar("T")
 
 
 class ArmFactory(Protocol):
@@ -36,13 +38,31 @@ class SceneArmFactory(Protocol):
         ...
 
 
-def _factory(name: str, thing: object) -> ArmFactory:
+class RealArmFactory(Protocol):
+    """Makes the driver of a real arm; its class is such a factory."""
+
+    def __call__(self, robot: Robot, address: ArmAddress, now_s: Callable[[], float]) -> RealArm:
+        """A driver that is not connected.
+
+        Args:
+            robot: the arm's model.
+            address: of the arm.
+            now_s: the clock of readings, s; never goes back.
+
+        Raises:
+            UserError: an option of the address is unknown or out of range, or the manufacturer's library is
+                not installed.
+        """
+        ...
+
+
+def _factory(name: str, thing: object) -> Any:
     if not callable(thing):
         raise TypeError(f"{thing!r} is not a class or function that makes an arm")
-    return cast(ArmFactory, thing)
+    return thing
 
 
-ARMS: Final = Catalogue(
+ARMS: Final[Catalogue[ArmFactory]] = Catalogue(
     "latentarm.arms",
     "arm",
     {
@@ -53,8 +73,29 @@ ARMS: Final = Catalogue(
 )
 
 DEFAULT_ARM: Final = "kinematic"
-
 PHYSICAL_ARM: Final = "mujoco"  # can touch and hold things
+
+REAL_ARMS: Final[Catalogue[RealArmFactory]] = Catalogue(
+    "latentarm.real_arms",
+    "driver",
+    {
+        "franka": "latentarm.arms.franka.arm:FrankaArm",
+        "lerobot": "latentarm.arms.lerobot.arm:LerobotArm",
+        "ros2": "latentarm.arms.ros2.arm:Ros2Arm",
+        "xarm": "latentarm.arms.xarm.arm:XArm",
+    },
+    _factory,
+)
+
+_FORMS: Final = {
+    "lerobot": "lerobot://TYPE?port=/dev/ttyACM0&id=NAME",
+    "ros2": "ros2://HOST:PORT?controller=NAME",
+}
+
+
+def address_form(scheme: str) -> str:
+    """The form of an address with this scheme; capitals are placeholders."""
+    return _FORMS.get(scheme, f"{scheme}://HOST")
 
 
 def make_arm(name: str, robot: Robot, state: FloatArray, now_s: Callable[[], float]) -> Arm:
@@ -71,13 +112,19 @@ def make_arm(name: str, robot: Robot, state: FloatArray, now_s: Callable[[], flo
     """
     if is_address(name):
         return make_real_arm(name, robot, now_s)
-    return _checked(name, ARMS.find(name, "--arm")(robot, state, now_s))
+    return _checked(Arm, name, ARMS.find(name, "--arm")(robot, state, now_s))
+
+
+def make_real_arm(address: str, robot: Robot, now_s: Callable[[], float]) -> RealArm:
+    """The driver of a real arm, such as ``franka://172.16.0.2``; not connected yet."""
+    where = parse_address(address)
+    return _checked(RealArm, address, _driver(address, where)(robot, where, now_s))
 
 
 def check_named(name: str) -> None:
     """Check the name or address in ``--arm``, without making the arm."""
     if is_address(name):
-        check_address(name)
+        _driver(name, parse_address(name))
     else:
         ARMS.find(name, "--arm")
 
@@ -103,10 +150,12 @@ def make_scene_arm(
     factory = ARMS.find(name, "--arm")
     if "scene" not in inspect.signature(factory).parameters:
         raise UserError(f"--arm {name} has no things about it to touch or hold: use --arm {PHYSICAL_ARM}.")
-    arm = _simulated(name, _checked(name, cast(SceneArmFactory, factory)(robot, state, now_s, scene=scene)))
-    if not isinstance(arm, SceneArm):
-        raise UserError(f"--arm {name} made {type(arm).__name__}, not a latentarm.arms.contract.SceneArm.")
-    return arm
+    made = cast(SceneArmFactory, factory)(robot, state, now_s, scene=scene)
+    return _checked(SceneArm, name, _simulated(name, _checked(Arm, name, made)))
+
+
+def _driver(address: str, where: ArmAddress) -> RealArmFactory:
+    return REAL_ARMS.find(where.scheme, f"--arm {address}")
 
 
 def _simulated(name: str, arm: Arm) -> Arm:
@@ -122,7 +171,9 @@ def _real(name: str) -> UserError:
     )
 
 
-def _checked(name: str, arm: object) -> Arm:
-    if not isinstance(arm, Arm):
-        raise UserError(f"--arm {name} made {type(arm).__name__}, not a latentarm.arms.contract.Arm.")
+def _checked(kind: type[T], name: str, arm: object) -> T:
+    if not isinstance(arm, kind):
+        raise UserError(
+            f"--arm {name} made {type(arm).__name__}, not a {kind.__module__}.{kind.__qualname__}."
+        )
     return arm

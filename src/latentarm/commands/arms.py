@@ -9,10 +9,9 @@ from rich.table import Table
 from tyro.conf import Positional, arg
 
 from latentarm.arms.address import is_address
-from latentarm.arms.catalogue import ARMS
+from latentarm.arms.catalogue import ARMS, REAL_ARMS, address_form, make_real_arm
 from latentarm.arms.checking import look_at
 from latentarm.arms.real import Findings
-from latentarm.arms.real_catalogue import REAL_ARMS, address_form, make_real_arm
 from latentarm.commands.options import JointSpeed, LimitsFile, LinkSpeed
 from latentarm.commands.output import print_renderables, refuse, say
 from latentarm.control.clock import MonotonicClock

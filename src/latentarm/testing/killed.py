@@ -6,7 +6,7 @@ import signal
 from multiprocessing.connection import Connection
 from typing import Self, final
 
-from latentarm.arms.real_catalogue import make_real_arm
+from latentarm.arms.catalogue import make_real_arm
 from latentarm.control.clock import MonotonicClock
 from latentarm.core.types import Command, FloatArray
 from latentarm.robots.robot import Robot

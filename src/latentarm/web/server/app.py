@@ -21,8 +21,8 @@ from starlette.routing import Route, WebSocketRoute
 from starlette.types import ASGIApp
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
+from latentarm.arms.catalogue import make_real_arm
 from latentarm.arms.checking import look_at
-from latentarm.arms.real_catalogue import make_real_arm
 from latentarm.control.clock import MonotonicClock
 from latentarm.control.recordings import JOURNAL_SUFFIX
 from latentarm.core.errors import UserError
