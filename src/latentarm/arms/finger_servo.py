@@ -74,8 +74,8 @@ class FingerServo(SimulatedGripper):
 
     def note(self) -> None:
         """Store the present measurement until its delay has passed."""
-        time_s = float(self._data.time)
-        self._measured.append((time_s, self._reading()))
+        time_s, where = float(self._data.time), self._shares()
+        self._measured.append((time_s, GripperReading(sum(where), self._holds(where))))
         while len(self._measured) > 1 and time_s - self._measured[1][0] >= self._delay_s - 1e-9:
             self._measured.popleft()
 
@@ -106,10 +106,6 @@ class FingerServo(SimulatedGripper):
     def _shares(self) -> list[float]:
         """Opening of each finger, m."""
         return ((self._data.qpos[self._positions] - self._closed) / self._per_m).tolist()
-
-    def _reading(self) -> GripperReading:
-        where = self._shares()
-        return GripperReading(sum(where), self._holds(where))
 
     def _holds(self, where: list[float]) -> bool:
         """Whether fingers at these positions, m, have stalled for long enough."""

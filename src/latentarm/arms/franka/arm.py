@@ -12,7 +12,7 @@ from latentarm.arms.franka.options import read_options
 from latentarm.arms.franka.worker import Order, Trouble, Worker
 from latentarm.arms.real import Findings, GuidableArm
 from latentarm.core.errors import UserError
-from latentarm.core.types import Command, GripperCommand, GripperReading, Reading
+from latentarm.core.types import Command, GripperCommand, Reading
 from latentarm.robots.robot import Robot
 
 RATE_HZ: Final = 100.0
@@ -29,9 +29,7 @@ _SILENT_S: Final = 0.5  # an arm that is silent for so long counts as lost
 class FrankaArm(GuidableArm):
     """A Franka Research 3 or Panda, by joint velocities at up to 100 Hz; its 1 kHz is franky's, in C++.
 
-    Args:
-        address: ``franka://HOST`` with the options of `FrankaOptions`.
-        now_s: the clock of readings, s; never goes back
+    Its address is ``franka://HOST`` with the options of `FrankaOptions`.
     """
 
     def __init__(self, robot: Robot, address: ArmAddress, now_s: Callable[[], float]) -> None:
@@ -107,7 +105,8 @@ class FrankaArm(GuidableArm):
         last = self._last
         if last is None or measured.time_s > last.time_s:
             sequence = 0 if last is None else last.sequence + 1
-            last = Reading(measured.q, measured.dq, measured.time_s, sequence, self._fingers())
+            fingers = None if self._hand is None else self._hand.reading
+            last = Reading(measured.q, measured.dq, measured.time_s, sequence, fingers)
             self._last = last
         return last
 
@@ -213,6 +212,3 @@ class FrankaArm(GuidableArm):
         if link.hand is None or self._robot.gripper is None:
             return None
         return Hand(link.hand, self._robot.gripper)
-
-    def _fingers(self) -> GripperReading | None:
-        return None if self._hand is None else self._hand.reading

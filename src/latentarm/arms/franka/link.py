@@ -3,6 +3,7 @@
 import statistics
 import threading
 import time
+from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, final
 
@@ -148,7 +149,8 @@ def refusals(link: Link, options: FrankaOptions, robot: Robot) -> tuple[str, ...
             "This computer has no realtime kernel: install one, or add ?realtime=ignore to the address and"
             " expect the arm to stop when the computer is busy."
         )
-    if link.hand is not None and link.hand.state.max_width < 0.5 * _width(robot):
+    widest_m = 0.0 if robot.gripper is None else robot.gripper.width_m
+    if link.hand is not None and link.hand.state.max_width < 0.5 * widest_m:
         found.append(
             f"The hand says it opens to {1000 * link.hand.state.max_width:.0f} mm at most: home it in Desk."
         )
@@ -162,7 +164,7 @@ def findings(link: Link, options: FrankaOptions, robot: Robot) -> Findings:
     facts = [
         Fact("arm", "not known" if limits is None else limits.kind),
         Fact("mode", str(state.robot_mode.name)),
-        Fact("control library", _version()),
+        Fact("control library", f"franky-control {version('franky-control')}"),
         Fact("joint positions", ", ".join(f"{q:.3f}" for q in state.q) + " rad"),
         Fact("end-effector", f"{state.m_ee:.2f} kg (set in Desk)"),
         Fact("payload", f"{state.m_load:.2f} kg now, {options.payload_kg:g} kg when connected"),
@@ -236,16 +238,6 @@ def _thresholds(options: FrankaOptions) -> str:
         f" {', '.join(f'{value:g}' for value in options.collision_force_n)} N;"
         f" {', '.join(f'{value:g}' for value in options.collision_moment_nm)} N m"
     )
-
-
-def _version() -> str:
-    from importlib.metadata import version
-
-    return f"franky-control {version('franky-control')}"
-
-
-def _width(robot: Robot) -> float:
-    return 0.0 if robot.gripper is None else robot.gripper.width_m
 
 
 def _realtime(franky: Any, options: FrankaOptions) -> Any:

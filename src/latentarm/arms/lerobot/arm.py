@@ -38,12 +38,8 @@ class LerobotArm(GuidableArm):
     The servos have no watchdog. The process makes up for that (`latentarm.arms.lerobot.keeper`): it turns
     velocities into position targets, each command for its duration, and the last target stands when commands
     end for any reason. The arm then holds its position under power. Neither disabling nor closing lets it
-    drop; to lower it, switch its supply off with a hand under it.
-
-    Args:
-        robot: its joints have the names of the motors
-        address: ``port`` of the bus, and the file ``calibration`` or the ``id`` given to lerobot-calibrate
-        now_s: the clock of readings, s
+    drop; to lower it, switch its supply off with a hand under it. The robot's joints have the names of the
+    motors. For the address see `Options`.
     """
 
     def __init__(self, robot: Robot, address: ArmAddress, now_s: Callable[[], float]) -> None:

@@ -226,7 +226,8 @@ class Keeper:
             self._failures += 1
             if self._failures >= _FAILURES:
                 self._fail("The arm's bus does not answer: check its cable and its supply.")
-            self._port.send({**self._status(), "lost": self._failures >= _FAILURES})
+            lost = self._failures >= _FAILURES
+            self._port.send({"phase": self._phase, "reason": self._reason, "lost": lost})
             return
         self._failures = 0
         if self._phase != "guided":
@@ -266,9 +267,6 @@ class Keeper:
     def _velocity(self) -> FloatArray:
         (first_s, first), (last_s, last) = self._seen[0], self._seen[-1]
         return (last - first) / (last_s - first_s) if last_s > first_s else np.zeros_like(last)
-
-    def _status(self) -> dict[str, object]:
-        return {"phase": self._phase, "reason": self._reason}
 
     def _state(self) -> dict[str, object]:
         velocity = self._velocity()

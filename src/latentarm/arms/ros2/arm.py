@@ -50,11 +50,7 @@ class Ros2Arm(GuidableArm):
 
     Commands go to the watchdog next to the arm, which passes them on to the controller and stops the arm when
     they end. A thread tells the watchdog that this process lives, and after `recover` opens a lost connection
-    again.
-
-    Args:
-        address: of rosbridge, with the options of `Ros2Options`.
-        now_s: the clock of readings, s; never goes back
+    again. The address is rosbridge's, with the options of `Ros2Options`.
     """
 
     def __init__(self, robot: Robot, address: ArmAddress, now_s: Callable[[], float]) -> None:

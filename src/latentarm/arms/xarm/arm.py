@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable
+from functools import partial
 from typing import Final, final
 
 import numpy as np
@@ -36,10 +37,8 @@ class XArm(GuidableArm):
     Commands not delivered within `latentarm.arms.xarm.controller.ANSWER_S` are dropped, so a command ends at
     most that much later.
 
-    Args:
-        robot: its joints are J1, J2, ... in order
-        address: ``xarm://HOST[:PORT]``; see `latentarm.arms.xarm.session.Options`.
-        now_s: the clock of readings, s
+    The robot's joints are J1, J2, ... in order. The address is ``xarm://HOST[:PORT]``, see
+    `latentarm.arms.xarm.session.Options`.
     """
 
     def __init__(self, robot: Robot, address: ArmAddress, now_s: Callable[[], float]) -> None:
@@ -80,7 +79,7 @@ class XArm(GuidableArm):
         self.close()
         session = self._open(0 if self._last is None else self._last[0].number, clear=False)
         self._shared = Shared(condition="disabled")
-        self._driver = Driver(self._sdk, self._robot, self._shared, session, self._reopen)
+        self._driver = Driver(self._sdk, self._robot, self._shared, session, partial(self._open, clear=True))
         self._driver.start()
 
     def close(self) -> None:
@@ -121,7 +120,7 @@ class XArm(GuidableArm):
             case "guided":
                 return ArmStatus("guided", "The arm is guided by hand.")
             case "enabled" | "stopping":
-                return ArmStatus("moving" if self._moves() else "ready")
+                return ArmStatus("moving" if np.abs(self.read().dq).max() > STILL_RAD_S else "ready")
             case "fault" | "lost":
                 return ArmStatus("fault", reason, recoverable, lost=condition == "lost")
             case "emergency_stop":
@@ -182,15 +181,9 @@ class XArm(GuidableArm):
                 self._shared.become("stopping")
                 self._shared.requests.add("stop")
 
-    def _moves(self) -> bool:
-        return bool(np.abs(self.read().dq).max() > STILL_RAD_S)
-
     def _newest(self, driver: Driver) -> tuple[JointReport, GripperReading | None]:
         session = driver.session
         return session.report, None if session.gripper is None else session.gripper.reading
-
-    def _reopen(self, number: int) -> Session:
-        return self._open(number, clear=True)
 
     def _open(self, number: int, *, clear: bool) -> Session:
         """Another session; ``clear`` clears an error at somebody's request."""

@@ -37,8 +37,8 @@ def controller_error(sdk: Sdk, code: int) -> str:
             " again."
         )
     title = known["en"]["title"].rstrip(".")
-    advice = _OWN.get(code) or _first_lower(known["en"]["desc"].strip().rstrip("."))
-    todo = advice or "check it in UFACTORY Studio"
+    theirs = known["en"]["desc"].strip().rstrip(".")
+    todo = _OWN.get(code) or theirs[:1].lower() + theirs[1:] or "check it in UFACTORY Studio"
     return f"The arm has stopped with error {code}, {title}: {todo}, then enable it again."
 
 
@@ -47,7 +47,3 @@ def gripper_error(sdk: Sdk, code: int) -> str:
     known = sdk.gripper_errors.get(code)
     title = known["en"]["title"].rstrip(".") if known else "unknown"
     return f"The gripper reports error {code}, {title}: check what it holds, then enable the arm again."
-
-
-def _first_lower(text: str) -> str:
-    return text[:1].lower() + text[1:]

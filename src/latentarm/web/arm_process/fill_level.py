@@ -48,14 +48,16 @@ class FillLevels:
 
     def see(self, state: SceneState, time_s: float) -> None:
         """Update from the scene at the clock's time, s."""
-        self.now = tuple(_fill_of(vessel, state) for vessel in self._vessels)
+        self.now = tuple(
+            Fill(
+                thing=one.name,
+                share=round(float(state.inside(one.grains, one.name, one.room).mean()), 3),
+                enough=one.enough,
+            )
+            for one in self._vessels
+        )
         left = sum(one.share for one in self.now if one.enough is None)
         wanted = sum(max(one.enough - one.share, 0.0) for one in self.now if one.enough is not None)
         if self._enough_s is None or left >= wanted:
             self._enough_s = time_s
         self.short = time_s - self._enough_s >= SETTLES_S
-
-
-def _fill_of(vessel: Vessel, state: SceneState) -> Fill:
-    share = float(state.inside(vessel.grains, vessel.name, vessel.room).mean())
-    return Fill(thing=vessel.name, share=round(share, 3), enough=vessel.enough)

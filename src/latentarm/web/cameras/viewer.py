@@ -147,7 +147,7 @@ class Viewer:
         channel = self._channel
         sent_ms = asked_ms(message)
         if channel is not None and sent_ms is not None and channel.readyState == "open":
-            channel.send(json.dumps({"type": "time", "sent": sent_ms, "now": _now_ms()}))
+            channel.send(json.dumps({"type": "time", "sent": sent_ms, "now": 1000.0 * time.monotonic()}))
 
     async def _tell(self) -> None:
         began_s = time.monotonic()
@@ -182,7 +182,3 @@ def asked_ms(message: object) -> float | None:
 def without_candidates(offer: str) -> str:
     """An offer without the page's addresses: we send nothing to where a stranger says."""
     return "".join(f"{line}\r\n" for line in offer.splitlines() if not line.startswith(_ADDRESSES))
-
-
-def _now_ms() -> float:
-    return 1000.0 * time.monotonic()

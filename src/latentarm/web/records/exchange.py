@@ -7,7 +7,8 @@ import io
 import re
 import zipfile
 import zlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Generator, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Final
 
@@ -36,6 +37,8 @@ _MOST_FILES: Final = 20_000
 _DRIVE: Final = re.compile(rf"{DRIVES}/({ID.pattern})\.json")
 _SCENE: Final = re.compile(rf"{SCENES}([0-9a-f]{{32}}\.json|meshes/[0-9a-f]{{64}})")
 _PROFILE: Final = re.compile(rf"{PROFILES}\d{{1,4}}/(config\.json|alignment\.safetensors)")
+# RuntimeError is an encrypted file.
+_DAMAGE: Final = (zipfile.BadZipFile, zlib.error, OSError, EOFError, ValueError, KeyError, RuntimeError)
 _FIRST_DATE: Final = (1980, 1, 1, 0, 0, 0)
 
 
@@ -46,27 +49,29 @@ def write_zip(path: Path, contents: Iterator[tuple[str, bytes]]) -> None:
             archive.writestr(zipfile.ZipInfo(name, _FIRST_DATE), content, zipfile.ZIP_DEFLATED)
 
 
+@contextmanager
+def _refusing_damage() -> Generator[None]:
+    """Refuse what is damaged, encrypted, too large, or no export."""
+    try:
+        yield
+    except (*_DAMAGE, UserError) as error:
+        raise NoticeError("import_invalid") from error
+
+
 def read_zip(content: bytes) -> dict[str, bytes]:
     """The files of such a zip that this version knows, by name."""
-    try:
-        with zipfile.ZipFile(io.BytesIO(content)) as archive:
-            entries = archive.infolist()
-            if len(entries) > _MOST_FILES or sum(one.file_size for one in entries) > _UNPACKED_LIMIT:
-                raise NoticeError("import_invalid")
-            known = [one for one in entries if _limit(one.filename)]
-            return {one.filename: _read(archive, one) for one in known}
-    except (zipfile.BadZipFile, zlib.error, OSError, EOFError, ValueError, NotImplementedError) as error:
-        raise NoticeError("import_invalid") from error
-    except RuntimeError as error:  # encrypted
-        raise NoticeError("import_invalid") from error
+    with _refusing_damage(), zipfile.ZipFile(io.BytesIO(content)) as archive:
+        entries = archive.infolist()
+        if len(entries) > _MOST_FILES or sum(one.file_size for one in entries) > _UNPACKED_LIMIT:
+            raise NoticeError("import_invalid")
+        known = [one for one in entries if _limit(one.filename)]
+        return {one.filename: _read(archive, one) for one in known}
 
 
 def person_of(files: Mapping[str, bytes]) -> PersonRecord:
     """The person of a zip."""
-    try:
+    with _refusing_damage():
         return parse_record(PersonRecord, files[PERSON_NAME], PERSON_NAME)
-    except (KeyError, UserError) as error:
-        raise NoticeError("import_invalid") from error
 
 
 def poses_of(files: Mapping[str, bytes]) -> tuple[SavedPose, ...]:
@@ -74,24 +79,20 @@ def poses_of(files: Mapping[str, bytes]) -> tuple[SavedPose, ...]:
     content = files.get(POSES_NAME)
     if content is None:
         return ()
-    try:
+    with _refusing_damage():
         return parse_record(PosesRecord, content, POSES_NAME).poses
-    except UserError as error:
-        raise NoticeError("import_invalid") from error
 
 
 def drives_of(files: Mapping[str, bytes]) -> list[tuple[DriveRecord, bytes | None]]:
     """The drives of a zip, checked, each with its compressed trace."""
     found: list[tuple[DriveRecord, bytes | None]] = []
-    try:
+    with _refusing_damage():
         for name, content in files.items():
             if _DRIVE.fullmatch(name):
                 trace = files.get(name.removesuffix(".json") + TRACE)
                 if trace is not None:
                     checked_trace(trace, name)
                 found.append((parse_record(DriveRecord, content, name), trace))
-    except UserError as error:
-        raise NoticeError("import_invalid") from error
     return found
 
 

@@ -84,8 +84,9 @@ class Learning:
 
     def cancel(self) -> None:
         """End the training under way."""
-        if self._job is not None and self._job.under_way and self._cancelling is None:
-            self._cancelling = asyncio.create_task(self._cancel(self._job))
+        cancelling = self._cancelling is not None and not self._cancelling.done()
+        if self._job is not None and self._job.under_way and not cancelling:
+            self._cancelling = asyncio.create_task(asyncio.to_thread(self._job.cancel))
 
     def choose_run(self, name: str) -> None:
         """Try another run, then drive it. Unknown names are ignored."""
@@ -116,10 +117,6 @@ class Learning:
             self._control.order(ChooseRun(run=str(run)))
         else:
             self._states.say(failure)
-
-    async def _cancel(self, job: TrainingJob) -> None:
-        await asyncio.to_thread(job.cancel)
-        self._cancelling = None
 
     def _driven(self) -> Driven:
         loaded = self._states.loaded

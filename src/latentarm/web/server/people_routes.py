@@ -7,7 +7,6 @@ checked the origin and the length of each request.
 import asyncio
 import json
 from collections.abc import Callable, Sequence
-from pathlib import Path
 from typing import Annotated, Final, final
 
 from pydantic import Field, TypeAdapter, ValidationError
@@ -181,7 +180,7 @@ class PeopleRoutes:
             filename="latentarm-person.zip",
             media_type="application/zip",
             headers=NO_STORE,
-            background=BackgroundTask(_remove, path),
+            background=BackgroundTask(path.unlink, missing_ok=True),
         )
 
     async def _import(self, request: Request) -> Response:
@@ -206,7 +205,3 @@ def _shown(person: PersonRecord) -> dict[str, object]:
 def _history_of(person: PersonRecord, drives: Sequence[DriveRecord]) -> dict[str, object]:
     theirs = [drive for drive in drives if drive.person == person.id]
     return {"drives": len(theirs), "last": theirs[0].started if theirs else None}
-
-
-def _remove(path: Path) -> None:
-    path.unlink(missing_ok=True)

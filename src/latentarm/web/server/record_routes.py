@@ -86,9 +86,8 @@ class RecordRoutes:
             for person in self._records.people.all()
             if not self._pins.opened(person, request.cookies)
         }
-        return [
-            drive for drive in self._records.drives.wanted(_wanted(request)) if drive.person not in closed
-        ]
+        wanted = Wanted(**{field.name: request.query_params.get(field.name) for field in fields(Wanted)})
+        return [drive for drive in self._records.drives.wanted(wanted) if drive.person not in closed]
 
     def _drive(self, request: Request) -> str:
         """Id of the drive that a request names."""
@@ -134,8 +133,7 @@ class RecordRoutes:
         return json_answer({"recordings": [one.model_dump() for one in found]})
 
     async def _entitle_recording(self, request: Request) -> Response:
-        titled = await body_of(request, _Titled)
-        name = request.path_params["name"]
+        titled, name = await body_of(request, _Titled), request.path_params["name"]
         await asyncio.to_thread(self._records.recordings.entitle, name, titled.title.strip())
         return Response(status_code=204, headers=NO_STORE)
 
@@ -146,10 +144,6 @@ class RecordRoutes:
     async def _restore_recording(self, request: Request) -> Response:
         await asyncio.to_thread(self._records.recordings.restore, request.path_params["name"])
         return Response(status_code=204, headers=NO_STORE)
-
-
-def _wanted(request: Request) -> Wanted:
-    return Wanted(**{field.name: request.query_params.get(field.name) for field in fields(Wanted)})
 
 
 def _scene_id(request: Request) -> str:
