@@ -46,22 +46,12 @@ class Hand:
         self._motion: franky.BoolFuture | None = None
         self._told: tuple[float, float] | None = None
         self._reached: tuple[float, float] | None = None
-        self._lost = ""
+        self.lost = ""  # why readings have ended, or ""
         self._closing = threading.Event()
         self._wake = threading.Event()
-        self._reading = self._measure()
+        self.reading = self._measure()  # the newest
         self._thread = threading.Thread(target=self._run, name="franka-hand", daemon=True)
         self._thread.start()
-
-    @property
-    def reading(self) -> GripperReading:
-        """The newest reading."""
-        return self._reading
-
-    @property
-    def lost(self) -> str:
-        """Why readings have ended, or ""."""
-        return self._lost
 
     def ask(self, command: GripperCommand) -> None:
         """Take a command without waiting; repeating the last changes nothing."""
@@ -86,11 +76,11 @@ class Hand:
                     asked = self._asked
                 if asked is not None and not _alike(asked, self._carried_out):
                     self._carry_out(asked)
-                self._reading = self._measure()
+                self.reading = self._measure()
             self._end_motion()
         # franky raises whatever libfranka and the network do.
         except Exception as error:  # noqa: BLE001
-            self._lost = plain(error)
+            self.lost = plain(error)
             self._give_up_motion()
 
     def _give_up_motion(self) -> None:

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Final, Literal, final
 
 from latentarm.arms.address import ArmAddress
@@ -10,16 +10,6 @@ from latentarm.core.errors import UserError
 
 Realtime = Literal["enforce", "ignore"]
 
-_NAMES: Final = (
-    "collision_torque_nm",
-    "collision_force_n",
-    "collision_moment_nm",
-    "payload_kg",
-    "payload_centre_m",
-    "payload_inertia_kg_m2",
-    "attachment_tip_m",
-    "realtime",
-)
 _LARGEST_PAYLOAD_KG: Final = 3.0
 
 
@@ -48,7 +38,7 @@ def read_options(address: ArmAddress) -> FrankaOptions:
     """The options of an address."""
     if address.port is not None:
         raise UserError("--arm franka takes no port: a Franka always listens on 1337 and 1338.")
-    given = address.only(*_NAMES)
+    given = address.only(*(field.name for field in fields(FrankaOptions)))
     default = FrankaOptions()
     realtime = given.get("realtime", default.realtime)
     if realtime not in ("enforce", "ignore"):

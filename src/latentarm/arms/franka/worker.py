@@ -10,7 +10,6 @@ import numpy as np
 
 from latentarm.arms.contract import ArmPhase
 from latentarm.arms.franka.guiding import Guiding
-from latentarm.arms.franka.limits import FrankaLimits
 from latentarm.arms.franka.link import Link, library
 from latentarm.arms.franka.words import fault, plain
 from latentarm.core.errors import UserError
@@ -84,13 +83,13 @@ class Worker:
         self._franky: Any = library()
         if link.limits is None:
             raise ValueError("the limits of the arm are not known")
-        self._limits = link.limits
+        self.limits = link.limits  # the arm's
         self._link = link
         self._reconnect = reconnect
         self._now_s = now_s
         self._lock = threading.Lock()
         self._order: Order | None = None
-        self._trouble: Trouble | None = None
+        self.trouble: Trouble | None = None  # why the arm takes no commands
         self._recover_asked = False
         self._wake = threading.Event()
         self._closing = threading.Event()
@@ -98,14 +97,9 @@ class Worker:
         self._driven: Order | None = None
         self._guide = False
         self._guiding = Guiding(self._franky, link.limits)
-        self._measured = self._state()
+        self.measured = self._state()  # the newest
         self._thread = threading.Thread(target=self._run, name="franka-arm", daemon=True)
         self._thread.start()
-
-    @property
-    def measured(self) -> Measured:
-        """The newest state."""
-        return self._measured
 
     @property
     def running(self) -> bool:
@@ -123,20 +117,10 @@ class Worker:
         """Whether the arm is guided or about to be, so that it takes no velocities."""
         return self._guide or self.guided
 
-    @property
-    def trouble(self) -> Trouble | None:
-        """Why the arm takes no commands, or None."""
-        return self._trouble
-
-    @property
-    def limits(self) -> FrankaLimits:
-        """The arm's limits."""
-        return self._limits
-
     def give(self, order: Order) -> None:
         """Replace the order before."""
         with self._lock:
-            if self._trouble is None:
+            if self.trouble is None:
                 self._order = order
                 self._guide = False
         self._wake.set()
@@ -144,13 +128,13 @@ class Worker:
     def guide(self) -> None:
         """Let an arm at rest be guided by hand, until the next order."""
         with self._lock:
-            self._guide = self._trouble is None and not self.running
+            self._guide = self.trouble is None and not self.running
         self._wake.set()
 
     def recover(self) -> None:
         """End a recoverable trouble soon."""
         with self._lock:
-            trouble = self._trouble
+            trouble = self.trouble
             self._recover_asked = trouble is not None and trouble.recoverable
         self._wake.set()
 
@@ -159,8 +143,8 @@ class Worker:
         with self._lock:
             self._order = Order(None, self._now_s())
             self._guide = False
-            if self._trouble is None:
-                self._trouble = trouble
+            if self.trouble is None:
+                self.trouble = trouble
         self._wake.set()
 
     def close(self) -> None:
@@ -179,16 +163,16 @@ class Worker:
     def _pass(self) -> None:
         with self._lock:
             order, self._order = self._order, None
-            trouble = self._trouble
+            trouble = self.trouble
             recover, self._recover_asked = self._recover_asked, False
         try:
             if recover and trouble is not None:
                 self._end_trouble(trouble)
-            if self._trouble is not None and self._trouble.lost:
+            if self.trouble is not None and self.trouble.lost:
                 return
             if order is not None:
                 self._carry_out(order)
-            self._guiding.follow(self._link, self._measured.q, self._now_s(), wanted=self._guide)
+            self._guiding.follow(self._link, self.measured.q, self._now_s(), wanted=self._guide)
             self._observe()
             self._guard()
         # franky raises libfranka's exceptions, and those of the network as RuntimeError.
@@ -238,20 +222,20 @@ class Worker:
             self._running, self._driven = False, None
         if self._guiding.ended(self._link):
             self._guide = False
-        before = self._measured
+        before = self.measured
         state = self._state()
         if state.arm_s < before.arm_s - _BACK_S:
             self._lose("The arm's clock went back: its controller has restarted.")
         elif state.arm_s > before.arm_s:
             # A state that repeats is not new, and stays as old as it is.
-            self._measured = state
+            self.measured = state
 
     def _guard(self) -> None:
         """Stop an order that ran out before its motion began, or that comes too near the end of a joint."""
         driven = self._driven
         if driven is None or driven.velocity is None:
             return
-        if self._now_s() > driven.until_s or self._limits.exceeds(driven.velocity, self._measured.q):
+        if self._now_s() > driven.until_s or self.limits.exceeds(driven.velocity, self.measured.q):
             self._halt()
 
     def _state(self) -> Measured:
@@ -269,10 +253,10 @@ class Worker:
         elif mode in _OTHER_MODES:
             phase, reason = _OTHER_MODES[mode]
             self._set(Trouble(phase, reason, recoverable=False))
-        elif self._trouble is not None and not self._trouble.recoverable:
+        elif self.trouble is not None and not self.trouble.recoverable:
             # The button was released, or guiding has ended.
             with self._lock:
-                self._trouble = None
+                self.trouble = None
 
     def _stopped_by_itself(self, error: Exception) -> None:
         """The arm ended a motion: a reflex, a button, a refusal."""
@@ -283,11 +267,11 @@ class Worker:
             self._lose(f"The connection to the arm was lost ({plain(lost)}): check its power and cable.")
             return
         self._see(str(state.robot_mode.name), state)
-        if self._trouble is None:
+        if self.trouble is None:
             self._fault(fault(_names(state.last_motion_errors), plain(error)))
 
     def _fault(self, reason: str) -> None:
-        if self._trouble is None or not self._trouble.recoverable:
+        if self.trouble is None or not self.trouble.recoverable:
             self._set(Trouble("fault", reason, recoverable=True))
 
     def _lose(self, reason: str) -> None:
@@ -297,7 +281,7 @@ class Worker:
     def _set(self, trouble: Trouble) -> None:
         with self._lock:
             self._order, self._guide = None, False
-            self._trouble = trouble
+            self.trouble = trouble
 
     def _end_trouble(self, trouble: Trouble) -> None:
         """Recover from errors, or connect again; nothing moves afterwards."""
@@ -310,15 +294,15 @@ class Worker:
                 self._lose(str(error))
                 return
             # The clock of a controller that has restarted begins again.
-            self._measured = self._state()
+            self.measured = self._state()
         elif not (self._link.arm.recover_from_errors() or self._recovered()):
             reason = "The arm did not recover from its error: recover it in Desk."
             self._set(Trouble("fault", reason, recoverable=True))
             return
         with self._lock:
             self._order = None
-            if self._trouble is trouble:
-                self._trouble = None
+            if self.trouble is trouble:
+                self.trouble = None
 
     def _recovered(self) -> bool:
         """Whether the error is gone after all: franky's answer may come from an older state."""
@@ -331,7 +315,7 @@ class Worker:
         try:
             if self._running:
                 self._move(self._franky.JointVelocityStopMotion())
-            self._guiding.follow(self._link, self._measured.q, self._now_s(), wanted=False)
+            self._guiding.follow(self._link, self.measured.q, self._now_s(), wanted=False)
             if self._running or self._guiding.phase != "no":
                 self._link.arm.join_motion(timeout=_CLOSE_S / 2.0)
         except Exception:  # noqa: BLE001 - it is given up anyway, and then the arm stops by itself

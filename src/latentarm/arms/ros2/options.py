@@ -3,7 +3,7 @@
 import math
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Final, Literal, cast, final, get_args
 
 from latentarm.arms.address import ArmAddress
@@ -44,18 +44,8 @@ class Ros2Options:
 
 def read_options(address: ArmAddress, robot: Robot) -> Ros2Options:
     """Check an address for a robot."""
-    given = address.only(
-        "controller",
-        "kind",
-        "states",
-        "watchdog",
-        "manager",
-        "joints",
-        "gripper",
-        "gripper_joint",
-        "gripper_open",
-        "gripper_closed",
-    )
+    names = [field.name for field in fields(Ros2Options) if field.name not in ("host", "port")]
+    given = address.only(*names)
     if "controller" not in given:
         raise UserError(
             "--arm ros2 needs the name of the arm's controller: ros2://HOST:PORT?controller=NAME."

@@ -53,7 +53,7 @@ class EpisodeWriter:
         self._untrusted: Stop | None = None
         self._waiting: Queue[StepRecord | EpisodeHeader | _End | str] = Queue(_MOST_WAITING)
         self._thread: threading.Thread | None = None
-        self._on = False
+        self.on = False  # whether an episode is under way
         self._samples = 0
         self._first: FloatArray | None = None
         self._moved = False
@@ -62,17 +62,12 @@ class EpisodeWriter:
         self._lost = False
 
     @property
-    def on(self) -> bool:
-        """Whether an episode is under way."""
-        return self._on
-
-    @property
     def status(self) -> Recording | None:
         """The recording; None if nothing was ever recorded."""
         if self._thread is None:
             return None
         return Recording(
-            on=self._on,
+            on=self.on,
             samples=self._samples,
             episodes=self._episodes,
             problem=self._problem,
@@ -81,13 +76,13 @@ class EpisodeWriter:
 
     def begin(self, header: EpisodeHeader) -> None:
         """Begin an episode, unless one is under way."""
-        if self._on:
+        if self.on:
             return
         # Before the thread starts: it may fail to write at once.
         self._problem = None
         if self._lost:
             self._lost, self._path, self._episodes = False, self._new_path(), 0
-        self._on, self._samples = True, 0
+        self.on, self._samples = True, 0
         self._first, self._moved = None, False
         self._put(header)
         if self._thread is None or not self._thread.is_alive():
@@ -100,7 +95,7 @@ class EpisodeWriter:
         untrusted = stop if stop is not None and stop.untrusted else None
         # The reason stays until the arm is enabled again; only a new one ends an episode.
         news, self._untrusted = untrusted is not self._untrusted, untrusted
-        if not self._on:
+        if not self.on:
             return
         if (untrusted is not None and news) or math.isnan(record.state[0]):
             self.end()
@@ -119,10 +114,10 @@ class EpisodeWriter:
 
     def end(self, device: str = "") -> None:
         """End the episode, if one is under way; ``device``: kind of input device that it was driven with."""
-        if not self._on:
+        if not self.on:
             return
         if self._moved:
-            self._on = False
+            self.on = False
             self._put(_End(device))
         else:
             self._put(_DROP)
@@ -141,7 +136,7 @@ class EpisodeWriter:
             self._break_off(Notice(code="disk_too_slow"))
 
     def _break_off(self, problem: Notice) -> None:
-        self._on = False
+        self.on = False
         self._problem = problem
 
     def _write(self) -> None:
@@ -187,7 +182,7 @@ class EpisodeWriter:
     def _full(self, recorder: Recorder, error: JournalFullError) -> None:
         if error.ended_episode:
             self._episodes += 1
-        if self._on:
+        if self.on:
             self._break_off(_notice_of(error))
 
     def _new_path(self) -> Path:

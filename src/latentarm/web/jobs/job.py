@@ -89,7 +89,7 @@ class Job(Generic[Said]):
         os.set_blocking(self._saying.fileno(), False)
         self._kind = kind
         self._heard: deque[Said] = deque()
-        self._failure: Notice | None = None
+        self.failure: Notice | None = None  # why it failed; None while it is at work and if it succeeded
         self._ended = False
         self._process = context.Process(
             target=_run, args=(work, arguments, child_hears, child_says), name=name, daemon=True
@@ -105,11 +105,6 @@ class Job(Generic[Said]):
     def alive(self) -> bool:
         """Whether it is at work, or a message is still on its way."""
         return self._listener.is_alive()
-
-    @property
-    def failure(self) -> Notice | None:
-        """Why it failed; None while it is at work and if it succeeded."""
-        return self._failure
 
     def heard(self) -> list[Said]:
         """The child's messages since the last call, oldest first."""
@@ -139,12 +134,12 @@ class Job(Generic[Said]):
             while True:
                 self._take(self._hearing.recv_bytes(MESSAGE_LIMIT))
         self._process.join()
-        if self._process.exitcode != 0 and self._failure is None and not self._ended:
-            self._failure = Notice(code="work_broke_off")
+        if self._process.exitcode != 0 and self.failure is None and not self._ended:
+            self.failure = Notice(code="work_broke_off")
 
     def _take(self, message: bytes) -> None:
         with suppress(ValidationError):
-            self._failure = _Failed.model_validate_json(message).failed
+            self.failure = _Failed.model_validate_json(message).failed
             return
         with suppress(ValidationError):
             self._heard.append(self._kind.validate_json(message))

@@ -52,40 +52,6 @@ class _Moment:
     width_m: float | None
 
 
-@final
-@dataclass(frozen=True)
-class Logged:
-    """A drive that has ended."""
-
-    record: DriveRecord  # its figures; without the scene, which has not been kept yet
-    scene: Drawable  # the things about the arm
-    _chain: Chain
-    _period_s: float
-    _moments: list[_Moment]
-    _things: list[TracedThings]
-    _marks: list[Mark]
-
-    def trace(self) -> Trace:
-        """The trace to replay; takes some milliseconds for each minute."""
-        q = np.array([moment.q for moment in self._moments])
-        links = self._chain.link_transforms(q)
-        bodies = [pose_of(np.concatenate([np.eye(4)[None], row])) for row in links]
-        return Trace(
-            period_s=self._period_s,
-            t=tuple(moment.t for moment in self._moments),
-            q=tuple(moment.q for moment in self._moments),
-            tool=tuple(moment.tool for moment in self._moments),
-            bodies=tuple(
-                tuple((x, y, z, w, i, j, k) for x, y, z, w, i, j, k in np.round(row, _DIGITS).tolist())
-                for row in bodies
-            ),
-            u=tuple(moment.u for moment in self._moments),
-            width_m=tuple(moment.width_m for moment in self._moments),
-            things=tuple(self._things),
-            marks=tuple(self._marks),
-        )
-
-
 @dataclass
 class _Open:
     about: About
@@ -102,9 +68,9 @@ class _Open:
     reasons: Counter[str] = field(default_factory=Counter[str])
     presses: int = 0
     period_s: float = PERIOD_S
-    moments: list[_Moment] = field(default_factory=list["_Moment"])
-    things: list[TracedThings] = field(default_factory=list["TracedThings"])
-    marks: list[Mark] = field(default_factory=list["Mark"])
+    moments: list[_Moment] = field(default_factory=list[_Moment])
+    things: list[TracedThings] = field(default_factory=list[TracedThings])
+    marks: list[Mark] = field(default_factory=list[Mark])
     grains_s: float = -GRAINS_S
     values: int = 0
 
@@ -112,6 +78,40 @@ class _Open:
     def over(self) -> bool:
         """Whether the task has ended: the rest of the drive is replayed, but not counted."""
         return self.last is not None and self.last.task.outcome is not None
+
+
+@final
+@dataclass(frozen=True)
+class Logged:
+    """A drive that has ended."""
+
+    record: DriveRecord  # its figures; without the scene, which has not been kept yet
+    _drive: _Open
+
+    @property
+    def scene(self) -> Drawable:
+        """The things about the arm."""
+        return self._drive.about.scene
+
+    def trace(self) -> Trace:
+        """The trace to replay; takes some milliseconds for each minute."""
+        moments = self._drive.moments
+        links = self._drive.about.chain.link_transforms(np.array([moment.q for moment in moments]))
+        bodies = [pose_of(np.concatenate([np.eye(4)[None], row])) for row in links]
+        return Trace(
+            period_s=self._drive.period_s,
+            t=tuple(moment.t for moment in moments),
+            q=tuple(moment.q for moment in moments),
+            tool=tuple(moment.tool for moment in moments),
+            bodies=tuple(
+                tuple((x, y, z, w, i, j, k) for x, y, z, w, i, j, k in np.round(row, _DIGITS).tolist())
+                for row in bodies
+            ),
+            u=tuple(moment.u for moment in moments),
+            width_m=tuple(moment.width_m for moment in moments),
+            things=tuple(self._drive.things),
+            marks=tuple(self._drive.marks),
+        )
 
 
 @final
@@ -190,17 +190,10 @@ class DriveLog:
             self._standing = None
         if drive is None or drive.last is None:
             return None
-        if not drive.moments or drive.moments[-1].t < round(drive.last.time_s - drive.first.time_s, 2):
-            self._keep_moment(drive, drive.last, round(drive.last.time_s - drive.first.time_s, 2))
-        return Logged(
-            _record(drive, drive.last, why),
-            drive.about.scene,
-            drive.about.chain,
-            drive.period_s,
-            drive.moments,
-            drive.things,
-            drive.marks,
-        )
+        t = round(drive.last.time_s - drive.first.time_s, 2)
+        if not drive.moments or drive.moments[-1].t < t:
+            self._keep_moment(drive, drive.last, t)
+        return Logged(_record(drive, drive.last, why), drive)
 
     def _trace(self, drive: _Open, report: Report, t: float) -> None:
         newest = drive.moments[-1] if drive.moments else None
