@@ -20,7 +20,7 @@ import gc, json, sys
 from pathlib import Path
 from latentarm.web.arm_process.drive_setup import Spec
 from latentarm.web.server import app
-from latentarm.web.server.addresses import TeleopConfig
+from latentarm.web.server.config import TeleopConfig
 
 async def count(*_):
     found.append(len(gc.get_objects()))

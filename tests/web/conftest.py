@@ -23,16 +23,16 @@ from latentarm.tasks.table_top import TableTop
 from latentarm.testing.faults import FaultyArm
 from latentarm.web.arm_process.drive import Drive
 from latentarm.web.arm_process.drive_setup import PERIOD_S, DriveSetup, Spec, load_setup
+from latentarm.web.arm_process.episode_writer import EpisodeWriter
 from latentarm.web.arm_process.process import ControlProcess
-from latentarm.web.arm_process.recording import EpisodeWriter
 from latentarm.web.arm_process.steering import Steering
 from latentarm.web.protocol.channel import new_channel
 from latentarm.web.protocol.notice import Notice
 from latentarm.web.protocol.orders import AskedGripper, Given, Order, Paced
 from latentarm.web.protocol.report import Report, parse_report
-from latentarm.web.records.documents import SYSTEM_CALENDAR
-from latentarm.web.server.addresses import TeleopConfig, listen
+from latentarm.web.records.record_files import SYSTEM_CALENDAR
 from latentarm.web.server.app import build_app, gated, serve_on, server_config
+from latentarm.web.server.config import TeleopConfig, listen
 from latentarm.web.server.connections import ConnectionLimits
 
 HERE = Path(__file__).parent

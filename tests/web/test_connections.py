@@ -9,8 +9,8 @@ import pytest
 import uvicorn
 
 from latentarm.web.arm_process.drive_setup import Spec
-from latentarm.web.server.addresses import TeleopConfig, listen
 from latentarm.web.server.app import serve_on, server_config
+from latentarm.web.server.config import TeleopConfig, listen
 from latentarm.web.server.connections import HEAD_LIMIT, ConnectionLimits
 
 from .test_tls import made_certificate

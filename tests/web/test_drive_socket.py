@@ -12,7 +12,7 @@ import pytest
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
 from latentarm.web.protocol.page_messages import FRAME_LIMIT
-from latentarm.web.server.frames import BURST
+from latentarm.web.server.rate_limit import BURST
 
 from .conftest import way_m
 

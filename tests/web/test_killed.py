@@ -14,8 +14,8 @@ import pytest
 
 from latentarm.demonstrations.folders import locked
 from latentarm.web.arm_process.drive_setup import Spec
-from latentarm.web.records.documents import SYSTEM_CALENDAR
 from latentarm.web.records.drives import Wanted
+from latentarm.web.records.record_files import SYSTEM_CALENDAR
 from latentarm.web.records.records import Records
 
 from .conftest import Site, wait_for

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from latentarm.control.clock import SimulatedClock
-from latentarm.web.arm_process.neutral_first import NeutralFirst
+from latentarm.web.arm_process.neutral_interlock import NeutralInterlock
 from latentarm.web.arm_process.page_inputs import LATCH_MAX_S, PageInputs
 from latentarm.web.protocol.orders import Enable, Given
 from latentarm.web.protocol.shared_memory import LatestSlot
@@ -25,7 +25,7 @@ class Way:
         self.slot = LatestSlot(1024)
         self.stops = []
         self.inputs = PageInputs(self.slot, self.clock, 2, DEAD_ZONE, self.stops.append)
-        self.gate = NeutralFirst(self.inputs)
+        self.gate = NeutralInterlock(self.inputs)
         self.sequence = 0
         self.give((0.0, 0.0))
         self.stops.clear()

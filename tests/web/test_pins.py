@@ -9,8 +9,8 @@ import pytest
 
 from latentarm.web.arm_process.drive_setup import Spec
 from latentarm.web.protocol.notice import NoticeError
-from latentarm.web.records.documents import SYSTEM_CALENDAR
 from latentarm.web.records.people import PERSON_NAME, People
+from latentarm.web.records.record_files import SYSTEM_CALENDAR
 from latentarm.web.server.pins import (
     FORGOTTEN_S,
     MOST_CLIENTS,

@@ -10,11 +10,11 @@ from wooden_server import wooden_server
 from latentarm.control.clock import MonotonicClock
 from latentarm.core.errors import UserError
 from latentarm.robots.panda import panda
+from latentarm.web.arm_process.arm_lifecycle import first_arm, from_where_it_stands, next_arm
 from latentarm.web.arm_process.drive_setup import Spec, load_setup
-from latentarm.web.arm_process.driven_arm import first_arm, from_where_it_stands, next_arm
 from latentarm.web.arm_process.initial_state import RobotOptions
-from latentarm.web.server.addresses import TeleopConfig
 from latentarm.web.server.app import serve
+from latentarm.web.server.config import TeleopConfig
 from latentarm.web.server.loaded_run import LoadedRun
 
 ONE_JOINT = """<mujoco><compiler angle="radian"/><worldbody><body>

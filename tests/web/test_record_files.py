@@ -18,12 +18,12 @@ from latentarm.web.arm_process.drive_setup import Spec, load_setup
 from latentarm.web.protocol.notice import Notice
 from latentarm.web.protocol.report import Report, TaskState
 from latentarm.web.protocol.scene import drawable
-from latentarm.web.records.documents import SYSTEM_CALENDAR, Calendar
 from latentarm.web.records.drive_log import LATE, MOST_VALUES, About, DriveLog
 from latentarm.web.records.drive_record import checked_trace, packed
 from latentarm.web.records.drives import Drives, Wanted
 from latentarm.web.records.people import People
 from latentarm.web.records.poses import read_poses, with_pose, write_poses
+from latentarm.web.records.record_files import SYSTEM_CALENDAR, Calendar
 from latentarm.web.records.records import FOLDER, Records
 
 HOURLY = [HealthCheck.function_scoped_fixture]

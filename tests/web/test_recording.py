@@ -9,8 +9,8 @@ from latentarm.control.journal import read_journal
 from latentarm.control.recorder import EpisodeHeader
 from latentarm.core.journal_limits import JournalLimits
 from latentarm.core.types import Command, StepRecord, Stop
-from latentarm.web.arm_process import recording
-from latentarm.web.arm_process.recording import EpisodeWriter
+from latentarm.web.arm_process import episode_writer
+from latentarm.web.arm_process.episode_writer import EpisodeWriter
 
 HEADER = EpisodeHeader("panda", tuple(f"joint{i + 1}" for i in range(7)), 100.0)
 
@@ -80,7 +80,7 @@ def test_a_full_journal_ends_the_episode_whole_and_says_so(tmp_path):
 
 @pytest.mark.parametrize("during", ["an episode", "the time between two"])
 def test_a_deleted_journal_is_noticed_and_the_next_episode_goes_into_another(tmp_path, monkeypatch, during):
-    monkeypatch.setattr(recording, "_CHECK_S", 0.005)
+    monkeypatch.setattr(episode_writer, "_CHECK_S", 0.005)
     writer = EpisodeWriter(tmp_path)
     writer.begin(HEADER)
     written = threading.Event()

@@ -24,7 +24,7 @@ from latentarm.tasks.eating import dessert
 from latentarm.tasks.place import ScenePlace
 from latentarm.web.arm_process.drive import Drive
 from latentarm.web.arm_process.drive_setup import Spec, load_setup
-from latentarm.web.arm_process.recording import EpisodeWriter
+from latentarm.web.arm_process.episode_writer import EpisodeWriter
 from latentarm.web.arm_process.steering import Steering
 from latentarm.web.arm_process.thing_poses import ThingPoses
 from latentarm.web.protocol.channel import new_channel

@@ -81,8 +81,8 @@ def teleop(
     from latentarm.web.arm_process.initial_state import RobotOptions
     from latentarm.web.arm_process.speeds import Speeds
     from latentarm.web.cameras.sources import kept, parse_cameras
-    from latentarm.web.server.addresses import TeleopConfig
     from latentarm.web.server.app import serve
+    from latentarm.web.server.config import TeleopConfig
 
     cameras = parse_cameras(camera)
 

@@ -59,8 +59,8 @@ def demo(options: DemoOptions) -> int:
     In a terminal it ends with the page of `latentarm teleop`. For example: latentarm demo --out demo
     """
     from latentarm.web.arm_process.drive_setup import Spec
-    from latentarm.web.server.addresses import TeleopConfig
     from latentarm.web.server.app import serve
+    from latentarm.web.server.config import TeleopConfig
     from latentarm_research.commands.demo_run import ARM, MODELS, run_demo
 
     out, json = options.out, options.json

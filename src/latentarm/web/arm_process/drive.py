@@ -17,16 +17,16 @@ from latentarm.safety.straight_way import StraightWay
 from latentarm.safety.zones import zone_of_filter
 from latentarm.web.arm_process.disengaged import Disengaged
 from latentarm.web.arm_process.drive_setup import PERIOD_S, DriveSetup
+from latentarm.web.arm_process.episode_writer import EpisodeWriter
 from latentarm.web.arm_process.episodes import Episodes
 from latentarm.web.arm_process.ghosts import GhostPaths
 from latentarm.web.arm_process.latest_readings import LatestReadings
-from latentarm.web.arm_process.neutral_first import NeutralFirst
+from latentarm.web.arm_process.neutral_interlock import NeutralInterlock
 from latentarm.web.arm_process.page_inputs import LateStops, PageInputs
-from latentarm.web.arm_process.recording import EpisodeWriter
+from latentarm.web.arm_process.pose_motion import AT_START_RAD, PoseMotion
 from latentarm.web.arm_process.steering import Steering
 from latentarm.web.arm_process.task_run import TaskRun
 from latentarm.web.arm_process.thing_poses import ThingPoses
-from latentarm.web.arm_process.way_back import AT_START_RAD, WayBack
 from latentarm.web.protocol.channel import Channel, parse_stop
 from latentarm.web.protocol.notice import Notice, notice_of_stop
 from latentarm.web.protocol.orders import (
@@ -117,9 +117,9 @@ class Drive:
         self._inputs = PageInputs(
             channel.given, clock, setup.controller.input_dim, self._step.dead_zone, self._stop_if_enabled
         )
-        self._neutral = NeutralFirst(self._inputs)
+        self._neutral = NeutralInterlock(self._inputs)
         straight = StraightWay(setup.task.robot, self._step.safety)
-        self._way_back = WayBack(self._neutral, self._inputs, setup.start, straight)
+        self._way_back = PoseMotion(self._neutral, self._inputs, setup.start, straight)
         self._ended: Notice | None = None
         self._late = LateStops()
         self._loop = ControlLoop(self._step, arm, self._way_back, clock, [self._observe, *observers])

@@ -5,8 +5,8 @@ from typing import final
 from latentarm.core.types import StepRecord
 from latentarm.demonstrations.provenance import BY_HAND
 from latentarm.web.arm_process.drive_setup import DriveSetup
+from latentarm.web.arm_process.episode_writer import EpisodeWriter
 from latentarm.web.arm_process.page_inputs import PageInputs
-from latentarm.web.arm_process.recording import EpisodeWriter
 from latentarm.web.arm_process.steering import Steering
 from latentarm.web.arm_process.thing_poses import ThingPoses
 from latentarm.web.protocol.orders import Record

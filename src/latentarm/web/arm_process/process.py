@@ -22,12 +22,12 @@ from latentarm.control.clock import Clock, MonotonicClock
 from latentarm.core.errors import UserError
 from latentarm.core.punctuality import ask_for_priority, short_collections
 from latentarm.core.untrusted.terminal import one_line
+from latentarm.web.arm_process.arm_lifecycle import first_arm, from_where_it_stands, next_arm, reconnect
 from latentarm.web.arm_process.drive import Drive
 from latentarm.web.arm_process.drive_setup import SEEDS, DriveSetup, Spec, load_setup, with_profile
-from latentarm.web.arm_process.driven_arm import first_arm, from_where_it_stands, next_arm, reconnect
+from latentarm.web.arm_process.episode_writer import EpisodeWriter
 from latentarm.web.arm_process.help import USUAL_HELP
 from latentarm.web.arm_process.incident import begin_incident
-from latentarm.web.arm_process.recording import EpisodeWriter
 from latentarm.web.arm_process.steering import Steering
 from latentarm.web.protocol.channel import ORDER_LIMIT, Channel, new_channel
 from latentarm.web.protocol.notice import Notice, notice_of

@@ -14,8 +14,8 @@ from latentarm.robots.kinematics.chain import Chain
 from latentarm.web.arm_process.task_run import Todo
 from latentarm.web.protocol.report import Report, Things
 from latentarm.web.protocol.scene import Drawable, pose_of
-from latentarm.web.records.documents import Calendar, new_id
 from latentarm.web.records.drive_record import DriveRecord, Ending, Mark, Trace, TracedThings
+from latentarm.web.records.record_files import Calendar, new_id
 
 PERIOD_S: Final = 0.1  # moments of a trace are at least this far apart, s
 MOST_VALUES: Final = 200_000

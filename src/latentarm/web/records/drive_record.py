@@ -9,8 +9,8 @@ from latentarm.core.errors import UserError
 from latentarm.web.protocol.notice import Message
 from latentarm.web.protocol.orders import ModeName
 from latentarm.web.protocol.report import Point, PoseRow
-from latentarm.web.records.documents import ID
 from latentarm.web.records.people import PersonId
+from latentarm.web.records.record_files import ID
 
 TRACE_LIMIT: Final = 1 << 26  # the largest trace, unpacked, bytes
 PACKED_LIMIT: Final = 1 << 24  # the largest compressed trace, bytes

@@ -12,8 +12,8 @@ from latentarm.core.errors import UserError
 from latentarm.core.files import written_whole
 from latentarm.core.untrusted.opening import is_missing, read_bytes
 from latentarm.web.protocol.notice import Notice, NoticeError
-from latentarm.web.records.documents import disk_errors, read_record, unreadable, write_record
 from latentarm.web.records.drive_record import PACKED_LIMIT, DriveRecord, Trace, checked_trace, packed
+from latentarm.web.records.record_files import disk_errors, read_record, unreadable, write_record
 
 UNDO_S: Final = 600.0  # how long a deletion can be undone, s
 DRIVES: Final = "drives"

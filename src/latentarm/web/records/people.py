@@ -11,7 +11,8 @@ from pydantic import Field
 from latentarm.core.errors import UserError
 from latentarm.core.untrusted.names import MOST_CHARACTERS, clean_name, same_name
 from latentarm.web.protocol.notice import Message, Notice, NoticeError
-from latentarm.web.records.documents import (
+from latentarm.web.records.pin import PinHash, hash_of
+from latentarm.web.records.record_files import (
     ID,
     Calendar,
     disk_errors,
@@ -20,7 +21,6 @@ from latentarm.web.records.documents import (
     unreadable,
     write_record,
 )
-from latentarm.web.records.pin import PinHash, hash_of
 
 VERSION: Final = 1
 MOST_PEOPLE: Final = 500

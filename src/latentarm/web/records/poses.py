@@ -8,7 +8,7 @@ from pydantic import Field
 from latentarm.core.errors import UserError
 from latentarm.core.untrusted.names import MOST_CHARACTERS, clean_name, same_name
 from latentarm.web.protocol.notice import Message, NoticeError
-from latentarm.web.records.documents import read_record, write_record
+from latentarm.web.records.record_files import read_record, write_record
 
 MOST_POSES: Final = 30  # of a person, on all robots
 POSES_NAME: Final = "poses.json"

@@ -17,8 +17,8 @@ from latentarm.core.errors import UserError
 from latentarm.core.untrusted.opening import is_missing
 from latentarm.core.untrusted.terminal import one_line
 from latentarm.web.protocol.notice import Message, Notice, NoticeError
-from latentarm.web.records.documents import disk_errors, read_record, write_record
 from latentarm.web.records.drives import UNDO_S
+from latentarm.web.records.record_files import disk_errors, read_record, write_record
 
 _TITLES: Final = "recordings.json"
 _HIDDEN: Final = ".deleted-"

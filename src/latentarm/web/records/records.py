@@ -13,10 +13,10 @@ from latentarm.core.untrusted.opening import read_bytes
 from latentarm.demonstrations.folders import staged_folder
 from latentarm.models.saving import WEIGHTS_LIMIT
 from latentarm.web.protocol.notice import Message
-from latentarm.web.records.documents import Calendar, disk_errors, new_id
 from latentarm.web.records.drive_log import Logged
 from latentarm.web.records.drives import TRACE, Drives, Wanted
-from latentarm.web.records.exchange import (
+from latentarm.web.records.people import PERSON_NAME, KeptProfile, People, PersonRecord
+from latentarm.web.records.person_zip import (
     PROFILES,
     SCENES,
     drives_of,
@@ -28,8 +28,8 @@ from latentarm.web.records.exchange import (
     write_drives,
     write_zip,
 )
-from latentarm.web.records.people import PERSON_NAME, KeptProfile, People, PersonRecord
 from latentarm.web.records.poses import POSES_NAME, PosesRecord, read_poses, write_poses
+from latentarm.web.records.record_files import Calendar, disk_errors, new_id
 from latentarm.web.records.recordings import Recordings
 from latentarm.web.records.scenes import Scenes
 

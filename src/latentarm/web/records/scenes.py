@@ -13,7 +13,7 @@ from latentarm.core.files import written_whole
 from latentarm.core.untrusted.opening import is_missing, read_bytes
 from latentarm.models.reading import Section
 from latentarm.web.protocol.scene import Drawable
-from latentarm.web.records.documents import disk_errors
+from latentarm.web.records.record_files import disk_errors
 
 _SCENE_LIMIT: Final = 1 << 22
 _MESH_LIMIT: Final = 1 << 26

@@ -36,16 +36,15 @@ from latentarm.web.jobs.training import model_names
 from latentarm.web.protocol.notice import Notice
 from latentarm.web.protocol.orders import ChooseProfile
 from latentarm.web.protocol.page_messages import FRAME_LIMIT
-from latentarm.web.records.documents import SYSTEM_CALENDAR, Calendar
-from latentarm.web.records.exchange import IMPORT_LIMIT
 from latentarm.web.records.people import PersonRecord
+from latentarm.web.records.person_zip import IMPORT_LIMIT
+from latentarm.web.records.record_files import SYSTEM_CALENDAR, Calendar
 from latentarm.web.records.records import FOLDER, Records
-from latentarm.web.server.addresses import TeleopConfig, check_certificate, listen, origin
 from latentarm.web.server.assets import Assets
 from latentarm.web.server.camera_routes import CameraRoutes
+from latentarm.web.server.config import TeleopConfig, check_certificate, listen, origin
 from latentarm.web.server.connections import HEAD_LIMIT, ConnectionLimits, Connections, limits_here
 from latentarm.web.server.drive_socket import DriveSocket
-from latentarm.web.server.frames import MeteredSocket
 from latentarm.web.server.history import History
 from latentarm.web.server.invitations import Invitations
 from latentarm.web.server.learning import Learning
@@ -55,6 +54,7 @@ from latentarm.web.server.pages import PAGES, Pages
 from latentarm.web.server.people_routes import IMPORT, PeopleRoutes
 from latentarm.web.server.pins import Pins
 from latentarm.web.server.pose_book import PoseBook
+from latentarm.web.server.rate_limit import MeteredSocket
 from latentarm.web.server.record_routes import RecordRoutes
 from latentarm.web.server.security import DRIVE, Gate, Keys
 from latentarm.web.server.sessions import Sessions

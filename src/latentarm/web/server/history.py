@@ -8,9 +8,9 @@ from typing import Final, final
 from latentarm.core.errors import UserError
 from latentarm.web.protocol.notice import Notice, notice_of
 from latentarm.web.protocol.report import Report
-from latentarm.web.records.documents import Calendar
 from latentarm.web.records.drive_log import About, DriveLog, Logged
 from latentarm.web.records.drive_record import Ending
+from latentarm.web.records.record_files import Calendar
 from latentarm.web.records.records import Records
 from latentarm.web.server.sessions import Sessions
 from latentarm.web.server.states import States

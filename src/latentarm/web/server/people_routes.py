@@ -16,11 +16,11 @@ from starlette.responses import FileResponse, Response
 from starlette.routing import Route
 
 from latentarm.web.protocol.notice import Message, NoticeError
-from latentarm.web.records.documents import new_id
 from latentarm.web.records.drive_record import DriveRecord
 from latentarm.web.records.drives import Wanted
 from latentarm.web.records.people import PersonRecord, Settings
 from latentarm.web.records.pin import PIN
+from latentarm.web.records.record_files import new_id
 from latentarm.web.records.records import Records
 from latentarm.web.server.answers import NO_STORE, body_of, guarded_routes, json_answer, object_in, refusal
 from latentarm.web.server.history import History
@@ -28,7 +28,7 @@ from latentarm.web.server.pins import OPEN_S, Pins, cookie_of
 from latentarm.web.server.security import COOKIE
 
 IMPORT: Final = "/records/import"
-"""Takes longer bodies than other addresses: see `latentarm.web.records.exchange.IMPORT_LIMIT`."""
+"""Takes longer bodies than other addresses: see `latentarm.web.records.person_zip.IMPORT_LIMIT`."""
 
 
 @final

@@ -5,7 +5,7 @@ from typing import Final
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from latentarm.web.protocol.page_messages import FRAME_LIMIT, ClientMessage, parse_message
-from latentarm.web.server.frames import TOO_MANY
+from latentarm.web.server.rate_limit import TOO_MANY
 from latentarm.web.server.security import EXPIRED
 
 _PROTOCOL_BROKEN: Final = (1002, 1003, 1007, TOO_MANY, 1009)

@@ -15,7 +15,11 @@ from typing import Final
 from latentarm.core.errors import UserError
 from latentarm.core.files import written_whole
 from latentarm.web.protocol.notice import NoticeError
-from latentarm.web.records.documents import (
+from latentarm.web.records.drive_record import PACKED_LIMIT, DriveRecord, checked_trace
+from latentarm.web.records.drives import DRIVES, TRACE
+from latentarm.web.records.people import PERSON_NAME, PersonRecord
+from latentarm.web.records.poses import POSES_NAME, PosesRecord, SavedPose
+from latentarm.web.records.record_files import (
     DOCUMENT_LIMIT,
     ID,
     disk_errors,
@@ -23,10 +27,6 @@ from latentarm.web.records.documents import (
     parse_record,
     write_record,
 )
-from latentarm.web.records.drive_record import PACKED_LIMIT, DriveRecord, checked_trace
-from latentarm.web.records.drives import DRIVES, TRACE
-from latentarm.web.records.people import PERSON_NAME, PersonRecord
-from latentarm.web.records.poses import POSES_NAME, PosesRecord, SavedPose
 
 IMPORT_LIMIT: Final = 1 << 26  # the largest file that is imported, bytes
 SCENES: Final = "scenes/"

@@ -9,7 +9,7 @@ import numpy as np
 from latentarm.control.input_port import InputSource
 from latentarm.core.types import FloatArray, Input
 from latentarm.safety.straight_way import StraightWay
-from latentarm.web.arm_process.neutral_first import NeutralFirst
+from latentarm.web.arm_process.neutral_interlock import NeutralInterlock
 from latentarm.web.arm_process.page_inputs import PageInputs
 from latentarm.web.protocol.notice import Notice, NoticeCode
 
@@ -38,7 +38,7 @@ _TO_POSE: Final[dict[Outcome, NoticeCode]] = {
 
 
 @final
-class WayBack(InputSource):
+class PoseMotion(InputSource):
     """The person's inputs; on the way to a pose, the input that drives it, with the age of theirs.
 
     So the arm stops as in any motion when the page's inputs cease. Theirs must be neutral: any push, and any
@@ -47,7 +47,7 @@ class WayBack(InputSource):
     """
 
     def __init__(
-        self, gate: NeutralFirst, inputs: PageInputs, start: FloatArray, straight: StraightWay
+        self, gate: NeutralInterlock, inputs: PageInputs, start: FloatArray, straight: StraightWay
     ) -> None:
         self._straight = straight
         self._blocked: tuple[str, str] | None = None

@@ -11,7 +11,7 @@ from latentarm.web.arm_process.page_inputs import PageInputs
 
 
 @final
-class NeutralFirst(InputSource):
+class NeutralInterlock(InputSource):
     """The page's inputs, zero after a change of their meaning or of the deflected device."""
 
     def __init__(self, inputs: PageInputs) -> None:

@@ -8,7 +8,7 @@ import pytest
 from latentarm.control.journal import read_journal
 from latentarm.robots.kinematics.obstacles import HalfSpace, Sphere
 from latentarm.tasks.place import ScenePlace
-from latentarm.web.arm_process.way_back import ARRIVED_RAD
+from latentarm.web.arm_process.pose_motion import ARRIVED_RAD
 from latentarm.web.protocol.orders import ChooseMode, Enable, Paced, Record, Return
 
 AWAY_S = 1.6

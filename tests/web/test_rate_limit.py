@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from websockets.exceptions import ConnectionClosed
 from websockets.frames import CloseCode, Frame, Opcode
 
-from latentarm.web.server.frames import BURST, RATE, TOO_MANY, Allowance, FrameMeter
+from latentarm.web.server.rate_limit import BURST, RATE, TOO_MANY, Allowance, FrameMeter
 
 OPCODES = [Opcode.TEXT, Opcode.BINARY, Opcode.CONT, Opcode.PING, Opcode.PONG]
 ALLOWED = int(BURST)
