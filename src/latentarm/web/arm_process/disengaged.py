@@ -70,8 +70,7 @@ class Disengaged:
     def connect_again(self) -> bool:
         """Renew a lost connection; the arm is disabled afterwards.
 
-        Returns:
-            Whether the arm's driver cannot do so without waiting: `reconnect` does.
+        Returns whether the arm's driver cannot do so without waiting: `reconnect` does.
         """
         if not self._lost:
             return False

@@ -29,17 +29,9 @@ from latentarm.web.arm_process.episode_writer import EpisodeWriter
 from latentarm.web.arm_process.help import USUAL_HELP
 from latentarm.web.arm_process.incident import begin_incident
 from latentarm.web.arm_process.steering import Steering
+from latentarm.web.protocol import orders
 from latentarm.web.protocol.channel import ORDER_LIMIT, Channel, new_channel
 from latentarm.web.protocol.notice import Notice, notice_of
-from latentarm.web.protocol.orders import (
-    BeginTask,
-    ChooseProfile,
-    ChooseRun,
-    Given,
-    Order,
-    Reconnect,
-    Reset,
-)
 from latentarm.web.protocol.report import Report, parse_report
 
 T = TypeVar("T")
@@ -88,17 +80,17 @@ def run_control(spec: Spec, channel: Channel, server: int) -> None:
                     match change:
                         case None:
                             break
-                        case Reconnect():
+                        case orders.Reconnect():
                             _, failed = _loaded(partial(reconnect, arm), None)
                             note = failed or Notice(code="reconnected")
-                        case Reset() | BeginTask():
-                            again = BeginTask(choice=None, anew=False)
-                            order = again if isinstance(change, Reset) else change
+                        case orders.Reset() | orders.BeginTask():
+                            again = orders.BeginTask(choice=None, anew=False)
+                            order = again if isinstance(change, orders.Reset) else change
                             setup, arm, note = _begun_again(setup, arm, order, clock)
                             steering.run = None
-                        case ChooseProfile() as order:
+                        case orders.ChooseProfile() as order:
                             setup, note = _loaded(partial(_other_profile, setup, order), setup)
-                        case ChooseRun(run=run):
+                        case orders.ChooseRun(run=run):
                             spec = replace(setup.spec, run=Path(run), profile=None, choice=0)
                             before = arm
                             (setup, arm), note = _loaded(
@@ -114,14 +106,14 @@ def run_control(spec: Spec, channel: Channel, server: int) -> None:
             writer.close()
 
 
-def _other_profile(setup: DriveSetup, order: ChooseProfile) -> DriveSetup:
+def _other_profile(setup: DriveSetup, order: orders.ChooseProfile) -> DriveSetup:
     other = with_profile(setup, order.name, setup.spec.seated(order.seat))
     other.step()
     return other
 
 
 def _begun_again(
-    setup: DriveSetup, arm: Arm, order: BeginTask, clock: Clock
+    setup: DriveSetup, arm: Arm, order: orders.BeginTask, clock: Clock
 ) -> tuple[DriveSetup, Arm, Notice | None]:
     spec = setup.spec
     begun = replace(
@@ -184,7 +176,7 @@ class ControlProcess:
         """Version of the newest stop, for `Enable`."""
         return self._channel.stop.version
 
-    def give(self, given: Given) -> None:
+    def give(self, given: orders.Given) -> None:
         """Write the newest input."""
         self._channel.given.write(given.model_dump_json().encode())
 
@@ -192,7 +184,7 @@ class ControlProcess:
         """Stop the arm; names in the reason have 40 characters at most."""
         self._channel.stop.write(reason.model_dump_json().encode())
 
-    def order(self, order: Order) -> bool:
+    def order(self, order: orders.Order) -> bool:
         """Send an order; returns False if too many are waiting, or the control process has ended."""
         message = order.model_dump_json().encode()
         if len(message) > ORDER_LIMIT:

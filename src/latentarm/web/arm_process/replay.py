@@ -86,13 +86,9 @@ def _differences(then: Any, now: Any) -> tuple[float, bool]:
 def replay(path: Path) -> dict[str, Any]:
     """Replay an incident file, or the newest of a folder.
 
-    Returns:
-        The public attributes of `Replay`, with ``same``: whether the commands are the same as nearly as this
-        computer can tell; ``then`` and ``here``: the computers; ``began_utc``; ``complete``: whether the file
-        was closed.
-
-    Raises:
-        UserError: it is none, is damaged, or names what is missing here or differs.
+    Returns the public attributes of `Replay`, with ``same``: whether the commands are the same as nearly as
+    this computer can tell; ``then`` and ``here``: the computers; ``began_utc``; ``complete``: whether the
+    file was closed. Raises UserError if it is none, is damaged, or names what is missing here or differs.
     """
     path = newest(path)
     lines = read_calls(path)

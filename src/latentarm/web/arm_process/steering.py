@@ -30,8 +30,7 @@ class Steering:
     ) -> bool:
         """Steer in another way; the nearest of the ``pairs`` of axes counts.
 
-        Returns:
-            Whether a push of the stick means something else now.
+        Returns whether a push of the stick means something else now.
         """
         before = self.mode, self.axes, self.help_now
         self.mode = mode

@@ -20,10 +20,9 @@ _SIZES: Final = 3  # numbers in the size of a geom, as in MuJoCo
 def described(scene: Scene) -> dict[str, object]:
     """The part of ``/scene.json`` about things.
 
-    Returns:
-        ``things``, each with its name, its ``pose`` at first, whether it is ``fixed`` there, ``geoms`` like
-        those of the robot's bodies, and ``soft`` ones, which give way to everything; and ``grains``, each
-        kind with its name, ``radius`` (m), ``rgba`` and first ``positions`` (m).
+    ``things``, each with its name, its ``pose`` at first, whether it is ``fixed`` there, ``geoms`` like those
+    of the robot's bodies, and ``soft`` ones, which give way to everything; and ``grains``, each kind with its
+    name, ``radius`` (m), ``rgba`` and first ``positions`` (m).
     """
     first = _rows([thing.pose for thing in scene.things])
     return {

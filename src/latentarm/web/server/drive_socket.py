@@ -7,37 +7,10 @@ from typing import TYPE_CHECKING, Final, Literal, final
 
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
+from latentarm.web.protocol import orders, page_messages
 from latentarm.web.protocol.copilot_messages import AcceptCopilot, AskToCopilot, CopilotPace, EndCopilot
 from latentarm.web.protocol.learning_messages import CancelTraining, PickRun, Train
 from latentarm.web.protocol.notice import Notice, NoticeCode
-from latentarm.web.protocol.orders import (
-    AskedGripper,
-    BeginTask,
-    DriverOrder,
-    Enable,
-    Given,
-    Guide,
-    Record,
-    Reset,
-    Return,
-)
-from latentarm.web.protocol.page_messages import (
-    AskToDrive,
-    ClientMessage,
-    DeletePose,
-    DriverInput,
-    GoToPose,
-    GuideArm,
-    HandOver,
-    Hello,
-    PressEnable,
-    PressStop,
-    RecordEpisode,
-    Release,
-    ReturnArm,
-    SavePose,
-    TrailClear,
-)
 from latentarm.web.protocol.personalise_messages import AnswerQuestion, KeepAlignment, PersonaliseMessage
 from latentarm.web.protocol.server_messages import Refused
 from latentarm.web.records.drive_record import Ending
@@ -100,7 +73,7 @@ class DriveSocket:
         self._poses = poses
         self._server = secrets.token_hex(8)
         self._open = 0
-        self._asked: AskedGripper | None = None
+        self._asked: orders.AskedGripper | None = None
 
     async def answer(self, socket: WebSocket) -> None:
         """Serve one page until it goes."""
@@ -127,7 +100,7 @@ class DriveSocket:
         try:
             async with asyncio.timeout(HELLO_WITHIN_S):
                 hello = await receive(socket)
-            if not isinstance(hello, Hello) or (page := self._join(hello, socket)) is None:
+            if not isinstance(hello, page_messages.Hello) or (page := self._join(hello, socket)) is None:
                 raise ViolationError
             sender = asyncio.create_task(self._send_states(socket, page))
             while True:
@@ -150,7 +123,7 @@ class DriveSocket:
             if page is not None:
                 self._leave(page)
 
-    def _join(self, hello: Hello, socket: WebSocket) -> Page | None:
+    def _join(self, hello: page_messages.Hello, socket: WebSocket) -> Page | None:
         """The page of a person with a record, or of a guest; None if there are too many pages."""
         known = self._people.find(hello.person)
         if known is None:
@@ -194,16 +167,16 @@ class DriveSocket:
                 drives = self._sessions.drives(page)
                 await self._states.pause(DRIVER_PERIOD_S if drives else WATCHER_PERIOD_S)
 
-    def _take(self, page: Page, message: ClientMessage) -> None:
-        if isinstance(message, Hello) or not self._suits(message):
+    def _take(self, page: Page, message: page_messages.ClientMessage) -> None:
+        if isinstance(message, page_messages.Hello) or not self._suits(message):
             raise ViolationError
-        if isinstance(message, PressStop):
+        if isinstance(message, page_messages.PressStop):
             self.stop(page, message.why)
-        elif isinstance(message, AskToDrive):
+        elif isinstance(message, page_messages.AskToDrive):
             self._sessions.ask(page)
         elif isinstance(message, AskToCopilot | CopilotPace | EndCopilot) and not self._sessions.drives(page):
             self._take_from_copilot(page, message)
-        elif isinstance(message, TrailClear):
+        elif isinstance(message, page_messages.TrailClear):
             self._states.clear_trail()
         elif self._sessions.drives(page):
             self._take_from_driver(page, message)
@@ -220,20 +193,20 @@ class DriveSocket:
                 if copilot.leaves(page.id):
                     self._copilot_changed("copilot_ended", page)
 
-    def _suits(self, message: ClientMessage) -> bool:
+    def _suits(self, message: page_messages.ClientMessage) -> bool:
         return (
-            not isinstance(message, DriverInput | AnswerQuestion)
+            not isinstance(message, page_messages.DriverInput | AnswerQuestion)
             or len(message.u) <= self._states.loaded.input_dim
         )
 
-    def _take_from_driver(self, page: Page, message: ClientMessage) -> None:
+    def _take_from_driver(self, page: Page, message: page_messages.ClientMessage) -> None:
         match message:
-            case DriverInput():
+            case page_messages.DriverInput():
                 self._give(message)
-            case PressEnable() if self._states.loading or self._learning.personalising.standstill:
+            case page_messages.PressEnable() | page_messages.GuideArm(on=True) if self._stands_still:
                 pass
-            case PressEnable():
-                self._control.order(Enable(driver=self._sessions.turn, stops=self._control.stops))
+            case page_messages.PressEnable():
+                self._control.order(orders.Enable(driver=self._sessions.turn, stops=self._control.stops))
             case AcceptCopilot(to=to):
                 copilot = self._sessions.named(to)
                 if copilot is not None and self._sessions.copilot.accept(to):
@@ -242,25 +215,25 @@ class DriveSocket:
                 copilot = self._sessions.named(self._sessions.copilot.page)
                 if self._sessions.copilot.end() and copilot is not None:
                     self._copilot_changed("copilot_ended", copilot)
-            case RecordEpisode(on=on, task=task, by_hand=by_hand):
-                self._control.order(Record(on=on, task=task, person=_recorded_as(page), by_hand=by_hand))
-            case GuideArm(on=True) if self._states.loading or self._learning.personalising.standstill:
-                pass
-            case GuideArm(on=on):
-                self._control.order(Guide(on=on, stops=self._control.stops))
-            case ReturnArm(on=on):
-                self._control.order(Return(on=on))
-            case GoToPose(name=name, built_in=built_in):
+            case page_messages.RecordEpisode(on=on, task=task, by_hand=by_hand):
+                self._control.order(
+                    orders.Record(on=on, task=task, person=_recorded_as(page), by_hand=by_hand)
+                )
+            case page_messages.GuideArm(on=on):
+                self._control.order(orders.Guide(on=on, stops=self._control.stops))
+            case page_messages.ReturnArm(on=on):
+                self._control.order(orders.Return(on=on))
+            case page_messages.GoToPose(name=name, built_in=built_in):
                 loaded = self._states.loaded
                 if built_in is None:
                     pose = self._poses.find(page.person, loaded.robot_name, name)
                 else:
                     pose = loaded.built_in(built_in, name)
                 if pose is not None:
-                    self._control.order(Return(on=True, pose=pose))
-            case SavePose(name=name):
+                    self._control.order(orders.Return(on=True, pose=pose))
+            case page_messages.SavePose(name=name):
                 self._save_pose(page, name)
-            case DeletePose(name=name):
+            case page_messages.DeletePose(name=name):
                 self._poses.delete(page.person, self._states.loaded.robot_name, name)
             case Train():
                 self._learning.train(message)
@@ -268,17 +241,17 @@ class DriveSocket:
                 self._learning.cancel()
             case PickRun(run=run):
                 self._learning.choose_run(run)
-            case HandOver(to=to):
+            case page_messages.HandOver(to=to):
                 if self._sessions.hand_over(page, to):
                     self._driver_changed(_of(page, "handed_over"))
-            case Release():
+            case page_messages.Release():
                 if self._sessions.release(page):
                     self._driver_changed(_of(page, "driver_released"))
-            case _ if isinstance(message, DriverOrder):
+            case _ if isinstance(message, orders.DriverOrder):
                 self._control.order(message)
-                if isinstance(message, Reset):
+                if isinstance(message, orders.Reset):
                     self._end_drive("reset")
-                elif isinstance(message, BeginTask):
+                elif isinstance(message, orders.BeginTask):
                     self._end_drive("next" if message.anew else "again")
             case _ if isinstance(message, PersonaliseMessage):
                 before = self._learning.personalising.look()
@@ -287,6 +260,11 @@ class DriveSocket:
                     self._note_profile(page)
             case _:
                 pass
+
+    @property
+    def _stands_still(self) -> bool:
+        """Whether the arm may neither be enabled nor guided: a run is loaded, or a person is asked."""
+        return self._states.loading or self._learning.personalising.standstill is not None
 
     def _save_pose(self, page: Page, name: str) -> None:
         report = self._states.report
@@ -308,19 +286,19 @@ class DriveSocket:
         self._asked = None
         self._history.end("driver_changed")
         self._control.stop(why)
-        self._control.order(Record(on=False, task=""))
+        self._control.order(orders.Record(on=False, task=""))
 
     def _copilot_changed(self, why: NoticeCode, copilot: Page) -> None:
         """Stop the arm: nobody's speed changes without their knowledge."""
         self._control.stop(Notice(code=why, parameters={"name": copilot.name}))
 
-    def _give(self, message: DriverInput) -> None:
+    def _give(self, message: page_messages.DriverInput) -> None:
         self._history.given(message.u, message.source, gripper=message.gripper is not None)
         padded = message.u + (0.0,) * (self._states.loaded.input_dim - len(message.u))
         if message.gripper is not None:
-            self._asked = AskedGripper(ask=message.gripper, seq=message.seq, nonce=message.nonce)
+            self._asked = orders.AskedGripper(ask=message.gripper, seq=message.seq, nonce=message.nonce)
         self._control.give(
-            Given(
+            orders.Given(
                 driver=self._sessions.turn,
                 seq=message.seq,
                 nonce=message.nonce,

@@ -63,13 +63,10 @@ class Pins:
         return of == person.id and self._now_s() < until_s
 
     def unlock(self, person: PersonRecord, pin: str, client: str) -> str:
-        """Open a record; takes some 50 ms for the hash. ``client`` is an address and a browser.
+        """Open a record; returns the value of its cookie. Takes some 50 ms for the hash.
 
-        Returns:
-            The value of the cookie `cookie_of`.
-
-        Raises:
-            NoticeError: the PIN is wrong, or there were too many wrong ones or clients that gave them.
+        ``client`` is an address and a browser. Raises NoticeError if the PIN is wrong, or there were too many
+        wrong ones or clients that gave them.
         """
         with self._lock:
             # Counted before it is checked: simultaneous tries count too.
@@ -86,14 +83,9 @@ class Pins:
         self._keys.pop(cookies.get(cookie_of(person), ""), None)
 
     def change(self, person: str, pin: str | None) -> str:
-        """Set or remove a record's PIN, and close the record for everybody else.
+        """Set or remove a record's PIN, and close the record for all but the visitor with this new cookie.
 
-        Returns:
-            The value of the cookie `cookie_of` for the visitor who changed it.
-
-        Raises:
-            NoticeError: the host wants no PINs.
-            UserError: there is no such person, or the record cannot be written.
+        Raises UserError if the host wants no PINs, there is no such person, or the record cannot be written.
         """
         if not self.wanted:
             raise NoticeError("request_invalid")

@@ -59,9 +59,8 @@ class FrameMeter:
     def pass_on(self, data: bytes) -> tuple[bytes, bool]:
         """Count the frames in ``data``, which may be cut anywhere.
 
-        Returns:
-            The bytes before the first frame that is one too many, and whether there was none such. An
-            incomplete frame head is held back, so that what is passed on never ends inside one.
+        Returns the bytes before the first frame that is one too many, and whether there was none such. An
+        incomplete frame head is held back, so that what is passed on never ends inside one.
         """
         passed = bytearray()
         at = 0
