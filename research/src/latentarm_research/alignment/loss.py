@@ -34,21 +34,13 @@ DRAWS: Final = 1
 
 
 class Draw(NamedTuple):
-    """What is random in one step, or with a leading axis in all of them.
+    """What is random in one step, or with a leading axis in all of them."""
 
-    Attributes:
-        answers: (S, N'), rows of the answers.
-        here: (S, B), rows of the unlabelled contexts.
-        there: (S, B), others.
-        u: (S, B, d), inputs, uniform in [-1, 1].
-        alpha: (S, B, 1), uniform in [-1, 1].
-    """
-
-    answers: Tensor
-    here: Tensor
-    there: Tensor
-    u: Tensor
-    alpha: Tensor
+    answers: Tensor  # (S, N'), rows of the answers
+    here: Tensor  # (S, B), rows of the unlabelled contexts
+    there: Tensor  # (S, B), others
+    u: Tensor  # (S, B, d), inputs, uniform in [-1, 1]
+    alpha: Tensor  # (S, B, 1), uniform in [-1, 1]
 
 
 @final
@@ -58,23 +50,16 @@ class AlignmentLoss:
     Everything is relative to the mean squared length of the motions that a run was asked about, so that the
     weights have no units and 1 is the loss of an arm that does not move.
 
-    Args:
-        decoder: phi, frozen.
-        chain: the arm.
-        answers: those of each of S runs, equally many of motions that take equally long.
-        unlabelled: (M, c), contexts in which the priors apply.
-        priors: their weights.
-
     Raises:
         UserError: the answers do not fit the decoder or each other, or the motions do not move.
     """
 
     def __init__(
         self,
-        decoder: TorchDecoder,
+        decoder: TorchDecoder,  # phi, frozen
         chain: Chain,
-        answers: Sequence[Answers],
-        unlabelled: FloatArray,
+        answers: Sequence[Answers],  # those of each of S runs, equally many of motions that take equally long
+        unlabelled: FloatArray,  # (M, c), contexts in which the priors apply
         priors: Priors,
     ) -> None:
         _check(decoder, chain, answers, unlabelled)

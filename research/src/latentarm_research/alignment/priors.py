@@ -22,20 +22,14 @@ if TYPE_CHECKING:
 class Priors:
     """Weight of each prior relative to the answers (equation 23); without units.
 
-    Attributes:
-        proportional: lambda_1.
-        reversible: lambda_2.
-        consistent: lambda_3. Lower, since the same input need not do quite the same elsewhere.
-        gamma: how fast consistency fades with the distance of two states, 1/rad.
-
     Raises:
         UserError: a weight is negative or not finite.
     """
 
-    proportional: float = 1.0
-    reversible: float = 1.0
-    consistent: float = 0.2
-    gamma: float = 1.0
+    proportional: float = 1.0  # lambda_1
+    reversible: float = 1.0  # lambda_2
+    consistent: float = 0.2  # lambda_3. Lower, since the same input need not do quite the same elsewhere
+    gamma: float = 1.0  # how fast consistency fades with the distance of two states, 1/rad
 
     def __post_init__(self) -> None:
         for name in ("proportional", "reversible", "consistent", "gamma"):

@@ -36,24 +36,17 @@ CHECK_EVERY: Final = 250
 class FitConfig:
     """How an alignment is learned.
 
-    Attributes:
-        priors: what counts beside the answers.
-        hidden: units of each hidden layer of f.
-        steps: of Adam.
-        learning_rate: at the start; it falls along half a cosine.
-        batch_size: contexts without an answer that each step sees.
-        held_out: share of the answers, the last ones, that train nothing: the weights that miss them least
-            are kept. 0 keeps the last weights.
-
     Raises:
         UserError: a figure is out of its range.
     """
 
-    priors: Priors = field(default_factory=Priors)
-    hidden: tuple[int, ...] = (64, 64)
-    steps: int = 400
-    learning_rate: float = 5e-3
-    batch_size: int = 64
+    priors: Priors = field(default_factory=Priors)  # what counts beside the answers
+    hidden: tuple[int, ...] = (64, 64)  # units of each hidden layer of f
+    steps: int = 400  # of Adam
+    learning_rate: float = 5e-3  # at the start; it falls along half a cosine
+    batch_size: int = 64  # contexts without an answer that each step sees
+    # share of the answers, the last ones, that train nothing: the weights that miss them least are kept. 0
+    # keeps the last weights
     held_out: float = 0.0
 
     def __post_init__(self) -> None:
@@ -68,15 +61,11 @@ class FitConfig:
 @final
 @dataclass(frozen=True, eq=False)
 class FittedAlignments:
-    """S learned alignments.
+    """S learned alignments."""
 
-    Attributes:
-        alignments: S of them.
-        loss: (S,), of equation 23 at the end, all runs judged in the same
-            contexts, relative to the mean squared length of the motions.
-    """
-
-    alignments: tuple[LearnedAlignment, ...]
+    alignments: tuple[LearnedAlignment, ...]  # S of them
+    # (S,), of equation 23 at the end, all runs judged in the same contexts, relative to the mean squared
+    # length of the motions
     loss: FloatArray
 
     @property
@@ -88,23 +77,14 @@ class FittedAlignments:
 def fit_alignments(
     model: LatentActionModel,
     chain: Chain,
-    answers: Sequence[Answers],
-    unlabelled: FloatArray,
-    config: FitConfig | None = None,
+    answers: Sequence[Answers],  # those of each of S runs, equally many of motions that take equally long
+    unlabelled: FloatArray,  # (M, c), contexts in which the priors apply
+    config: FitConfig | None = None,  # how; the defaults where None
     *,
     seed_index: int = 0,
-    seeds: Sequence[int] | None = None,
+    seeds: Sequence[int] | None = None,  # S, of the weights and draws of each run; 0..S-1 where None
 ) -> FittedAlignments:
     """Learn an alignment for each run, all runs together.
-
-    Args:
-        model: a fitted model, whose decoder stays as it is.
-        chain: the arm.
-        answers: those of each of S runs, equally many of motions that take equally long.
-        unlabelled: (M, c), contexts in which the priors apply.
-        config: how; the defaults where None.
-        seed_index: which of the model's seeds decodes.
-        seeds: S, of the weights and draws of each run; 0..S-1 where None.
 
     Raises:
         UserError: the model is not fitted or has no such seed, it looks at poses in the tool's frame, the

@@ -14,12 +14,7 @@ from latentarm.robots.kinematics.torch_chain import TorchChain
 
 @final
 class TorchPoses:
-    """``Psi``: states (..., n) to vectors (..., 12 k) of all k tools' poses, as `pose_vectors` has them.
-
-    Args:
-        chain: the arm.
-        dtype: of all tensors.
-    """
+    """``Psi``: states (..., n) to vectors (..., 12 k) of all k tools' poses, as `pose_vectors` has them."""
 
     def __init__(self, chain: Chain, dtype: torch.dtype) -> None:
         self._tools = [TorchChain(chain, tool).to(dtype) for tool in range(len(chain.tools))]
@@ -35,31 +30,19 @@ class TorchPoses:
 
 
 class Place(NamedTuple):
-    """Contexts, with what follows from them alone.
+    """Contexts, with what follows from them alone."""
 
-    Attributes:
-        context: (..., c); its first n entries are the state, rad.
-        observed: (..., o), what the decoder sees; its first c entries are the context, normalised.
-        pose: (..., 12 k), see `pose_vectors`.
-    """
-
-    context: Tensor
-    observed: Tensor
-    pose: Tensor
+    context: Tensor  # (..., c); its first n entries are the state, rad
+    observed: Tensor  # (..., o), what the decoder sees; its first c entries are the context, normalised
+    pose: Tensor  # (..., 12 k), see `pose_vectors`
 
 
 class Push(NamedTuple):
-    """Inputs held for one motion's time, and where they led.
+    """Inputs held for one motion's time, and where they led."""
 
-    Attributes:
-        before: where it began.
-        context: (..., c), the contexts that it led to; what follows the state in them (a belief) stayed.
-        pose: (..., 12 k), there.
-    """
-
-    before: Place
-    context: Tensor
-    pose: Tensor
+    before: Place  # where it began
+    context: Tensor  # (..., c), the contexts that it led to; what follows the state in them (a belief) stayed
+    pose: Tensor  # (..., 12 k), there
 
     @property
     def change(self) -> Tensor:

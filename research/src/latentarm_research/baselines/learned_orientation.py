@@ -44,17 +44,12 @@ def features(position: FloatArray, objects: FloatArray, gripper: FloatArray) -> 
 @final
 @dataclass(frozen=True, eq=False)
 class OrientationMap:
-    """The orientation of the tool that the demonstrations had in a place: a small network in NumPy.
+    """The orientation of the tool that the demonstrations had in a place: a small network in NumPy."""
 
-    Attributes:
-        objects: names of the K things that it looks at.
-        sees_gripper: whether it looks at the gripper's opening.
-        layers: weights (in, out) and biases (out,), with hyperbolic tangents in between. The last gives the
-            first two columns of a rotation, row by row.
-    """
-
-    objects: tuple[str, ...]
-    sees_gripper: bool
+    objects: tuple[str, ...]  # names of the K things that it looks at
+    sees_gripper: bool  # whether it looks at the gripper's opening
+    # weights (in, out) and biases (out,), with hyperbolic tangents in between. The last gives the first two
+    # columns of a rotation, row by row
     layers: Sequence[Layer]
 
     def __call__(self, position: FloatArray, context: Context) -> FloatArray:
@@ -86,23 +81,16 @@ class LearnedOrientationController(AxisController):
 
     The tool turns in proportion to the push, in either direction of it: at rest nothing moves.
 
-    Args:
-        robot: the arm; its first tool is driven.
-        orientation: learned from demonstrations.
-        linear_speed: of a full input along an axis, m/s.
-        turn_speed: fastest turn at a full input along an axis, rad/s.
-        damping: behaviour near singular configurations.
-
     Raises:
         UserError: a speed is not positive and finite.
     """
 
     def __init__(
         self,
-        robot: Robot,
+        robot: Robot,  # the arm; its first tool is driven
         orientation: OrientationMap,
-        linear_speed: float = 0.15,
-        turn_speed: float = 0.5,
+        linear_speed: float = 0.15,  # of a full input along an axis, m/s
+        turn_speed: float = 0.5,  # fastest turn at a full input along an axis, rad/s
         damping: Damping | None = None,
     ) -> None:
         super().__init__(robot, linear_speed, turn_speed, POSITION)

@@ -21,19 +21,16 @@ from latentarm.robots.robot import Robot
 class RetargetingCosts:
     """What the objectives of retargeting weigh against each other; all values are assumptions.
 
-    Attributes:
-        rotation_m: what a rad of wrong orientation counts, m: the tool's place matters more than its turn.
-        effort: of joint velocities, (m/rad)²: keeps motions small, and bounded at singular configurations.
-        limits: of a velocity towards a joint's limit, (m/rad)², at the limit itself.
-        near_rad: where that begins, before the limit, rad; it grows with the square of the nearness.
-
     Raises:
         UserError: a weight is not positive and finite.
     """
 
+    # what a rad of wrong orientation counts, m: the tool's place matters more than its turn
     rotation_m: float = 0.2
+    # of joint velocities, (m/rad)²: keeps motions small, and bounded at singular configurations
     effort: float = 1e-4
-    limits: float = 1.0
+    limits: float = 1.0  # of a velocity towards a joint's limit, (m/rad)², at the limit itself
+    # where that begins, before the limit, rad; it grows with the square of the nearness
     near_rad: float = 0.3
 
     def __post_init__(self) -> None:
@@ -62,22 +59,15 @@ class RetargetingController(AxisController):
     with the arm itself, which they prevent. Modes are those of end-effector control, because two axes
     cannot command six.
 
-    Args:
-        robot: the arm; its first tool is driven.
-        linear_speed: of a full input along an axis, m/s.
-        angular_speed: of a full input about an axis, rad/s.
-        modes: which axes the inputs drive in each mode.
-        costs: of the objectives.
-
     Raises:
         UserError: a speed is not positive and finite.
     """
 
     def __init__(
         self,
-        robot: Robot,
-        linear_speed: float = 0.15,
-        angular_speed: float = 0.5,
+        robot: Robot,  # the arm; its first tool is driven
+        linear_speed: float = 0.15,  # of a full input along an axis, m/s
+        angular_speed: float = 0.5,  # of a full input about an axis, rad/s
         modes: AxisModes = PAIRS,
         costs: RetargetingCosts | None = None,
     ) -> None:

@@ -56,12 +56,6 @@ SPREAD_RAD = 0.1
 def run_bench(repeats: int, seed: int, progress: bool, pairs: int = PAIRS) -> list[Row]:
     """Time the online step and the batched fit.
 
-    Args:
-        repeats: online steps that are timed.
-        seed: of the demonstrations, the models and the inputs.
-        progress: show a bar while fitting.
-        pairs: about how many context-action pairs each fit learns from.
-
     Returns:
         One row per figure; where many times were taken, the row gives their number.
 

@@ -78,12 +78,6 @@ def time_training(demonstrations: Demonstrations, seeds: int, epochs: int, repea
     The two take turns, and the median of each counts. A run of the plain loop is timed without any
     validation; the fit with its own after every epoch, and with all that comes before and after its loop.
 
-    Args:
-        demonstrations: to learn from.
-        seeds: S, of the fit.
-        epochs: of both.
-        repeats: how often each is timed.
-
     Returns:
         Times and their ratio per seed; the same with a fit's matrix products alone, and with those and its
         activations, in place of the fit, which no fit by these kernels can do better than; and how long each

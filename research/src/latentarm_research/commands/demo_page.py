@@ -25,25 +25,14 @@ CAMERA: Final = Camera(look_at=(0.5, 0.0, 0.12), distance_m=0.48)
 @final
 @dataclass(frozen=True)
 class Filmed:
-    """A strip of pictures, or why it is missing.
+    """A strip of pictures, or why it is missing."""
 
-    Attributes:
-        picture: for the page, in Markdown; "" without one.
-        said: what it shows, or why there is no strip, in a sentence.
-    """
-
-    picture: str
-    said: str
+    picture: str  # for the page, in Markdown; "" without one
+    said: str  # what it shows, or why there is no strip, in a sentence
 
 
 def film(out: Path, model: str, planned: Sequence[Planned], driven: Sequence[Trace]) -> Filmed:
     """Film the first drive that succeeded, where this machine renders.
-
-    Args:
-        out: folder to write to.
-        model: name of the model that was driven with.
-        planned: the drives.
-        driven: what came of them.
 
     Raises:
         UserError: the file cannot be written.
@@ -78,8 +67,8 @@ def page(
     task: SceneTask,
     tables: Mapping[OperatorName, Sequence[Row]],
     properties: Sequence[Row],
-    held: str,
-    filmed: Filmed,
+    held: str,  # see `held_in_words`
+    filmed: Filmed,  # see `film`
     *,
     model: str,
     shown: OperatorName,
@@ -88,21 +77,7 @@ def page(
     seeds: int,
     seed: int,
 ) -> str:
-    """The page of a demo, in Markdown.
-
-    Args:
-        task: what was driven.
-        tables: figures of the drives by simulated person.
-        properties: figures of the latent spaces.
-        held: see `held_in_words`.
-        filmed: see `film`.
-        model: whose drives the figures show.
-        shown: who drives in the figures.
-        drives: of that person for each choice.
-        others: of everybody else.
-        seeds: trained models of each kind.
-        seed: of the demo.
-    """
+    """The page of a demo, in Markdown."""
     choices = len(task.choices)
     return (
         "# What the demo measured\n\n"

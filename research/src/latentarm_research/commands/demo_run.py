@@ -80,16 +80,11 @@ MADE = ("results.json", "results.md", "paths.png", "inputs.png", "properties.png
 
 @dataclass(frozen=True)
 class Sizes:
-    """How much is learned from; only tests take other sizes.
+    """How much is learned from; only tests take other sizes."""
 
-    Attributes:
-        episodes: demonstrations, of some 5 s each.
-        seeds: models of each kind, trained together and driven in turn.
-        epochs: passes over the training pairs, at most, by model.
-    """
-
-    episodes: int = 230
-    seeds: int = 3
+    episodes: int = 230  # demonstrations, of some 5 s each
+    seeds: int = 3  # models of each kind, trained together and driven in turn
+    # passes over the training pairs, at most, by model
     epochs: Mapping[str, int] = field(default_factory=lambda: EPOCHS)
 
 
@@ -101,15 +96,10 @@ USUAL = Sizes()
 
 @dataclass(frozen=True)
 class Shown:
-    """Results of the demo.
+    """Results of the demo."""
 
-    Attributes:
-        rows: figures of the drives: mean and SD over all of a condition.
-        said: what happened to the food, and why anything is missing, in sentences.
-    """
-
-    rows: list[Row]
-    said: tuple[str, ...]
+    rows: list[Row]  # figures of the drives: mean and SD over all of a condition
+    said: tuple[str, ...]  # what happened to the food, and why anything is missing, in sentences
 
 
 def run_demo(config: "DemoOptions", sizes: Sizes = USUAL) -> Shown:
@@ -225,17 +215,11 @@ def _learn(call: _Learning) -> list[Row]:
 @final
 @dataclass(frozen=True, eq=False)
 class _Condition:
-    """Who drives with what.
+    """Who drives with what."""
 
-    Attributes:
-        person: who drives.
-        subject: of the figures.
-        planned: their drives; all seeds of a model take turns.
-    """
-
-    person: OperatorName
-    subject: Subject
-    planned: Sequence[Planned]
+    person: OperatorName  # who drives
+    subject: Subject  # of the figures
+    planned: Sequence[Planned]  # their drives; all seeds of a model take turns
 
     @property
     def name(self) -> str:

@@ -148,20 +148,12 @@ class DriveOptions:
 
 @dataclass(frozen=True)
 class Driven:
-    """The results of the drives.
+    """The results of the drives."""
 
-    Attributes:
-        rows: mean and SD over the drives.
-        entries: one mapping per drive, see `latentarm_research.drives.drive_table.COLUMNS`.
-        controller: what drove.
-        operator: who gave inputs.
-        task: what was done.
-        time_limit_s: after which a drive had failed, s.
-    """
-
-    rows: list[Row]
+    rows: list[Row]  # mean and SD over the drives
+    # one mapping per drive, see `latentarm_research.drives.drive_table.COLUMNS`
     entries: list[dict[str, object]]
-    controller: ControllerName
-    operator: OperatorName
-    task: str
-    time_limit_s: float
+    controller: ControllerName  # what drove
+    operator: OperatorName  # who gave inputs
+    task: str  # what was done
+    time_limit_s: float  # after which a drive had failed, s

@@ -23,14 +23,7 @@ _Call = TypeVar("_Call")
 
 @final
 class DriveRecording:
-    """Records one drive after the other.
-
-    Args:
-        config: what was asked for.
-        robot: that is driven.
-        controller: what steers.
-        recorder: of the journal.
-    """
+    """Records one drive after the other."""
 
     def __init__(
         self, config: DriveOptions, robot: Robot, controller: Controller, recorder: Recorder
@@ -42,12 +35,6 @@ class DriveRecording:
         self, task: str, goals: Sequence[Goal], things: Sequence[str] = (), objects: Sequence[str] = ()
     ) -> None:
         """Begin a drive.
-
-        Args:
-            task: what is done, in words.
-            goals: what the person may want.
-            things: names of the things whose poses every step has.
-            objects: those of them that matter.
 
         Raises:
             UserError: the journal cannot be written.
@@ -112,12 +99,6 @@ def recording(
 ) -> Generator[DriveRecording]:
     """Record drives; export them as a dataset once all are done.
 
-    Args:
-        config: what was asked for.
-        dataset: folder to export to.
-        robot: that is driven.
-        controller: what steers.
-
     Raises:
         UserError: a file cannot be written.
     """
@@ -130,12 +111,7 @@ def recording(
 
 
 def counted(plan: Sequence[_Call], bars: bool) -> Generator[_Call]:
-    """The drives, one after the other, with a bar that counts those that are done.
-
-    Args:
-        plan: what is to be driven.
-        bars: whether to show the bar.
-    """
+    """The drives, one after the other, with a bar that counts those that are done."""
     with counting_bar(bars) as bar:
         task = bar.add_task("drives", total=len(plan))
         for call in plan:

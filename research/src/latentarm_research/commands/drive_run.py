@@ -51,10 +51,6 @@ OF_THE_TASK: Final = {
 def drive_run(config: DriveOptions, tell: Callable[[Sequence[str]], None] = lambda sentences: None) -> Driven:
     """Drive every choice of a task several times and write ``drives.json``, ``drives.csv`` and a figure.
 
-    Args:
-        config: what was asked for.
-        tell: called with notices about the robot before it moves.
-
     Raises:
         UserError: the run, the robot or the task does not exist, they do not fit each other, an option makes
             no sense at the task, or the folder holds something else.

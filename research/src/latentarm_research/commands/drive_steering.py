@@ -29,23 +29,14 @@ USUAL_BELIEF: Final = "boltzmann"
 
 @dataclass(frozen=True, eq=False)
 class Steering:
-    """What is the same in all drives of one command, whatever is done.
-
-    Attributes:
-        config: what was asked for.
-        task: name of the task.
-        robot: the arm.
-        run: the run that was named, or None.
-        controller: what the operator steers with.
-        arbitration: how much the robot helps by equation 2, if it does.
-    """
+    """What is the same in all drives of one command, whatever is done."""
 
     config: DriveOptions
     task: str
     robot: Robot
-    run: Run | None
-    controller: Controller
-    arbitration: FixedAlpha | ConfidenceAlpha | None
+    run: Run | None  # the run that was named, or None
+    controller: Controller  # what the operator steers with
+    arbitration: FixedAlpha | ConfidenceAlpha | None  # how much the robot helps by equation 2, if it does
 
     @property
     def arm(self) -> str:

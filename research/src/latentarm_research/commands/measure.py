@@ -15,18 +15,12 @@ from latentarm_research.measurements.catalogue import MEASUREMENTS, load_measure
 
 @dataclass(frozen=True)
 class Common:
-    """Options of every measurement; the command line describes each.
+    """Options of every measurement; the command line describes each."""
 
-    Attributes:
-        seed: of everything random.
-        jobs: processes side by side.
-        json: print one JSON document.
-        smoke: smallest sizes.
-    """
-
-    seed: Seed = 0
-    jobs: Jobs = 1
-    json: Json = False
+    seed: Seed = 0  # of everything random
+    jobs: Jobs = 1  # processes side by side
+    json: Json = False  # print one JSON document
+    # smallest sizes
     smoke: Annotated[bool, arg(help="Smallest sizes, which only show that it runs.")] = False
 
 

@@ -94,10 +94,6 @@ class Tab:
 class Browser:
     """A running Chromium and its tabs.
 
-    Args:
-        folder: of its profile.
-        arguments: more of its command line.
-
     Raises:
         UserError: there is no Chromium here, or it does not start.
     """

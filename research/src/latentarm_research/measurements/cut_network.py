@@ -13,9 +13,6 @@ class Proxy:
     """Listens on a port of its own and passes bytes both ways.
 
     While it is cut no byte passes, and neither side is told: so it is when a cable is pulled.
-
-    Args:
-        port: of the server, on this machine.
     """
 
     def __init__(self, port: int) -> None:

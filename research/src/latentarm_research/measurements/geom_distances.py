@@ -21,10 +21,6 @@ class Judge:
 
     Two geoms of the robot are measured against each other where the product watches the capsules
     that stand for them. Pairs that no joint moves are left out.
-
-    Args:
-        robot: the arm.
-        obstacles: what stands near it.
     """
 
     def __init__(self, robot: Robot, obstacles: tuple[Obstacle, ...] = ()) -> None:

@@ -60,9 +60,6 @@ def late_of(number: int) -> int:
 def drive(cell: tuple[int, int]) -> tuple[FloatArray, bool]:
     """Push once, and let go.
 
-    Args:
-        cell: seed and number of the drive.
-
     Returns:
         By how much each limit is passed, negative within it, (ticks, 4); and whether a check stopped the arm.
     """

@@ -29,33 +29,21 @@ UNITS: Final = {
 @final
 @dataclass(frozen=True)
 class Measurement:
-    """A measurement as the command line lists it.
+    """A measurement as the command line lists it."""
 
-    Attributes:
-        summary: the first line of its help.
-        options: a frozen dataclass, its own options.
-        smoke: values of options that only show that it runs.
-    """
-
-    summary: str
-    options: type[Any]
-    smoke: Mapping[str, object]
+    summary: str  # the first line of its help
+    options: type[Any]  # a frozen dataclass, its own options
+    smoke: Mapping[str, object]  # values of options that only show that it runs
 
 
 @final
 @dataclass(frozen=True)
 class Work:
-    """How a measurement works.
+    """How a measurement works."""
 
-    Attributes:
-        seed: of everything random.
-        jobs: processes side by side; -1 is one per core.
-        bars: show progress on standard error.
-    """
-
-    seed: int = 0
-    jobs: int = 1
-    bars: bool = False
+    seed: int = 0  # of everything random
+    jobs: int = 1  # processes side by side; -1 is one per core
+    bars: bool = False  # show progress on standard error
 
     def each(self, function: Callable[[Cell], Result], cells: Sequence[Cell]) -> list[Result]:
         """Results of a function of picklable cells, in their order."""
@@ -67,19 +55,12 @@ class Work:
 @final
 @dataclass(frozen=True)
 class Outcome:
-    """Results of a measurement.
+    """Results of a measurement."""
 
-    Attributes:
-        rows: its figures. A task is a table of its own, a condition a line, a measure a column.
-        broken: a sentence for each stated limit that was not kept.
-        note: Markdown above the tables.
-        documents: further JSON files by name.
-    """
-
-    rows: Sequence[Row]
-    broken: Sequence[str] = ()
-    note: str = ""
-    documents: Mapping[str, object] = field(default_factory=dict[str, object])
+    rows: Sequence[Row]  # its figures. A task is a table of its own, a condition a line, a measure a column
+    broken: Sequence[str] = ()  # a sentence for each stated limit that was not kept
+    note: str = ""  # Markdown above the tables
+    documents: Mapping[str, object] = field(default_factory=dict[str, object])  # further JSON files by name
 
 
 def line(

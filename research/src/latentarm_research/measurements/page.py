@@ -13,13 +13,7 @@ from latentarm_research.studies.page import markdown_table
 
 
 def page_of(title: str, outcome: Outcome, command: str) -> str:
-    """The page in Markdown.
-
-    Args:
-        title: its heading.
-        outcome: what was found.
-        command: the command that repeats it.
-    """
+    """The page in Markdown."""
     commit = (git_commit() or "unknown")[:8]
     parts = [f"# {title}", outcome.note]
     for task in dict.fromkeys(row.task for row in outcome.rows):

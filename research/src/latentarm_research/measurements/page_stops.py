@@ -83,19 +83,12 @@ def measure(options: PageStops, work: Work) -> Outcome:
 @final
 @dataclass(frozen=True)
 class Scene:
-    """The processes and connections that a fault can hit.
+    """The processes and connections that a fault can hit."""
 
-    Attributes:
-        tab: shows the page.
-        browser: has the tab.
-        server: `latentarm teleop`.
-        proxy: between them.
-    """
-
-    tab: Tab
-    browser: Browser
-    server: "subprocess.Popen[bytes]"
-    proxy: Proxy
+    tab: Tab  # shows the page
+    browser: Browser  # has the tab
+    server: "subprocess.Popen[bytes]"  # `latentarm teleop`
+    proxy: Proxy  # between them
 
     def suffer(self, fault: str) -> None:
         """Cause a fault."""

@@ -45,21 +45,13 @@ class Pusher(Controller):
 @final
 @dataclass(frozen=True)
 class Push:
-    """A point of the arm, and where it is pushed to.
-
-    Attributes:
-        robot: the arm.
-        link: the link that carries the point.
-        local: (3,), the point in its link's frame, m.
-        target: (3,), where to, m; None for another part of the arm.
-        other: the capsule that it is pushed to where there is no target.
-    """
+    """A point of the arm, and where it is pushed to."""
 
     robot: Robot
-    link: int
-    local: FloatArray
-    target: FloatArray | None
-    other: int = 0
+    link: int  # the link that carries the point
+    local: FloatArray  # (3,), the point in its link's frame, m
+    target: FloatArray | None  # (3,), where to, m; None for another part of the arm
+    other: int = 0  # the capsule that it is pushed to where there is no target
 
     def at(self, q: FloatArray) -> FloatArray:
         """The point in the base frame, (..., 3), m, for configurations (..., n)."""

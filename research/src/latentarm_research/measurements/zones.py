@@ -65,9 +65,6 @@ def parts(robot: Robot, q: FloatArray) -> tuple[FloatArray, FloatArray, FloatArr
 def drive(cell: tuple[int, int]) -> tuple[bool, int, int, float]:
     """Push in, then out.
 
-    Args:
-        cell: seed and number of the drive.
-
     Returns:
         Whether a check stopped the arm, in how many ticks a part was in the zone, and in how many one was too
         fast there; and the fastest, m/s.

@@ -17,49 +17,30 @@ from latentarm_research.metrics.stick import idle_time, turned_round_share
 @final
 @dataclass(frozen=True)
 class Drive:
-    """Figures of one drive.
+    """Figures of one drive."""
 
-    Attributes:
-        success: all steps were done, and nothing went wrong.
-        steps_done: share of the steps that were done.
-        time_s: from the first step of the loop to the last, s.
-        idle_s: time without input, s.
-        input_magnitude: integral of ‖u‖ over time, s (seconds of full deflection of one axis).
-        turned_round: share of the time in which the stick points away from where it pointed a moment ago.
-        mode_switches: how often the controller's mode changed.
-        path_length: way of the tool through space, m.
-        stops: how often the arm was stopped, such as for not following when it met a dish.
-        goal_error_m_s: integral over time of the tool's distance to the goal that is closest to it, m s; NaN
-            without goals.
-        goal_error_m: mean of the same distance over time, m.
-        final_distance: of the tool from the last waypoint of the last step at the end, m.
-        final_angle_deg: the same for orientation, degrees.
-        preference_alignment: mean over time of the dot product of the direction in which the tool points and
-            the one needed at that moment.
-        table_force_n: largest force of the tool on the table or a dish, N; NaN where nothing can be touched.
-        food_force_n: largest force of the tool on food, N; NaN where nothing can be touched.
-        spilled: grains that were spilled.
-        grains: grains that there were.
-    """
-
-    success: bool
-    steps_done: float
-    time_s: float
-    idle_s: float
-    input_magnitude: float
-    turned_round: float
-    mode_switches: int
-    path_length: float
-    stops: int
+    success: bool  # all steps were done, and nothing went wrong
+    steps_done: float  # share of the steps that were done
+    time_s: float  # from the first step of the loop to the last, s
+    idle_s: float  # time without input, s
+    input_magnitude: float  # integral of ‖u‖ over time, s (seconds of full deflection of one axis)
+    turned_round: float  # share of the time in which the stick points away from where it pointed a moment ago
+    mode_switches: int  # how often the controller's mode changed
+    path_length: float  # way of the tool through space, m
+    stops: int  # how often the arm was stopped, such as for not following when it met a dish
+    # integral over time of the tool's distance to the goal that is closest to it, m s; NaN without goals
     goal_error_m_s: float
-    goal_error_m: float
-    final_distance: float
-    final_angle_deg: float
+    goal_error_m: float  # mean of the same distance over time, m
+    final_distance: float  # of the tool from the last waypoint of the last step at the end, m
+    final_angle_deg: float  # the same for orientation, degrees
+    # mean over time of the dot product of the direction in which the tool points and the one needed at that
+    # moment
     preference_alignment: float
+    # largest force of the tool on the table or a dish, N; NaN where nothing can be touched
     table_force_n: float
-    food_force_n: float
-    spilled: int
-    grains: int
+    food_force_n: float  # largest force of the tool on food, N; NaN where nothing can be touched
+    spilled: int  # grains that were spilled
+    grains: int  # grains that there were
 
     def as_json(self) -> dict[str, object]:
         """Plain mapping; figures without a value are None."""
@@ -72,30 +53,19 @@ class Drive:
 @final
 @dataclass(frozen=True, eq=False)
 class Outcome:
-    """The outcome of a drive at its task.
+    """The outcome of a drive at its task."""
 
-    Attributes:
-        success: all steps were done, and nothing went wrong.
-        steps_done: share of the steps that were done.
-        stops: how often the arm was stopped.
-        target: the last waypoint of the last step, as things stand at the end.
-        goals: places that the person might have wanted, (G, 3), m.
-        preference_alignment: see `latentarm_research.metrics.preference_alignment`.
-        force_n: largest force of the tool on the ``table`` (dishes too) and on ``food``, N; None where
-            nothing can be touched.
-        spilled: grains that were spilled.
-        grains: grains that there were.
-    """
-
-    success: bool
-    steps_done: float
-    stops: int
-    target: Pose
-    goals: FloatArray
-    preference_alignment: float = np.nan
+    success: bool  # all steps were done, and nothing went wrong
+    steps_done: float  # share of the steps that were done
+    stops: int  # how often the arm was stopped
+    target: Pose  # the last waypoint of the last step, as things stand at the end
+    goals: FloatArray  # places that the person might have wanted, (G, 3), m
+    preference_alignment: float = np.nan  # see `latentarm_research.metrics.preference_alignment`
+    # largest force of the tool on the `table` (dishes too) and on `food`, N; None where nothing can be
+    # touched
     force_n: Mapping[str, float] | None = None
-    spilled: int = 0
-    grains: int = 0
+    spilled: int = 0  # grains that were spilled
+    grains: int = 0  # grains that there were
 
 
 def path_length(position: FloatArray) -> float:

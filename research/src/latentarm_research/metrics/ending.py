@@ -30,15 +30,10 @@ HELD_BACK_SHARE: Final = 0.1
 
 @dataclass(frozen=True)
 class Ending:
-    """Why a drive ended.
+    """Why a drive ended."""
 
-    Attributes:
-        reason: the code.
-        detail: the same in words, without a full stop.
-    """
-
-    reason: Reason
-    detail: str
+    reason: Reason  # the code
+    detail: str  # the same in words, without a full stop
 
 
 def why_it_timed_out(

@@ -22,17 +22,11 @@ def preference_alignment(points: FloatArray, needed: FloatArray) -> float:
 @final
 @dataclass(frozen=True)
 class StepAlignment:
-    """*Preference Alignment* while one step of a task was under way.
+    """*Preference Alignment* while one step of a task was under way."""
 
-    Attributes:
-        step: what was to be done, in words.
-        alignment: mean dot product, as `preference_alignment`.
-        ticks: of the loop that it took.
-    """
-
-    step: str
-    alignment: float
-    ticks: int
+    step: str  # what was to be done, in words
+    alignment: float  # mean dot product, as `preference_alignment`
+    ticks: int  # of the loop that it took
 
 
 def alignment_by_step(

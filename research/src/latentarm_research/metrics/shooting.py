@@ -59,38 +59,23 @@ class _Observes(Protocol):
 
 @dataclass(frozen=True)
 class ShootingConfig:
-    """How much is planned.
+    """How much is planned."""
 
-    Attributes:
-        time_s: time limit; the closest moment counts, s.
-        piece_s: how long each latent action is held, s.
-        iterations: maximum number of Gauss-Newton steps; an expensive decoder takes 4 s for these.
-    """
-
-    time_s: float = 6.0
-    piece_s: float = 0.5
-    iterations: int = 14
+    time_s: float = 6.0  # time limit; the closest moment counts, s
+    piece_s: float = 0.5  # how long each latent action is held, s
+    iterations: int = 14  # maximum number of Gauss-Newton steps; an expensive decoder takes 4 s for these
 
 
 def planned_reach(
     decoders: Sequence[DecodesActions],
-    differentiable: Sequence[DecodesInTorch],
+    differentiable: Sequence[DecodesInTorch],  # the same in torch
     pairs: StartGoalPairs,
     chain: Chain,
-    step_s: float,
+    step_s: float,  # dt of the transition, s
     config: ShootingConfig,
     tool: int = 0,
 ) -> FloatArray:
     """Least distance of the tool from its place at the goal, of a plan or of the greedy operator.
-
-    Args:
-        decoders: S decoders.
-        differentiable: the same in torch.
-        pairs: P start-goal pairs.
-        chain: the robot.
-        step_s: dt of the transition, s.
-        config: how much is planned.
-        tool: which end-effector.
 
     Returns:
         (S, P), m.
@@ -108,23 +93,14 @@ def planned_reach(
 
 @dataclass(frozen=True)
 class _Drives:
-    """B drives of one decoder: how to roll them out.
+    """B drives of one decoder: how to roll them out."""
 
-    Attributes:
-        decoder: the decoder.
-        tools: the place of the tool.
-        start: (B, c), contexts.
-        goal: (B, 3), m.
-        held: steps for which each piece is held.
-        step_s: dt, s.
-    """
-
-    decoder: DecodesInTorch
-    tools: TorchChain
-    start: Tensor
-    goal: Tensor
-    held: int
-    step_s: float
+    decoder: DecodesInTorch  # the decoder
+    tools: TorchChain  # the place of the tool
+    start: Tensor  # (B, c), contexts
+    goal: Tensor  # (B, 3), m
+    held: int  # steps for which each piece is held
+    step_s: float  # dt, s
 
     def roll_out(self, z: Tensor) -> "_Outcome":
         """Drive with z (B, K, d).
@@ -157,17 +133,11 @@ class _Drives:
 
 @dataclass(frozen=True)
 class _Outcome:
-    """What came of B drives.
+    """What came of B drives."""
 
-    Attributes:
-        least: (B,), least distance of the tool from its goal, m.
-        offset: (B, 3), from the goal at the end, m.
-        jacobian: (B, 3, K d), of the offset with respect to the latent actions.
-    """
-
-    least: Tensor
-    offset: Tensor
-    jacobian: Tensor
+    least: Tensor  # (B,), least distance of the tool from its goal, m
+    offset: Tensor  # (B, 3), from the goal at the end, m
+    jacobian: Tensor  # (B, 3, K d), of the offset with respect to the latent actions
 
 
 def _plan(

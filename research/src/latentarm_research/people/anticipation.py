@@ -51,13 +51,7 @@ class Anticipation:
         self._meant.append(u)
 
     def now(self, moment: Moment, seen: Moment, controller: Controller) -> Moment:
-        """What is there now, as they expect it.
-
-        Args:
-            moment: now; only its mode is looked at, which they have asked for themselves.
-            seen: what they see.
-            controller: what their inputs go to.
-        """
+        """What is there now, as they expect it."""
         here = seen.context
         for u, mode, time_s in self._since(seen):
             if self._limits.is_push(u):

@@ -22,31 +22,22 @@ from latentarm_research.people.rationality import boltzmann
 class BoltzmannConfig:
     """Parameters of a simulated person who looks one step ahead; all values are assumptions.
 
-    Attributes:
-        beta: rationality of equation 24, 1/m², at the start of a drive; 0 acts at random, infinity always
-            takes the best.
-        beta_per_s: m of ``beta(t) = beta + m t``, 1/(m² s): somebody who learns within the task.
-        horizon_s: the look-ahead dt of equation 24, s: how far ahead an input is imagined.
-        rotation_weight: what a radian of wrong orientation counts, m.
-        decision_s: a person decides this often and holds the input in between, s.
-        rest_share: how often a person without reason (beta = 0) lets go, if they do not switch, 0 to 1.
-        switch_share: how often they ask for another mode, where there is one, 0 to 1.
-        switch_cost: a switch of mode must bring the tool this much closer to be worth it, m.
-        switch_s: a switch takes this long, during which the input is zero, s.
-
     Raises:
         UserError: a figure is out of its range.
     """
 
+    # rationality of equation 24, 1/m², at the start of a drive; 0 acts at random, infinity always takes the
+    # best
     beta: float = 2000.0
-    beta_per_s: float = 0.0
-    horizon_s: float = 0.5
-    rotation_weight: float = 0.2
-    decision_s: float = 0.1
+    beta_per_s: float = 0.0  # m of `beta(t) = beta + m t`, 1/(m² s): somebody who learns within the task
+    horizon_s: float = 0.5  # the look-ahead dt of equation 24, s: how far ahead an input is imagined
+    rotation_weight: float = 0.2  # what a radian of wrong orientation counts, m
+    decision_s: float = 0.1  # a person decides this often and holds the input in between, s
+    # how often a person without reason (beta = 0) lets go, if they do not switch, 0 to 1
     rest_share: float = 0.04
-    switch_share: float = 0.04
-    switch_cost: float = 0.015
-    switch_s: float = 0.8
+    switch_share: float = 0.04  # how often they ask for another mode, where there is one, 0 to 1
+    switch_cost: float = 0.015  # a switch of mode must bring the tool this much closer to be worth it, m
+    switch_s: float = 0.8  # a switch takes this long, during which the input is zero, s
 
     def __post_init__(self) -> None:
         if not self.beta >= 0:
@@ -88,23 +79,14 @@ class BoltzmannConfig:
 @final
 @dataclass(frozen=True, eq=False)
 class Outlook:
-    """What a simulated person can do at one moment.
+    """What a simulated person can do at one moment."""
 
-    Attributes:
-        push_to: (d,), where they would push the stick in the present mode.
-        left_m: how far from the target the best of some inputs leaves the tool, in any mode, m.
-        rest_m: how far it is now, m.
-        push: probability of pushing the stick.
-        rest: of letting go.
-        switch: of asking for the next mode. The three sum to one.
-    """
-
-    push_to: FloatArray
-    left_m: float
-    rest_m: float
-    push: float
-    rest: float
-    switch: float
+    push_to: FloatArray  # (d,), where they would push the stick in the present mode
+    left_m: float  # how far from the target the best of some inputs leaves the tool, in any mode, m
+    rest_m: float  # how far it is now, m
+    push: float  # probability of pushing the stick
+    rest: float  # of letting go
+    switch: float  # of asking for the next mode. The three sum to one
 
 
 @final

@@ -14,16 +14,12 @@ from latentarm.core.errors import UserError
 class Calibration:
     """The figures of the simulated people that are fitted; all others are given.
 
-    Attributes:
-        push_variation: of the median person, see `latentarm_research.people.hand.HandConfig`.
-        switch_s: the median person's time for a mode switch, in which the stick is let go, s.
-
     Raises:
         UserError: a figure is not positive.
     """
 
-    push_variation: float
-    switch_s: float
+    push_variation: float  # of the median person, see `latentarm_research.people.hand.HandConfig`
+    switch_s: float  # the median person's time for a mode switch, in which the stick is let go, s
 
     def __post_init__(self) -> None:
         if not (self.push_variation > 0 and self.switch_s > 0):

@@ -27,8 +27,5 @@ def usual_operator(task: str) -> OperatorName:
 
     Along held-out episodes the greedy operator ends in local dead ends after a few waypoints, whatever the
     model can do, so there the operator plans. Elsewhere it is the paper's.
-
-    Args:
-        task: name of the task.
     """
     return "planning" if task == "held_out" else "greedy"

@@ -47,21 +47,13 @@ costs choose among less sharp proposals."""
 @final
 @dataclass(frozen=True, eq=False)
 class Lattice:
-    """Directions of the stick, and the inputs along them of which it must be known what they leave.
+    """Directions of the stick, and the inputs along them of which it must be known what they leave."""
 
-    Attributes:
-        directions: (D, d), unit vectors.
-        nodes: (D * 4, d), each direction at every one of `STRETCHES`.
-        refinement: (F, D), values in the F directions of the model from those in the D known ones.
-        ring_edges: (RINGS + 1,), lengths of an input at the edges of the cells along a direction.
-        ring_volume: (RINGS,), integral of r^(d - 1) over each cell.
-    """
-
-    directions: FloatArray
-    nodes: FloatArray
-    refinement: FloatArray
-    ring_edges: FloatArray
-    ring_volume: FloatArray
+    directions: FloatArray  # (D, d), unit vectors
+    nodes: FloatArray  # (D * 4, d), each direction at every one of `STRETCHES`
+    refinement: FloatArray  # (F, D), values in the F directions of the model from those in the D known ones
+    ring_edges: FloatArray  # (RINGS + 1,), lengths of an input at the edges of the cells along a direction
+    ring_volume: FloatArray  # (RINGS,), integral of r^(d - 1) over each cell
 
     @classmethod
     def of(cls, axes: int, rng: np.random.Generator, dead_zone: float = 0.0) -> Self:
@@ -137,20 +129,16 @@ class CostModel:
 @final
 @dataclass(frozen=True, eq=False)
 class Draws:
-    """Choices of equation 24, each by itself.
+    """Choices of equation 24, each by itself."""
 
-    Attributes:
-        inputs: (N, d), longer than the dead zone, and 1 at most; zero, which is to let go, where no proposal
-            has a finite cost.
-        value: (N,), the cost of one certain input that is worth as much as the choice among all of them, m²:
-            ``-log(mean exp(-beta cost)) / beta``. The least cost where beta is infinite, the mean cost where
-            it is zero, and infinity where no cost is finite.
-        least: (N,), the least cost of the proposals, m²; infinity where none is finite.
-    """
-
+    # (N, d), longer than the dead zone, and 1 at most; zero, which is to let go, where no proposal has a
+    # finite cost
     inputs: FloatArray
+    # (N,), the cost of one certain input that is worth as much as the choice among all of them, m²:
+    # `-log(mean exp(-beta cost)) / beta`. The least cost where beta is infinite, the mean cost where it is
+    # zero, and infinity where no cost is finite
     value: FloatArray
-    least: FloatArray
+    least: FloatArray  # (N,), the least cost of the proposals, m²; infinity where none is finite
 
 
 @final

@@ -23,18 +23,13 @@ class Expectation:
     `latentarm_research.people.foresight.Foresight`): they see where the tool is, and know nothing of decoder,
     alignment and arm. They ignore how the tool turns and any motion outside their directions.
 
-    Attributes:
-        chain: the arm; its first tool is looked at.
-        directions: (d, 3), unit vectors of the base frame at right angles to each other.
-        speed_m_s: of the tool at a full push along one axis, m/s.
-
     Raises:
         UserError: the directions are invalid, or the speed is not positive.
     """
 
-    chain: Chain
-    directions: FloatArray
-    speed_m_s: float
+    chain: Chain  # the arm; its first tool is looked at
+    directions: FloatArray  # (d, 3), unit vectors of the base frame at right angles to each other
+    speed_m_s: float  # of the tool at a full push along one axis, m/s
 
     def __post_init__(self) -> None:
         products = self.directions @ self.directions.T

@@ -19,22 +19,16 @@ SINUSOIDS: Final = 24
 class HandConfig:
     """How late and how unsteady a simulated person's hand is; by default neither.
 
-    Attributes:
-        reaction_s: time from what can be seen to the input that answers it, s.
-        tremor: RMS of each axis's tremor as a share of full deflection, while the stick is pushed.
-        lowest_hz: lower edge of the tremor's band, Hz.
-        highest_hz: its upper edge, Hz.
-        variation: SD of each axis of a push about what was meant, as a share of its length; drawn anew for
-            each push that is meant, and held as long as it.
-
     Raises:
         UserError: a figure is out of its range.
     """
 
-    reaction_s: float = 0.0
-    tremor: float = 0.0
-    lowest_hz: float = 4.0
-    highest_hz: float = 12.0
+    reaction_s: float = 0.0  # time from what can be seen to the input that answers it, s
+    tremor: float = 0.0  # RMS of each axis's tremor as a share of full deflection, while the stick is pushed
+    lowest_hz: float = 4.0  # lower edge of the tremor's band, Hz
+    highest_hz: float = 12.0  # its upper edge, Hz
+    # SD of each axis of a push about what was meant, as a share of its length; drawn anew for each push that
+    # is meant, and held as long as it
     variation: float = 0.0
 
     def __post_init__(self) -> None:
@@ -102,12 +96,7 @@ class Hand:
         return self._views[0]
 
     def gives(self, meant: Input, rng: np.random.Generator) -> Input:
-        """What the stick does when the person means an input.
-
-        Args:
-            meant: what they mean.
-            rng: source of all randomness.
-        """
+        """What the stick does when the person means an input."""
         if self._config.variation:
             meant = Input(self._pushed(meant.u, rng), meant.switch_mode)
         if not self._config.tremor:

@@ -18,28 +18,16 @@ class Imagination(ABC):
 
     @abstractmethod
     def saw(self, moment: Moment) -> None:
-        """Learn from what is seen at each call.
-
-        Args:
-            moment: what is seen now.
-        """
+        """Learn from what is seen at each call."""
 
     @abstractmethod
     def foresight(self, rng: np.random.Generator) -> Foresight:
-        """What they expect of inputs now, for one decision.
-
-        Args:
-            rng: source of all randomness.
-        """
+        """What they expect of inputs now, for one decision."""
 
 
 @final
 class Settled(Imagination):
-    """Always expects the same, whatever happens.
-
-    Args:
-        foresight: what that is.
-    """
+    """Always expects the same, whatever happens."""
 
     def __init__(self, foresight: Foresight) -> None:
         self._foresight = foresight

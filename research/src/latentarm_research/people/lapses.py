@@ -22,16 +22,12 @@ Methods Instrum. Comput. 17:652, 1985), s."""
 class LapseConfig:
     """How often a simulated person's attention lapses, and for how long.
 
-    Attributes:
-        per_minute: mean number of lapses that begin in a minute of attention.
-        mean_s: mean duration, s: `SHORTEST_S`, and an exponential share beyond it.
-
     Raises:
         UserError: a figure is out of its range.
     """
 
-    per_minute: float
-    mean_s: float
+    per_minute: float  # mean number of lapses that begin in a minute of attention
+    mean_s: float  # mean duration, s: `SHORTEST_S`, and an exponential share beyond it
 
     def __post_init__(self) -> None:
         if not 0 < self.per_minute < np.inf:

@@ -23,30 +23,24 @@ from latentarm_research.people.shifted import shifted
 class LinearGuessConfig:
     """How a simulated person learns what the stick does. All figures are assumptions.
 
-    Attributes:
-        speed_m_s: SD of the speed along each axis of space that they expect of the tool, at first, of a full
-            push, m/s.
-        turn_rad_s: the same of its turning, rad/s.
-        noise: SD of what they see of a motion about what a linear guess can say, as a share of
-            ``speed_m_s`` and ``turn_rad_s``.
-        memory_m: a motion that was seen this far away counts 1/e, by the way that the tool has gone since in
-            the same mode, m. A radian of turning counts as ``speed_m_s / turn_rad_s``.
-        glance_s: they compare where the tool is with where it was so long ago, s.
-        trial_s: they stay with one guess for so long, s.
-        expected: what they expect at first of a full push along each axis of the stick, in every mode: for
-            each axis a twist (6 numbers, m/s and rad/s, in the base frame); None expects nothing in
-            particular. What is forgotten gives way to it.
-
     Raises:
         UserError: a figure is not positive and finite, or what is expected is no twists.
     """
 
+    # SD of the speed along each axis of space that they expect of the tool, at first, of a full push, m/s
     speed_m_s: float = 0.1
-    turn_rad_s: float = 0.5
+    turn_rad_s: float = 0.5  # the same of its turning, rad/s
+    # SD of what they see of a motion about what a linear guess can say, as a share of `speed_m_s` and
+    # `turn_rad_s`
     noise: float = 0.2
+    # a motion that was seen this far away counts 1/e, by the way that the tool has gone since in the same
+    # mode, m. A radian of turning counts as `speed_m_s / turn_rad_s`
     memory_m: float = 0.1
-    glance_s: float = 0.2
-    trial_s: float = 0.3
+    glance_s: float = 0.2  # they compare where the tool is with where it was so long ago, s
+    trial_s: float = 0.3  # they stay with one guess for so long, s
+    # what they expect at first of a full push along each axis of the stick, in every mode: for each axis a
+    # twist (6 numbers, m/s and rad/s, in the base frame); None expects nothing in particular. What is
+    # forgotten gives way to it
     expected: tuple[tuple[float, ...], ...] | None = None
 
     def __post_init__(self) -> None:
@@ -70,16 +64,11 @@ class Regression:
     The twist is ``y = B u + e``, each entry in units of its prior's SD. A motion adds ``u uᵀ / noise²`` to
     the precision of B's rows. All motions are forgotten towards the prior, so that no direction of the input
     that is not pushed becomes infinitely uncertain.
-
-    Attributes:
-        precision: (d, d), of each row of B beyond the prior's, which is 1.
-        moment: (6, d), precision times mean, beyond the prior's.
-        prior: (6, d), B's mean before anything was seen, or one for all entries.
     """
 
-    precision: FloatArray
-    moment: FloatArray
-    prior: FloatArray | float = 0.0
+    precision: FloatArray  # (d, d), of each row of B beyond the prior's, which is 1
+    moment: FloatArray  # (6, d), precision times mean, beyond the prior's
+    prior: FloatArray | float = 0.0  # (6, d), B's mean before anything was seen, or one for all entries
 
     def learn(self, u: FloatArray, y: FloatArray, noise: float, kept: float) -> None:
         """Take in one motion.

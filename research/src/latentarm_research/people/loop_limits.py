@@ -11,15 +11,11 @@ from latentarm.core.types import BoolArray, FloatArray
 @final
 @dataclass(frozen=True, eq=False)
 class LoopLimits:
-    """The loop's dead zone and how fast it lets joints move; by default neither limits anything.
+    """The loop's dead zone and how fast it lets joints move; by default neither limits anything."""
 
-    Attributes:
-        dead_zone: length of an input up to which the loop takes it for rest, in [0, 1).
-        speed: (n,) or one for all joints, rad/s (m/s where a joint slides). What would be faster is slowed
-            down in its direction.
-    """
-
-    dead_zone: float = 0.0
+    dead_zone: float = 0.0  # length of an input up to which the loop takes it for rest, in [0, 1)
+    # (n,) or one for all joints, rad/s (m/s where a joint slides). What would be faster is slowed down in its
+    # direction
     speed: FloatArray | float = np.inf
 
     def is_push(self, u: FloatArray) -> BoolArray:

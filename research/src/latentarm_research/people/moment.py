@@ -17,22 +17,13 @@ NOTHING_HELD: Final[BoolArray] = np.zeros(0, dtype=np.bool_)
 @final
 @dataclass(frozen=True, eq=False)
 class Moment:
-    """What a simulated person sees at one moment.
+    """What a simulated person sees at one moment."""
 
-    Attributes:
-        context: what the arm is at and believes.
-        mode: the controller's mode.
-        target: the pose that they want the tool at.
-        u: (d,), the input that has just been given.
-        within_m: how near they have to come to it, m.
-        speed: share of their usual speed that is fit there, in (0, 1].
-        held: (K,), which of the context's things the tool holds.
-    """
-
-    context: Context
-    mode: int
-    target: Pose
-    u: FloatArray
-    within_m: float = USUAL_WITHIN_M
-    speed: float = 1.0
+    context: Context  # what the arm is at and believes
+    mode: int  # the controller's mode
+    target: Pose  # the pose that they want the tool at
+    u: FloatArray  # (d,), the input that has just been given
+    within_m: float = USUAL_WITHIN_M  # how near they have to come to it, m
+    speed: float = 1.0  # share of their usual speed that is fit there, in (0, 1]
+    # (K,), which of the context's things the tool holds
     held: BoolArray = field(default_factory=lambda: NOTHING_HELD)

@@ -28,21 +28,11 @@ class Operator(ABC):
         mode: int,
         target: Pose,
         rng: np.random.Generator,
-        within_m: float = USUAL_WITHIN_M,
-        speed: float = 1.0,
-        held: BoolArray = NOTHING_HELD,
+        within_m: float = USUAL_WITHIN_M,  # how near they have to come to it, m
+        speed: float = 1.0,  # share of their usual speed that is fit there, in (0, 1]
+        held: BoolArray = NOTHING_HELD,  # (K,), which of the context's things the tool holds
     ) -> Input:
         """The simulated person's input for this step.
-
-        Args:
-            context: what the arm is at and believes.
-            controller: what the inputs go to.
-            mode: the controller's present mode.
-            target: the pose that the simulated person wants the tool at.
-            rng: source of all randomness.
-            within_m: how near they have to come to it, m.
-            speed: share of their usual speed that is fit there, in (0, 1].
-            held: (K,), which of the context's things the tool holds.
 
         Returns:
             Inputs in [-1, 1]^d, and whether the next mode is asked for.

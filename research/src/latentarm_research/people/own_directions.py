@@ -17,16 +17,12 @@ from latentarm.core.types import FloatArray
 class OwnDirections:
     """How one person's directions of a stick of two axes differ from the usual ones.
 
-    Attributes:
-        turn_rad: they push so far to the left of where others push for the same motion, rad.
-        mirrored: for them the second axis is upside down, before the turn.
-
     Raises:
         UserError: the turn is not finite.
     """
 
-    turn_rad: float = 0.0
-    mirrored: bool = False
+    turn_rad: float = 0.0  # they push so far to the left of where others push for the same motion, rad
+    mirrored: bool = False  # for them the second axis is upside down, before the turn
 
     def __post_init__(self) -> None:
         if not math.isfinite(self.turn_rad):
@@ -55,15 +51,10 @@ class OwnDirections:
 @final
 @dataclass(frozen=True, eq=False)
 class InOwnDirections:
-    """Answers like another person, in one's own directions.
+    """Answers like another person, in one's own directions."""
 
-    Attributes:
-        preference: what others mean by the stick.
-        directions: how this person's directions differ.
-    """
-
-    preference: Preference
-    directions: OwnDirections
+    preference: Preference  # what others mean by the stick
+    directions: OwnDirections  # how this person's directions differ
 
     def inputs(self, motions: Motions) -> FloatArray:
         """The inputs (N, 2) by which they would ask for N motions, each in [-1, 1].

@@ -15,14 +15,11 @@ from latentarm_research.people.loop_limits import LoopLimits
 class OwnSpeed:
     """How fast a simulated person likes to go.
 
-    Attributes:
-        share: of the speed of somebody who pushes as far as it takes, in (0, 1].
-
     Raises:
         UserError: the share is out of its range.
     """
 
-    share: float = 1.0
+    share: float = 1.0  # of the speed of somebody who pushes as far as it takes, in (0, 1]
 
     def __post_init__(self) -> None:
         if not 0 < self.share <= 1:
@@ -32,10 +29,6 @@ class OwnSpeed:
         """Where they push the stick (d,), where somebody who goes full speed would push it to u (d,).
 
         Pushes shrink in proportion beyond the dead zone, so that what is a push remains one.
-
-        Args:
-            u: that push.
-            limits: of which the dead zone counts.
         """
         if self.share == 1.0 or not limits.is_push(u):
             return u

@@ -19,20 +19,14 @@ class PageRates:
 
     The first two are the page's own constants, which a test compares.
 
-    Attributes:
-        input_s: time between inputs that the page sends (``PERIOD_MS`` of ``drive_input.js``), s.
-        state_s: time between states that the server sends to the driver (``DRIVER_PERIOD_S``), s.
-        frame_s: time between frames of the display, s: 60 Hz, as most displays.
-        network_s: from page to server or back, s: chosen for both on one machine.
-
     Raises:
         UserError: a period is not positive, or the network's time is negative.
     """
 
-    input_s: float = 0.02
-    state_s: float = 0.02
-    frame_s: float = 1.0 / 60.0
-    network_s: float = 0.001
+    input_s: float = 0.02  # time between inputs that the page sends (`PERIOD_MS` of `drive_input.js`), s
+    state_s: float = 0.02  # time between states that the server sends to the driver (`DRIVER_PERIOD_S`), s
+    frame_s: float = 1.0 / 60.0  # time between frames of the display, s: 60 Hz, as most displays
+    network_s: float = 0.001  # from page to server or back, s: chosen for both on one machine
 
     def __post_init__(self) -> None:
         for name in ("input_s", "state_s", "frame_s"):

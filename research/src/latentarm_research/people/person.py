@@ -31,29 +31,22 @@ from latentarm_research.people.ring_reading import RingDecision, RingReading, Ri
 class Person:
     """A simulated person, put together from parts.
 
-    Attributes:
-        decides: how they think of one step (equation 24).
-        imagines: where they expect an input to lead: a foresight that never changes, how they learn a linear
-            guess, or how they read the page's ring; None knows the arm and its decoder exactly.
-        plans: how far they plan where one step leads no nearer; None never plans.
-        hand: how late and how unsteady their hand is.
-        speed: how fast they like to go.
-        lapses: how their attention lapses; None never.
-        anticipates: whether they make up for their reaction time by what they know that they have pushed.
-        page: what they drive through; None sees and is heard at once.
-
     Raises:
         UserError: they are to plan or anticipate with an arm that they do not know.
     """
 
+    # how they think of one step (equation 24)
     decides: BoltzmannConfig = field(default_factory=BoltzmannConfig)
+    # where they expect an input to lead: a foresight that never changes, how they learn a linear guess, or
+    # how they read the page's ring; None knows the arm and its decoder exactly
     imagines: Foresight | LinearGuessConfig | RingReadingConfig | None = None
-    plans: PlanningConfig | None = None
-    hand: HandConfig = field(default_factory=HandConfig)
-    speed: OwnSpeed = field(default_factory=OwnSpeed)
-    lapses: LapseConfig | None = None
+    plans: PlanningConfig | None = None  # how far they plan where one step leads no nearer; None never plans
+    hand: HandConfig = field(default_factory=HandConfig)  # how late and how unsteady their hand is
+    speed: OwnSpeed = field(default_factory=OwnSpeed)  # how fast they like to go
+    lapses: LapseConfig | None = None  # how their attention lapses; None never
+    # whether they make up for their reaction time by what they know that they have pushed
     anticipates: bool = False
-    page: PageRates | None = None
+    page: PageRates | None = None  # what they drive through; None sees and is heard at once
 
     def __post_init__(self) -> None:
         if self.imagines is not None and self.plans is not None:

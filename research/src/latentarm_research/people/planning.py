@@ -38,23 +38,16 @@ that did not."""
 class PlanningConfig:
     """How far ahead the simulated person plans.
 
-    Attributes:
-        pieces: maximum number in a plan; the input is constant in each.
-        piece_s: length of a piece, s.
-        steps: of the imagined motion in a piece.
-        iterations: iterations of plan optimisation.
-        stuck_m: a step that brings the tool closer by less than this is no progress, m.
-        arrived_m: a plan that ends this near the target will do, m; a radian counts as `rotation_weight`.
-
     Raises:
         UserError: there would be no plan.
     """
 
-    pieces: int = 8
-    piece_s: float = 0.5
-    steps: int = 2
-    iterations: int = 5
-    stuck_m: float = 0.004
+    pieces: int = 8  # maximum number in a plan; the input is constant in each
+    piece_s: float = 0.5  # length of a piece, s
+    steps: int = 2  # of the imagined motion in a piece
+    iterations: int = 5  # iterations of plan optimisation
+    stuck_m: float = 0.004  # a step that brings the tool closer by less than this is no progress, m
+    # a plan that ends this near the target will do, m; a radian counts as `rotation_weight`
     arrived_m: float = 0.02
 
     def __post_init__(self) -> None:
@@ -73,13 +66,6 @@ class Planning(Decision):
     ordinary step. They predict with the controller itself; no person is that good, but it is the same for
     all controllers.
 
-    Args:
-        robot: the arm, for its forward kinematics.
-        config: how the simulated person thinks of one step.
-        planning: how far they plan.
-        period_s: time between calls of `decide`, s.
-        limits: what the loop makes of inputs.
-
     Raises:
         UserError: the period is not positive and finite.
     """
@@ -89,7 +75,7 @@ class Planning(Decision):
         robot: Robot,
         config: BoltzmannConfig,
         planning: PlanningConfig,
-        period_s: float,
+        period_s: float,  # time between calls of `decide`, s
         limits: LoopLimits,
     ) -> None:
         self._config = config

@@ -24,30 +24,19 @@ Munneke, Cogn. Res. Princ. Implic., 2025); how many of them is chosen."""
 @final
 @dataclass(frozen=True)
 class TraitSource:
-    """How one trait is spread over people, and why.
+    """How one trait is spread over people, and why."""
 
-    Attributes:
-        name: of the field of `Traits`.
-        meaning: in a few words.
-        unit: "" for a number or a share.
-        spread: over people.
-        source: where it comes from; what is chosen says so.
-    """
-
-    name: str
-    meaning: str
-    unit: str
-    spread: Spread
-    source: str
+    name: str  # of the field of `Traits`
+    meaning: str  # in a few words
+    unit: str  # "" for a number or a share
+    spread: Spread  # over people
+    source: str  # where it comes from; what is chosen says so
 
 
 def trait_sources(calibration: Calibration) -> tuple[TraitSource, ...]:
     """All traits that are drawn, but for the share of `MIRRORED`.
 
     They are independent: nothing is known of how they go together.
-
-    Args:
-        calibration: the fitted figures.
     """
     variation, switch_s = calibration.push_variation, calibration.switch_s
     return (
@@ -175,11 +164,6 @@ def draw_people(number: int, seed: int, calibration: Calibration = CALIBRATED) -
 
     The same seed gives the same people, however many are drawn. With another calibration each of them keeps
     their place among all people in every trait.
-
-    Args:
-        number: how many.
-        seed: of what they are like.
-        calibration: the fitted figures.
 
     Raises:
         UserError: there is no person, or the seed is negative.

@@ -19,14 +19,11 @@ class Practice:
     minutes thus leaves little to learn in the trials. Averages over people follow this law; single people
     rather follow an exponential (Heathcote, Brown and Mewhort 2000), which is not modelled.
 
-    Attributes:
-        exponent: how fast they learn, 0 or more; at 0 they never do.
-
     Raises:
         UserError: the exponent is negative or not finite.
     """
 
-    exponent: float
+    exponent: float  # how fast they learn, 0 or more; at 0 they never do
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.exponent) and self.exponent >= 0):

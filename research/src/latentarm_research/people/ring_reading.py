@@ -28,19 +28,16 @@ from latentarm_research.people.shifted import shifted
 class RingReadingConfig:
     """How a simulated person reads the ring.
 
-    Attributes:
-        error_rad: how far a direction in space is misread from two views, RMS of the angle, rad. An
-            assumption.
-        read_s: they read the ring, and decide, no more often than this, s: one look at a part of a picture
-            lasts 260 to 330 ms (Rayner, Q. J. Exp. Psychol. 62:1457, 2009).
-        least_push: how far the stick is pushed at least, as a share of full deflection. An assumption.
-
     Raises:
         UserError: a figure is out of its range.
     """
 
+    # how far a direction in space is misread from two views, RMS of the angle, rad. An assumption
     error_rad: float = math.radians(15.0)
+    # they read the ring, and decide, no more often than this, s: one look at a part of a picture lasts 260 to
+    # 330 ms (Rayner, Q. J. Exp. Psychol. 62:1457, 2009)
     read_s: float = 0.3
+    # how far the stick is pushed at least, as a share of full deflection. An assumption
     least_push: float = 0.03
 
     def __post_init__(self) -> None:

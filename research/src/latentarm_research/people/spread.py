@@ -14,20 +14,14 @@ from latentarm.core.errors import UserError
 class Spread(ABC):
     """A distribution over people, cut off at both ends.
 
-    Attributes:
-        middle: median before it is cut off.
-        width: how wide it is; see the kinds.
-        lowest: nobody has less.
-        highest: nobody has more.
-
     Raises:
         UserError: the range is empty or does not hold the middle, or the width is not positive.
     """
 
-    middle: float
-    width: float
-    lowest: float
-    highest: float
+    middle: float  # median before it is cut off
+    width: float  # how wide it is; see the kinds
+    lowest: float  # nobody has less
+    highest: float  # nobody has more
 
     def __post_init__(self) -> None:
         if not (self.lowest < self.highest and self.lowest <= self.middle <= self.highest and self.width > 0):

@@ -32,44 +32,25 @@ class Traits:
 
     `latentarm_research.people.population.TRAITS` says where each figure comes from. Times and
     rationality are those of the first trial without practice.
-
-    Attributes:
-        number: of the person among those drawn from the same seed, from 0.
-        reaction_s: time from what can be seen to the input that answers it, s.
-        tremor: RMS of each axis's tremor as a share of full deflection.
-        push_variation: SD of each axis of a push about what was meant, as a share of its length.
-        rationality: beta of equation 24, 1/m².
-        look_ahead_s: how far ahead they imagine an input, the dt of equation 24, s.
-        plan_s: how far ahead they plan where one input leads no nearer, s.
-        decision_s: time from decision to decision, s.
-        switch_s: time that a mode switch takes, s.
-        switch_cost_m: how much nearer a mode switch must bring the tool to be worth it, m.
-        lapses_per_min: how often attention lapses.
-        lapse_s: mean duration of a lapse, s.
-        learning: exponent of the power law of practice.
-        own_speed: share of the speed of somebody who pushes as far as it takes.
-        turn_rad: how far their own directions of the stick are turned, rad.
-        mirrored: whether the second axis is upside down for them.
-        answer_variation: coefficient of variation of their answers to alignment queries.
     """
 
-    number: int
-    reaction_s: float
-    tremor: float
-    push_variation: float
-    rationality: float
-    look_ahead_s: float
-    plan_s: float
-    decision_s: float
-    switch_s: float
-    switch_cost_m: float
-    lapses_per_min: float
-    lapse_s: float
-    learning: float
-    own_speed: float
-    turn_rad: float
-    mirrored: bool
-    answer_variation: float
+    number: int  # of the person among those drawn from the same seed, from 0
+    reaction_s: float  # time from what can be seen to the input that answers it, s
+    tremor: float  # RMS of each axis's tremor as a share of full deflection
+    push_variation: float  # SD of each axis of a push about what was meant, as a share of its length
+    rationality: float  # beta of equation 24, 1/m²
+    look_ahead_s: float  # how far ahead they imagine an input, the dt of equation 24, s
+    plan_s: float  # how far ahead they plan where one input leads no nearer, s
+    decision_s: float  # time from decision to decision, s
+    switch_s: float  # time that a mode switch takes, s
+    switch_cost_m: float  # how much nearer a mode switch must bring the tool to be worth it, m
+    lapses_per_min: float  # how often attention lapses
+    lapse_s: float  # mean duration of a lapse, s
+    learning: float  # exponent of the power law of practice
+    own_speed: float  # share of the speed of somebody who pushes as far as it takes
+    turn_rad: float  # how far their own directions of the stick are turned, rad
+    mirrored: bool  # whether the second axis is upside down for them
+    answer_variation: float  # coefficient of variation of their answers to alignment queries
 
     @property
     def directions(self) -> OwnDirections:

@@ -17,21 +17,13 @@ _SMOKE: Final = "small ones that only show that it runs"
 
 @dataclass(frozen=True)
 class Entry:
-    """A study as the command line lists it.
+    """A study as the command line lists it."""
 
-    Attributes:
-        summary: the first line of its help.
-        tasks: names of all its tasks, as in its `Study`.
-        about_tasks: what they are, in a few words.
-        presets: what each of its presets is, by its name in the `Study`.
-        people: whether one can choose which simulated people drive, and how often.
-    """
-
-    summary: str
-    tasks: tuple[str, ...]
-    about_tasks: str
-    presets: Mapping[str, str]
-    people: bool = False
+    summary: str  # the first line of its help
+    tasks: tuple[str, ...]  # names of all its tasks, as in its `Study`
+    about_tasks: str  # what they are, in a few words
+    presets: Mapping[str, str]  # what each of its presets is, by its name in the `Study`
+    people: bool = False  # whether one can choose which simulated people drive, and how often
 
 
 STUDIES: Final[Mapping[str, Entry]] = {

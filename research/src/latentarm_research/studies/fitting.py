@@ -54,23 +54,15 @@ def fit_model(
 
 
 def fit_each(
-    kind: str,
+    kind: str,  # a name of `MODELS`
     demonstrations: Sequence[Demonstrations],
     *,
-    validation: Sequence[int],
-    seed: int,
+    validation: Sequence[int],  # episodes that say which epoch was best, the same for all
+    seed: int,  # of the first; the others follow
     kl_weight: float | None = None,
     **parameters: Any,
 ) -> list[LatentActionModel]:
     """Models of a kind, each fitted to demonstrations of its own; those trained by gradient in one training.
-
-    Args:
-        kind: a name of `MODELS`.
-        demonstrations: what each of them learns from.
-        validation: episodes that say which epoch was best, the same for all.
-        seed: of the first; the others follow.
-        kl_weight: for models that have one.
-        parameters: of the model.
 
     Returns:
         As many models of one seed each as there are demonstrations.

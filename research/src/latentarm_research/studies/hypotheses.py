@@ -24,55 +24,31 @@ LONGEST: Final = 200
 
 @dataclass(frozen=True, kw_only=True)
 class Comparison:
-    """One test.
+    """One test."""
 
-    Attributes:
-        hypothesis: ``H1``, ``H2``, ...
-        family: which tests of the hypothesis it is corrected with, such as those of a model.
-        task: name of the task.
-        model: name of the model.
-        measure: what is compared.
-        where: further condition, such as the person or the noise level; empty if not needed.
-        subject: what should be less or greater: a model, a method or a condition.
-        against: than what; None for a fixed mark.
-        direction: whether the subject should have less or more.
-        mean: of the subject's figures; None where it has none.
-        half_width: of its 95 % interval, where the study takes one.
-        mean_against: of the other's figures, or the mark; None where it has none.
-        half_width_against: of its 95 % interval; 0 for a mark.
-        n: figures of the subject.
-        n_against: figures of the other; 1 for a mark.
-        test: ``Welch``, ``one-sample``, ``paired t``, ``McNemar``, or the reason no test was run.
-        t: its statistic, or None; below 0 where the subject has less.
-        dof: degrees of freedom, or None.
-        p: one-sided, before correction, or None.
-        p_holm: after Holm's correction over the family, or None.
-        hedges_g: effect size, above 0 where the difference has the direction of the hypothesis, or None.
-        must_be_apart: whether the two intervals have to lie apart, too.
-    """
-
-    hypothesis: str
-    family: str
+    hypothesis: str  # `H1`, `H2`, ...
+    family: str  # which tests of the hypothesis it is corrected with, such as those of a model
     task: str
     model: str
-    measure: str
-    where: str = ""
-    subject: str
-    against: str | None
-    direction: Direction = "less"
-    mean: float | None
-    half_width: float | None = None
-    mean_against: float | None
-    half_width_against: float | None = None
-    n: int
-    n_against: int
-    test: str = "none"
-    t: float | None = None
-    dof: float | None = None
-    p: float | None = None
-    p_holm: float | None = None
+    measure: str  # what is compared
+    where: str = ""  # further condition, such as the person or the noise level; empty if not needed
+    subject: str  # what should be less or greater: a model, a method or a condition
+    against: str | None  # than what; None for a fixed mark
+    direction: Direction = "less"  # whether the subject should have less or more
+    mean: float | None  # of the subject's figures; None where it has none
+    half_width: float | None = None  # of its 95 % interval, where the study takes one
+    mean_against: float | None  # of the other's figures, or the mark; None where it has none
+    half_width_against: float | None = None  # of its 95 % interval; 0 for a mark
+    n: int  # figures of the subject
+    n_against: int  # figures of the other; 1 for a mark
+    test: str = "none"  # `Welch`, `one-sample`, `paired t`, `McNemar`, or the reason no test was run
+    t: float | None = None  # its statistic, or None; below 0 where the subject has less
+    dof: float | None = None  # degrees of freedom, or None
+    p: float | None = None  # one-sided, before correction, or None
+    p_holm: float | None = None  # after Holm's correction over the family, or None
+    # effect size, above 0 where the difference has the direction of the hypothesis, or None
     hedges_g: float | None = None
-    must_be_apart: bool = False
+    must_be_apart: bool = False  # whether the two intervals have to lie apart, too
 
     @property
     def apart(self) -> bool | None:
@@ -100,19 +76,12 @@ class Comparison:
 
 @dataclass(frozen=True)
 class Verdict:
-    """What the tests say of one hypothesis.
+    """What the tests say of one hypothesis."""
 
-    Attributes:
-        hypothesis: ``H1``, ``H2``, ...
-        family: of tests.
-        supported: whether every comparison holds.
-        by_task: task -> ``supported`` or ``not supported: why``, in the tasks' order.
-    """
-
-    hypothesis: str
-    family: str
-    supported: bool
-    by_task: Mapping[str, str]
+    hypothesis: str  # `H1`, `H2`, ...
+    family: str  # of tests
+    supported: bool  # whether every comparison holds
+    by_task: Mapping[str, str]  # task -> `supported` or `not supported: why`, in the tasks' order
 
 
 def corrected(comparisons: Sequence[Comparison]) -> list[Comparison]:

@@ -27,22 +27,14 @@ class MeansTest:
     """A t-test of one sample, such as differences of pairs, or of two independent ones.
 
     SciPy's functions of distributions are called, not its tests: power draws thousands of studies.
-
-    Attributes:
-        n: figures of the subject, or pairs.
-        n_against: independent figures of the other side; 0 for one sample.
-        difference: of the means.
-        se: its standard error.
-        dof: degrees of freedom of t.
-        d: difference over the SD, of two samples over the pooled one.
     """
 
-    n: int
-    n_against: int
-    difference: float
-    se: float
-    dof: float
-    d: float
+    n: int  # figures of the subject, or pairs
+    n_against: int  # independent figures of the other side; 0 for one sample
+    difference: float  # of the means
+    se: float  # its standard error
+    dof: float  # degrees of freedom of t
+    d: float  # difference over the SD, of two samples over the pooled one
 
     @property
     def t(self) -> float:

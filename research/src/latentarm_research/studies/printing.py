@@ -30,10 +30,6 @@ def find_browser() -> str | None:
 def print_page(page: Path, pdf: Path) -> str:
     """Print a page to a PDF, whole or not at all.
 
-    Args:
-        page: the HTML file.
-        pdf: the file to write.
-
     Returns:
         Why there is no PDF, in a sentence; empty where there is one.
 

@@ -14,11 +14,7 @@ _REPORTS: Final = ("studies", "user_studies", "web", "commands", "testing", "cli
 
 
 def source_digest(modules: Sequence[Path]) -> str:
-    """The first 16 digits of the SHA-256 of the code below the studies, and of some modules more.
-
-    Args:
-        modules: further files of the packages.
-    """
+    """The first 16 digits of the SHA-256 of the code below the studies, and of some modules more."""
     digest = hashlib.sha256()
     below = {
         path

@@ -26,21 +26,14 @@ BOOTSTRAP_SEED: Final = 95
 
 @dataclass(frozen=True)
 class Statistic:
-    """A one-sided test of two means.
+    """A one-sided test of two means."""
 
-    Attributes:
-        test: ``Welch``, ``one-sample``, or the reason no test was run.
-        t: its statistic, or None; below 0 where there is less than of the reference.
-        dof: degrees of freedom, or None.
-        p: one-sided, or None.
-        hedges_g: effect size, above 0 where the difference has the direction that was asked for; None where
-            there is no test, or no unbiased estimate (a one-sample test of two figures).
-    """
-
-    test: str
-    t: float | None = None
-    dof: float | None = None
-    p: float | None = None
+    test: str  # `Welch`, `one-sample`, or the reason no test was run
+    t: float | None = None  # its statistic, or None; below 0 where there is less than of the reference
+    dof: float | None = None  # degrees of freedom, or None
+    p: float | None = None  # one-sided, or None
+    # effect size, above 0 where the difference has the direction that was asked for; None where there is no
+    # test, or no unbiased estimate (a one-sample test of two figures)
     hedges_g: float | None = None
 
 

@@ -62,28 +62,18 @@ Measured = TypeVar("Measured")
 class Request(Generic[Preset]):
     """What a study was asked for.
 
-    Attributes:
-        out: a new folder, or that of an earlier run of this study, which is replaced.
-        preset: sizes of the study.
-        tasks: which of the study's tasks; all of them where empty.
-        seed: of everything random.
-        jobs: processes side by side; -1 is one per core.
-        backend: where they run, a name in `BACKENDS`.
-        quiet: say nothing while working.
-        bars: show how far the grids are.
-
     Raises:
         UserError: seed, jobs or backend are out of range.
     """
 
-    out: Path
-    preset: Preset
-    tasks: tuple[str, ...] = ()
-    seed: int = 0
-    jobs: int = -1
-    backend: str = "joblib"
-    quiet: bool = False
-    bars: bool = False
+    out: Path  # a new folder, or that of an earlier run of this study, which is replaced
+    preset: Preset  # sizes of the study
+    tasks: tuple[str, ...] = ()  # which of the study's tasks; all of them where empty
+    seed: int = 0  # of everything random
+    jobs: int = -1  # processes side by side; -1 is one per core
+    backend: str = "joblib"  # where they run, a name in `latentarm.core.parallel.backends.BACKENDS`
+    quiet: bool = False  # say nothing while working
+    bars: bool = False  # show how far the grids are
 
     def __post_init__(self) -> None:
         check_seed(self.seed)
@@ -93,23 +83,15 @@ class Request(Generic[Preset]):
 
 @dataclass(frozen=True)
 class Keep(Generic[Cell, Result]):
-    """How the results of cells are kept in a study's folder, so that it goes on where it was stopped.
+    """How the results of cells are kept in a study's folder, so that it goes on where it was stopped."""
 
-    Attributes:
-        read: the kept result of a cell; None where there is none. Raises a `UserError` where it is damaged.
-        write: keeps the result of a cell, whole or not at all.
-    """
-
+    # the kept result of a cell; None where there is none. Raises a `UserError` where it is damaged
     read: Callable[[Path, Cell], Result | None]
-    write: Callable[[Path, Cell, Result], None]
+    write: Callable[[Path, Cell, Result], None]  # keeps the result of a cell, whole or not at all
 
 
 class Grid:
-    """Runs grids of cells as a request says, and keeps how long that took.
-
-    Args:
-        request: what was asked for.
-    """
+    """Runs grids of cells as a request says, and keeps how long that took."""
 
     def __init__(self, request: Request[Any]) -> None:
         self._request = request
@@ -160,62 +142,40 @@ class Grid:
 
 @dataclass(frozen=True)
 class Report:
-    """The results of a study.
+    """The results of a study."""
 
-    Attributes:
-        rows: for ``results.json``.
-        page: ``results.md``, which HTML and PDF are made of.
-        figures: PNGs by name, without suffix.
-        tests: of the hypotheses.
-        documents: further JSON files by name.
-        records: the same for long lists of numbers, without line breaks.
-        timings: how long parts took, s, apart from the grids.
-        tables: the study at a glance, for a terminal.
-    """
-
-    rows: list[Row]
-    page: str
-    figures: "Mapping[str, Figure]"
-    tests: Sequence[HypothesisTest] = ()
-    documents: Mapping[str, object] = field(default_factory=dict)
+    rows: list[Row]  # for `results.json`
+    page: str  # `results.md`, which HTML and PDF are made of
+    figures: "Mapping[str, Figure]"  # PNGs by name, without suffix
+    tests: Sequence[HypothesisTest] = ()  # of the hypotheses
+    documents: Mapping[str, object] = field(default_factory=dict)  # further JSON files by name
+    # the same for long lists of numbers, without line breaks
     records: Mapping[str, object] = field(default_factory=dict)
+    # how long parts took, s, apart from the grids
     timings: Mapping[str, object] = field(default_factory=dict)
-    tables: "Sequence[RenderableType]" = ()
+    tables: "Sequence[RenderableType]" = ()  # the study at a glance, for a terminal
 
 
 @dataclass(frozen=True)
 class Study(Generic[Preset, Measured]):
-    """A study: what it measures and how it reports that.
+    """A study: what it measures and how it reports that."""
 
-    Attributes:
-        name: in rows and in the folder's ``config.json``.
-        command: the words after ``latentarm`` that run it.
-        presets: sizes by name.
-        tasks: names of all tasks; none where the request names what there is.
-        simulated: what of it is simulated, for ``config.json``.
-        measure: runs the study's grids.
-        report: makes rows, page, figures and documents of what was measured.
-        figures: names of all figures that it may draw.
-        documents: names of all JSON files that it may write in addition to `ALWAYS_MADE`.
-        depends_on: what else the figures depend on, for ``config.json``.
-        kept: folders of results of cells, see `Keep`.
-        options: names of the preset's fields that the command line may change.
-        grows: options that change no result of a kept cell: with the same ``out`` and other values of these,
-            or other tasks, a study goes on from what is kept.
-    """
-
-    name: str
-    command: str
-    presets: Mapping[str, Preset]
-    tasks: tuple[str, ...]
-    simulated: tuple[str, ...]
-    measure: Callable[[Request[Preset], Grid], Measured]
+    name: str  # in rows and in the folder's `config.json`
+    command: str  # the words after `latentarm` that run it
+    presets: Mapping[str, Preset]  # sizes by name
+    tasks: tuple[str, ...]  # names of all tasks; none where the request names what there is
+    simulated: tuple[str, ...]  # what of it is simulated, for `config.json`
+    measure: Callable[[Request[Preset], Grid], Measured]  # runs the study's grids
+    # makes rows, page, figures and documents of what was measured
     report: Callable[[Request[Preset], Measured], Report]
-    figures: tuple[str, ...]
-    documents: tuple[str, ...] = ()
+    figures: tuple[str, ...]  # names of all figures that it may draw
+    documents: tuple[str, ...] = ()  # names of all JSON files that it may write in addition to `ALWAYS_MADE`
+    # what else the figures depend on, for `config.json`
     depends_on: Callable[[Request[Preset]], Mapping[str, object]] = lambda request: {}
-    kept: tuple[str, ...] = ()
-    options: tuple[str, ...] = ()
+    kept: tuple[str, ...] = ()  # folders of results of cells, see `Keep`
+    options: tuple[str, ...] = ()  # names of the preset's fields that the command line may change
+    # options that change no result of a kept cell: with the same `out` and other values of these, or other
+    # tasks, a study goes on from what is kept
     grows: tuple[str, ...] = ()
 
     def about(self, request: Request[Preset]) -> dict[str, object]:
@@ -262,11 +222,6 @@ def run_study(study: Study[Preset, Measured], request: Request[Preset]) -> Repor
 
 def write_report(out: Path, report: Report, about: Mapping[str, object]) -> str:
     """Write a report's figures, documents, and the page as Markdown, HTML and PDF.
-
-    Args:
-        out: a folder that has been claimed.
-        report: the results.
-        about: what they depend on, for ``results.json``.
 
     Returns:
         Why there is no PDF, in a sentence; empty where there is one.

@@ -33,18 +33,12 @@ UNLABELLED: Final = 1000
 @final
 @dataclass(frozen=True, eq=False)
 class MainMotions:
-    """People who expect each axis of the stick to be one of the two motions that a task mostly takes.
+    """People who expect each axis of the stick to be one of the two motions that a task mostly takes."""
 
-    Attributes:
-        chain: the arm; its first tool is looked at.
-        directions: (2, 6), unit vectors at right angles: linear velocity, and angular velocity times
-            `ROTATION_WEIGHT_M`.
-        speed_m_s: along one of them at a full push, m/s.
-    """
-
-    chain: Chain
+    chain: Chain  # the arm; its first tool is looked at
+    # (2, 6), unit vectors at right angles: linear velocity, and angular velocity times `ROTATION_WEIGHT_M`
     directions: FloatArray
-    speed_m_s: float
+    speed_m_s: float  # along one of them at a full push, m/s
 
     @property
     def usual(self) -> FloatArray:
@@ -62,10 +56,6 @@ def main_motions(motions: Motions, chain: Chain) -> MainMotions:
     """The two directions in which an arm with one tool mostly moves, as principal directions about rest.
 
     A full push along one of them is as fast as nearly all of the motions.
-
-    Args:
-        motions: of the demonstrations.
-        chain: the arm.
     """
     twists = motion_twists(chain, motions)
     directions = np.linalg.svd(twists, full_matrices=False)[2][:2]
@@ -78,39 +68,24 @@ def main_motions(motions: Motions, chain: Chain) -> MainMotions:
 @final
 @dataclass(frozen=True, eq=False)
 class Aligned:
-    """What people usually mean, and what was learned of each.
+    """What people usually mean, and what was learned of each."""
 
-    Attributes:
-        usual: (6, 2), see `MainMotions.usual`.
-        alignments: of each person in order, by how they were learned.
-    """
-
-    usual: FloatArray
-    alignments: Mapping[Aligns, tuple[Alignment, ...]]
+    usual: FloatArray  # (6, 2), see `MainMotions.usual`
+    alignments: Mapping[Aligns, tuple[Alignment, ...]]  # of each person in order, by how they were learned
 
 
 def learn_alignments(
     model: LatentActionModel,
     demonstrations: Demonstrations,
     chain: Chain,
-    people: Sequence[Traits],
-    aligns: Sequence[Aligns],
+    people: Sequence[Traits],  # who is asked, in order
+    aligns: Sequence[Aligns],  # how alignments are learned; the answers are the same for all ways
     *,
     queries: int,
     steps: int,
     rng: np.random.Generator,
 ) -> Aligned:
     """Ask everybody about the same motions, and learn what each means, with priors and without.
-
-    Args:
-        model: that decodes.
-        demonstrations: that trained it.
-        chain: the arm.
-        people: who is asked, in order.
-        aligns: how alignments are learned; the answers are the same for all ways.
-        queries: motions that each is asked about.
-        steps: of the training.
-        rng: decides which motions, and how precise answers are.
 
     Raises:
         UserError: no demonstration moves for long enough.

@@ -35,28 +35,18 @@ PREFIX: Final = "user study "
 class Condition:
     """What people drive with.
 
-    Attributes:
-        name: as tables call it.
-        about: in words.
-        controls: what turns their input into motion.
-        model: a name of `latentarm.models.catalogue.KINDS`; empty without latent actions.
-        context: features that its decoder sees.
-        assists: who helps.
-        weight: of the help, where `assists` interpolates, in [0, 1].
-        aligns: what stands between input and latent action.
-
     Raises:
         UserError: the parts do not go together.
     """
 
-    name: str
-    about: str
-    controls: Controls
-    model: str = ""
-    context: tuple[str, ...] = ()
-    assists: Assists = "none"
-    weight: float = 0.0
-    aligns: Aligns = "none"
+    name: str  # as tables call it
+    about: str  # in words
+    controls: Controls  # what turns their input into motion
+    model: str = ""  # a name of `latentarm.models.catalogue.KINDS`; empty without latent actions
+    context: tuple[str, ...] = ()  # features that its decoder sees
+    assists: Assists = "none"  # who helps
+    weight: float = 0.0  # of the help, where `assists` interpolates, in [0, 1]
+    aligns: Aligns = "none"  # what stands between input and latent action
 
     def __post_init__(self) -> None:
         latent = self.controls == "latent"
@@ -73,52 +63,35 @@ class Condition:
 @final
 @dataclass(frozen=True)
 class StudyTask:
-    """What people do.
+    """What people do."""
 
-    Attributes:
-        name: in records.
-        label: as tables call it.
-        scene: a name that `latentarm_research.user_studies.scenes.scene_of` knows.
-        trials: in each condition.
-        choices: of the scene's task, in turn from trial to trial; each is driven in every trial where
-            `all_choices` is set, one after the other.
-        all_choices: whether a trial is all choices in one arrangement, its figures summed.
-        plates: things to the closest of which *Goal Error* is measured; empty where it is not measured.
-        queries: motions that people are asked about before it, where a condition aligns.
-        demonstrations_min: minutes of demonstrations from which its model learns.
-        trained_with: name of the task whose model it shares; its own where empty.
-        trial_s: how long people have for a trial, or for each choice where `all_choices` is set, s: after a
-            failure everything is set up anew and they begin again, until then. 0 is one attempt, with the
-            time limit of the scene's task.
-    """
-
-    name: str
-    label: str
-    scene: str
-    trials: int
+    name: str  # in records
+    label: str  # as tables call it
+    scene: str  # a name that `latentarm_research.user_studies.scenes.scene_of` knows
+    trials: int  # in each condition
+    # of the scene's task, in turn from trial to trial; each is driven in every trial where `all_choices` is
+    # set, one after the other
     choices: tuple[int, ...]
-    all_choices: bool = False
+    all_choices: bool = False  # whether a trial is all choices in one arrangement, its figures summed
+    # things to the closest of which *Goal Error* is measured; empty where it is not measured
     plates: tuple[str, ...] = ()
-    queries: int = 0
-    demonstrations_min: float = 0.0
-    trained_with: str = ""
+    queries: int = 0  # motions that people are asked about before it, where a condition aligns
+    demonstrations_min: float = 0.0  # minutes of demonstrations from which its model learns
+    trained_with: str = ""  # name of the task whose model it shares; its own where empty
+    # how long people have for a trial, or for each choice where `all_choices` is set, s: after a failure
+    # everything is set up anew and they begin again, until then. 0 is one attempt, with the time limit of the
+    # scene's task
     trial_s: float = 0.0
 
 
 @final
 @dataclass(frozen=True)
 class Factor:
-    """One factor of a factorial design, with two levels.
+    """One factor of a factorial design, with two levels."""
 
-    Attributes:
-        name: as tables call it.
-        low: its first level and the conditions that have it.
-        high: its second.
-    """
-
-    name: str
-    low: tuple[str, tuple[str, ...]]
-    high: tuple[str, tuple[str, ...]]
+    name: str  # as tables call it
+    low: tuple[str, tuple[str, ...]]  # its first level and the conditions that have it
+    high: tuple[str, tuple[str, ...]]  # its second
 
 
 @final
@@ -126,52 +99,31 @@ class Factor:
 class Definition:
     """A study.
 
-    Attributes:
-        name: on the command line.
-        title: of its page.
-        section: of the paper.
-        about: what is asked, in a sentence.
-        people: how many go through it.
-        papers_people: who went through the paper's, in words.
-        conditions: in the order of tables.
-        tasks: in the order in which people do them.
-        orders: of the conditions, person by person, repeated as needed; a seeded Williams design where empty.
-        practice_min: minutes of practice at most.
-        practice: when they practise, in words.
-        input: what people hold, in words.
-        measures: by name, in the order of tables.
-        questionnaire: after each condition.
-        hypotheses: with their tests.
-        exclusions: what does not count.
-        factors: two of a 2 x 2 design, or none.
-        printed: statistics of the paper.
-        departures: where this definition differs from what the paper did, each a sentence.
-        design: whether a person meets all conditions or one.
-
     Raises:
         UserError: a claim, an order or an exclusion names what the study does not have.
     """
 
-    name: str
-    title: str
-    section: str
-    about: str
-    people: int
-    papers_people: str
-    conditions: tuple[Condition, ...]
-    tasks: tuple[StudyTask, ...]
+    name: str  # on the command line
+    title: str  # of its page
+    section: str  # of the paper
+    about: str  # what is asked, in a sentence
+    people: int  # how many go through it
+    papers_people: str  # who went through the paper's, in words
+    conditions: tuple[Condition, ...]  # in the order of tables
+    tasks: tuple[StudyTask, ...]  # in the order in which people do them
+    # of the conditions, person by person, repeated as needed; a seeded Williams design where empty
     orders: tuple[tuple[str, ...], ...]
-    practice_min: float
-    practice: str
-    input: str
-    measures: tuple[str, ...]
-    questionnaire: tuple[Scale, ...]
-    hypotheses: tuple[Hypothesis, ...]
-    exclusions: tuple[Exclusion, ...]
-    factors: tuple[Factor, ...]
-    printed: tuple[Printed, ...]
-    departures: tuple[str, ...]
-    design: Design = "within"
+    practice_min: float  # minutes of practice at most
+    practice: str  # when they practise, in words
+    input: str  # what people hold, in words
+    measures: tuple[str, ...]  # by name, in the order of tables
+    questionnaire: tuple[Scale, ...]  # after each condition
+    hypotheses: tuple[Hypothesis, ...]  # with their tests
+    exclusions: tuple[Exclusion, ...]  # what does not count
+    factors: tuple[Factor, ...]  # two of a 2 x 2 design, or none
+    printed: tuple[Printed, ...]  # statistics of the paper
+    departures: tuple[str, ...]  # where this definition differs from what the paper did, each a sentence
+    design: Design = "within"  # whether a person meets all conditions or one
 
     def __post_init__(self) -> None:
         names = {condition.name for condition in self.conditions}

@@ -19,20 +19,14 @@ class Exclusion:
 
     It is given an `UnlabelledTrial`, which has no condition.
 
-    Attributes:
-        measure: which figure; a trial without it stays.
-        side: excluded are trials with less than the limit, or with more.
-        limit: in the measure's unit.
-        why: the reason, in words.
-
     Raises:
         UserError: the limit is not finite.
     """
 
-    measure: str
-    side: Literal["less", "more"]
-    limit: float
-    why: str
+    measure: str  # which figure; a trial without it stays
+    side: Literal["less", "more"]  # excluded are trials with less than the limit, or with more
+    limit: float  # in the measure's unit
+    why: str  # the reason, in words
 
     def __post_init__(self) -> None:
         if not abs(self.limit) < float("inf"):
@@ -49,24 +43,14 @@ class Exclusion:
 @final
 @dataclass(frozen=True)
 class Excluded:
-    """What does not count.
+    """What does not count."""
 
-    Attributes:
-        trials: index of each excluded trial with the reason.
-        people: numbers of the people who do not count at all.
-    """
-
-    trials: tuple[tuple[int, str], ...]
-    people: tuple[int, ...]
+    trials: tuple[tuple[int, str], ...]  # index of each excluded trial with the reason
+    people: tuple[int, ...]  # numbers of the people who do not count at all
 
 
 def excluded(rules: Sequence[Exclusion], trials: Sequence[UnlabelledTrial]) -> Excluded:
-    """Apply rules to all trials of a study.
-
-    Args:
-        rules: of the definition.
-        trials: of all people.
-    """
+    """Apply rules to all trials of a study."""
     found = [
         (index, next(rule.why for rule in rules if rule.excludes(trial)))
         for index, trial in enumerate(trials)

@@ -16,23 +16,16 @@ class Claim:
     ``less`` and ``greater`` are tested two-sided by paired t on people's means, ``equal`` by two one-sided
     tests (TOST).
 
-    Attributes:
-        measure: a measure of the study, or a scale of its questionnaire.
-        subject: conditions; with several, a person's mean over them, as in a main effect.
-        against: other conditions.
-        direction: of the subject's mean, compared with that of the others.
-        tasks: whose trials count; all of the study where empty.
-        margin: for ``equal``, the largest difference that does not matter, in the measure's unit.
-
     Raises:
         UserError: a condition stands on both sides, or a margin is missing or stands where none belongs.
     """
 
-    measure: str
-    subject: tuple[str, ...]
-    against: tuple[str, ...]
-    direction: Direction
-    tasks: tuple[str, ...] = ()
+    measure: str  # a measure of the study, or a scale of its questionnaire
+    subject: tuple[str, ...]  # conditions; with several, a person's mean over them, as in a main effect
+    against: tuple[str, ...]  # other conditions
+    direction: Direction  # of the subject's mean, compared with that of the others
+    tasks: tuple[str, ...] = ()  # whose trials count; all of the study where empty
+    # for `equal`, the largest difference that does not matter, in the measure's unit
     margin: float | None = None
 
     def __post_init__(self) -> None:
@@ -49,17 +42,11 @@ class Claim:
 @final
 @dataclass(frozen=True)
 class Hypothesis:
-    """A hypothesis, held where all its claims hold after Holm's correction over the whole study.
+    """A hypothesis, held where all its claims hold after Holm's correction over the whole study."""
 
-    Attributes:
-        name: ``H1``, ``H2``, ...
-        text: in the paper's words, where it is the paper's.
-        claims: what is tested.
-    """
-
-    name: str
-    text: str
-    claims: tuple[Claim, ...]
+    name: str  # `H1`, `H2`, ...
+    text: str  # in the paper's words, where it is the paper's
+    claims: tuple[Claim, ...]  # what is tested
 
 
 def below(measure: str, subject: str, *against: str, tasks: tuple[str, ...] = ()) -> tuple[Claim, ...]:

@@ -12,9 +12,6 @@ def williams(count: int) -> list[list[int]]:
 
     Every condition stands at every place equally often, and follows every other one equally often.
 
-    Args:
-        count: number of conditions.
-
     Returns:
         Orders of 0 to ``count - 1``: as many as conditions where their number is even, else twice as many.
 
@@ -33,11 +30,6 @@ def assigned(conditions: Sequence[str], people: int, rng: np.random.Generator) -
 
     At any time the numbers of people differ by one at most; they are equal after whole blocks.
 
-    Args:
-        conditions: names.
-        people: how many.
-        rng: source of all randomness.
-
     Raises:
         UserError: there is no condition.
     """
@@ -52,11 +44,6 @@ def orders(conditions: Sequence[str], people: int, rng: np.random.Generator) -> 
     """An order for each person: whole Williams designs, the conditions and the rows of each in random order.
 
     The balance is complete where the number of people is a multiple of the design's rows.
-
-    Args:
-        conditions: names.
-        people: how many.
-        rng: source of all randomness.
 
     Raises:
         UserError: there is no condition.

@@ -27,20 +27,14 @@ FEWEST: Final = 3
 @final
 @dataclass(frozen=True)
 class Power:
-    """How often claims and hypotheses hold in studies of so many people.
+    """How often claims and hypotheses hold in studies of so many people."""
 
-    Attributes:
-        people: whom studies were drawn from.
-        draws: studies for each number of people.
-        numbers: of people in all.
-        claims: share of the studies in which each claim holds, by the claim in words.
-        hypotheses: the same of each hypothesis, by its name; none of those that could not be tested.
-    """
-
-    people: int
-    draws: int
-    numbers: tuple[int, ...]
+    people: int  # whom studies were drawn from
+    draws: int  # studies for each number of people
+    numbers: tuple[int, ...]  # of people in all
+    # share of the studies in which each claim holds, by the claim in words
     claims: Mapping[str, tuple[float, ...]]
+    # the same of each hypothesis, by its name; none of those that could not be tested
     hypotheses: Mapping[str, tuple[float, ...]]
 
     def needed(self, shares: Sequence[float], target: float) -> int | None:
@@ -69,12 +63,6 @@ def power_of(definition: Definition, trials: Sequence[Trial], draws: int, seed: 
     In a study between people they are drawn condition by condition, as many of each.
 
     What it finds is true as far as these people stand for others: simulated ones for simulated people.
-
-    Args:
-        definition: of the study.
-        trials: of all people.
-        draws: studies for each number of people.
-        seed: of the draws.
 
     Raises:
         UserError: there are no draws, or hardly any people.

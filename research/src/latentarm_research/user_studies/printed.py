@@ -13,27 +13,17 @@ figure without any number, a bound on a time."""
 @final
 @dataclass(frozen=True)
 class Printed:
-    """One statistic of the paper.
+    """One statistic of the paper."""
 
-    Attributes:
-        test: how it came about.
-        measure: a measure of the study, or a scale of its questionnaire.
-        subject: conditions compared, as in `latentarm_research.user_studies.hypothesis.Claim`.
-        against: with which; empty for figures of one condition.
-        text: as the paper prints it.
-        less: whether the subject has less than the others, in the paper; None where that is not said.
-        significant: whether the paper calls it significant; None where there is no test.
-        tasks: whose trials it is about; all where empty.
-    """
-
-    test: PrintedTest
-    measure: str
-    subject: tuple[str, ...]
-    against: tuple[str, ...]
-    text: str
+    test: PrintedTest  # how it came about
+    measure: str  # a measure of the study, or a scale of its questionnaire
+    subject: tuple[str, ...]  # conditions compared, as in `latentarm_research.user_studies.hypothesis.Claim`
+    against: tuple[str, ...]  # with which; empty for figures of one condition
+    text: str  # as the paper prints it
+    # whether the subject has less than the others, in the paper; None where that is not said
     less: bool | None
-    significant: bool | None
-    tasks: tuple[str, ...] = ()
+    significant: bool | None  # whether the paper calls it significant; None where there is no test
+    tasks: tuple[str, ...] = ()  # whose trials it is about; all where empty
 
 
 WRONG: Final[Mapping[PrintedTest, str]] = {

@@ -12,15 +12,10 @@ FEWEST_ITEMS: Final = 4
 @final
 @dataclass(frozen=True)
 class Item:
-    """One statement, with which people agree or disagree.
+    """One statement, with which people agree or disagree."""
 
-    Attributes:
-        text: the statement.
-        reversed: agreement means less of what the scale measures.
-    """
-
-    text: str
-    reversed: bool = False
+    text: str  # the statement
+    reversed: bool = False  # agreement means less of what the scale measures
 
 
 @final
@@ -28,20 +23,14 @@ class Item:
 class Scale:
     """One thing that several items ask about; its score is their mean.
 
-    Attributes:
-        name: the measure's name in records and claims.
-        label: as tables and figures call it.
-        items: at least `FEWEST_ITEMS`, some of them reversed.
-        points: of the answer, from "strongly disagree" to "strongly agree".
-
     Raises:
         UserError: there are too few items or points.
     """
 
-    name: str
-    label: str
-    items: tuple[Item, ...]
-    points: int = 7
+    name: str  # the measure's name in records and claims
+    label: str  # as tables and figures call it
+    items: tuple[Item, ...]  # at least `FEWEST_ITEMS`, some of them reversed
+    points: int = 7  # of the answer, from "strongly disagree" to "strongly agree"
 
     def __post_init__(self) -> None:
         if len(self.items) < FEWEST_ITEMS:
@@ -54,12 +43,6 @@ class Scale:
 
 def scale(name: str, label: str, agree: tuple[str, ...], disagree: tuple[str, ...]) -> Scale:
     """A scale of statements for and against.
-
-    Args:
-        name: the measure's name.
-        label: as tables call it.
-        agree: statements that say more of it.
-        disagree: statements that say less of it.
 
     Raises:
         UserError: there are too few items.

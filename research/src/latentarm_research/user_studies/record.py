@@ -12,23 +12,14 @@ from latentarm.core.errors import UserError
 @final
 @dataclass(frozen=True)
 class Trial:
-    """One trial of one person.
+    """One trial of one person."""
 
-    Attributes:
-        person: their number.
-        condition: name of the condition.
-        task: what was to be done.
-        order: place of the condition in the person's order, from 0.
-        trial: number of the trial in this condition, from 0.
-        measures: figures by name; what was not measured is absent.
-    """
-
-    person: int
-    condition: str
-    task: str
-    order: int
-    trial: int
-    measures: Mapping[str, float]
+    person: int  # their number
+    condition: str  # name of the condition
+    task: str  # what was to be done
+    order: int  # place of the condition in the person's order, from 0
+    trial: int  # number of the trial in this condition, from 0
+    measures: Mapping[str, float]  # figures by name; what was not measured is absent
 
     def unlabelled(self) -> "UnlabelledTrial":
         """The same without anything that tells the condition."""
@@ -43,25 +34,15 @@ class Trial:
 @final
 @dataclass(frozen=True)
 class UnlabelledTrial:
-    """A trial as exclusion rules see it: without condition, order and number.
+    """A trial as exclusion rules see it: without condition, order and number."""
 
-    Attributes:
-        person: their number.
-        task: what was to be done.
-        measures: figures by name.
-    """
-
-    person: int
-    task: str
-    measures: Mapping[str, float]
+    person: int  # their number
+    task: str  # what was to be done
+    measures: Mapping[str, float]  # figures by name
 
 
 def read_trial(entry: object, where: str) -> Trial:
     """A trial from JSON.
-
-    Args:
-        entry: as `Trial.as_json` has it.
-        where: file and place, for messages.
 
     Raises:
         UserError: a field is missing or is not what it should be.

@@ -31,23 +31,14 @@ PEOPLE_ARE: Final[tuple[PeopleAre, ...]] = ("simulated", "real")
 @final
 @dataclass(frozen=True, eq=False)
 class Recorded:
-    """Trials, and whose they are.
+    """Trials, and whose they are."""
 
-    Attributes:
-        definition: of the study.
-        people_are: who gave the trials.
-        trials: of all people.
-        traces: of their drives; empty where none were kept.
-        simulated: what the simulated people are like; empty for real people.
-        sizes: of the run; whole for real people.
-    """
-
-    definition: Definition
-    people_are: PeopleAre
-    trials: tuple[Trial, ...]
-    traces: tuple[Trace, ...]
-    simulated: tuple[Traits, ...]
-    sizes: Sizes
+    definition: Definition  # of the study
+    people_are: PeopleAre  # who gave the trials
+    trials: tuple[Trial, ...]  # of all people
+    traces: tuple[Trace, ...]  # of their drives; empty where none were kept
+    simulated: tuple[Traits, ...]  # what the simulated people are like; empty for real people
+    sizes: Sizes  # of the run; whole for real people
 
     @property
     def documents(self) -> dict[str, object]:

@@ -43,41 +43,25 @@ succeeds where all do."""
 @final
 @dataclass(frozen=True, eq=False)
 class SessionCell:
-    """A person with one condition at one task.
+    """A person with one condition at one task."""
 
-    Attributes:
-        definition: of the study.
-        condition: that they drive with.
-        task: what they do.
-        traits: of the person.
-        order: place of the condition in the person's order.
-        trained: models of the task; None where the condition has none.
-        sizes: of the run.
-        seed: of the run.
-    """
-
-    definition: Definition
-    condition: Condition
-    task: StudyTask
-    traits: Traits
-    order: int
-    trained: Trained | None
-    sizes: Sizes
-    seed: int
+    definition: Definition  # of the study
+    condition: Condition  # that they drive with
+    task: StudyTask  # what they do
+    traits: Traits  # of the person
+    order: int  # place of the condition in the person's order
+    trained: Trained | None  # models of the task; None where the condition has none
+    sizes: Sizes  # of the run
+    seed: int  # of the run
 
 
 @final
 @dataclass(frozen=True, eq=False)
 class Session:
-    """The result of a `SessionCell`.
+    """The result of a `SessionCell`."""
 
-    Attributes:
-        trials: in order.
-        traces: of each, for figures.
-    """
-
-    trials: tuple[Trial, ...]
-    traces: tuple[Trace, ...]
+    trials: tuple[Trial, ...]  # in order
+    traces: tuple[Trace, ...]  # of each, for figures
 
 
 def go_through(cell: SessionCell) -> Session:

@@ -13,33 +13,21 @@ from latentarm_research.user_studies.definition import StudyTask
 @final
 @dataclass(frozen=True)
 class Sizes:
-    """Sizes of a run.
+    """Sizes of a run."""
 
-    Attributes:
-        name: of the preset.
-        simulated: people who are sent through the study; 0 where people are real.
-        trial_s: a trial that takes longer has failed, s; the task's own limit where it is shorter.
-        most_trials: of each task in each condition, at most.
-        demonstrations_share: of the minutes of demonstrations that the definition asks for.
-        demonstration_s: a demonstration is cut off after so long, s; then it counts although it was not done.
-        epochs: passes over the training pairs, at most.
-        batch_size: pairs per step.
-        hidden: units of each hidden layer.
-        state_noise_rad: SD of the noise on training states, rad.
-        alignment_steps: of an alignment's training.
-    """
-
-    name: str
-    simulated: int = 0
+    name: str  # of the preset
+    simulated: int = 0  # people who are sent through the study; 0 where people are real
+    # a trial that takes longer has failed, s; the task's own limit where it is shorter
     trial_s: float = float("inf")
-    most_trials: int = 1000
-    demonstrations_share: float = 1.0
+    most_trials: int = 1000  # of each task in each condition, at most
+    demonstrations_share: float = 1.0  # of the minutes of demonstrations that the definition asks for
+    # a demonstration is cut off after so long, s; then it counts although it was not done
     demonstration_s: float = float("inf")
-    epochs: int = 60
-    batch_size: int = 256
-    hidden: tuple[int, ...] = (64, 64)
-    state_noise_rad: float = 0.01
-    alignment_steps: int = 400
+    epochs: int = 60  # passes over the training pairs, at most
+    batch_size: int = 256  # pairs per step
+    hidden: tuple[int, ...] = (64, 64)  # units of each hidden layer
+    state_noise_rad: float = 0.01  # SD of the noise on training states, rad
+    alignment_steps: int = 400  # of an alignment's training
 
     @property
     def not_judged(self) -> str:

@@ -28,33 +28,21 @@ DECIMALS: Final = 4
 @final
 @dataclass(frozen=True)
 class Trace:
-    """What is kept of a drive.
+    """What is kept of a drive."""
 
-    Attributes:
-        person: their number.
-        condition: name of the condition.
-        task: name of the task.
-        trial: number of the trial.
-        choice: what it was for.
-        success: whether it was done.
-        time_s: (K,), moments evenly over the drive, s.
-        position: (K, 3), the tool then, m.
-        plate_m: (K,), its distance from the closest plate, m; empty where that is not measured.
-        stick: (BINS, BINS), time that the first two axes were in each cell, s, first axis across; rest does
-            not count.
-        aligned: *Preference Alignment* in each step that was begun, in order; empty where it was not kept.
-    """
-
-    person: int
-    condition: str
+    person: int  # their number
+    condition: str  # name of the condition
     task: str
-    trial: int
-    choice: int
-    success: bool
-    time_s: tuple[float, ...]
-    position: tuple[tuple[float, ...], ...]
+    trial: int  # number of the trial
+    choice: int  # what it was for
+    success: bool  # whether it was done
+    time_s: tuple[float, ...]  # (K,), moments evenly over the drive, s
+    position: tuple[tuple[float, ...], ...]  # (K, 3), the tool then, m
+    # (K,), its distance from the closest plate, m; empty where that is not measured
     plate_m: tuple[float, ...]
+    # (BINS, BINS), time that the first two axes were in each cell, s, first axis across; rest does not count
     stick: tuple[tuple[float, ...], ...]
+    # *Preference Alignment* in each step that was begun, in order; empty where it was not kept
     aligned: tuple[StepAlignment, ...] = ()
 
     def as_json(self) -> dict[str, object]:
@@ -63,15 +51,7 @@ class Trace:
 
 
 def trace_of(person: int, condition: str, task: StudyTask, trial: int, driven: "drives.Trace") -> Trace:
-    """What is kept of a drive.
-
-    Args:
-        person: their number.
-        condition: name of the condition.
-        task: of the study.
-        trial: number of the trial.
-        driven: the drive.
-    """
+    """What is kept of a drive."""
     moments = np.unique(np.linspace(0, len(driven.time_s) - 1, POINTS).astype(int))
     position = driven.position[moments]
     plate_m: FloatArray = np.zeros(0)

@@ -30,15 +30,10 @@ from latentarm_research.studies.alignment.scene import LearnedDecoder, Scene, sc
 
 @dataclass(frozen=True, eq=False)
 class AlignmentCell:
-    """What is to be measured.
+    """What is to be measured."""
 
-    Attributes:
-        learned: task and decoder.
-        noise: coefficient of variation of the answers.
-    """
-
-    learned: LearnedDecoder
-    noise: float
+    learned: LearnedDecoder  # task and decoder
+    noise: float  # coefficient of variation of the answers
 
     @property
     def task(self) -> str:
@@ -53,20 +48,13 @@ class AlignmentCell:
 
 @dataclass(frozen=True, eq=False)
 class AlignmentErrors:
-    """What was measured.
-
-    Attributes:
-        cell: what was asked for.
-        errors: condition -> (R,), relative error of each run on the held-out motions; (1,) where nothing is
-            learned.
-        encoded: the error of the encoder's choice, see `Scene.encoded`.
-        learn_s: condition -> how long all its runs took in one fit, s.
-    """
+    """What was measured."""
 
     cell: AlignmentCell
+    # condition -> (R,), relative error of each run on the held-out motions; (1,) where nothing is learned
     errors: Mapping[str, FloatArray]
-    encoded: float
-    learn_s: Mapping[str, float]
+    encoded: float  # the error of the encoder's choice, see `Scene.encoded`
+    learn_s: Mapping[str, float]  # condition -> how long all its runs took in one fit, s
 
 
 def measure_cell(cell: AlignmentCell) -> AlignmentErrors:

@@ -23,15 +23,10 @@ CHOICES: Final = (PRIORS_AT_RANDOM, AT_RANDOM, CHOSEN)
 
 @dataclass(frozen=True, eq=False)
 class CurveCell:
-    """What is to be measured.
+    """What is to be measured."""
 
-    Attributes:
-        learned: task and decoder.
-        noise: coefficient of variation of the answers.
-    """
-
-    learned: LearnedDecoder
-    noise: float
+    learned: LearnedDecoder  # task and decoder
+    noise: float  # coefficient of variation of the answers
 
     @property
     def preset(self) -> Preset:
@@ -41,19 +36,13 @@ class CurveCell:
 
 @dataclass(frozen=True, eq=False)
 class CurveResult:
-    """What was measured.
-
-    Attributes:
-        cell: what was asked for.
-        errors: choice -> number of answers -> (R,), relative error of each run on the held-out motions.
-        stopped_after: (R,), answers after which `latentarm align` would have stopped.
-        stopped_at: (R,), the error there.
-    """
+    """What was measured."""
 
     cell: CurveCell
+    # choice -> number of answers -> (R,), relative error of each run on the held-out motions
     errors: Mapping[str, Mapping[int, FloatArray]]
-    stopped_after: FloatArray
-    stopped_at: FloatArray
+    stopped_after: FloatArray  # (R,), answers after which `latentarm align` would have stopped
+    stopped_at: FloatArray  # (R,), the error there
 
 
 def measure_curve(cell: CurveCell) -> CurveResult:

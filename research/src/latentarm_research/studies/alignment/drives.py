@@ -45,46 +45,28 @@ PATH_HZ: Final = 10.0
 
 @dataclass(frozen=True, eq=False)
 class AlignedDrive:
-    """One drive.
+    """One drive."""
 
-    Attributes:
-        goal: index of the goal.
-        model_seed: whose decoder.
-        reached_s: when the tool came to the goal, or None where it never did, s.
-        done: whether it went on to stab or scoop before the time was over.
-        path: (T, 3), the tool until it came to the goal, or all along, m.
-    """
-
-    goal: int
-    model_seed: int
-    reached_s: float | None
-    done: bool
-    path: FloatArray
+    goal: int  # index of the goal
+    model_seed: int  # whose decoder
+    reached_s: float | None  # when the tool came to the goal, or None where it never did, s
+    done: bool  # whether it went on to stab or scoop before the time was over
+    path: FloatArray  # (T, 3), the tool until it came to the goal, or all along, m
 
 
 @dataclass(frozen=True, eq=False)
 class DrivesResult:
-    """What was measured with one kind of model.
-
-    Attributes:
-        cell: what was asked for.
-        drives: condition -> all drives, from the same starts in the same order everywhere.
-        errors: condition -> (S,), see `Learned`.
-        directions: (2, 3), that the person expects of the stick, in the base frame.
-        speed_m_s: of the tool, that they expect of a full push along one axis, m/s.
-        fit_s: how long the fit of all models took, s.
-        align_s: how long asking and learning took, all models together, s.
-        drive_s: how long the drives took, s.
-    """
+    """What was measured with one kind of model."""
 
     cell: AlignedDriveCell
+    # condition -> all drives, from the same starts in the same order everywhere
     drives: Mapping[str, tuple[AlignedDrive, ...]]
-    errors: Mapping[str, FloatArray]
-    directions: FloatArray
-    speed_m_s: float
-    fit_s: float
-    align_s: float
-    drive_s: float
+    errors: Mapping[str, FloatArray]  # condition -> (S,), see `Learned`
+    directions: FloatArray  # (2, 3), that the person expects of the stick, in the base frame
+    speed_m_s: float  # of the tool, that they expect of a full push along one axis, m/s
+    fit_s: float  # how long the fit of all models took, s
+    align_s: float  # how long asking and learning took, all models together, s
+    drive_s: float  # how long the drives took, s
 
 
 def drive_cells(preset: Preset, seed: int) -> list[AlignedDriveCell]:
@@ -135,13 +117,7 @@ def drive_all(cell: AlignedDriveCell, learned: Learned, condition: str) -> tuple
 
 
 def drive(task: Task, planned: Planned, model_seed: int) -> AlignedDrive:
-    """One drive: to the goal, and on to stab or scoop there.
-
-    Args:
-        task: at whose goals.
-        planned: the drive.
-        model_seed: whose decoder steers.
-    """
+    """One drive: to the goal, and on to stab or scoop there."""
     goal, records = planned.choice, list[StepRecord]()
     trace = planned.drive(record=lambda _: records.append)
     # A drive that ends at the goal has no record there.

@@ -55,38 +55,24 @@ EVERY: Final = 10**9
 
 @dataclass(frozen=True)
 class AlignedDriveCell:
-    """What is to be measured.
+    """What is to be measured."""
 
-    Attributes:
-        model: a name of `MODELS`.
-        preset: sizes of the study.
-        seed: of the study.
-    """
-
-    model: str
-    preset: Preset
-    seed: int
+    model: str  # a name of `MODELS`
+    preset: Preset  # sizes of the study
+    seed: int  # of the study
 
 
 @dataclass(frozen=True, eq=False)
 class Learned:
-    """What is driven with.
+    """What is driven with."""
 
-    Attributes:
-        model: the S models of a kind.
-        alignments: S times, condition -> alignment.
-        person: who was asked.
-        errors: condition -> (S,), relative alignment errors on motions that trained nothing.
-        fit_s: how long the fit of all models took, s.
-        align_s: how long asking and learning took, all models together, s.
-    """
-
-    model: LatentActionModel
-    alignments: tuple[Mapping[str, Alignment], ...]
-    person: Expectation
+    model: LatentActionModel  # the S models of a kind
+    alignments: tuple[Mapping[str, Alignment], ...]  # S times, condition -> alignment
+    person: Expectation  # who was asked
+    # condition -> (S,), relative alignment errors on motions that trained nothing
     errors: Mapping[str, FloatArray]
-    fit_s: float
-    align_s: float
+    fit_s: float  # how long the fit of all models took, s
+    align_s: float  # how long asking and learning took, all models together, s
 
 
 def learn(cell: AlignedDriveCell) -> Learned:

@@ -116,12 +116,7 @@ NUDGE: Final = 0.16
 
 
 def curves_figure(curves: Sequence[CurveResult], tasks: Sequence[str]) -> "Figure":
-    """Means with 95 % intervals over the number of answers, a panel per task, a row per model and noise.
-
-    Args:
-        curves: every curve.
-        tasks: from left to right.
-    """
+    """Means with 95 % intervals over the number of answers, a panel per task, a row per model and noise."""
     places = list(dict.fromkeys((curve.cell.learned.cell.model, curve.cell.noise) for curve in curves))
     figure = new_figure(CURVES_ROW_MM * len(places) + CURVES_FRAME_MM, TWO_COLUMNS_MM)
     figure.suptitle(

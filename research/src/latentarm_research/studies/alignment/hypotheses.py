@@ -44,19 +44,12 @@ NEAR: Final = 1.25
 
 @dataclass(frozen=True)
 class ConditionClaim:
-    """One part of a hypothesis: a condition's error is lower than another's.
+    """One part of a hypothesis: a condition's error is lower than another's."""
 
-    Attributes:
-        hypothesis: ``H1``, ``H2`` or ``H3``.
-        condition: the one that should have the lower error.
-        against: the one it is compared with.
-        times: factor on the other's error.
-    """
-
-    hypothesis: str
-    condition: str
-    against: str
-    times: float = 1.0
+    hypothesis: str  # `H1`, `H2` or `H3`
+    condition: str  # the one that should have the lower error
+    against: str  # the one it is compared with
+    times: float = 1.0  # factor on the other's error
 
 
 CLAIMS: Final = (
@@ -106,17 +99,11 @@ CHOSEN_ANSWERS: Final = 4
 
 @dataclass(frozen=True)
 class AlignmentTarget:
-    """One target.
+    """One target."""
 
-    Attributes:
-        name: what should be reached.
-        met: whether it was.
-        figures: how far it was met, or by how much it was missed.
-    """
-
-    name: str
-    met: bool
-    figures: str
+    name: str  # what should be reached
+    met: bool  # whether it was
+    figures: str  # how far it was met, or by how much it was missed
 
     def as_json(self) -> dict[str, object]:
         """Plain mapping, ready for ``json.dumps``."""

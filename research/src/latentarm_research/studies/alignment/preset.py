@@ -11,113 +11,68 @@ from latentarm_research.alignment.priors import NO_PRIORS, Priors
 
 @dataclass(frozen=True)
 class Curves:
-    """Sizes of the learning curves.
+    """Sizes of the learning curves."""
 
-    Attributes:
-        noises: coefficients of variation of the answers.
-        answers: numbers of answers at which the error is taken, rising.
-        networks: those of them at which it is also taken of All Priors, which takes longer.
-        candidates: motions that may be asked about.
-    """
-
-    noises: tuple[float, ...] = (0.0, 0.5)
-    answers: tuple[int, ...] = (1, 2, 3, 4, 6, 10)
+    noises: tuple[float, ...] = (0.0, 0.5)  # coefficients of variation of the answers
+    answers: tuple[int, ...] = (1, 2, 3, 4, 6, 10)  # numbers of answers at which the error is taken, rising
+    # those of them at which it is also taken of All Priors, which takes longer
     networks: tuple[int, ...] = (2, 4, 10)
-    candidates: int = 100
+    candidates: int = 100  # motions that may be asked about
 
 
 @dataclass(frozen=True)
 class Turning:
-    """People whose axes turn over the table.
+    """People whose axes turn over the table."""
 
-    Attributes:
-        people: simulated; each answers about other motions.
-        noises: coefficients of variation of their answers.
-        turn_rad: by how much their axes are turned at the far ends of the table, one way and the other, rad.
-        ideal_people: the first of them, for whom Ideal Align is learned.
-    """
-
-    people: int = 20
-    noises: tuple[float, ...] = (0.0, 0.5)
+    people: int = 20  # simulated; each answers about other motions
+    noises: tuple[float, ...] = (0.0, 0.5)  # coefficients of variation of their answers
+    # by how much their axes are turned at the far ends of the table, one way and the other, rad
     turn_rad: float = pi / 3
-    ideal_people: int = 6
+    ideal_people: int = 6  # the first of them, for whom Ideal Align is learned
 
 
 @dataclass(frozen=True)
 class Drives:
-    """Drives to the goals of the demo's table by a simulated person with their own expectation.
+    """Drives to the goals of the demo's table by a simulated person with their own expectation."""
 
-    Attributes:
-        models: kinds that are driven with.
-        seeds: models of each kind, used in turn.
-        episodes: demonstrations, of which a fifth trains no model: alignments are judged on it.
-        epochs: passes over the training pairs, at most.
-        answers: that an alignment is learned from, asked for as `latentarm align` does.
-        to_each_goal: drives to each goal, in each condition.
-        limit_s: a drive that lasts longer has failed, s.
-    """
-
-    models: tuple[str, ...] = ("cvae",)
-    seeds: int = 3
-    episodes: int = 60
-    epochs: int = 16
-    answers: int = 10
-    to_each_goal: int = 20
-    limit_s: float = 30.0
+    models: tuple[str, ...] = ("cvae",)  # kinds that are driven with
+    seeds: int = 3  # models of each kind, used in turn
+    episodes: int = 60  # demonstrations, of which a fifth trains no model: alignments are judged on it
+    epochs: int = 16  # passes over the training pairs, at most
+    answers: int = 10  # that an alignment is learned from, asked for as `latentarm align` does
+    to_each_goal: int = 20  # drives to each goal, in each condition
+    limit_s: float = 30.0  # a drive that lasts longer has failed, s
 
 
 @dataclass(frozen=True)
 class Preset:
-    """Sizes of the study; where the paper gives a number, this is it.
+    """Sizes of the study; where the paper gives a number, this is it."""
 
-    Attributes:
-        name: what it is called on the command line.
-        models: whose decoders alignments are learned for; the paper's alone where time counts.
-        episodes: demonstrations that train the decoder and that questions are about; a fifth of them is for
-            validation and decides which epoch is best.
-        test_episodes: further ones, that alignments are judged on.
-        epochs: passes over the training pairs, at most.
-        batch_size: pairs per step.
-        hidden: units of each hidden layer of the decoder.
-        state_noise_rad: SD of the noise on training states, rad.
-        noises: coefficients of variation of the answers.
-        answers: that each alignment is learned from; 10 in the paper.
-        ideal_answers: of Ideal Align; 1000 in the paper.
-        unlabelled: contexts in which the priors are to hold; 1000 in the paper.
-        test_motions: held-out motions that the error is averaged over.
-        runs: alignments of each kind, each with different answers; 10 in the paper.
-        steps: of Adam, for each alignment.
-        ideal_runs: alignments of Ideal Align, which hardly differ.
-        ideal_steps: of Adam, for each of them.
-        ideal_held_out: share of its answers that decide which weights are kept.
-        surroundings: demonstrated motions that say which directions a place has.
-        curves: how error falls with the number of answers.
-        turning: people whose axes turn.
-        drives: drives to the goals of the demo.
-    """
-
-    name: str
+    name: str  # what it is called on the command line
+    # whose decoders alignments are learned for; the paper's alone where time counts
     models: tuple[str, ...] = ("cae",)
+    # demonstrations that train the decoder and that questions are about; a fifth of them is for validation
+    # and decides which epoch is best
     episodes: int = 40
-    test_episodes: int = 10
-    epochs: int = 60
-    batch_size: int = 256
-    hidden: tuple[int, ...] = (64, 64)
-    state_noise_rad: float = 0.01
-    noises: tuple[float, ...] = (0.0, 0.1, 0.5)
-    answers: int = 10
-    ideal_answers: int = 1000
-    unlabelled: int = 1000
-    test_motions: int = 500
-    runs: int = 10
-    steps: int = 400
-    ideal_runs: int = 3
-    ideal_steps: int = 10_000
-    ideal_held_out: float = 0.1
-    surroundings: int = 1000
-    curves: Curves = field(default_factory=Curves)
-    turning: Turning = field(default_factory=Turning)
-    drives: Drives = field(default_factory=Drives)
+    test_episodes: int = 10  # further ones, that alignments are judged on
+    epochs: int = 60  # passes over the training pairs, at most
+    batch_size: int = 256  # pairs per step
+    hidden: tuple[int, ...] = (64, 64)  # units of each hidden layer of the decoder
+    state_noise_rad: float = 0.01  # SD of the noise on training states, rad
+    noises: tuple[float, ...] = (0.0, 0.1, 0.5)  # coefficients of variation of the answers
+    answers: int = 10  # that each alignment is learned from; 10 in the paper
+    ideal_answers: int = 1000  # of Ideal Align; 1000 in the paper
+    unlabelled: int = 1000  # contexts in which the priors are to hold; 1000 in the paper
+    test_motions: int = 500  # held-out motions that the error is averaged over
+    runs: int = 10  # alignments of each kind, each with different answers; 10 in the paper
+    steps: int = 400  # of Adam, for each alignment
+    ideal_runs: int = 3  # alignments of Ideal Align, which hardly differ
+    ideal_steps: int = 10_000  # of Adam, for each of them
+    ideal_held_out: float = 0.1  # share of its answers that decide which weights are kept
+    surroundings: int = 1000  # demonstrated motions that say which directions a place has
+    curves: Curves = field(default_factory=Curves)  # how error falls with the number of answers
+    turning: Turning = field(default_factory=Turning)  # people whose axes turn
+    drives: Drives = field(default_factory=Drives)  # drives to the goals of the demo
 
 
 PRESETS: Final[dict[str, Preset]] = {

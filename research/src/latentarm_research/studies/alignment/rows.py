@@ -86,21 +86,13 @@ def asked(choice: str, count: int) -> str:
 
 @dataclass(frozen=True, eq=False)
 class AlignmentResults:
-    """All results, in the order of the tables.
+    """All results, in the order of the tables."""
 
-    Attributes:
-        decoders: that the alignments stand on.
-        results: the cells of the table, by task, model and noise.
-        curves: by noise, model and task.
-        turning: people whose axes turn, by noise.
-        drives: one for each kind of model that was driven with.
-    """
-
-    decoders: Sequence[LearnedDecoder]
-    results: Sequence[AlignmentErrors]
-    curves: Sequence[CurveResult]
-    turning: Sequence[TurningResult]
-    drives: Sequence[DrivesResult]
+    decoders: Sequence[LearnedDecoder]  # that the alignments stand on
+    results: Sequence[AlignmentErrors]  # the cells of the table, by task, model and noise
+    curves: Sequence[CurveResult]  # by noise, model and task
+    turning: Sequence[TurningResult]  # people whose axes turn, by noise
+    drives: Sequence[DrivesResult]  # one for each kind of model that was driven with
 
 
 def by_run(measured: AlignmentResults) -> list[dict[str, object]]:

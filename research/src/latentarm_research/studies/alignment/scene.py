@@ -49,34 +49,21 @@ WINDOW: Final = 10
 
 @dataclass(frozen=True)
 class DecoderCell:
-    """A decoder to be learned.
+    """A decoder to be learned."""
 
-    Attributes:
-        task: a name of `POURING_TASKS`.
-        model: a name of `MODELS`.
-        preset: sizes of the study.
-        seed: of the whole study; the same demonstrations come from it for every model.
-    """
-
-    task: str
-    model: str
-    preset: Preset
-    seed: int
+    task: str  # a name of `POURING_TASKS`
+    model: str  # a name of `MODELS`
+    preset: Preset  # sizes of the study
+    seed: int  # of the whole study; the same demonstrations come from it for every model
 
 
 @dataclass(frozen=True, eq=False)
 class LearnedDecoder:
-    """A decoder that was learned.
-
-    Attributes:
-        cell: what was asked for.
-        model: fitted, of one seed.
-        fit_s: how long that took, s.
-    """
+    """A decoder that was learned."""
 
     cell: DecoderCell
-    model: LatentActionModel
-    fit_s: float
+    model: LatentActionModel  # fitted, of one seed
+    fit_s: float  # how long that took, s
 
 
 def learn_decoder(cell: DecoderCell) -> LearnedDecoder:
@@ -132,25 +119,15 @@ ALL: Final = 10**9
 @final
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """What alignments are learned and judged with.
+    """What alignments are learned and judged with."""
 
-    Attributes:
-        learned: the decoder.
-        chain: the arm.
-        preference: what the simulated person means.
-        shown: motions of the training demonstrations that are visibly not rest.
-        unlabelled: (M, c), contexts of the training demonstrations.
-        test: held-out motions, and what is meant by them without noise.
-        surroundings: of the training demonstrations.
-    """
-
-    learned: LearnedDecoder
+    learned: LearnedDecoder  # the decoder
     chain: Chain
-    preference: Preference
-    shown: Motions
-    unlabelled: FloatArray
-    test: Answers
-    surroundings: DemonstratedDirections
+    preference: Preference  # what the simulated person means
+    shown: Motions  # motions of the training demonstrations that are visibly not rest
+    unlabelled: FloatArray  # (M, c), contexts of the training demonstrations
+    test: Answers  # held-out motions, and what is meant by them without noise
+    surroundings: DemonstratedDirections  # of the training demonstrations
 
     @property
     def model(self) -> LatentActionModel:

@@ -81,12 +81,7 @@ def target_table(found: Sequence[AlignmentTarget]) -> str:
 
 
 def summary_tables(rows: Sequence[Row], preset: Preset) -> list[Table]:
-    """A table per task with the paper's model, conditions down and noises across, and one per driven model.
-
-    Args:
-        rows: of the study.
-        preset: for the noises.
-    """
+    """A table per task with the paper's model, conditions down, noises across, and one per driven model."""
     tasks = dict.fromkeys(row.task for row in rows if row.task != TASK)
     models = dict.fromkeys(row.model for row in rows if row.task == TASK)
     return [

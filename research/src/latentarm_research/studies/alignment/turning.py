@@ -36,23 +36,14 @@ TURNING: Final = (PRIORS_AT_RANDOM, AT_RANDOM, CHOSEN, FEW, IDEAL)
 @final
 @dataclass(frozen=True, eq=False)
 class TurningAxes:
-    """A simulated person whose stick turns evenly along one direction of the table.
+    """A simulated person whose stick turns evenly along one direction of the table."""
 
-    Attributes:
-        chain: the arm; its first tool is looked at.
-        axes: what they mean where it is not turned.
-        mirrored: whether the second axis is the other way round.
-        middle_rad: how far the stick is turned in the middle of the table, rad.
-        turn_rad: how much farther it is turned at the end of the table, rad.
-        along: (2,), the unit direction in the plane along which it turns.
-    """
-
-    chain: Chain
-    axes: Preference
-    mirrored: bool
-    middle_rad: float
-    turn_rad: float
-    along: FloatArray
+    chain: Chain  # the arm; its first tool is looked at
+    axes: Preference  # what they mean where it is not turned
+    mirrored: bool  # whether the second axis is the other way round
+    middle_rad: float  # how far the stick is turned in the middle of the table, rad
+    turn_rad: float  # how much farther it is turned at the end of the table, rad
+    along: FloatArray  # (2,), the unit direction in the plane along which it turns
 
     def inputs(self, motions: Motions) -> FloatArray:
         """The inputs (N, 2) by which they would ask for N motions."""
@@ -81,15 +72,10 @@ def person(scene: Scene, number: int) -> TurningAxes:
 
 @dataclass(frozen=True, eq=False)
 class TurningCell:
-    """What is to be measured.
+    """What is to be measured."""
 
-    Attributes:
-        learned: the decoder.
-        noise: coefficient of variation of the answers.
-    """
-
-    learned: LearnedDecoder
-    noise: float
+    learned: LearnedDecoder  # the decoder
+    noise: float  # coefficient of variation of the answers
 
     @property
     def preset(self) -> Preset:
@@ -99,15 +85,11 @@ class TurningCell:
 
 @dataclass(frozen=True, eq=False)
 class TurningResult:
-    """What was measured.
-
-    Attributes:
-        cell: what was asked for.
-        errors: condition of `TURNING` -> (people,), relative errors on the held-out motions; of Ideal Align
-            for the first people alone.
-    """
+    """What was measured."""
 
     cell: TurningCell
+    # condition of `TURNING` -> (people,), relative errors on the held-out motions; of Ideal Align for the
+    # first people alone
     errors: Mapping[str, FloatArray]
 
 

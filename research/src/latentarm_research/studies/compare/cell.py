@@ -26,42 +26,25 @@ SEEDLESS: Final = "pca"
 
 @dataclass(frozen=True)
 class Place:
-    """Where a cell stands.
+    """Where a cell stands."""
 
-    Attributes:
-        dataset: its name.
-        noise_rad: SD of the noise on states, in training and in the noisy error, rad.
-        model: a name of `MODELS`.
-        fold: index of the fold.
-        demonstrations: how many train the model, the validation episodes among them.
-    """
-
-    dataset: str
-    noise_rad: float
-    model: str
-    fold: int
-    demonstrations: int
+    dataset: str  # its name
+    noise_rad: float  # SD of the noise on states, in training and in the noisy error, rad
+    model: str  # a name of `MODELS`
+    fold: int  # index of the fold
+    demonstrations: int  # how many train the model, the validation episodes among them
 
 
 @dataclass(frozen=True, eq=False)
 class FoldCell:
-    """What is to be measured.
+    """What is to be measured."""
 
-    Attributes:
-        dataset: what is learned from.
-        noise_rad: SD of the noise on states, rad.
-        model: a name of `MODELS`.
-        fold: which episodes do what.
-        preset: sizes.
-        seed: of everything random.
-    """
-
-    dataset: Dataset
-    noise_rad: float
-    model: str
-    fold: Fold
-    preset: Preset
-    seed: int
+    dataset: Dataset  # what is learned from
+    noise_rad: float  # SD of the noise on states, rad
+    model: str  # a name of `MODELS`
+    fold: Fold  # which episodes do what
+    preset: Preset  # sizes
+    seed: int  # of everything random
 
     @property
     def place(self) -> Place:
@@ -72,23 +55,15 @@ class FoldCell:
 
 @dataclass(frozen=True, eq=False)
 class FoldResult:
-    """What was measured.
+    """What was measured."""
 
-    Attributes:
-        place: of the cell.
-        figures: measure -> (S,), one figure per seed.
-        decoder: of the first seed.
-        fit_s: processor time of the fit of all seeds, s: it depends less than wall time on what runs besides.
-        measure_s: how long measuring took, s; planning is not in it.
-        plan_s: how long planning took for one decoder, s; 0 where nothing was planned.
-    """
-
-    place: Place
-    figures: Mapping[str, FloatArray]
-    decoder: Decoder
+    place: Place  # of the cell
+    figures: Mapping[str, FloatArray]  # measure -> (S,), one figure per seed
+    decoder: Decoder  # of the first seed
+    # processor time of the fit of all seeds, s: it depends less than wall time on what runs besides
     fit_s: float
-    measure_s: float
-    plan_s: float
+    measure_s: float  # how long measuring took, s; planning is not in it
+    plan_s: float  # how long planning took for one decoder, s; 0 where nothing was planned
 
 
 def measure_cell(cell: FoldCell) -> FoldResult:

@@ -17,17 +17,11 @@ from latentarm_research.studies.streams import sequence
 
 @dataclass(frozen=True, eq=False)
 class Dataset:
-    """Demonstrations, what they are called, and which of them are held out when.
+    """Demonstrations, what they are called, and which of them are held out when."""
 
-    Attributes:
-        name: of the folder.
-        demonstrations: all episodes.
-        folds: every episode is held out in one of them.
-    """
-
-    name: str
-    demonstrations: Demonstrations
-    folds: tuple[Fold, ...]
+    name: str  # of the folder
+    demonstrations: Demonstrations  # all episodes
+    folds: tuple[Fold, ...]  # every episode is held out in one of them
 
     @property
     def left(self) -> int:
@@ -37,11 +31,6 @@ class Dataset:
 
 def read_datasets(paths: Sequence[Path], folds: int, seed: int) -> list[Dataset]:
     """Read datasets of one robot and cut each into folds.
-
-    Args:
-        paths: their folders, all with different names.
-        folds: of each.
-        seed: of the comparison.
 
     Raises:
         UserError: one cannot be read, does not say its robot, is of another one, or has fewer episodes than

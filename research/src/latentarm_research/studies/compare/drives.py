@@ -42,50 +42,29 @@ MODES: Final = "end_effector"
 
 @dataclass(frozen=True, eq=False)
 class ModelDriveCell:
-    """One drive.
+    """One drive."""
 
-    Attributes:
-        dataset: what is driven.
-        episode: its index in the dataset.
-        controller: a model's name, or `MODES`.
-        decoder: of that model, trained on the fold; None for `MODES`.
-        limit_s: a drive that lasts longer has failed, s.
-        seed: of everything random.
-    """
-
-    dataset: Dataset
-    episode: int
-    controller: str
-    decoder: Decoder | None
-    limit_s: float
-    seed: int
+    dataset: Dataset  # what is driven
+    episode: int  # its index in the dataset
+    controller: str  # a model's name, or `MODES`
+    decoder: Decoder | None  # of that model, trained on the fold; None for `MODES`
+    limit_s: float  # a drive that lasts longer has failed, s
+    seed: int  # of everything random
 
 
 @dataclass(frozen=True, eq=False)
 class DriveResult:
-    """The result of a drive.
+    """The result of a drive."""
 
-    Attributes:
-        dataset: its name.
-        controller: a model's name, or `MODES`.
-        episode: its index in the dataset.
-        figures: of the drive.
-        progress: share of the waypoints that were reached.
-        ending: why it ended.
-        undone: share of the tool's path that was gone back over.
-        demonstrated_undone: the same of the episode itself.
-        took_s: computing time, s.
-    """
-
-    dataset: str
-    controller: str
-    episode: int
-    figures: Drive
-    progress: float
-    ending: Ending
-    undone: float
-    demonstrated_undone: float
-    took_s: float
+    dataset: str  # its name
+    controller: str  # a model's name, or `MODES`
+    episode: int  # its index in the dataset
+    figures: Drive  # of the drive
+    progress: float  # share of the waypoints that were reached
+    ending: Ending  # why it ended
+    undone: float  # share of the tool's path that was gone back over
+    demonstrated_undone: float  # the same of the episode itself
+    took_s: float  # computing time, s
 
 
 def drive_cells(
@@ -93,21 +72,11 @@ def drive_cells(
     results: Sequence[FoldResult],
     ours: str,
     noise_rad: float,
-    drives: int | None,
-    limit_s: float,
+    drives: int | None,  # folds, and episodes of each, at most; None for all
+    limit_s: float,  # a drive that lasts longer has failed, s
     seed: int,
 ) -> list[ModelDriveCell]:
-    """Every held-out episode once with each controller.
-
-    Args:
-        datasets: what was compared on.
-        results: of the cells that have all of a fold's demonstrations.
-        ours: the model that is driven as well as `BESIDE`, if both were compared.
-        noise_rad: of which models.
-        drives: folds, and episodes of each, at most; None for all.
-        limit_s: a drive that lasts longer has failed, s.
-        seed: of the study.
-    """
+    """Every held-out episode once with each controller."""
     decoders = {
         (one.place.dataset, one.place.model, one.place.fold): one.decoder
         for one in results

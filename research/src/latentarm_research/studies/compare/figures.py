@@ -40,19 +40,12 @@ FILLS: Final = ("full", "none", "bottom", "top", "left", "right")
 
 @dataclass(frozen=True)
 class Axis:
-    """How a measure is drawn.
+    """How a measure is drawn."""
 
-    Attributes:
-        measure: its name.
-        label: of the axis.
-        scale: what figures are multiplied by.
-        logarithmic: whether the scale is, with zero on it.
-    """
-
-    measure: str
-    label: str
-    scale: float = 1.0
-    logarithmic: bool = False
+    measure: str  # its name
+    label: str  # of the axis
+    scale: float = 1.0  # what figures are multiplied by
+    logarithmic: bool = False  # whether the scale is, with zero on it
 
 
 ERROR: Final = Axis("search_error_percent_of_pca", "error (% of PCA's)")
@@ -62,21 +55,13 @@ TURNING: Final = Axis("motion_turn", "joints' turn per stick's")
 
 
 def pareto_figure(
-    rows: Sequence[Row],
+    rows: Sequence[Row],  # see `rows_of`
     datasets: Sequence[str],
-    noises_rad: Sequence[float],
+    noises_rad: Sequence[float],  # rad; the first is filled, the second open
     across: Axis = ERROR,
     up: Sequence[Axis] = (REVERSAL, REACH),
 ) -> "Figure":
-    """Models in two measures at a time, best at the lower left.
-
-    Args:
-        rows: see `rows_of`.
-        datasets: names, a column each.
-        noises_rad: rad; the first is filled, the second open.
-        across: what is drawn from left to right.
-        up: what is drawn upwards, a line of panels each.
-    """
+    """Models in two measures at a time, best at the lower left."""
     figure = new_figure(HEIGHT_MM, TWO_COLUMNS_MM)
     said = ", ".join(
         f"{fill} {noise_rad:g} rad"

@@ -31,11 +31,7 @@ HYPOTHESIS: Final = "H1"
 
 
 def compared(results: Sequence[FoldResult]) -> list[Comparison]:
-    """Every test, after Holm's correction within its family.
-
-    Args:
-        results: of the cells that have all of a fold's demonstrations.
-    """
+    """Every test, after Holm's correction within its family."""
     places = dict.fromkeys((one.place.dataset, one.place.noise_rad) for one in results)
     found: list[Comparison] = []
     for measure, family in ENCODINGS.items():

@@ -69,17 +69,12 @@ def meaning_of(name: str) -> str:
 
 @dataclass(frozen=True)
 class MeasuredDecoder:
-    """What was measured.
+    """What was measured."""
 
-    Attributes:
-        figures: measure -> (S,), in the order of `MEASURED`; the planned one for its first seeds alone.
-        measure_s: how long it took without planning, s.
-        plan_s: how long planning took for one decoder, s.
-    """
-
+    # measure -> (S,), in the order of `MEASURED`; the planned one for its first seeds alone
     figures: Mapping[str, FloatArray]
-    measure_s: float
-    plan_s: float
+    measure_s: float  # how long it took without planning, s
+    plan_s: float  # how long planning took for one decoder, s
 
 
 def measure_model(

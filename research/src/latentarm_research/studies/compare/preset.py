@@ -26,44 +26,28 @@ CHOSEN_ON: Final = "pour_coffee"
 
 @dataclass(frozen=True)
 class Preset:
-    """Sizes of the comparison.
+    """Sizes of the comparison."""
 
-    Attributes:
-        name: what it is called on the command line.
-        models: names in the catalogue of models; by default all that load.
-        noises_rad: SDs of the noise on the states, rad.
-        folds: parts of each dataset; each is held out once.
-        seeds: models of each kind in each fold.
-        epochs: passes over the training pairs, at most; the model's own number where None.
-        batch_size: pairs per step: faster for every model than its own, and no worse.
-        hidden: units of each hidden layer, for every model.
-        searched_pairs: held-out pairs per fold, spread evenly, whose nearest inputs are searched for.
-        reach_pairs: pairs of start and goal per fold for the greedy operator.
-        planned_pairs: of these, how many the operator who plans is asked; 0 asks none.
-        planned_seeds: of the seeds, for how many.
-        turned_states: states in which the stick is led around.
-        demonstrations: numbers of training demonstrations for the curves with fewer, each below what a fold
-            leaves; that one is added.
-        drives: folds whose held-out episodes are driven, and how many of each; None drives all.
-        drive_limit_s: a drive that lasts longer has failed, s.
-    """
-
-    name: str
+    name: str  # what it is called on the command line
+    # names in the catalogue of models; by default all that load
     models: tuple[str, ...] = field(default_factory=lambda: tuple(KINDS.usable()))
-    noises_rad: tuple[float, ...] = (0.01, 0.1)
-    folds: int = 5
-    seeds: int = 5
-    epochs: int | None = None
-    batch_size: int = 128
-    hidden: tuple[int, ...] = (64, 64)
-    searched_pairs: int = 500
-    reach_pairs: int = 40
-    planned_pairs: int = 12
-    planned_seeds: int = 2
-    turned_states: int = 100
+    noises_rad: tuple[float, ...] = (0.01, 0.1)  # SDs of the noise on the states, rad
+    folds: int = 5  # parts of each dataset; each is held out once
+    seeds: int = 5  # models of each kind in each fold
+    epochs: int | None = None  # passes over the training pairs, at most; the model's own number where None
+    batch_size: int = 128  # pairs per step: faster for every model than its own, and no worse
+    hidden: tuple[int, ...] = (64, 64)  # units of each hidden layer, for every model
+    searched_pairs: int = 500  # held-out pairs per fold, spread evenly, whose nearest inputs are searched for
+    reach_pairs: int = 40  # pairs of start and goal per fold for the greedy operator
+    planned_pairs: int = 12  # of these, how many the operator who plans is asked; 0 asks none
+    planned_seeds: int = 2  # of the seeds, for how many
+    turned_states: int = 100  # states in which the stick is led around
+    # numbers of training demonstrations for the curves with fewer, each below what a fold leaves; that one is
+    # added
     demonstrations: tuple[int, ...] = (3, 6)
+    # folds whose held-out episodes are driven, and how many of each; None drives all
     drives: int | None = None
-    drive_limit_s: float = 300.0
+    drive_limit_s: float = 300.0  # a drive that lasts longer has failed, s
 
     def __post_init__(self) -> None:
         check_count("seeds", self.seeds)

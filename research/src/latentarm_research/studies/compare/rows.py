@@ -30,9 +30,6 @@ def rows_of(results: Sequence[FoldResult]) -> list[Row]:
 
     The first has mean and SD over the seeds of the mean over folds. The second, `OVER_FOLDS`, has the same
     mean and the SD over folds of the mean over seeds.
-
-    Args:
-        results: of the cells that have all of a fold's demonstrations.
     """
     rows: list[Row] = []
     for (dataset, noise_rad, model), cells in _grouped(results).items():
@@ -45,12 +42,7 @@ def rows_of(results: Sequence[FoldResult]) -> list[Row]:
 
 
 def rows_of_fewer(results: Sequence[FoldResult], all_of: Mapping[str, int]) -> list[Row]:
-    """Mean and SD over seeds of the mean over folds, by the number of demonstrations, fewest first.
-
-    Args:
-        results: of cells with fewer demonstrations and with all.
-        all_of: how many all are, by dataset; folds that leave one more count as if they did not.
-    """
+    """Mean and SD over seeds of the mean over folds, by the number of demonstrations, fewest first."""
     rows: list[Row] = []
     counts = [min(one.place.demonstrations, all_of[one.place.dataset]) for one in results]
     for count in sorted(set(counts)):

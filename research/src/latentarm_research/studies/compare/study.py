@@ -64,48 +64,28 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Asked:
-    """What is compared.
+    """What is compared."""
 
-    Attributes:
-        demonstrations: folders of native datasets, all of one robot.
-        preset: models, noises, folds and all sizes.
-        ours: the model that is judged against the targets.
-        seed: of everything random.
-        datasets: that the folders hold, with their folds.
-    """
-
-    demonstrations: tuple[Path, ...]
-    preset: Preset
-    ours: str
-    seed: int
-    datasets: tuple[Dataset, ...] = ()
+    demonstrations: tuple[Path, ...]  # folders of native datasets, all of one robot
+    preset: Preset  # models, noises, folds and all sizes
+    ours: str  # the model that is judged against the targets
+    seed: int  # of everything random
+    datasets: tuple[Dataset, ...] = ()  # that the folders hold, with their folds
 
 
 @dataclass(frozen=True, eq=False)
 class CompareResults:
-    """What was measured.
+    """What was measured."""
 
-    Attributes:
-        results: of all cells.
-        whole: of those that have all of a fold's demonstrations.
-        drives: along held-out episodes.
-    """
-
-    results: Sequence[FoldResult]
-    whole: Sequence[FoldResult]
-    drives: Sequence[DriveResult]
+    results: Sequence[FoldResult]  # of all cells
+    whole: Sequence[FoldResult]  # of those that have all of a fold's demonstrations
+    drives: Sequence[DriveResult]  # along held-out episodes
 
 
 def compare_study(
     demonstrations: tuple[Path, ...], preset: Preset, ours: str = OURS, seed: int = 0
 ) -> Study[Preset, CompareResults]:
     """The comparison on some datasets.
-
-    Args:
-        demonstrations: folders of native datasets, all of one robot.
-        preset: models, noises, folds and all sizes.
-        ours: the model that is judged against the targets.
-        seed: of everything random.
 
     Raises:
         UserError: a name is unknown or given twice, a noise is not a finite number, or a dataset cannot be

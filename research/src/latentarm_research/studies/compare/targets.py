@@ -21,43 +21,27 @@ FitTimes = Mapping[tuple[str, float, str], float]
 
 @dataclass(frozen=True)
 class ModelTarget:
-    """One target of a model.
+    """One target of a model."""
 
-    Attributes:
-        name: what is asked, in words.
-        measures: what it is asked of.
-        met: of our means and the other model's.
-        other: the model that it is relative to, whose figure is then shown too; None for none. A model is not
-            judged by itself.
-        scale: by which figures are multiplied to be shown.
-        unit: in which they are shown.
-    """
-
-    name: str
-    measures: tuple[str, ...]
-    met: Callable[[Means, Means], bool]
+    name: str  # what is asked, in words
+    measures: tuple[str, ...]  # what it is asked of
+    met: Callable[[Means, Means], bool]  # of our means and the other model's
+    # the model that it is relative to, whose figure is then shown too; None for none. A model is not judged
+    # by itself
     other: str | None = None
-    scale: float = 1.0
-    unit: str = ""
+    scale: float = 1.0  # by which figures are multiplied to be shown
+    unit: str = ""  # in which they are shown
 
 
 @dataclass(frozen=True)
 class TargetVerdict:
-    """The result of one target.
+    """The result of one target."""
 
-    Attributes:
-        target: its name.
-        dataset: where.
-        noise_rad: under which noise, rad.
-        met: whether it was met.
-        said: the figures.
-    """
-
-    target: str
-    dataset: str
-    noise_rad: float
-    met: bool
-    said: str
+    target: str  # its name
+    dataset: str  # where
+    noise_rad: float  # under which noise, rad
+    met: bool  # whether it was met
+    said: str  # the figures
 
 
 def _at_most(name: str, measure: str, limit: float, scale: float = 1.0, unit: str = "") -> ModelTarget:
@@ -102,20 +86,13 @@ TARGETS: Final = (
 
 
 def verdicts(
-    rows: Sequence[Row],
+    rows: Sequence[Row],  # see `rows_of`
     ours: str,
     datasets: Sequence[str],
-    noises_rad: Sequence[float],
+    noises_rad: Sequence[float],  # rad
     fit_times: FitTimes,
 ) -> list[TargetVerdict]:
     """Every target on every dataset under every noise; means are compared.
-
-    Args:
-        rows: see `rows_of`.
-        ours: the model that is judged.
-        datasets: names.
-        noises_rad: rad.
-        fit_times: of every model that was compared.
 
     Returns:
         Target by target, without those that are relative to a model that was not compared, or to itself.

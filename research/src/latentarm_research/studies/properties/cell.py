@@ -48,23 +48,14 @@ class Stream(IntEnum):
 
 @dataclass(frozen=True)
 class PropertiesCell:
-    """What is to be measured.
+    """What is to be measured."""
 
-    Attributes:
-        task: a name of `MOTIONS`.
-        model: a name of `MODELS`.
-        noise_rad: SD of the noise on states, in training and in the noisy error, rad.
-        preset: sizes of the study.
-        seed: of the whole study; the same demonstrations come from it for every kind of model and noise.
-        design: what the preset's design is called in a sweep.
-    """
-
-    task: str
-    model: str
-    noise_rad: float
-    preset: Preset
-    seed: int
-    design: str = AS_CHOSEN
+    task: str  # a name of `MOTIONS`
+    model: str  # a name of `MODELS`
+    noise_rad: float  # SD of the noise on states, in training and in the noisy error, rad
+    preset: Preset  # sizes of the study
+    seed: int  # of the whole study; the same demonstrations come from it for every kind of model and noise
+    design: str = AS_CHOSEN  # what the preset's design is called in a sweep
 
 
 def condition(noise_rad: float) -> str:
@@ -74,19 +65,13 @@ def condition(noise_rad: float) -> str:
 
 @dataclass(frozen=True, eq=False)
 class PropertiesResult:
-    """What was measured.
-
-    Attributes:
-        cell: what was asked for.
-        figures: measure -> (S,), one figure per seed; each seed has demonstrations of its own.
-        decoder: of the first seed, for figures.
-        fit_s: how long the fit of all seeds took, s.
-    """
+    """What was measured."""
 
     cell: PropertiesCell
+    # measure -> (S,), one figure per seed; each seed has demonstrations of its own
     figures: Mapping[str, FloatArray]
-    decoder: Decoder
-    fit_s: float
+    decoder: Decoder  # of the first seed, for figures
+    fit_s: float  # how long the fit of all seeds took, s
 
 
 def measure_cell(cell: PropertiesCell) -> PropertiesResult:
@@ -104,15 +89,10 @@ def measure_cell(cell: PropertiesCell) -> PropertiesResult:
 
 @dataclass(frozen=True, eq=False)
 class Demonstrated:
-    """One seed's demonstrations.
+    """One seed's demonstrations."""
 
-    Attributes:
-        training: to fit a model to.
-        test: that its figures are taken on.
-    """
-
-    training: Demonstrations
-    test: Demonstrations
+    training: Demonstrations  # to fit a model to
+    test: Demonstrations  # that its figures are taken on
 
 
 @lru_cache(maxsize=2)

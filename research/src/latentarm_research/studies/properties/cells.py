@@ -32,15 +32,10 @@ class PaperVerdict(StrEnum):
 
 @dataclass(frozen=True)
 class PaperCell:
-    """One cell of the paper's table.
+    """One cell of the paper's table."""
 
-    Attributes:
-        row: ours, with the paper's mean and SD.
-        verdict: how they compare.
-    """
-
-    row: Row
-    verdict: PaperVerdict
+    row: Row  # ours, with the paper's mean and SD
+    verdict: PaperVerdict  # how they compare
 
 
 def judge(mean: float, paper: float, sd: float, better: str, sees_context: bool) -> PaperVerdict:
@@ -118,12 +113,7 @@ def _printed(row: Row) -> str:
 
 
 def sweep_table(rows: Sequence[Row], designs: Sequence[str]) -> str:
-    """How many cells have each verdict in each design, and which are missed.
-
-    Args:
-        rows: of the study, those of a design with its name as their condition.
-        designs: their names.
-    """
+    """How many cells have each verdict in each design, and which are missed."""
     lines: list[list[str]] = []
     for design in designs:
         here = [replace(row, condition=None) for row in rows if row.condition == design]

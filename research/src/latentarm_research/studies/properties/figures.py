@@ -17,19 +17,12 @@ if TYPE_CHECKING:
 
 
 class Point(NamedTuple):
-    """One model's figure, with the paper's.
+    """One model's figure, with the paper's."""
 
-    Attributes:
-        mean: over seeds.
-        sd: over seeds, 0 where there is one seed.
-        paper: the paper's mean, where it reports one.
-        paper_sd: 0 where the paper reports none.
-    """
-
-    mean: float
-    sd: float
-    paper: float | None
-    paper_sd: float
+    mean: float  # over seeds
+    sd: float  # over seeds, 0 where there is one seed
+    paper: float | None  # the paper's mean, where it reports one
+    paper_sd: float  # 0 where the paper reports none
 
 
 def points(rows: Iterable[Row], task: str, measure: str, condition: str | None = None) -> dict[str, Point]:
@@ -57,11 +50,6 @@ PAPER_SIGN: Final = "($\\diamond$: the paper)"
 
 def log_axis(axes: "Axes", figures: Collection[Point], least: float = 0.0) -> float:
     """Make the x axis logarithmic, around all figures and the paper's.
-
-    Args:
-        axes: the panel.
-        figures: all that are drawn.
-        least: the axis goes no further down.
 
     Returns:
         Its left edge.
@@ -177,12 +165,7 @@ FRAME_MM: Final = 17.0
 
 
 def beside_paper_figure(rows: Sequence[Row], tasks: Sequence[str]) -> "Figure":
-    """One panel per task and measure: ours filled, the paper's hollow; models that the paper has, and ours.
-
-    Args:
-        rows: of the study, with the paper's figures.
-        tasks: those that were run.
-    """
+    """One panel per task and measure: ours filled, the paper's hollow; the paper's models, and ours."""
     compared = [(task, measure, label) for task, measure, label in COMPARED if task in tasks]
     found = [points(rows, task, measure) for task, measure, _ in compared]
     printed = {model for figures in found for model, figure in figures.items() if figure.paper is not None}
@@ -232,12 +215,7 @@ def measure_of(task: str) -> str:
 
 
 def controllability_figure(rows: Sequence[Row], tasks: Sequence[str]) -> "Figure":
-    """Least distance of the tool from its goal, one panel per task, with the distance at the start.
-
-    Args:
-        rows: of the study.
-        tasks: those that were run.
-    """
+    """Least distance of the tool from its goal, one panel per task, with the distance at the start."""
     down = -(-len(tasks) // COLUMNS)
     figure = new_figure(down * ROW_MM + 6.0, TWO_COLUMNS_MM)
     figure.suptitle(

@@ -40,21 +40,13 @@ lowest that it prints; this is one SD below, where a line still explains nine te
 
 @dataclass(frozen=True)
 class PropertyClaim:
-    """One part of a hypothesis.
+    """One part of a hypothesis."""
 
-    Attributes:
-        hypothesis: ``H1`` or ``H2``.
-        measure: what is compared.
-        direction: whether a conditioned model should have less of it or more.
-        threshold: what it is compared with; every unconditioned model where None.
-        tasks: where; on every task that has the measure where None.
-    """
-
-    hypothesis: str
-    measure: str
-    direction: Direction
-    threshold: float | None = None
-    tasks: tuple[str, ...] | None = None
+    hypothesis: str  # `H1` or `H2`
+    measure: str  # what is compared
+    direction: Direction  # whether a conditioned model should have less of it or more
+    threshold: float | None = None  # what it is compared with; every unconditioned model where None
+    tasks: tuple[str, ...] | None = None  # where; on every task that has the measure where None
 
 
 # Path length is no part of this: an arm that stops far from its goal has a short path.

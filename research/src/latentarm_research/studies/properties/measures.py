@@ -103,13 +103,6 @@ def latent_figures(
 ) -> dict[str, FloatArray]:
     """What z does: consistency with scalability, the angle between axes, drift and reversal.
 
-    Args:
-        motion: the task.
-        model: of S seeds.
-        decoders: its S decoders.
-        pairs: from `recorded_pairs`; the states are taken without noise.
-        preset: how many states and values of z.
-
     Returns:
         Measure -> (S,).
     """
@@ -137,12 +130,6 @@ def control_figures(
     goals: StartGoalPairs,
 ) -> dict[str, FloatArray]:
     """Controllability, also in percent of PCA's on the same pairs.
-
-    Args:
-        motion: the task.
-        decoders: S decoders.
-        pca: the baseline.
-        goals: from `start_goal_pairs`.
 
     Returns:
         Measure -> (S,), of the mean over pairs and of the median, and the distance at the start, (1,), which
@@ -188,12 +175,6 @@ def reach_figures(
     motion: ReachRegion, decoders: Sequence[DecodesActions], count: int, rng: np.random.Generator
 ) -> dict[str, FloatArray]:
     """Final distances to goals in the region, path lengths, and how crooked the paths are.
-
-    Args:
-        motion: the task.
-        decoders: S decoders.
-        count: goals, each with a different start.
-        rng: picks starts, postures and goals.
 
     Returns:
         Measure -> (S,), and the distance at the start, (1,). How crooked is the length over the way from

@@ -102,9 +102,6 @@ and by means as well."""
 def with_paper(rows: Sequence[Row]) -> list[Row]:
     """The rows of a study, with the paper's figures where they can be compared.
 
-    Args:
-        rows: of any tasks, models and conditions; only those without a condition are the paper's setting.
-
     Returns:
         The same rows in their order, `Row.paper_mean` and `Row.paper_sd` filled in where the paper has them,
         and after them the ratios to the VAE by which the lengths on the reach task can be compared.

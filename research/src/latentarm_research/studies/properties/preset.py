@@ -17,45 +17,31 @@ def _models() -> tuple[str, ...]:
 
 @dataclass(frozen=True)
 class Preset:
-    """Sizes of the study.
+    """Sizes of the study."""
 
-    Attributes:
-        name: what it is called on the command line.
-        models: names in the catalogue of models; by default all that load but `LEFT_OUT`.
-        design: how the tasks are demonstrated.
-        episodes: demonstrations that each model has to itself; with 10 pairs each, the 10000 pairs that the
-            paper trains on. A fifth of them is for validation and decides which epoch is best.
-        test_episodes: further demonstrations, of its own too, that each model's figures are taken on.
-        seeds: models of each kind; the paper's figures are over 10.
-        epochs: passes over the training pairs, at most.
-        batch_size: pairs per step.
-        hidden: units of each hidden layer; the paper leaves them open.
-        kl_weight: lambda of equations 7 and 8; the paper says below 1.
-        reach_pairs: pairs of start and goal states by which a model's controllability is measured; over ten
-            models they are the paper's 1000.
-        reach_goals: goals in the region that each model of reach is driven to.
-        states: along the task, from which the effects of a grid of latent actions are measured; 25 in the
-            paper.
-        grid: latent actions in [-1, 1] at each of them.
-        noises_rad: standard deviations of the noise on states, rad; 0 is the paper's setting.
-        sweeps: whether the design is varied as well, see `latentarm_research.studies.properties.sweep`.
-    """
-
-    name: str
+    name: str  # what it is called on the command line
+    # names in the catalogue of models; by default all that load but `LEFT_OUT`
     models: tuple[str, ...] = field(default_factory=_models)
-    design: Design = DESIGN
+    design: Design = DESIGN  # how the tasks are demonstrated
+    # demonstrations that each model has to itself; with 10 pairs each, the 10000 pairs that the paper trains
+    # on. A fifth of them is for validation and decides which epoch is best
     episodes: int = 1000
-    test_episodes: int = 200
-    seeds: int = 10
-    epochs: int = 30
-    batch_size: int = 100
-    hidden: tuple[int, ...] = (64, 64)
-    kl_weight: float = 0.03
+    test_episodes: int = 200  # further demonstrations, of its own too, that each model's figures are taken on
+    seeds: int = 10  # models of each kind; the paper's figures are over 10
+    epochs: int = 30  # passes over the training pairs, at most
+    batch_size: int = 100  # pairs per step
+    hidden: tuple[int, ...] = (64, 64)  # units of each hidden layer; the paper leaves them open
+    kl_weight: float = 0.03  # lambda of equations 7 and 8; the paper says below 1
+    # pairs of start and goal states by which a model's controllability is measured; over ten models they are
+    # the paper's 1000
     reach_pairs: int = 100
-    reach_goals: int = 100
+    reach_goals: int = 100  # goals in the region that each model of reach is driven to
+    # along the task, from which the effects of a grid of latent actions are measured; 25 in the paper
     states: int = 25
-    grid: int = 21
+    grid: int = 21  # latent actions in [-1, 1] at each of them
+    # standard deviations of the noise on states, rad; 0 is the paper's setting
     noises_rad: tuple[float, ...] = (0.0,)
+    # whether the design is varied as well, see `latentarm_research.studies.properties.sweep`
     sweeps: bool = False
 
 

@@ -19,12 +19,7 @@ def weight_label(weight: float) -> str:
 
 
 def variants(ablation: Ablation, proper: Entropy) -> dict[str, Entropy | None]:
-    """Every variant by what it is called, each once.
-
-    Args:
-        ablation: what is varied.
-        proper: of the study proper, from which one thing at a time is varied.
-    """
+    """Every variant by what it is called, each once."""
     found: dict[str, Entropy | None] = {
         weight_label(one): replace(proper, weight=one) if one else None for one in ablation.weights
     }

@@ -58,70 +58,41 @@ class Stream(IntEnum):
 
 @dataclass(frozen=True)
 class AutonomyCell:
-    """What is to be measured.
+    """What is to be measured."""
 
-    Attributes:
-        task: a name of `TASKS`.
-        model: a name of `MODELS`.
-        entropy: term that is added to the model's own loss, or None for that alone.
-        variant: what an ablation calls it; None in the study proper.
-        methods: names of `METHODS` that it is driven by.
-        people: who drives.
-        seeds: models of the kind.
-        drives: drives with each of them and each person.
-        preset: sizes of the training.
-        seed: of the whole study; demonstrations, starts and chances come from it and are the same for every
-            model.
-    """
-
-    task: str
-    model: str
-    entropy: Entropy | None
-    variant: str | None
-    methods: tuple[str, ...]
-    people: tuple[Person, ...]
-    seeds: int
-    drives: int
-    preset: Preset
+    task: str  # a name of `TASKS`
+    model: str  # a name of `MODELS`
+    entropy: Entropy | None  # term that is added to the model's own loss, or None for that alone
+    variant: str | None  # what an ablation calls it; None in the study proper
+    methods: tuple[str, ...]  # names of `METHODS` that it is driven by
+    people: tuple[Person, ...]  # who drives
+    seeds: int  # models of the kind
+    drives: int  # drives with each of them and each person
+    preset: Preset  # sizes of the training
+    # of the whole study; demonstrations, starts and chances come from it and are the same for every model
     seed: int
 
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
-    """Results of one kind of person with one method.
+    """Results of one kind of person with one method."""
 
-    Attributes:
-        method: a name of `METHODS`.
-        person: who drove.
-        figures: measure -> (S, P), of each seed's drives.
-        error: (S, T + 1), state error over time, mean over a seed's drives.
-        belief: (S, T + 1), in the goal that is wanted in the end.
-    """
-
-    method: str
-    person: Person
-    figures: Mapping[str, FloatArray]
-    error: FloatArray
-    belief: FloatArray
+    method: str  # a name of `METHODS`
+    person: Person  # who drove
+    figures: Mapping[str, FloatArray]  # measure -> (S, P), of each seed's drives
+    error: FloatArray  # (S, T + 1), state error over time, mean over a seed's drives
+    belief: FloatArray  # (S, T + 1), in the goal that is wanted in the end
 
 
 @dataclass(frozen=True, eq=False)
 class AutonomyResult:
-    """What was measured.
-
-    Attributes:
-        cell: what was asked for.
-        outcomes: of every method and person.
-        reconstruction: (S,), error on test demonstrations, % of PCA's.
-        fit_s: how long the fit of all seeds took, s.
-        drive_s: how long all drives took, s.
-    """
+    """What was measured."""
 
     cell: AutonomyCell
-    outcomes: tuple[Outcome, ...]
-    reconstruction: FloatArray
-    fit_s: float
-    drive_s: float
+    outcomes: tuple[Outcome, ...]  # of every method and person
+    reconstruction: FloatArray  # (S,), error on test demonstrations, % of PCA's
+    fit_s: float  # how long the fit of all seeds took, s
+    drive_s: float  # how long all drives took, s
 
 
 def measure_cell(cell: AutonomyCell) -> AutonomyResult:

@@ -41,17 +41,11 @@ RULE: Final = partial(BoltzmannBelief, beta=5.0, horizon_s=0.5, floor=0.01)
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """The arm, and the goals it is driven to.
+    """The arm, and the goals it is driven to."""
 
-    Attributes:
-        chain: the arm's kinematics.
-        belief: over the G goals, updated every `STEP_S`.
-        speed: root mean square of the demonstrated ‖a‖, rad/s.
-    """
-
-    chain: Chain
-    belief: Belief
-    speed: float
+    chain: Chain  # the arm's kinematics
+    belief: Belief  # over the G goals, updated every `STEP_S`
+    speed: float  # root mean square of the demonstrated ‖a‖, rad/s
 
     @property
     def goals(self) -> FloatArray:
@@ -61,40 +55,24 @@ class Scene:
 
 @dataclass(frozen=True, eq=False)
 class Moment:
-    """One step of P drives.
+    """One step of P drives."""
 
-    Attributes:
-        state: (P, n), before the step, rad.
-        belief: (P, G), that the step used.
-        wanted: (P,), index of the goal that each person has just now.
-        alpha: (P,), arbitration.
-        u: (P,), what each person presses.
-        action: (P, n), what the arm does, rad/s.
-    """
-
-    state: FloatArray
-    belief: FloatArray
-    wanted: IntArray
-    alpha: FloatArray
-    u: FloatArray
-    action: FloatArray
+    state: FloatArray  # (P, n), before the step, rad
+    belief: FloatArray  # (P, G), that the step used
+    wanted: IntArray  # (P,), index of the goal that each person has just now
+    alpha: FloatArray  # (P,), arbitration
+    u: FloatArray  # (P,), what each person presses
+    action: FloatArray  # (P, n), what the arm does, rad/s
 
 
 @dataclass(frozen=True, eq=False)
 class Drives:
-    """What became of P drives over T steps.
+    """What became of P drives over T steps."""
 
-    Attributes:
-        moments: with a further axis after the drives, (P, T, ...).
-        state: (P, n), at the end, rad.
-        belief: (P, G), at the end.
-        target: (P,), index of the goal that each person has in the end.
-    """
-
-    moments: Moment
-    state: FloatArray
-    belief: FloatArray
-    target: IntArray
+    moments: Moment  # with a further axis after the drives, (P, T, ...)
+    state: FloatArray  # (P, n), at the end, rad
+    belief: FloatArray  # (P, G), at the end
+    target: IntArray  # (P,), index of the goal that each person has in the end
 
 
 def drive(
@@ -144,21 +122,12 @@ def steps_of(person: Person) -> int:
 def _pressed(
     decoder: DecodesActions,
     scene: Scene,
-    context: FloatArray,
-    place: FloatArray,
-    beta: FloatArray,
-    chance: FloatArray,
+    context: FloatArray,  # (P, c)
+    place: FloatArray,  # (P, 3), where each person wants the tool, m
+    beta: FloatArray,  # (P,), rationality, 1/m²
+    chance: FloatArray,  # (P,), uniform in [0, 1)
 ) -> FloatArray:
-    """What each of P people presses (equation 24), (P, 1).
-
-    Args:
-        decoder: sees the context.
-        scene: the arm.
-        context: (P, c).
-        place: (P, 3), where each person wants the tool, m.
-        beta: (P,), rationality, 1/m².
-        chance: (P,), uniform in [0, 1).
-    """
+    """What each of P people presses (equation 24), (P, 1)."""
     state = context[:, None, : scene.goals.shape[-1]]
     known = np.broadcast_to(KNOWN[:, None], (len(context), len(KNOWN), 1))
     reached = state + LOOK_AHEAD_S * decoder.decode(known, context[:, None])

@@ -291,14 +291,7 @@ def draw_over(
 
 
 def draw_course(axes: "Axes", outcomes: Outcomes, person: str, what: str) -> None:
-    """State error or belief over time, one line per method with its 95 % interval as a band.
-
-    Args:
-        axes: the panel.
-        outcomes: by method and person.
-        person: label.
-        what: ``error`` or ``belief``.
-    """
+    """State error or belief over time, one line per method with its 95 % interval as a band."""
     for index, method in enumerate(METHODS):
         if (method, person) not in outcomes:
             continue

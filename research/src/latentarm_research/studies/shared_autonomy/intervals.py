@@ -15,19 +15,12 @@ FEWEST_SEEDS: Final = 3
 
 @dataclass(frozen=True)
 class Interval:
-    """A mean and what it could well be.
+    """A mean and what it could well be."""
 
-    Attributes:
-        mean: over the units.
-        sd: over the units; 0 for one unit.
-        n: units.
-        over: what they are.
-    """
-
-    mean: float
-    sd: float
-    n: int
-    over: Literal["seeds", "drives"]
+    mean: float  # over the units
+    sd: float  # over the units; 0 for one unit
+    n: int  # units
+    over: Literal["seeds", "drives"]  # what they are
 
     @property
     def half_width(self) -> float:
@@ -70,17 +63,11 @@ def student(n: int) -> float:
 
 
 class Band(NamedTuple):
-    """What seeds did over time, each (T,).
+    """What seeds did over time, each (T,)."""
 
-    Attributes:
-        mean: over seeds.
-        low: lower end of the 95 % bootstrap interval for the mean.
-        high: upper end.
-    """
-
-    mean: FloatArray
-    low: FloatArray
-    high: FloatArray
+    mean: FloatArray  # over seeds
+    low: FloatArray  # lower end of the 95 % bootstrap interval for the mean
+    high: FloatArray  # upper end
 
 
 def band(courses: FloatArray) -> Band:

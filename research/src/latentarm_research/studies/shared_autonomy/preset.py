@@ -18,21 +18,13 @@ CHANGING_DRIVE_S: Final = 16.0
 
 @dataclass(frozen=True)
 class Person:
-    """A simulated person, whose rationality is ``beta(t) = beta + beta_per_s t``.
+    """A simulated person, whose rationality is ``beta(t) = beta + beta_per_s t``."""
 
-    Attributes:
-        label: what they are called in tables.
-        beta: rationality at the start, 1/m².
-        beta_per_s: how fast it grows, 1/m² per s.
-        changes_at_s: until then they want the other cup, s.
-        drive_s: how long they drive, s.
-    """
-
-    label: str
-    beta: float
-    beta_per_s: float = 0.0
-    changes_at_s: float = 0.0
-    drive_s: float = DRIVE_S
+    label: str  # what they are called in tables
+    beta: float  # rationality at the start, 1/m²
+    beta_per_s: float = 0.0  # how fast it grows, 1/m² per s
+    changes_at_s: float = 0.0  # until then they want the other cup, s
+    drive_s: float = DRIVE_S  # how long they drive, s
 
     def rationality(self, time_s: float) -> float:
         """beta(t), 1/m²."""
@@ -61,89 +53,54 @@ def changing(after_s: float) -> Person:
 
 @dataclass(frozen=True)
 class Entropy:
-    """How the entropy over goals is trained; see `GoalEntropy`.
+    """How the entropy over goals is trained; see `GoalEntropy`."""
 
-    Attributes:
-        weight: lambda_2.
-        sharpness: kappa.
-        least_progress: rho_0; -inf is equation 15 to the letter.
-        where: contexts that it is taken in.
-        sees_tool: whether progress is the tool's as well, or the joints' alone.
-    """
-
-    weight: float
-    sharpness: float = GoalEntropy.sharpness
-    least_progress: float = GoalEntropy.least_progress
-    where: Where = GoalEntropy.where
-    sees_tool: bool = True
+    weight: float  # lambda_2
+    sharpness: float = GoalEntropy.sharpness  # kappa
+    least_progress: float = GoalEntropy.least_progress  # rho_0; -inf is equation 15 to the letter
+    where: Where = GoalEntropy.where  # contexts that it is taken in
+    sees_tool: bool = True  # whether progress is the tool's as well, or the joints' alone
 
 
 @dataclass(frozen=True)
 class Ablation:
-    """What is varied about the entropy, one thing at a time, with the cAE.
+    """What is varied about the entropy, one thing at a time, with the cAE."""
 
-    Attributes:
-        seeds: models of each kind.
-        drives: drives with each of them and each person.
-        weights: values of lambda_2.
-        sharpness: values of kappa.
-        contexts: where the entropy is taken.
-        without_no_goal: whether to take equation 15 to the letter as well, without an outcome that no goal
-            is conveyed.
-        joints_alone: whether to take progress by the joints alone as well, without the tool.
-    """
-
-    seeds: int = 3
-    drives: int = 20
-    weights: tuple[float, ...] = (0.0, 0.3, 3.0, 10.0)
-    sharpness: tuple[float, ...] = (1.0, 4.0, 16.0)
-    contexts: tuple[Where, ...] = ("demonstrated", "any_belief", "anywhere")
+    seeds: int = 3  # models of each kind
+    drives: int = 20  # drives with each of them and each person
+    weights: tuple[float, ...] = (0.0, 0.3, 3.0, 10.0)  # values of lambda_2
+    sharpness: tuple[float, ...] = (1.0, 4.0, 16.0)  # values of kappa
+    contexts: tuple[Where, ...] = ("demonstrated", "any_belief", "anywhere")  # where the entropy is taken
+    # whether to take equation 15 to the letter as well, without an outcome that no goal is conveyed
     without_no_goal: bool = True
-    joints_alone: bool = True
+    joints_alone: bool = True  # whether to take progress by the joints alone as well, without the tool
 
 
 @dataclass(frozen=True)
 class Preset:
-    """Sizes of the study.
+    """Sizes of the study."""
 
-    Attributes:
-        name: what it is called on the command line.
-        demonstrations: to train on; a fifth of them is for validation and decides which epoch is best.
-        test_demonstrations: further ones, that reconstruction is measured on.
-        seeds: models of each kind.
-        drives: drives with each of them and each person, half of them to each cup.
-        epochs: passes over the training pairs, at most.
-        batch_size: pairs per step.
-        hidden: units of each hidden layer.
-        state_noise_rad: SD of the noise on training states, rad. Help leaves the arm within about this much
-            of a cup, and there the decoder has to do what was demonstrated at the cup.
-        kl_weight: lambda_1 of equation 16, for the cVAE.
-        entropy: of equation 16, with lambda_2 and kappa.
-        betas: rationalities of people of fixed expertise, 1/m²; the first and the last are the extremes.
-        learners: how fast people learn, 1/m² per s, by name: the slowest and the fastest slope of a sweep at
-            which help with entropy and without it separated in development (planar arm, cAE, two models of 30
-            demonstrations).
-        slopes: of further learners, for the sweep, 1/m² per s.
-        changes_s: after how long people change their mind, s.
-        ablation: what is varied about the entropy, or None.
-    """
-
-    name: str
-    demonstrations: int = 60
-    test_demonstrations: int = 20
-    seeds: int = 10
-    drives: int = 24
-    epochs: int = 60
-    batch_size: int = 100
-    hidden: tuple[int, ...] = (64, 64)
+    name: str  # what it is called on the command line
+    demonstrations: int = 60  # to train on; a fifth of them is for validation and decides which epoch is best
+    test_demonstrations: int = 20  # further ones, that reconstruction is measured on
+    seeds: int = 10  # models of each kind
+    drives: int = 24  # drives with each of them and each person, half of them to each cup
+    epochs: int = 60  # passes over the training pairs, at most
+    batch_size: int = 100  # pairs per step
+    hidden: tuple[int, ...] = (64, 64)  # units of each hidden layer
+    # SD of the noise on training states, rad. Help leaves the arm within about this much of a cup, and there
+    # the decoder has to do what was demonstrated at the cup
     state_noise_rad: float = 0.05
-    kl_weight: float = 0.05
-    entropy: Entropy = Entropy(weight=3.0, sharpness=8.0)
+    kl_weight: float = 0.05  # lambda_1 of equation 16, for the cVAE
+    entropy: Entropy = Entropy(weight=3.0, sharpness=8.0)  # of equation 16, with lambda_2 and kappa
+    # rationalities of people of fixed expertise, 1/m²; the first and the last are the extremes
     betas: tuple[float, ...] = (0.0, 10.0, 30.0, 75.0, 1000.0, 10000.0)
+    # how fast people learn, 1/m² per s, by name: the slowest and the fastest slope of a sweep at which help
+    # with entropy and without it separated in development (planar arm, cAE, two models of 30 demonstrations)
     learners: Mapping[str, float] = field(default_factory=lambda: {"slow": 2.5, "fast": 25.0})
-    slopes: tuple[float, ...] = (0.5, 8.0, 80.0, 250.0)
-    changes_s: tuple[float, ...] = (0.0, 2.0, 4.0, 8.0)
-    ablation: Ablation | None = field(default_factory=Ablation)
+    slopes: tuple[float, ...] = (0.5, 8.0, 80.0, 250.0)  # of further learners, for the sweep, 1/m² per s
+    changes_s: tuple[float, ...] = (0.0, 2.0, 4.0, 8.0)  # after how long people change their mind, s
+    ablation: Ablation | None = field(default_factory=Ablation)  # what is varied about the entropy, or None
 
     @property
     def people(self) -> tuple[Person, ...]:

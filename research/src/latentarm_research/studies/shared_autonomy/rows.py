@@ -41,21 +41,13 @@ RECONSTRUCTION: Final = "noise_free_error_percent_of_pca"
 
 
 class Figure(NamedTuple):
-    """One figure of the study, before it is summed up.
-
-    Attributes:
-        task: name of the task.
-        model: name of the model.
-        condition: what was varied: method and person, or variant.
-        measure: what was measured.
-        values: (S, P), of each drive with each seed's model; (S, 1) where it is the model's own.
-    """
+    """One figure of the study, before it is summed up."""
 
     task: str
     model: str
-    condition: str
-    measure: str
-    values: FloatArray
+    condition: str  # what was varied: method and person, or variant
+    measure: str  # what was measured
+    values: FloatArray  # (S, P), of each drive with each seed's model; (S, 1) where it is the model's own
 
     @property
     def interval(self) -> Interval:

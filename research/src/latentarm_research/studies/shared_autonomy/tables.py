@@ -20,12 +20,7 @@ from latentarm_research.studies.shared_autonomy.rows import EXTRA_TIME, MODEL, P
 
 @final
 class Tables:
-    """The tables of the page, in Markdown: means with their intervals.
-
-    Args:
-        found: every figure.
-        preset: sizes of the study.
-    """
+    """The tables of the page, in Markdown: means with their intervals."""
 
     def __init__(self, found: Sequence[Figure], preset: Preset) -> None:
         self._found = {(one.task, one.model, one.condition, one.measure): one for one in found}

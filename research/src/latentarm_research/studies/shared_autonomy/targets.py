@@ -19,21 +19,13 @@ AT_MOST: Final = 0.1
 
 
 class AutonomyTarget(NamedTuple):
-    """One target with one model on one arm.
+    """One target with one model on one arm."""
 
-    Attributes:
-        said: what is asked for.
-        task: the arm's task.
-        model: the model.
-        found: the figures that decide it.
-        met: whether they are as asked for.
-    """
-
-    said: str
-    task: str
+    said: str  # what is asked for
+    task: str  # the arm's task
     model: str
-    found: str
-    met: bool
+    found: str  # the figures that decide it
+    met: bool  # whether they are as asked for
 
 
 def targets(found: Sequence[Figure], preset: Preset) -> list[AutonomyTarget]:

@@ -26,37 +26,23 @@ from latentarm_research.studies.tasks.runs import Driver, Run, choice_of, decode
 @final
 @dataclass(frozen=True)
 class ShownCell:
-    """A run of the scripted demonstrator.
+    """A run of the scripted demonstrator."""
 
-    Attributes:
-        task: a name of `latentarm_research.studies.tasks.moved.TASKS`.
-        stream: what the run is for: `Stream.RUNS` or `Stream.DEMONSTRATIONS`.
-        number: of the run.
-        seed: of the study.
-    """
-
-    task: str
-    stream: Stream
-    number: int
-    seed: int
+    task: str  # a name of `latentarm_research.studies.tasks.moved.TASKS`
+    stream: Stream  # what the run is for: `Stream.RUNS` or `Stream.DEMONSTRATIONS`
+    number: int  # of the run
+    seed: int  # of the study
 
 
 @final
 @dataclass(frozen=True, eq=False)
 class DemonstratedRun:
-    """The result of a `ShownCell`.
-
-    Attributes:
-        cell: what was asked for.
-        run: how it went.
-        episode: the demonstration; None where it failed.
-        objects: names of the things whose poses the episode holds.
-    """
+    """The result of a `ShownCell`."""
 
     cell: ShownCell
-    run: Run
-    episode: Episode | None
-    objects: tuple[str, ...]
+    run: Run  # how it went
+    episode: Episode | None  # the demonstration; None where it failed
+    objects: tuple[str, ...]  # names of the things whose poses the episode holds
 
 
 def show(cell: ShownCell) -> DemonstratedRun:
@@ -76,39 +62,24 @@ def show(cell: ShownCell) -> DemonstratedRun:
 @final
 @dataclass(frozen=True, eq=False)
 class ModelCell:
-    """Models of one kind.
+    """Models of one kind."""
 
-    Attributes:
-        task: a name of `latentarm_research.studies.tasks.moved.TASKS`.
-        condition: which kind of model, what its decoder sees, and whether it has a way back.
-        demonstrations: to learn from.
-        preset: sizes of the study.
-        seed: of the study.
-    """
-
-    task: str
-    condition: Condition
-    demonstrations: Demonstrations
-    preset: Preset
-    seed: int
+    task: str  # a name of `latentarm_research.studies.tasks.moved.TASKS`
+    condition: Condition  # which kind of model, what its decoder sees, and whether it has a way back
+    demonstrations: Demonstrations  # to learn from
+    preset: Preset  # sizes of the study
+    seed: int  # of the study
 
 
 @final
 @dataclass(frozen=True, eq=False)
 class FittedModel:
-    """The result of a `ModelCell`.
+    """The result of a `ModelCell`."""
 
-    Attributes:
-        task: a name of `latentarm_research.studies.tasks.moved.TASKS`.
-        condition: see `ModelCell`.
-        model: with all its seeds.
-        fit_s: how long the fit took, s.
-    """
-
-    task: str
-    condition: Condition
-    model: TrainedModel
-    fit_s: float
+    task: str  # a name of `latentarm_research.studies.tasks.moved.TASKS`
+    condition: Condition  # see `ModelCell`
+    model: TrainedModel  # with all its seeds
+    fit_s: float  # how long the fit took, s
 
     @property
     def driver(self) -> Driver:
@@ -151,21 +122,13 @@ def train(cell: ModelCell) -> FittedModel:
 @final
 @dataclass(frozen=True, eq=False)
 class TaskRunCell:
-    """A run of a simulated person who drives.
+    """A run of a simulated person who drives."""
 
-    Attributes:
-        task: a name of `latentarm_research.studies.tasks.moved.TASKS`.
-        driver: what they steer with.
-        person: who they are.
-        number: of the run.
-        seed: of the study.
-    """
-
-    task: str
-    driver: Driver
-    person: OperatorName
-    number: int
-    seed: int
+    task: str  # a name of `latentarm_research.studies.tasks.moved.TASKS`
+    driver: Driver  # what they steer with
+    person: OperatorName  # who they are
+    number: int  # of the run
+    seed: int  # of the study
 
     @property
     def condition(self) -> Condition:
@@ -176,19 +139,12 @@ class TaskRunCell:
 @final
 @dataclass(frozen=True, eq=False)
 class TaskRunResult:
-    """The result of a `TaskRunCell`.
+    """The result of a `TaskRunCell`."""
 
-    Attributes:
-        task: a name of `latentarm_research.studies.tasks.moved.TASKS`.
-        condition: see `TaskRunCell`.
-        run: how it went.
-        drive_s: how long the simulation took, s.
-    """
-
-    task: str
-    condition: Condition
-    run: Run
-    drive_s: float
+    task: str  # a name of `latentarm_research.studies.tasks.moved.TASKS`
+    condition: Condition  # see `TaskRunCell`
+    run: Run  # how it went
+    drive_s: float  # how long the simulation took, s
 
 
 def drive(cell: TaskRunCell) -> TaskRunResult:

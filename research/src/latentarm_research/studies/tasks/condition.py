@@ -13,19 +13,13 @@ ORIENTED: Final = "learned_orientation"
 @final
 @dataclass(frozen=True)
 class Condition:
-    """A controller and the person who steers.
+    """A controller and the person who steers."""
 
-    Attributes:
-        name: `DEMONSTRATOR`, `SWITCHING`, `ORIENTED`, or for a model what its decoder sees, a name of
-            `CONTEXTS`.
-        model: a name of `latentarm.models.catalogue.KINDS`, or None.
-        way_back: whether the model has a way back.
-        person: a simulated person by name; None for the demonstrator, and for what all people steer with.
-    """
-
+    # `DEMONSTRATOR`, `SWITCHING`, `ORIENTED`, or for a model what its decoder sees, a name of `CONTEXTS`
     name: str
-    model: str | None = None
-    way_back: bool = False
+    model: str | None = None  # a name of `latentarm.models.catalogue.KINDS`, or None
+    way_back: bool = False  # whether the model has a way back
+    # a simulated person by name; None for the demonstrator, and for what all people steer with
     person: str | None = None
 
     def by(self, person: str | None) -> "Condition":

@@ -28,11 +28,7 @@ SPREAD: Final = 0.7
 
 
 def success_figure(by_task: Mapping[str, Mapping[Condition, Sequence[Run]]]) -> "Figure":
-    """The share of the runs that succeeded: a panel per person, tasks across.
-
-    Args:
-        by_task: all runs, by task and condition.
-    """
+    """The share of the runs that succeeded: a panel per person, tasks across."""
     conditions = dict.fromkeys(one for runs in by_task.values() for one in runs if one.person is not None)
     people = list(dict.fromkeys(one.person for one in conditions))
     moves = list(dict.fromkeys(one.by(None) for one in conditions))

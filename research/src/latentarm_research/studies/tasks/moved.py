@@ -14,17 +14,11 @@ from latentarm_research.studies.tasks.preset import Stream
 @final
 @dataclass(frozen=True)
 class Moved:
-    """A task in two places.
+    """A task in two places."""
 
-    Attributes:
-        seen: where it is demonstrated.
-        unseen: where it is driven.
-        about: where the things stand in either, in words.
-    """
-
-    seen: Callable[[], SceneTask]
-    unseen: Callable[[], SceneTask]
-    about: str
+    seen: Callable[[], SceneTask]  # where it is demonstrated
+    unseen: Callable[[], SceneTask]  # where it is driven
+    about: str  # where the things stand in either, in words
 
 
 def _plate_right() -> SceneTask:
@@ -64,10 +58,6 @@ TASKS: Final = (*SCENE_TASKS, *MOVED)
 
 def task_of(name: str, stream: Stream) -> SceneTask:
     """The task of that name, where it is demonstrated to models or where it is driven.
-
-    Args:
-        name: one of `TASKS`.
-        stream: what its runs are for.
 
     Raises:
         UserError: there is no such task.

@@ -33,35 +33,22 @@ DRAWS: Final = 3
 @final
 @dataclass(frozen=True, eq=False)
 class OrientationCell:
-    """The orientations of one task.
+    """The orientations of one task."""
 
-    Attributes:
-        task: a name of `latentarm_research.studies.tasks.moved.TASKS`.
-        demonstrations: to learn from.
-        preset: sizes of the study.
-        seed: of the study.
-    """
-
-    task: str
-    demonstrations: Demonstrations
-    preset: Preset
-    seed: int
+    task: str  # a name of `latentarm_research.studies.tasks.moved.TASKS`
+    demonstrations: Demonstrations  # to learn from
+    preset: Preset  # sizes of the study
+    seed: int  # of the study
 
 
 @final
 @dataclass(frozen=True, eq=False)
 class Oriented:
-    """The result of an `OrientationCell`.
+    """The result of an `OrientationCell`."""
 
-    Attributes:
-        task: a name of `latentarm_research.studies.tasks.moved.TASKS`.
-        orientation: what was learned.
-        fit_s: how long that took, s.
-    """
-
-    task: str
-    orientation: OrientationMap
-    fit_s: float
+    task: str  # a name of `latentarm_research.studies.tasks.moved.TASKS`
+    orientation: OrientationMap  # what was learned
+    fit_s: float  # how long that took, s
 
     @property
     def driver(self) -> Driver:
@@ -88,14 +75,7 @@ def orient(cell: OrientationCell) -> Oriented:
 def learned(
     demonstrations: Demonstrations, chain: Chain, how: Mapping[str, Any], rng: np.random.Generator
 ) -> OrientationMap:
-    """What demonstrations say of the tool's orientation.
-
-    Args:
-        demonstrations: with poses of all things that it may depend on.
-        chain: the arm's kinematics.
-        how: parameters of `MLPRegressor`.
-        rng: moves the tool.
-    """
+    """What demonstrations say of the tool's orientation."""
     episodes = demonstrations.episodes
     sees_gripper = GRIPPER_WIDTH in episodes[0].extras
     pose = chain.forward(np.concatenate([one.state for one in episodes]))

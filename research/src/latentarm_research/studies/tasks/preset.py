@@ -24,41 +24,30 @@ CONTEXTS: Final[Mapping[str, tuple[str, ...]]] = {
 class Preset:
     """Sizes of the study.
 
-    Attributes:
-        name: what it is called on the command line.
-        runs: of each task by each person, with mode switching and with the default; by the scripted
-            demonstrator as many.
-        others: the same with everything else, at most.
-        demonstrations: further runs of the demonstrator, those that succeed train the models; a fifth of them
-            is for validation and decides which epoch is best.
-        models: kinds that are driven with, each without and with a way back.
-        context: what their decoders see, a name of `CONTEXTS`.
-        moved_contexts: the same, side by side, where things were moved.
-        seeds: models of each kind, used in turn, so that no figure depends on one of them.
-        epochs: passes over the training pairs, at most.
-        batch_size: pairs per step.
-        hidden: units of each hidden layer.
-        state_noise_rad: SD of the noise on training states, rad.
-        way_back_m: length of the way back, m.
-        people: who drives, names of `PEOPLE`.
-
     Raises:
         UserError: a person is unknown or named twice, nobody drives, or there are no runs.
     """
 
-    name: str
+    name: str  # what it is called on the command line
+    # of each task by each person, with mode switching and with the default; by the scripted demonstrator as
+    # many
     runs: int = 50
-    others: int = 20
+    others: int = 20  # the same with everything else, at most
+    # further runs of the demonstrator, those that succeed train the models; a fifth of them is for validation
+    # and decides which epoch is best
     demonstrations: int = 60
+    # kinds that are driven with, each without and with a way back
     models: tuple[str, ...] = ("cvae", "homogeneous", "low_turning")
-    context: str = "joints objects_in_tool"
+    context: str = "joints objects_in_tool"  # what their decoders see, a name of `CONTEXTS`
+    # the same, side by side, where things were moved
     moved_contexts: tuple[str, ...] = ("joints", "joints objects_in_tool")
-    seeds: int = 3
-    epochs: int = 60
-    batch_size: int = 256
-    hidden: tuple[int, ...] = (64, 64)
-    state_noise_rad: float = 0.01
-    way_back_m: float = 0.06
+    seeds: int = 3  # models of each kind, used in turn, so that no figure depends on one of them
+    epochs: int = 60  # passes over the training pairs, at most
+    batch_size: int = 256  # pairs per step
+    hidden: tuple[int, ...] = (64, 64)  # units of each hidden layer
+    state_noise_rad: float = 0.01  # SD of the noise on training states, rad
+    way_back_m: float = 0.06  # length of the way back, m
+    # who drives, names of `PEOPLE`
     people: tuple[OperatorName, ...] = ("planning", "greedy", "unsteady", "reading", "learning")
 
     def __post_init__(self) -> None:

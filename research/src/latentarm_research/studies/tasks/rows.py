@@ -18,17 +18,11 @@ STUDY: Final = "tasks"
 @final
 @dataclass(frozen=True, eq=False)
 class TasksResults:
-    """Everything that was measured.
+    """Everything that was measured."""
 
-    Attributes:
-        shown: by the scripted demonstrator.
-        trained: models.
-        driven: by simulated people.
-    """
-
-    shown: Sequence[DemonstratedRun]
-    trained: Sequence[FittedModel]
-    driven: Sequence[TaskRunResult]
+    shown: Sequence[DemonstratedRun]  # by the scripted demonstrator
+    trained: Sequence[FittedModel]  # models
+    driven: Sequence[TaskRunResult]  # by simulated people
 
     def runs(self, task: str) -> dict[Condition, tuple[Run, ...]]:
         """The runs of a task, by condition, each in the order of their numbers."""

@@ -35,40 +35,26 @@ ByTask = Mapping[str, Mapping[Condition, Sequence[Run]]]
 @final
 @dataclass(frozen=True)
 class Standing:
-    """How a candidate did.
+    """How a candidate did."""
 
-    Attributes:
-        name: its label.
-        succeeded: runs that did, over all people and tasks.
-        of: how many there were; the same for all candidates.
-        time_ratio: median time relative to mode switching by the same person at the same task, over runs that
-            both finished, to two decimals; None where there is none.
-        fit_s: how long it trained for all tasks, s.
-        worse_at: tasks at which practised people succeeded less often than by mode switching.
-    """
-
-    name: str
-    succeeded: int
-    of: int
+    name: str  # its label
+    succeeded: int  # runs that did, over all people and tasks
+    of: int  # how many there were; the same for all candidates
+    # median time relative to mode switching by the same person at the same task, over runs that both
+    # finished, to two decimals; None where there is none
     time_ratio: float | None
-    fit_s: float
-    worse_at: tuple[str, ...]
+    fit_s: float  # how long it trained for all tasks, s
+    worse_at: tuple[str, ...]  # tasks at which practised people succeeded less often than by mode switching
 
 
 @final
 @dataclass(frozen=True)
 class DefaultVerdict:
-    """What the rule says.
+    """What the rule says."""
 
-    Attributes:
-        sentence: in words.
-        chosen: label of the default decoder; None where it is not decided.
-        standings: of all candidates; none where there are too few runs.
-    """
-
-    sentence: str
-    chosen: str | None = None
-    standings: tuple[Standing, ...] = ()
+    sentence: str  # in words
+    chosen: str | None = None  # label of the default decoder; None where it is not decided
+    standings: tuple[Standing, ...] = ()  # of all candidates; none where there are too few runs
 
     def as_json(self) -> dict[str, object]:
         """Plain mapping."""

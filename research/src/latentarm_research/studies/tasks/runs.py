@@ -22,25 +22,15 @@ from latentarm_research.studies.tasks.condition import Condition
 @final
 @dataclass(frozen=True, eq=False)
 class Driver:
-    """What a simulated person steers with.
+    """What a simulated person steers with."""
 
-    Attributes:
-        condition: what it is called.
-        decoders: of the models, which take turns.
-        orientation: of the tool, where the person only moves it. Without either they switch modes.
-    """
-
-    condition: Condition
-    decoders: tuple[Decoder, ...] = ()
+    condition: Condition  # what it is called
+    decoders: tuple[Decoder, ...] = ()  # of the models, which take turns
+    # of the tool, where the person only moves it. Without either they switch modes
     orientation: OrientationMap | None = None
 
     def controller(self, robot: Robot, number: int) -> Controller:
-        """The controller of one run.
-
-        Args:
-            robot: the arm.
-            number: of the run.
-        """
+        """The controller of one run."""
         if self.orientation is not None:
             return LearnedOrientationController(robot, self.orientation)
         if not self.decoders:
@@ -51,29 +41,17 @@ class Driver:
 @final
 @dataclass(frozen=True, eq=False)
 class Run:
-    """How one run went.
+    """How one run went."""
 
-    Attributes:
-        number: of the run; the same number is the same scene and the same start in every condition.
-        choice: what was to be done, in the task's words.
-        steps: kinds of the task's steps, in order.
-        done: how many of them were done.
-        success: all of them, and nothing went wrong.
-        ended_in: the step that was not done, in words; "" where all were.
-        why: why the run ended, in a few words.
-        time_s: how long it took, s.
-        figures: what is measured of a drive; None for the demonstrator, who has no stick.
-    """
-
-    number: int
-    choice: str
-    steps: tuple[str, ...]
-    done: int
-    success: bool
-    ended_in: str
-    why: str
-    time_s: float
-    figures: Drive | None = None
+    number: int  # of the run; the same number is the same scene and the same start in every condition
+    choice: str  # what was to be done, in the task's words
+    steps: tuple[str, ...]  # kinds of the task's steps, in order
+    done: int  # how many of them were done
+    success: bool  # all of them, and nothing went wrong
+    ended_in: str  # the step that was not done, in words; "" where all were
+    why: str  # why the run ended, in a few words
+    time_s: float  # how long it took, s
+    figures: Drive | None = None  # what is measured of a drive; None for the demonstrator, who has no stick
 
     def as_json(self) -> dict[str, object]:
         """Plain mapping; what has no value is None."""

@@ -19,29 +19,19 @@ from latentarm_research.user_studies.record import Trial
 @final
 @dataclass(frozen=True)
 class Modelled:
-    """A claim in a model of all trials.
+    """A claim in a model of all trials."""
 
-    Attributes:
-        mixed: the linear mixed model; None where it could not be fitted.
-        p: of the randomisation test; None where it could not be made.
-    """
-
-    mixed: Mixed | None
-    p: float | None
+    mixed: Mixed | None  # the linear mixed model; None where it could not be fitted
+    p: float | None  # of the randomisation test; None where it could not be made
 
 
 @final
 @dataclass(frozen=True)
 class TestedClaim:
-    """A claim, tested on people's means and in a model of all trials.
+    """A claim, tested on people's means and in a model of all trials."""
 
-    Attributes:
-        tested: on people's means.
-        modelled: in a model of all trials.
-    """
-
-    tested: Tested
-    modelled: Modelled
+    tested: Tested  # on people's means
+    modelled: Modelled  # in a model of all trials
 
     def as_json(self) -> dict[str, object]:
         """Plain mapping."""
@@ -54,23 +44,14 @@ class TestedClaim:
 @final
 @dataclass(frozen=True)
 class Analysis:
-    """What a study says.
+    """What a study says."""
 
-    Attributes:
-        trials: that count.
-        excluded: what does not.
-        claims: every claim, tested.
-        verdicts: on every hypothesis.
-        effects: of a factorial design, by measure; empty without factors.
-        as_printed: the paper's statistics with ours.
-    """
-
-    trials: tuple[Trial, ...]
-    excluded: Excluded
-    claims: tuple[TestedClaim, ...]
-    verdicts: tuple[Verdict, ...]
-    effects: dict[str, list[Effect]]
-    as_printed: tuple[AsPrinted, ...]
+    trials: tuple[Trial, ...]  # that count
+    excluded: Excluded  # what does not
+    claims: tuple[TestedClaim, ...]  # every claim, tested
+    verdicts: tuple[Verdict, ...]  # on every hypothesis
+    effects: dict[str, list[Effect]]  # of a factorial design, by measure; empty without factors
+    as_printed: tuple[AsPrinted, ...]  # the paper's statistics with ours
 
     def as_json(self) -> dict[str, object]:
         """Plain mapping of everything but the claims."""

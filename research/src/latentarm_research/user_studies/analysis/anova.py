@@ -15,35 +15,20 @@ from latentarm_research.user_studies.record import Trial
 @final
 @dataclass(frozen=True)
 class Effect:
-    """One line of the table.
+    """One line of the table."""
 
-    Attributes:
-        name: of the factor, or both with ``x`` between.
-        f: the statistic.
-        dof: of the effect.
-        dof_error: n - 1 within n people for a factor of two levels, n - 4 between.
-        p: of F.
-        eta: partial eta squared.
-    """
-
-    name: str
-    f: float
-    dof: int
-    dof_error: int
-    p: float
-    eta: float
+    name: str  # of the factor, or both with `x` between
+    f: float  # the statistic
+    dof: int  # of the effect
+    dof_error: int  # n - 1 within n people for a factor of two levels, n - 4 between
+    p: float  # of F
+    eta: float  # partial eta squared
 
 
 def repeated_measures(
     trials: Sequence[Trial], factors: tuple[Factor, Factor], measure: str, tasks: Sequence[str]
 ) -> list[Effect]:
     """Both factors and their interaction.
-
-    Args:
-        trials: that count.
-        factors: of a 2 x 2 design; each of its four cells has one condition.
-        measure: which figure.
-        tasks: whose trials.
 
     Returns:
         Empty for fewer than two people with all four conditions, or where a mean does not vary.
@@ -68,12 +53,6 @@ def between_people(
 
     Each effect is adjusted for the others (sums of squares of type III), which matters where the four groups
     differ in size.
-
-    Args:
-        trials: that count.
-        factors: of a 2 x 2 design; each of its four cells has one condition.
-        measure: which figure.
-        tasks: whose trials.
 
     Returns:
         Empty where a cell has nobody, where nobody is left to tell chance by, or where nobody varies.

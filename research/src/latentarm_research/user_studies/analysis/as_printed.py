@@ -21,19 +21,12 @@ NOBODY_BOTH: Final = "nobody has met both conditions"
 @final
 @dataclass(frozen=True)
 class AsPrinted:
-    """One statistic of the paper, and the same of our trials.
+    """One statistic of the paper, and the same of our trials."""
 
-    Attributes:
-        printed: of the paper.
-        text: ours in the same form.
-        less: whether our subject has less; None where nothing was compared or measured.
-        significant: whether p is below .05; None where nothing was tested.
-    """
-
-    printed: Printed
-    text: str
-    less: bool | None = None
-    significant: bool | None = None
+    printed: Printed  # of the paper
+    text: str  # ours in the same form
+    less: bool | None = None  # whether our subject has less; None where nothing was compared or measured
+    significant: bool | None = None  # whether p is below .05; None where nothing was tested
 
     @property
     def same_sign(self) -> bool | None:
@@ -63,12 +56,7 @@ class AsPrinted:
 
 
 def as_printed(printed: Printed, trials: Sequence[Trial]) -> AsPrinted:
-    """Analyse our trials in the way in which the paper got a statistic.
-
-    Args:
-        printed: the paper's statistic.
-        trials: that count.
-    """
+    """Analyse our trials in the way in which the paper got a statistic."""
     if not any(printed.measure in trial.measures for trial in trials):
         return AsPrinted(printed, NOT_MEASURED)
     if not printed.against:

@@ -23,33 +23,19 @@ NO_SPREAD: Final = "all people differ alike"
 @final
 @dataclass(frozen=True)
 class Tested:
-    """What became of one claim.
+    """What became of one claim."""
 
-    Attributes:
-        hypothesis: that it belongs to.
-        claim: what is claimed.
-        n: people who are compared: who have both sides, or in a study between people either.
-        mean: of the subject's side; None without people.
-        sd: of the people's means; None for fewer than two.
-        mean_against: of the other side.
-        sd_against: the same.
-        test: of the difference; None where it could not be made.
-        p: of the claim's own test, two-sided t or TOST, before correction; None where not tested.
-        p_holm: after Holm's correction over the study.
-        why_not: why it could not be tested; empty where it was.
-    """
-
-    hypothesis: str
-    claim: Claim
-    n: int
-    mean: float | None
-    sd: float | None
-    mean_against: float | None
-    sd_against: float | None
-    test: MeansTest | None
-    p: float | None
-    p_holm: float | None = None
-    why_not: str = ""
+    hypothesis: str  # that it belongs to
+    claim: Claim  # what is claimed
+    n: int  # people who are compared: who have both sides, or in a study between people either
+    mean: float | None  # of the subject's side; None without people
+    sd: float | None  # of the people's means; None for fewer than two
+    mean_against: float | None  # of the other side
+    sd_against: float | None  # the same
+    test: MeansTest | None  # of the difference; None where it could not be made
+    p: float | None  # of the claim's own test, two-sided t or TOST, before correction; None where not tested
+    p_holm: float | None = None  # after Holm's correction over the study
+    why_not: str = ""  # why it could not be tested; empty where it was
 
     @property
     def says(self) -> Said:
@@ -69,37 +55,21 @@ class Tested:
 @final
 @dataclass(frozen=True)
 class Verdict:
-    """What became of a hypothesis.
+    """What became of a hypothesis."""
 
-    Attributes:
-        hypothesis: the hypothesis.
-        says: held where all claims held; not held where one did not; else it could not be tested.
-        why: which claims did not hold or could not be tested, in words.
-    """
-
-    hypothesis: Hypothesis
-    says: Said
-    why: str
+    hypothesis: Hypothesis  # the hypothesis
+    says: Said  # held where all claims held; not held where one did not; else it could not be tested
+    why: str  # which claims did not hold or could not be tested, in words
 
 
 def sides_of(definition: Definition, trials: Sequence[Trial]) -> list[Sides]:
-    """Both sides of every claim of a study, in order.
-
-    Args:
-        definition: of the study.
-        trials: that count.
-    """
+    """Both sides of every claim of a study, in order."""
     design = design_of(definition)
     return [design.sides(trials, claim) for claim in definition.claims]
 
 
 def claims_tested(definition: Definition, both: Sequence[Sides]) -> list[Tested]:
-    """Test all claims of a study, and correct them together.
-
-    Args:
-        definition: of the study.
-        both: sides of every claim, as `sides_of` gives them.
-    """
+    """Test all claims of a study, and correct them together."""
     owners = [hypothesis.name for hypothesis in definition.hypotheses for _ in hypothesis.claims]
     design = design_of(definition)
     found = [_tested(design, *one) for one in zip(owners, definition.claims, both, strict=True)]

@@ -15,19 +15,13 @@ from latentarm_research.user_studies.record import Trial
 @final
 @dataclass(frozen=True, eq=False)
 class LongTable:
-    """Trials of the people whom a claim compares.
+    """Trials of the people whom a claim compares."""
 
-    Attributes:
-        value: (N,), the measure.
-        label: (N,), +0.5 where the condition is one that the claim is about, -0.5 elsewhere.
-        person: (N,), index of the person, from 0.
-        covariates: (N, k), place of the condition in the person's order and number of the trial, both
-            centred, and a column for each task but the first; those that do not vary are left out.
-    """
-
-    value: FloatArray
-    label: FloatArray
-    person: np.ndarray[tuple[int], np.dtype[np.intp]]
+    value: FloatArray  # (N,), the measure
+    label: FloatArray  # (N,), +0.5 where the condition is one that the claim is about, -0.5 elsewhere
+    person: np.ndarray[tuple[int], np.dtype[np.intp]]  # (N,), index of the person, from 0
+    # (N, k), place of the condition in the person's order and number of the trial, both centred, and a column
+    # for each task but the first; those that do not vary are left out
     covariates: FloatArray
 
     @property

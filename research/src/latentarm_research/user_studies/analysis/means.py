@@ -14,19 +14,12 @@ from latentarm_research.user_studies.record import Trial
 @final
 @dataclass(frozen=True, eq=False)
 class Sides:
-    """The two sides of a comparison: the same people on both, in the same rows, or different ones.
+    """The two sides of a comparison: the same people on both, in the same rows, or different ones."""
 
-    Attributes:
-        people: numbers of the people on the subject's side.
-        subject: (n,), mean of each under the conditions that a claim is about.
-        against: (m,), of each on the other side, under the others.
-        people_against: numbers of the people there.
-    """
-
-    people: tuple[int, ...]
-    subject: FloatArray
-    against: FloatArray
-    people_against: tuple[int, ...]
+    people: tuple[int, ...]  # numbers of the people on the subject's side
+    subject: FloatArray  # (n,), mean of each under the conditions that a claim is about
+    against: FloatArray  # (m,), of each on the other side, under the others
+    people_against: tuple[int, ...]  # numbers of the people there
 
     @property
     def differences(self) -> FloatArray:
@@ -63,12 +56,7 @@ def tasks_of(trials: Sequence[Trial], claim: Claim) -> tuple[str, ...]:
 
 
 def sides(trials: Sequence[Trial], claim: Claim) -> Sides:
-    """Both sides of a claim, of all people who have both; nobody where the measure is missing.
-
-    Args:
-        trials: that count.
-        claim: what is compared.
-    """
+    """Both sides of a claim, of all people who have both; nobody where the measure is missing."""
     tasks = tasks_of(trials, claim)
     people = sorted({trial.person for trial in trials}) if tasks else []
     by_person = {person: [trial for trial in trials if trial.person == person] for person in people}
@@ -87,12 +75,7 @@ def sides(trials: Sequence[Trial], claim: Claim) -> Sides:
 
 
 def groups(trials: Sequence[Trial], claim: Claim) -> Sides:
-    """Both sides of a claim of a study in which each person meets one condition.
-
-    Args:
-        trials: that count.
-        claim: what is compared.
-    """
+    """Both sides of a claim of a study in which each person meets one condition."""
     tasks = tasks_of(trials, claim)
     found: list[tuple[tuple[int, ...], FloatArray]] = []
     for side in (claim.subject, claim.against):

@@ -13,21 +13,13 @@ from latentarm_research.user_studies.analysis.long_table import LongTable
 @final
 @dataclass(frozen=True)
 class Mixed:
-    """The fixed effect of the condition.
+    """The fixed effect of the condition."""
 
-    Attributes:
-        estimate: difference between the two sides, in the measure's unit.
-        se: its standard error.
-        person_sd: SD of the random intercept.
-        residual_sd: SD of what is left.
-        converged: whether the fit did; figures of a fit that did not are not to be relied on.
-    """
-
-    estimate: float
-    se: float
-    person_sd: float
-    residual_sd: float
-    converged: bool
+    estimate: float  # difference between the two sides, in the measure's unit
+    se: float  # its standard error
+    person_sd: float  # SD of the random intercept
+    residual_sd: float  # SD of what is left
+    converged: bool  # whether the fit did; figures of a fit that did not are not to be relied on
 
 
 def mixed_model(table: LongTable) -> Mixed | None:

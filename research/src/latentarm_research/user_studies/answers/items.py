@@ -17,19 +17,12 @@ from latentarm_research.user_studies.sizes import Stream
 @final
 @dataclass(frozen=True)
 class Asked:
-    """One line of a sheet.
+    """One line of a sheet."""
 
-    Attributes:
-        person: their number, from 0.
-        condition: after which they are asked.
-        item: its name.
-        text: the statement.
-    """
-
-    person: int
-    condition: str
-    item: str
-    text: str
+    person: int  # their number, from 0
+    condition: str  # after which they are asked
+    item: str  # its name
+    text: str  # the statement
 
 
 def items_of(definition: Definition) -> dict[str, tuple[Scale, Item]]:
@@ -43,11 +36,6 @@ def items_of(definition: Definition) -> dict[str, tuple[Scale, Item]]:
 
 def sheet(definition: Definition, people: int, seed: int) -> list[Asked]:
     """What everybody is asked: after each condition that they meet all items, in an order of their own.
-
-    Args:
-        definition: of the study.
-        people: how many.
-        seed: of the run, which decides the conditions, and of the items' orders.
 
     Raises:
         UserError: the study has no questionnaire with scales.

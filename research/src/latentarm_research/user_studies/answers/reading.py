@@ -19,19 +19,12 @@ KNOWN: Final = (*NEEDED, "text")
 @final
 @dataclass(frozen=True)
 class Answer:
-    """What one person answered to one item after one condition.
+    """What one person answered to one item after one condition."""
 
-    Attributes:
-        person: their number, from 0.
-        condition: name of the condition.
-        item: name of the item.
-        points: 1, strongly disagree, to the points of its scale.
-    """
-
-    person: int
-    condition: str
-    item: str
-    points: int
+    person: int  # their number, from 0
+    condition: str  # name of the condition
+    item: str  # name of the item
+    points: int  # 1, strongly disagree, to the points of its scale
 
 
 def read_answers(path: Path, definition: Definition, met: Mapping[int, Collection[str]]) -> list[Answer]:

@@ -22,45 +22,29 @@ QUESTIONNAIRE: Final = "questionnaire"
 @final
 @dataclass(frozen=True)
 class Rated:
-    """One scale in one condition.
+    """One scale in one condition."""
 
-    Attributes:
-        scale: name of the scale.
-        condition: name of the condition.
-        n: people who answered all of its items.
-        mean: of their scores, which are means of answers, reversed items turned; None without people.
-        sd: of their scores; None for fewer than two.
-        alpha: Cronbach's; None for fewer than two people, or without spread.
-        alpha_low: lower end of its 95 % interval (Feldt 1965); None with alpha.
-        alpha_high: upper end.
-        counts: answers for each point, reversed items turned, from "strongly disagree" on; of everybody.
-    """
-
-    scale: str
-    condition: str
-    n: int
+    scale: str  # name of the scale
+    condition: str  # name of the condition
+    n: int  # people who answered all of its items
+    # of their scores, which are means of answers, reversed items turned; None without people
     mean: float | None
-    sd: float | None
-    alpha: float | None
-    alpha_low: float | None
-    alpha_high: float | None
+    sd: float | None  # of their scores; None for fewer than two
+    alpha: float | None  # Cronbach's; None for fewer than two people, or without spread
+    alpha_low: float | None  # lower end of its 95 % interval (Feldt 1965); None with alpha
+    alpha_high: float | None  # upper end
+    # answers for each point, reversed items turned, from "strongly disagree" on; of everybody
     counts: tuple[int, ...]
 
 
 @final
 @dataclass(frozen=True)
 class Ratings:
-    """What people's answers say.
+    """What people's answers say."""
 
-    Attributes:
-        rated: every scale in every condition.
-        scores: a record for each person and condition, with the scales as measures.
-        answers: how many there are.
-    """
-
-    rated: tuple[Rated, ...]
-    scores: tuple[Trial, ...]
-    answers: int
+    rated: tuple[Rated, ...]  # every scale in every condition
+    scores: tuple[Trial, ...]  # a record for each person and condition, with the scales as measures
+    answers: int  # how many there are
 
     def as_json(self) -> dict[str, object]:
         """Plain mapping."""
@@ -78,11 +62,6 @@ def rate(definition: Definition, answers: Sequence[Answer], trials: Sequence[Tri
     """Score all scales.
 
     A person who left out an item of a scale has no score of it in that condition.
-
-    Args:
-        definition: of the study.
-        answers: of people who gave trials.
-        trials: from which the place of each condition in a person's order is known.
     """
     given = {(one.person, one.condition, one.item): one.points for one in answers}
     people = sorted({one.person for one in answers})

@@ -20,22 +20,11 @@ class StudyDesign(ABC):
 
     @abstractmethod
     def orders(self, definition: Definition, people: int, rng: np.random.Generator) -> list[tuple[str, ...]]:
-        """The conditions that each person meets, in order.
-
-        Args:
-            definition: of the study.
-            people: how many.
-            rng: source of all randomness.
-        """
+        """The conditions that each person meets, in order."""
 
     @abstractmethod
     def sides(self, trials: Sequence[Trial], claim: Claim) -> Sides:
-        """People's means on both sides of a claim; nobody where the measure is missing.
-
-        Args:
-            trials: that count.
-            claim: what is compared.
-        """
+        """People's means on both sides of a claim; nobody where the measure is missing."""
 
     @abstractmethod
     def test(self, both: Sides) -> MeansTest | None:
@@ -51,12 +40,7 @@ class StudyDesign(ABC):
 
     @abstractmethod
     def randomisation_p(self, both: Sides, table: LongTable) -> float | None:
-        """Two-sided p over what the assignment of conditions might have been; None where it has no value.
-
-        Args:
-            both: people's means.
-            table: all trials.
-        """
+        """Two-sided p over what the assignment of conditions might have been; None where it has no value."""
 
     @abstractmethod
     def effects(
@@ -74,13 +58,7 @@ class StudyDesign(ABC):
 
     @abstractmethod
     def drawn(self, people: Mapping[int, set[str]], number: int, rng: np.random.Generator) -> IntArray:
-        """People of a study of so many, drawn with replacement.
-
-        Args:
-            people: whom to draw from, and the conditions that each met.
-            number: of people in all.
-            rng: source of all randomness.
-        """
+        """People of a study of so many, drawn with replacement."""
 
     @abstractmethod
     def of_people(self, both: Sides, drawn: IntArray) -> Sides:

@@ -37,14 +37,7 @@ def means_of(trials: Sequence[Trial], condition: str, task: StudyTask, measure: 
 def box_figure(
     definition: Definition, trials: Sequence[Trial], measures: Sequence[str], who: str
 ) -> "Figure":
-    """A panel for each measure; in it the tasks side by side, and a box for each condition.
-
-    Args:
-        definition: of the study.
-        trials: that count.
-        measures: that have figures.
-        who: the people, in words.
-    """
+    """A panel for each measure; in it the tasks side by side, and a box for each condition."""
     from matplotlib.patches import Patch
 
     rows = -(-len(measures) // ACROSS)
@@ -63,13 +56,7 @@ def box_figure(
 
 
 def idle_figure(definition: Definition, trials: Sequence[Trial], who: str) -> "Figure":
-    """Mean time of each condition at each task, its part without input in a lighter shade.
-
-    Args:
-        definition: of the study.
-        trials: that count.
-        who: the people, in words.
-    """
+    """Mean time of each condition at each task, its part without input in a lighter shade."""
     from matplotlib.patches import Patch
 
     figure = new_figure(60.0, TWO_COLUMNS_MM)

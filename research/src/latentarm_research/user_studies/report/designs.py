@@ -16,21 +16,13 @@ _CLAIMS: Final = (
 @final
 @dataclass(frozen=True)
 class DesignWords:
-    """A design in words.
+    """A design in words."""
 
-    Attributes:
-        met: who met which conditions.
-        order: how conditions were assigned, unless the definition has orders of its own.
-        tests: how claims are tested.
-        effect_head: heading of the column of effect sizes.
-        anova: what the analysis of variance of a 2 x 2 design is called.
-    """
-
-    met: str
-    order: str
-    tests: str
-    effect_head: str
-    anova: str
+    met: str  # who met which conditions
+    order: str  # how conditions were assigned, unless the definition has orders of its own
+    tests: str  # how claims are tested
+    effect_head: str  # heading of the column of effect sizes
+    anova: str  # what the analysis of variance of a 2 x 2 design is called
 
 
 WORDS: Final[Mapping[Design, DesignWords]] = {

@@ -21,17 +21,11 @@ if TYPE_CHECKING:
 @final
 @dataclass(frozen=True, eq=False)
 class Drawn:
-    """A figure of the report.
+    """A figure of the report."""
 
-    Attributes:
-        name: of its file, without suffix.
-        figure: the drawing.
-        caption: what it shows, and of whom.
-    """
-
-    name: str
-    figure: "Figure"
-    caption: str
+    name: str  # of its file, without suffix
+    figure: "Figure"  # the drawing
+    caption: str  # what it shows, and of whom
 
 
 def figure_names(definition: Definition) -> tuple[str, ...]:
@@ -52,18 +46,10 @@ def draw(
     definition: Definition,
     trials: Sequence[Trial],
     traces: Sequence[Trace],
-    who: str,
+    who: str,  # the people, in words, such as `12 simulated people`
     ratings: Ratings | None = None,
 ) -> list[Drawn]:
-    """Draw what there are figures for; nothing empty is drawn.
-
-    Args:
-        definition: of the study.
-        trials: that count.
-        traces: of all trials.
-        who: the people, in words, such as ``12 simulated people``.
-        ratings: of people's answers, if there are any.
-    """
+    """Draw what there are figures for; nothing empty is drawn."""
     measured = {name for trial in trials for name in trial.measures}
     shown = [name for name in definition.measures if name in measured]
     found: list[Drawn] = []

@@ -33,23 +33,14 @@ RATED_HEAD: Final = ("scale", "condition", "people", "score, mean ± SD", "Cronb
 @final
 @dataclass(frozen=True, eq=False)
 class Content:
-    """What a report is about.
+    """What a report is about."""
 
-    Attributes:
-        recorded: the trials, and whose they are.
-        analysis: of the trials.
-        rows: of ``results.json``.
-        figures: to show.
-        command: that repeats the run.
-        ratings: of people's answers, if there are any.
-    """
-
-    recorded: Recorded
-    analysis: Analysis
-    rows: Sequence[Row]
-    figures: Sequence[Drawn]
-    command: str
-    ratings: Ratings | None = None
+    recorded: Recorded  # the trials, and whose they are
+    analysis: Analysis  # of the trials
+    rows: Sequence[Row]  # of `results.json`
+    figures: Sequence[Drawn]  # to show
+    command: str  # that repeats the run
+    ratings: Ratings | None = None  # of people's answers, if there are any
 
     @property
     def definition(self) -> Definition:

@@ -10,11 +10,7 @@ HEAD: Final = ("trait", "mean (range)", "where it comes from")
 
 
 def people_lines(people: Sequence[Traits]) -> list[tuple[str, str, str]]:
-    """Every trait over some people, with its source.
-
-    Args:
-        people: at least one.
-    """
+    """Every trait over some people, with its source."""
     lines = [
         (
             f"{one.meaning} ({one.unit})" if one.unit else one.meaning,

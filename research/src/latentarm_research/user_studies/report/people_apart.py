@@ -38,14 +38,7 @@ def people_measures(measured: Collection[str]) -> list[str]:
 def people_figure(
     definition: Definition, trials: Sequence[Trial], measures: Sequence[str], who: str
 ) -> "Figure":
-    """A row for each task and measure; in it each person's bars, one for each condition.
-
-    Args:
-        definition: of the study.
-        trials: that count.
-        measures: of `people_measures`.
-        who: the people, in words.
-    """
+    """A row for each task and measure; in it each person's bars, one for each condition."""
     from matplotlib.patches import Patch
 
     rows = [

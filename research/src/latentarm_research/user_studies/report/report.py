@@ -22,13 +22,7 @@ RATINGS: Final = "ratings.json"
 
 
 def report_of(recorded: Recorded, command: str, ratings: Ratings | None = None) -> Report:
-    """Analyse trials, and report them.
-
-    Args:
-        recorded: the trials, and whose they are.
-        command: that repeats it.
-        ratings: of people's answers, if there are any.
-    """
+    """Analyse trials, and report them."""
     definition = recorded.definition
     scores = () if ratings is None else ratings.scores
     analysis = analyse(definition, recorded.trials, scores, recorded.sizes.not_judged)

@@ -26,13 +26,7 @@ NAME_LETTERS: Final = 12
 
 
 def step_figure(definition: Definition, traces: Sequence[Trace], who: str) -> "Figure":
-    """A panel for each task; in it people's means in each step, and the mean over those who came so far.
-
-    Args:
-        definition: of the study.
-        traces: of all trials.
-        who: the people, in words.
-    """
+    """A panel for each task; in it people's means in each step, and the mean over those who came so far."""
     from matplotlib.lines import Line2D
 
     looks, conditions = colours(definition), definition.conditions

@@ -36,14 +36,7 @@ SHARES: Final = 50
 
 
 def way_figure(definition: Definition, task: StudyTask, traces: Sequence[Trace], who: str) -> "Figure":
-    """The tool's way in everybody's first trial: a column for each condition, from above and from the side.
-
-    Args:
-        definition: of the study.
-        task: one of its tasks.
-        traces: of all trials.
-        who: the people, in words.
-    """
+    """The tool's way in everybody's first trial: a column per condition, from above and from the side."""
     from matplotlib.lines import Line2D
 
     looks, conditions = colours(definition), definition.conditions
@@ -72,13 +65,7 @@ def way_figure(definition: Definition, task: StudyTask, traces: Sequence[Trace],
 
 
 def plate_figure(definition: Definition, traces: Sequence[Trace], who: str) -> "Figure":
-    """Distance of the tool from the closest plate over the share of a trial: mean and middle half.
-
-    Args:
-        definition: of the study.
-        traces: of all trials.
-        who: the people, in words.
-    """
+    """Distance of the tool from the closest plate over the share of a trial: mean and middle half."""
     from matplotlib.lines import Line2D
 
     looks = colours(definition)
@@ -106,14 +93,7 @@ def plate_figure(definition: Definition, traces: Sequence[Trace], who: str) -> "
 
 
 def stick_figure(definition: Definition, task: StudyTask, traces: Sequence[Trace], who: str) -> "Figure":
-    """Where the stick was, all people together: a panel for each condition, darkest where it was longest.
-
-    Args:
-        definition: of the study.
-        task: one of its tasks.
-        traces: of all trials.
-        who: the people, in words.
-    """
+    """Where the stick was, all people together: a panel for each condition, darkest where it was longest."""
     conditions = definition.conditions
     figure = new_figure(58.0 if len(conditions) < 5 else 48.0, TWO_COLUMNS_MM)
     panels = figure.subplots(1, len(conditions), squeeze=False, sharey=True)[0]

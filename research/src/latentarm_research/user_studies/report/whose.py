@@ -7,15 +7,10 @@ from typing import Final, final
 @final
 @dataclass(frozen=True)
 class PeopleWords:
-    """People in words.
+    """People in words."""
 
-    Attributes:
-        notice: over everything.
-        unasked: of a questionnaire without answers.
-    """
-
-    notice: str
-    unasked: str
+    notice: str  # over everything
+    unasked: str  # of a questionnaire without answers
 
 
 SIMULATED: Final = PeopleWords(

@@ -39,17 +39,12 @@ Decoders = Mapping[str, DecodesActions]
 
 @dataclass(frozen=True)
 class DrawnModel:
-    """One model as it is drawn on one task.
+    """One model as it is drawn on one task."""
 
-    Attributes:
-        model: its name.
-        decoder: of one seed.
-        sign: 1 or -1, what z is multiplied by before it is decoded. The sign of a latent axis is chance:
-            without this, two models that do the same would look opposed.
-    """
-
-    model: str
-    decoder: DecodesActions
+    model: str  # its name
+    decoder: DecodesActions  # of one seed
+    # 1 or -1, what z is multiplied by before it is decoded. The sign of a latent axis is chance: without
+    # this, two models that do the same would look opposed
     sign: float
 
     @property
@@ -162,7 +157,7 @@ def draw_over_z(axes: "Axes", rows: Sequence[Row], task: str, model: str, effect
 
 
 def draw_losses_and_effects(
-    part: "SubFigure",
+    part: "SubFigure",  # where to draw
     rows: Sequence[Row],
     task: str,
     models: Sequence[DrawnModel],
@@ -170,17 +165,7 @@ def draw_losses_and_effects(
     effect: str,
     unit: str,
 ) -> None:
-    """Draw the losses of all models, then the effect of z in three states with some of them.
-
-    Args:
-        part: where to draw.
-        rows: of the study.
-        task: which task.
-        models: whose effect is drawn.
-        effect_of: as for `draw_over_z`.
-        effect: what it is called in titles.
-        unit: what the y axis says.
-    """
+    """Draw the losses of all models, then the effect of z in three states with some of them."""
     losses, *panels = part.subplots(1, 1 + len(models), squeeze=False)[0]
     draw_losses(losses, rows, task)
     for place, (axes, model) in enumerate(zip(panels, models, strict=False)):
