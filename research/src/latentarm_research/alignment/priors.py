@@ -42,50 +42,44 @@ NO_PRIORS: Final = Priors(proportional=0.0, reversible=0.0, consistent=0.0)
 """Learning from answers alone (equation 19)."""
 
 
-def supervised(push: "Push", wanted: Tensor) -> Tensor:
-    """``‖x* - Psi(T(s, u))‖^2`` (equation 19): the input of an answer leads where the shown motion led.
-
-    Args:
-        push: (S, N), the answers' inputs.
-        wanted: (S, N, p), the poses at the motions' ends.
-    """
+def supervised(
+    push: "Push",  # (S, N), the answers' inputs
+    wanted: Tensor,  # (S, N, p), the poses at the motions' ends
+) -> Tensor:
+    """``‖x* - Psi(T(s, u))‖^2`` (equation 19): the input of an answer leads where the shown motion led."""
     return _squared(push.pose - wanted).mean(-1)
 
 
-def proportional(push: "Push", part: "Push", alpha: Tensor) -> Tensor:
+def proportional(
+    push: "Push",  # (S, B), inputs u
+    part: "Push",  # (S, B), inputs alpha u in the same places
+    alpha: Tensor,  # (S, B, 1), in [-1, 1]
+) -> Tensor:
     """``‖Psi(T(alpha u, s)) - Psi(s) - alpha Δx‖^2`` (equation 20): half the push moves half as far.
 
     Where f is smooth in u, as a network is, only a linear one has this property for all alpha.
-
-    Args:
-        push: (S, B), inputs u.
-        part: (S, B), inputs alpha u in the same places.
-        alpha: (S, B, 1), in [-1, 1].
     """
     return _squared(part.change - alpha * push.change).mean(-1)
 
 
-def reversible(push: "Push", back: "Push") -> Tensor:
-    """``‖Psi(s) - Psi(T(-u, T(u, s)))‖^2`` (equation 21): the opposite push undoes a push.
-
-    Args:
-        push: (S, B), inputs u.
-        back: (S, B), inputs -u, from where those led.
-    """
+def reversible(
+    push: "Push",  # (S, B), inputs u
+    back: "Push",  # (S, B), inputs -u, from where those led
+) -> Tensor:
+    """``‖Psi(s) - Psi(T(-u, T(u, s)))‖^2`` (equation 21): the opposite push undoes a push."""
     return _squared(push.before.pose - back.pose).mean(-1)
 
 
-def consistent(push: "Push", elsewhere: "Push", gamma: float, joints: int) -> Tensor:
+def consistent(
+    push: "Push",  # (S, B), inputs u in places s_1
+    elsewhere: "Push",  # (S, B), the same inputs in other places s_2
+    gamma: float,  # 1/rad
+    joints: int,
+) -> Tensor:
     """``‖Δx(s_1) - Δx(s_2)‖^2 exp(-gamma ‖s_1 - s_2‖)`` (equation 22): the same push moves alike nearby.
 
     Equation 22 compares how far the tool moves; this compares where to as well, and squares what it compares
     like the other terms.
-
-    Args:
-        push: (S, B), inputs u in places s_1.
-        elsewhere: (S, B), the same inputs in other places s_2.
-        gamma: 1/rad.
-        joints: n.
     """
     apart = (push.before.context - elsewhere.before.context)[..., :joints]
     weight = torch.exp(-gamma * torch.linalg.vector_norm(apart, dim=-1))

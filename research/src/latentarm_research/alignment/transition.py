@@ -52,15 +52,14 @@ class Push(NamedTuple):
 
 @final
 class Transition:
-    """The arm under a frozen decoder, in steps of one motion's time.
+    """The arm under a frozen decoder, in steps of one motion's time."""
 
-    Args:
-        decoder: phi; nothing here learns it.
-        chain: the arm.
-        duration_s: dt, s.
-    """
-
-    def __init__(self, decoder: TorchDecoder, chain: Chain, duration_s: float) -> None:
+    def __init__(
+        self,
+        decoder: TorchDecoder,
+        chain: Chain,
+        duration_s: float,  # dt, s
+    ) -> None:
         self._decoder = decoder
         self._poses = TorchPoses(chain, decoder.dtype)
         self._duration_s = duration_s

@@ -27,14 +27,12 @@ GAIN_PER_S: Final = 4.0
 """How fast an error in orientation shrinks while the stick is pushed fully, 1/s."""
 
 
-def features(position: FloatArray, objects: FloatArray, gripper: FloatArray) -> FloatArray:
-    """Inputs of the orientation network, (..., 3 + 3 K + g).
-
-    Args:
-        position: (..., 3), of the tool, m.
-        objects: (..., K, 9), see `Context.objects`; orientations are left out.
-        gripper: (..., g), see `Context.gripper`.
-    """
+def features(
+    position: FloatArray,  # (..., 3), of the tool, m
+    objects: FloatArray,  # (..., K, 9), see `Context.objects`; orientations are left out
+    gripper: FloatArray,  # (..., g), see `Context.gripper`
+) -> FloatArray:
+    """Inputs of the orientation network, (..., 3 + 3 K + g)."""
     near = objects[..., :3] - position[..., None, :]  # What is held stays where it is in these.
     lead, width = near.shape[:-2], 3 * near.shape[-2]
     parts = (position, near.reshape(*lead, width), gripper)

@@ -108,14 +108,13 @@ class Steering:
         }
 
 
-def steering_of(config: DriveOptions, run: Run | None, task: str, robot: Robot) -> Steering:
+def steering_of(
+    config: DriveOptions,
+    run: Run | None,  # the run that was named, or None
+    task: str,
+    robot: Robot,
+) -> Steering:
     """What steers an arm as was asked for.
-
-    Args:
-        config: what was asked for.
-        run: the run that was named, or None.
-        task: name of the task.
-        robot: the arm.
 
     Raises:
         UserError: the run's model or profile cannot be used, or is for another arm.

@@ -24,12 +24,10 @@ class Common:
     smoke: Annotated[bool, arg(help="Smallest sizes, which only show that it runs.")] = False
 
 
-def command_of(name: str) -> Command:
-    """The command that runs a measurement.
-
-    Args:
-        name: a name in `MEASUREMENTS`.
-    """
+def command_of(
+    name: str,  # a name in `MEASUREMENTS`
+) -> Command:
+    """The command that runs a measurement."""
     entry = MEASUREMENTS[name]
 
     def measure(

@@ -22,12 +22,10 @@ if TYPE_CHECKING:
 ALL = "all"
 
 
-def command_of(name: str) -> Command:
-    """The command that runs a study.
-
-    Args:
-        name: a name in `STUDIES`.
-    """
+def command_of(
+    name: str,  # a name in `STUDIES`
+) -> Command:
+    """The command that runs a study."""
     entry = STUDIES[name]
     choices, presets = ("{" + ",".join(names) + "}" for names in ((ALL, *entry.tasks), entry.presets))
     about_presets = "; ".join(f"{name}: {about}" for name, about in entry.presets.items()) + "."

@@ -78,14 +78,13 @@ def measure(options: Force, work: Work) -> Outcome:
 
 @final
 class Thing:
-    """A thing that the arm presses on.
+    """A thing that the arm presses on."""
 
-    Args:
-        arm: that presses.
-        stiffness_n_mm: of the spring, N/mm; None for the table.
-    """
-
-    def __init__(self, arm: MujocoArm, stiffness_n_mm: float | None) -> None:
+    def __init__(
+        self,
+        arm: MujocoArm,
+        stiffness_n_mm: float | None,  # of the spring, N/mm; None for the table
+    ) -> None:
         self._arm = arm
         self._stiffness = stiffness_n_mm
         self._tool = arm.model.site(panda().chain.tools[0].name).id
@@ -113,13 +112,12 @@ def start(robot: Robot, rng: np.random.Generator) -> FloatArray:
     return solve(robot, Pose(place, home.rotation), robot.home)
 
 
-def drive(stiffness_n_mm: float | None, config: SafetyConfig, cell: tuple[int, int]) -> FloatArray | None:
+def drive(
+    stiffness_n_mm: float | None,  # of the spring, N/mm; None for the table
+    config: SafetyConfig,
+    cell: tuple[int, int],
+) -> FloatArray | None:
     """Push down once.
-
-    Args:
-        stiffness_n_mm: of the spring, N/mm; None for the table.
-        config: what the filters know.
-        cell: seed and number of the drive.
 
     Returns:
         From touch to stop, s; the peak, and the forces at `AFTER_S`, N; whether the arm stopped by itself.

@@ -53,13 +53,12 @@ class Judge:
         moved = np.ptp([self.distances(q, 10.0) for q in sampled], axis=0) > 1e-6
         self._pairs = [pair for pair, moves in zip(pairs, moved, strict=True) if moves]
 
-    def distances(self, q: FloatArray, most_m: float = NEAR_M) -> FloatArray:
-        """(pairs,), m.
-
-        Args:
-            q: (n,), rad.
-            most_m: what stands for any longer distance, m.
-        """
+    def distances(
+        self,
+        q: FloatArray,  # (n,), rad
+        most_m: float = NEAR_M,  # what stands for any longer distance, m
+    ) -> FloatArray:
+        """(pairs,), m."""
         self._data.qpos[self._address] = q
         mujoco.mj_kinematics(self._model, self._data)
         return np.array(

@@ -61,13 +61,12 @@ def measure(options: Help, work: Work) -> Outcome:
 
 @final
 class Hover(Task):
-    """To be above an item, of which the robot may not know.
+    """To be above an item, of which the robot may not know."""
 
-    Args:
-        hidden: index of the item that the robot does not know; None for none.
-    """
-
-    def __init__(self, hidden: int | None) -> None:
+    def __init__(
+        self,
+        hidden: int | None,  # index of the item that the robot does not know; None for none
+    ) -> None:
         self._hidden = hidden
 
     @property

@@ -29,16 +29,13 @@ def imperfect(late_ticks: int, rng: np.random.Generator) -> Imperfections:
 
 
 def enabled(
-    arm: KinematicArm | MujocoArm, step: Step, clock: SimulatedClock, late_ticks: int, inputs: int = 1
+    arm: KinematicArm | MujocoArm,  # not connected yet
+    step: Step,
+    clock: SimulatedClock,
+    late_ticks: int,  # how old its readings are, ticks of the step
+    inputs: int = 1,
 ) -> int:
     """Connect an arm, read it until its first late reading is there, and enable it.
-
-    Args:
-        arm: not connected yet.
-        step: drives it.
-        clock: at zero.
-        late_ticks: how old its readings are, ticks of the step.
-        inputs: how many numbers an input of the step has.
 
     Returns:
         The first tick in which it may move.

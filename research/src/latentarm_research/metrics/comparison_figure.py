@@ -22,13 +22,12 @@ GAP_MM = 1.0  # between two series
 FRAME_MM = 14.0  # a panel's title and numbers
 
 
-def comparison_figure(rows: Sequence[Row]) -> "Figure":
+def comparison_figure(
+    rows: Sequence[Row],  # figures of one task, of several models or (where they name one) conditions
+) -> "Figure":
     """Means with bars of one SD to either side, series down and measures across.
 
     Series are told apart by place, marker and name as well as by colour.
-
-    Args:
-        rows: figures of one task, of several models or (where they name one) conditions.
     """
     measures = list(dict.fromkeys(row.measure for row in rows))
     series = list(dict.fromkeys(_series(row) for row in rows))

@@ -83,13 +83,12 @@ def mode_switches(mode: Sequence[int]) -> int:
     return sum(now != before for before, now in itertools.pairwise(mode))
 
 
-def goal_error(time_s: FloatArray, position: FloatArray, goals: FloatArray) -> tuple[float, float]:
+def goal_error(
+    time_s: FloatArray,  # (T,), s
+    position: FloatArray,  # (T, 3), the tool; it counts until the next time, m
+    goals: FloatArray,  # (G, 3), m
+) -> tuple[float, float]:
     """*Goal Error* of the paper's third user study: the "total distance to the closest plate".
-
-    Args:
-        time_s: (T,), s.
-        position: (T, 3), the tool; it counts until the next time, m.
-        goals: (G, 3), m.
 
     Returns:
         The integral over time, m s, and the mean, m; for a drive that took no time, 0 and the distance;
@@ -103,13 +102,12 @@ def goal_error(time_s: FloatArray, position: FloatArray, goals: FloatArray) -> t
     return total, total / took_s if took_s > 0.0 else float(closest[0])
 
 
-def measure_drive(records: Sequence[StepRecord], tool: Pose, outcome: Outcome) -> Drive:
+def measure_drive(
+    records: Sequence[StepRecord],  # every step of the loop in order
+    tool: Pose,  # (T,), where the tool was at each
+    outcome: Outcome,
+) -> Drive:
     """Figures of a drive from its record.
-
-    Args:
-        records: every step of the loop in order.
-        tool: (T,), where the tool was at each.
-        outcome: what the task says of it.
 
     Raises:
         ValueError: there are no records.

@@ -37,16 +37,12 @@ class Ending:
 
 
 def why_it_timed_out(
-    records: Sequence[StepRecord], chain: PlacesTool, waypoint: Pose, since_s: float
+    records: Sequence[StepRecord],  # every step in order
+    chain: PlacesTool,
+    waypoint: Pose,  # the waypoint that was not reached
+    since_s: float,  # when that waypoint became the next one, on the records' clock, s
 ) -> Ending:
-    """Why a drive was not done within its time.
-
-    Args:
-        records: every step in order.
-        chain: the robot's forward kinematics.
-        waypoint: the waypoint that was not reached.
-        since_s: when that waypoint became the next one, on the records' clock, s.
-    """
+    """Why a drive was not done within its time."""
     stop = records[-1].command.stop
     if stop is not None:
         return Ending("safety_stop", f"stopped by safety: {stop.reason.rstrip('.')}")

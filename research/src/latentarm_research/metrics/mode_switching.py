@@ -5,15 +5,14 @@ import numpy as np
 from latentarm.core.types import BoolArray, FloatArray
 
 
-def switching(mode: FloatArray, pushed: BoolArray) -> BoolArray:
+def switching(
+    mode: FloatArray,  # (T,), the controller's mode
+    pushed: BoolArray,  # (T,), whether the stick was pushed
+) -> BoolArray:
     """Which samples of a drive are spent on switching modes, (T,).
 
     Those from the last push before a switch until the first one after it; several switches on the way to a
     mode are one such time.
-
-    Args:
-        mode: (T,), the controller's mode.
-        pushed: (T,), whether the stick was pushed.
     """
     spent = np.zeros(len(mode), dtype=np.bool_)
     pushes = np.flatnonzero(pushed)

@@ -18,14 +18,13 @@ RADII: Final = (1 / 3, 2 / 3, 1.0)
 """The stick is pushed in so many directions, evenly spaced, by each of these amounts."""
 
 
-def nonlinearity(decoders: Sequence[DecodesActions], context: FloatArray) -> FloatArray:
+def nonlinearity(
+    decoders: Sequence[DecodesActions],
+    context: FloatArray,  # (N, c)
+) -> FloatArray:
     """Share of the motion's variance over the stick's range that is not linear in z, in every context.
 
     The motion at rest does not count: drift has it.
-
-    Args:
-        decoders: S decoders with d = 2.
-        context: (N, c).
 
     Returns:
         (S, N), 0 for a map that is linear but for an offset, at most 1; NaN where nothing changes with z.

@@ -9,13 +9,11 @@ import numpy as np
 from latentarm.core.types import FloatArray, IntArray
 
 
-def preference_alignment(points: FloatArray, needed: FloatArray) -> float:
-    """The mean dot product of how the tool points and how it should, in [-1, 1]; NaN for no moments.
-
-    Args:
-        points: (T, 3), unit vectors along which the tool points.
-        needed: (T, 3), unit vectors along which it should.
-    """
+def preference_alignment(
+    points: FloatArray,  # (T, 3), unit vectors along which the tool points
+    needed: FloatArray,  # (T, 3), unit vectors along which it should
+) -> float:
+    """The mean dot product of how the tool points and how it should, in [-1, 1]; NaN for no moments."""
     return float(np.vecdot(points, needed).mean()) if len(points) else np.nan
 
 
@@ -30,16 +28,12 @@ class StepAlignment:
 
 
 def alignment_by_step(
-    steps: Sequence[str], under_way: IntArray, points: FloatArray, needed: FloatArray
+    steps: Sequence[str],
+    under_way: IntArray,  # (T,), index of the step that was under way
+    points: FloatArray,  # (T, 3), see `preference_alignment`
+    needed: FloatArray,  # (T, 3), as there
 ) -> tuple[StepAlignment, ...]:
-    """*Preference Alignment* in each step that was begun, in order.
-
-    Args:
-        steps: all steps in words.
-        under_way: (T,), index of the step that was under way.
-        points: (T, 3), see `preference_alignment`.
-        needed: (T, 3), as there.
-    """
+    """*Preference Alignment* in each step that was begun, in order."""
     found: list[StepAlignment] = []
     for index, step in enumerate(steps):
         here = under_way == index

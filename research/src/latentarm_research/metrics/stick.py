@@ -10,26 +10,23 @@ TURNED_ROUND_S: Final = 0.5
 """A change of direction counts as one where it takes no longer than this, s."""
 
 
-def idle_time(time_s: FloatArray, u: FloatArray) -> float:
-    """Time without input, s: *Idle Time* of the paper's third user study.
-
-    Args:
-        time_s: (T,), when each input began, s; each holds until the next.
-        u: (T, d), inputs as they were used, zero within the dead zone.
-    """
+def idle_time(
+    time_s: FloatArray,  # (T,), when each input began, s; each holds until the next
+    u: FloatArray,  # (T, d), inputs as they were used, zero within the dead zone
+) -> float:
+    """Time without input, s: *Idle Time* of the paper's third user study."""
     return float(np.diff(time_s) @ ~u[:-1].any(axis=-1))
 
 
-def turned_round_share(time_s: FloatArray, u: FloatArray) -> float:
+def turned_round_share(
+    time_s: FloatArray,  # (T,), when each input began, s, at a constant period; each holds until the next
+    u: FloatArray,  # (T, d), inputs as they were used, zero within the dead zone
+) -> float:
     """Share of the time in which the stick points away from where it pointed a moment ago.
 
     *Undo* of the paper's fourth user study: "the percentage of the time that users undo their actions by
     significantly changing the joystick direction". The paper names no threshold. Here a moment counts where
     the input is more than 90° from one within the last `TURNED_ROUND_S`.
-
-    Args:
-        time_s: (T,), when each input began, s, at a constant period; each holds until the next.
-        u: (T, d), inputs as they were used, zero within the dead zone.
 
     Returns:
         In [0, 1]; 0 for a drive that took no time.

@@ -16,13 +16,12 @@ AGAINST: Final = -0.5
 """Cosine of the angle between the two, at most: from 120° on one undoes the other."""
 
 
-def undone_share(position: FloatArray) -> float:
+def undone_share(
+    position: FloatArray,  # (T, 3), places of the tool, m
+) -> float:
     """Share of a path's length that is later gone back over, near by and the other way.
 
     A straight line has 0, a line there and back 0.5, and a circle led around twice 0.
-
-    Args:
-        position: (T, 3), places of the tool, m.
 
     Returns:
         In [0, 1]; 0 for a path shorter than two samples of it.

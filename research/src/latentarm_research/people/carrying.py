@@ -9,15 +9,13 @@ from latentarm.robots.kinematics.chain import Chain
 from latentarm.robots.kinematics.pose_rows import moved_along
 
 
-def carried(chain: Chain, context: Context, held: BoolArray, state: FloatArray) -> Context:
-    """The context once the arm is elsewhere, and with it what it holds.
-
-    Args:
-        chain: the arm, whose first tool holds things.
-        context: now.
-        held: (K,), which of its things are held.
-        state: (..., n), where the arm is then, rad.
-    """
+def carried(
+    chain: Chain,  # the arm, whose first tool holds things
+    context: Context,
+    held: BoolArray,  # (K,), which of its things are held
+    state: FloatArray,  # (..., n), where the arm is then, rad
+) -> Context:
+    """The context once the arm is elsewhere, and with it what it holds."""
     if not held.any():
         return replace(context, state=state)
     moved = moved_along(context.objects, chain.forward(context.state), chain.forward(state))

@@ -24,15 +24,13 @@ class Decision(ABC):
 
     @abstractmethod
     def decide(
-        self, moment: Moment, controller: Controller, imagination: Imagination, rng: np.random.Generator
+        self,
+        moment: Moment,
+        controller: Controller,
+        imagination: Imagination,  # where they expect inputs to lead
+        rng: np.random.Generator,
     ) -> Input:
         """What the person means to do now.
-
-        Args:
-            moment: what they see.
-            controller: what the inputs go to.
-            imagination: where they expect inputs to lead.
-            rng: source of all randomness.
 
         Returns:
             An input of length 1 at most, and whether the next mode is asked for.

@@ -56,14 +56,13 @@ class Lattice:
     ring_volume: FloatArray  # (RINGS,), integral of r^(d - 1) over each cell
 
     @classmethod
-    def of(cls, axes: int, rng: np.random.Generator, dead_zone: float = 0.0) -> Self:
-        """The lattice of a stick: fixed for one axis and two, randomly turned for more.
-
-        Args:
-            axes: d.
-            rng: of the turn.
-            dead_zone: inputs no longer than this are neutral, in [0, 1).
-        """
+    def of(
+        cls,
+        axes: int,
+        rng: np.random.Generator,
+        dead_zone: float = 0.0,  # inputs no longer than this are neutral, in [0, 1)
+    ) -> Self:
+        """The lattice of a stick: fixed for one axis and two, randomly turned for more."""
         fixed = _lattice(axes, dead_zone)
         if axes <= 2:
             return cls(*fixed)
@@ -164,15 +163,12 @@ class InputDensity:
         self._cumulative = np.cumsum(model.lattice.ring_volume * _mean_exponential(self._exponent))
 
     def draw(
-        self, cost_of: Callable[[FloatArray], FloatArray], rng: np.random.Generator, count: int = 1
+        self,
+        cost_of: Callable[[FloatArray], FloatArray],  # what inputs (N, d) truly cost, (N,), m²
+        rng: np.random.Generator,
+        count: int = 1,
     ) -> Draws:
-        """Draw inputs, each by itself. All proposals are looked at in one call.
-
-        Args:
-            cost_of: what inputs (N, d) truly cost, (N,), m².
-            rng: source of all randomness.
-            count: how many.
-        """
+        """Draw inputs, each by itself. All proposals are looked at in one call."""
         axes = self._model.lattice.axes
         if not len(self._model.direction):
             nothing = np.full(count, np.inf)

@@ -86,16 +86,15 @@ def displacements(motions: Motions, chain: Chain) -> FloatArray:
     return chain.forward(motions.end).position - chain.forward(motions.start).position
 
 
-def main_directions(motions: Motions, chain: Chain, count: int) -> FloatArray:
+def main_directions(
+    motions: Motions,
+    chain: Chain,
+    count: int,  # 1 to 3
+) -> FloatArray:
     """The directions along which the first tool moves most: (count, 3), the first most of all.
 
     Principal directions of the displacements about rest, not about their mean. Each has the sign that makes
     its largest entry positive.
-
-    Args:
-        motions: N.
-        chain: the arm.
-        count: 1 to 3.
     """
     directions = np.linalg.svd(displacements(motions, chain), full_matrices=False)[2][:count]
     largest = np.abs(directions).argmax(axis=1)

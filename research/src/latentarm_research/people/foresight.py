@@ -17,14 +17,13 @@ An input of zero leaves the tool where it is."""
 
 @final
 class KnowsTheArm:
-    """The ``Psi(s + phi(f(u, c), c) dt)`` of equation 24: they know exactly what each input does.
+    """The ``Psi(s + phi(f(u, c), c) dt)`` of equation 24: they know exactly what each input does."""
 
-    Args:
-        chain: the arm; its first tool is looked at.
-        limits: how the loop slows the arm down, and when it takes an input for rest.
-    """
-
-    def __init__(self, chain: Chain, limits: LoopLimits) -> None:
+    def __init__(
+        self,
+        chain: Chain,  # the arm; its first tool is looked at
+        limits: LoopLimits,
+    ) -> None:
         self._chain = chain
         self._limits = limits
 

@@ -70,15 +70,14 @@ class Regression:
     moment: FloatArray  # (6, d), precision times mean, beyond the prior's
     prior: FloatArray | float = 0.0  # (6, d), B's mean before anything was seen, or one for all entries
 
-    def learn(self, u: FloatArray, y: FloatArray, noise: float, kept: float) -> None:
-        """Take in one motion.
-
-        Args:
-            u: (d,), the input.
-            y: (6,), the twist.
-            noise: SD of y.
-            kept: share of all earlier knowledge that is not forgotten.
-        """
+    def learn(
+        self,
+        u: FloatArray,  # (d,), the input
+        y: FloatArray,  # (6,), the twist
+        noise: float,  # SD of y
+        kept: float,  # share of all earlier knowledge that is not forgotten
+    ) -> None:
+        """Take in one motion."""
         self.precision = kept * self.precision + np.outer(u, u) / noise**2
         self.moment = kept * self.moment + np.outer(y, u) / noise**2
 

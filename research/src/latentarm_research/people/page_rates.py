@@ -45,14 +45,13 @@ _EARLY: Final = 1e-6
 
 @final
 class Screen:
-    """Shows what there is to see when the page does.
+    """Shows what there is to see when the page does."""
 
-    Args:
-        rates: of the page.
-        period_s: time between calls, s.
-    """
-
-    def __init__(self, rates: PageRates, period_s: float) -> None:
+    def __init__(
+        self,
+        rates: PageRates,
+        period_s: float,  # time between calls, s
+    ) -> None:
         self._rates = rates
         self._period_s = period_s
         oldest_s = rates.network_s + rates.state_s + rates.frame_s

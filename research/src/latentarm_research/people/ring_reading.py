@@ -119,16 +119,14 @@ class RingDecision(Decision):
 
     While they read, the stick stays where it was pushed to: eyes are on the picture, and the hand on the
     stick.
-
-    Args:
-        decides: how they think of one step.
-        reading: how they read.
-        period_s: time between calls of `decide`, s.
-        dead_zone: length of an input up to which the loop takes it for rest, in [0, 1).
     """
 
     def __init__(
-        self, decides: BoltzmannConfig, reading: RingReadingConfig, period_s: float, dead_zone: float
+        self,
+        decides: BoltzmannConfig,
+        reading: RingReadingConfig,
+        period_s: float,  # time between calls of `decide`, s
+        dead_zone: float,  # length of an input up to which the loop takes it for rest, in [0, 1)
     ) -> None:
         config = replace(decides, decision_s=max(decides.decision_s, reading.read_s))
         self._one_step = OneStep(config, period_s, max(dead_zone, reading.least_push))

@@ -30,12 +30,11 @@ class Spread(ABC):
                 f" {self.lowest} to {self.highest} with {self.width}."
             )
 
-    def at(self, quantile: float) -> float:
-        """What so large a share of people stay below.
-
-        Args:
-            quantile: in [0, 1].
-        """
+    def at(
+        self,
+        quantile: float,  # in [0, 1]
+    ) -> float:
+        """What so large a share of people stay below."""
         low, high = ndtr(self._standard(self.lowest)), ndtr(self._standard(self.highest))
         value = self._figure(float(ndtri(low + quantile * (high - low))))
         return float(np.clip(value, self.lowest, self.highest))

@@ -70,15 +70,14 @@ def title(axes: "Axes", text: str, letter: str = "") -> None:
     axes.set_title(bold + text, loc="left", fontsize=FONT_SIZE)
 
 
-def plane(axes: "Axes", view: View, ticks: int = 4) -> None:
+def plane(
+    axes: "Axes",
+    view: View,
+    ticks: int = 4,  # numbers along an axis, at most; fewer for a narrow panel
+) -> None:
     """A panel in the plane of the arm: the same scale both ways, in metres.
 
     What lies outside the view is cut off. Of panels that share their y axis only the first is labelled.
-
-    Args:
-        axes: the panel.
-        view: what it shows.
-        ticks: numbers along an axis, at most; fewer for a narrow panel.
     """
     axes.set_xlim(*view[0])
     axes.set_ylim(*view[1])
@@ -126,13 +125,12 @@ def name_series(figure: "Figure", *panels: "Axes", handle_length: float = 3.0) -
         legend_below(figure, list(named.values()), list(named), handle_length=handle_length)
 
 
-def arm_line(robot: Robot, state: FloatArray, tool: int = 0) -> FloatArray:
+def arm_line(
+    robot: Robot,
+    state: FloatArray,  # (..., n), rad
+    tool: int = 0,
+) -> FloatArray:
     """The joints of one arm from its base outwards and its tool, in the plane.
-
-    Args:
-        robot: one planar arm or two.
-        state: (..., n), rad.
-        tool: whose arm.
 
     Returns:
         (..., J + 1, 2), m.

@@ -16,14 +16,13 @@ WIDE: Final = 7
 """Columns of a table from which on its text is small."""
 
 
-def html_page(markdown: str, folder: Path) -> str:
+def html_page(
+    markdown: str,
+    folder: Path,  # where its images are, PNGs
+) -> str:
     """The page: images become figures with captions, and the paragraph above a table its caption.
 
     Markdown may hold HTML, as GitHub's may: strangers' text in it must be escaped. The page runs no scripts.
-
-    Args:
-        markdown: of the report.
-        folder: where its images are, PNGs.
     """
     from markdown_it import MarkdownIt
 

@@ -87,14 +87,13 @@ def holm(p: Sequence[float | None]) -> list[float | None]:
     return [None if one is None else next(values) for one in p]
 
 
-def bootstrap_interval(values: FloatArray) -> tuple[FloatArray, FloatArray]:
+def bootstrap_interval(
+    values: FloatArray,  # (N, ...), one of N units along the first axis
+) -> tuple[FloatArray, FloatArray]:
     """The 95 % percentile bootstrap interval for the mean of independent units (Efron 1979).
 
     Every resampled mean lies between the lowest and the highest value: an interval for a probability
     stays within [0, 1] and one for a positive quantity above 0, which mean ± t SE does not.
-
-    Args:
-        values: (N, ...), one of N units along the first axis.
 
     Returns:
         Lower and upper ends, (...); both the value itself for one unit.

@@ -11,14 +11,13 @@ from latentarm.tasks.scene_task import Beginning, SceneTask
 
 @final
 class LimitedTime(SceneTask):
-    """Another task with a time limit that may be shorter than its own.
+    """Another task with a time limit that may be shorter than its own."""
 
-    Args:
-        task: what is done.
-        time_limit_s: a run that takes longer has failed, s.
-    """
-
-    def __init__(self, task: SceneTask, time_limit_s: float) -> None:
+    def __init__(
+        self,
+        task: SceneTask,
+        time_limit_s: float,  # a run that takes longer has failed, s
+    ) -> None:
         self._task = task
         self._time_limit_s = min(time_limit_s, task.time_limit_s)
 

@@ -68,12 +68,11 @@ def read_trial(entry: object, where: str) -> Trial:
     )
 
 
-def read_trials(document: Mapping[str, object], path: Path) -> tuple[Trial, ...]:
+def read_trials(
+    document: Mapping[str, object],  # with a list `trials`
+    path: Path,
+) -> tuple[Trial, ...]:
     """The trials of a document.
-
-    Args:
-        document: with a list ``trials``.
-        path: its file, for messages.
 
     Raises:
         UserError: there is no list, or a trial is not what it should be.

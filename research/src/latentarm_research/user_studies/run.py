@@ -32,13 +32,11 @@ from latentarm_research.user_studies.sizes import PRESETS, Sizes, Stream, sizes_
 from latentarm_research.user_studies.training import Trained, TrainingCell, train
 
 
-def study_of(definition: Definition, named: str = "") -> Study[Sizes, Recorded]:
-    """The study in which simulated people go through a definition.
-
-    Args:
-        definition: of the study.
-        named: what the command line was given for it; its own name where empty.
-    """
+def study_of(
+    definition: Definition,
+    named: str = "",  # what the command line was given for it; its own name where empty
+) -> Study[Sizes, Recorded]:
+    """The study in which simulated people go through a definition."""
 
     def report(request: Request[Sizes], recorded: Recorded) -> Report:
         found = report_of(recorded, again(study, request))

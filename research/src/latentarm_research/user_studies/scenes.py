@@ -9,11 +9,10 @@ OVER_MARSHMALLOW: Final = "over_marshmallow"
 """HARMONIC's: done once the fork is over the chosen marshmallow."""
 
 
-def scene_of(name: str) -> SceneTask:
+def scene_of(
+    name: str,  # `OVER_MARSHMALLOW`, or a name of `latentarm.tasks.catalogue.SCENE_TASKS`
+) -> SceneTask:
     """A task.
-
-    Args:
-        name: `OVER_MARSHMALLOW`, or a name of `latentarm.tasks.catalogue.SCENE_TASKS`.
 
     Raises:
         UserError: there is no such task, or it does not load.

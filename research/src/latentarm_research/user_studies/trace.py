@@ -75,12 +75,11 @@ def trace_of(person: int, condition: str, task: StudyTask, trial: int, driven: "
     )
 
 
-def read_traces(document: Mapping[str, object], path: Path) -> tuple[Trace, ...]:
+def read_traces(
+    document: Mapping[str, object],  # with a list `traces`
+    path: Path,
+) -> tuple[Trace, ...]:
     """The traces of a document.
-
-    Args:
-        document: with a list ``traces``.
-        path: its file, for messages.
 
     Raises:
         UserError: there is no list, or a trace is not what it should be.

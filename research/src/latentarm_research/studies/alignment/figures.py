@@ -34,16 +34,12 @@ ROOM: Final = 1.6
 
 
 def conditions_figure(
-    results: Sequence[AlignmentErrors], models: Sequence[str], tasks: Sequence[str], noises: Sequence[float]
+    results: Sequence[AlignmentErrors],
+    models: Sequence[str],
+    tasks: Sequence[str],
+    noises: Sequence[float],  # coefficients of variation of the answers
 ) -> "Figure":
-    """Means with 95 % intervals, a panel per task, a row per model, grouped by noise.
-
-    Args:
-        results: every cell.
-        models: those to be shown.
-        tasks: from left to right.
-        noises: coefficients of variation of the answers.
-    """
+    """Means with 95 % intervals, a panel per task, a row per model, grouped by noise."""
     figure = new_figure(CONDITIONS_ROW_MM * len(models) + CONDITIONS_FRAME_MM, TWO_COLUMNS_MM)
     figure.suptitle(
         "Relative alignment error, mean over runs with 95 % interval; people and arm simulated",

@@ -31,13 +31,11 @@ from latentarm_research.tasks.pouring.tasks import POURING_TASKS, at_bowl
 from latentarm_research.tasks.pouring.tool_path import SPEED_M_S, TURN_RAD_S
 
 
-def preference_of(task: str, chain: Chain) -> Preference:
-    """What is meant in a task: a full push is the fastest motion of the demonstrations.
-
-    Args:
-        task: a name of `POURING_TASKS`.
-        chain: the arm.
-    """
+def preference_of(
+    task: str,  # a name of `POURING_TASKS`
+    chain: Chain,
+) -> Preference:
+    """What is meant in a task: a full push is the fastest motion of the demonstrations."""
     plane = ToolAxes(chain, 2, SPEED_M_S)
     pour = HeightAndTilt(chain, SPEED_M_S, TURN_RAD_S)
     return {"plane": plane, "pour": pour, "reach_and_pour": ByPlace(chain, at_bowl, pour, plane)}[task]
@@ -139,16 +137,15 @@ class Scene:
         """The function phi of the paper."""
         return self.model.decoder()
 
-    def ask(self, count: int, noise: float, stream: Stream, answers: Stream, run: int) -> Answers:
-        """One person's answers about motions drawn at random.
-
-        Args:
-            count: answers; all motions where there are fewer.
-            noise: coefficient of variation of the answers.
-            stream: of the draw of motions: the first of more motions are those of fewer.
-            answers: of the noise.
-            run: which run.
-        """
+    def ask(
+        self,
+        count: int,  # answers; all motions where there are fewer
+        noise: float,  # coefficient of variation of the answers
+        stream: Stream,  # of the draw of motions: the first of more motions are those of fewer
+        answers: Stream,
+        run: int,
+    ) -> Answers:
+        """One person's answers about motions drawn at random."""
         cell = self.learned.cell
         rows = generator(cell.seed, cell.task, stream, run).permutation(len(self.shown))[:count]
         motions = self.shown[rows]

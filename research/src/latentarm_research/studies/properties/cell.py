@@ -97,17 +97,13 @@ class Demonstrated:
 
 @lru_cache(maxsize=2)
 def demonstrated(
-    task: str, design: Design, sizes: tuple[int, int], seeds: int, seed: int
+    task: str,  # a name of `MOTIONS`
+    design: Design,
+    sizes: tuple[int, int],
+    seeds: int,
+    seed: int,
 ) -> tuple[Demonstrated, ...]:
-    """The demonstrations of every seed, the same for every kind of model and noise.
-
-    Args:
-        task: a name of `MOTIONS`.
-        design: how it is demonstrated.
-        sizes: episodes for training and for the test.
-        seeds: how many models are fitted.
-        seed: of the study.
-    """
+    """The demonstrations of every seed, the same for every kind of model and noise."""
     motion = MOTIONS[task](design)
     return tuple(
         Demonstrated(

@@ -38,15 +38,14 @@ class PaperCell:
     verdict: PaperVerdict  # how they compare
 
 
-def judge(mean: float, paper: float, sd: float, better: str, sees_context: bool) -> PaperVerdict:
+def judge(
+    mean: float,
+    paper: float,
+    sd: float,  # the paper's SD, or how exactly it is printed where it has none
+    better: str,
+    sees_context: bool,
+) -> PaperVerdict:
     """Compare one figure with the paper's.
-
-    Args:
-        mean: ours.
-        paper: the paper's mean.
-        sd: the paper's SD, or how exactly it is printed where it has none.
-        better: which way is better for a user, ``higher`` or ``lower``.
-        sees_context: whether the model's decoder does.
 
     Returns:
         `PaperVerdict.WITHIN` where ours is within `sd` of the paper's, whichever side it is on.

@@ -69,17 +69,16 @@ def log_axis(axes: "Axes", figures: Collection[Point], least: float = 0.0) -> fl
     return left
 
 
-def draw_points(axes: "Axes", figures: Mapping[str, Point], left: float, least: float = 0.0) -> None:
+def draw_points(
+    axes: "Axes",  # where to draw; its scale is already set
+    figures: Mapping[str, Point],
+    left: float,
+    least: float = 0.0,
+) -> None:
     """Draw points with their SD, named on the left and with their figures on the right.
 
     An SD that reaches the left edge goes on beyond it, on a logarithmic axis as far as zero.
     Points and not bars, because a bar's length means nothing on a logarithmic axis.
-
-    Args:
-        axes: where to draw; its scale is already set.
-        figures: by model.
-        left: the left edge of the axis.
-        least: a figure below it is no point, but the words that it is, at the left edge.
     """
     for place, (model, figure) in enumerate(figures.items()):
         if figure.mean < least:
@@ -130,14 +129,12 @@ def beside(figures: Mapping[str, Point]) -> str:
     return f"   {PAPER_SIGN}" if any(figure.paper is not None for figure in figures.values()) else ""
 
 
-def draw_losses(axes: "Axes", rows: Sequence[Row], task: str) -> None:
-    """Median test loss in percent of PCA's on a logarithmic axis, with the paper's.
-
-    Args:
-        axes: where to draw.
-        rows: of the study; those of other tasks and measures are passed over.
-        task: which task.
-    """
+def draw_losses(
+    axes: "Axes",  # where to draw
+    rows: Sequence[Row],  # of the study; those of other tasks and measures are passed over
+    task: str,
+) -> None:
+    """Median test loss in percent of PCA's on a logarithmic axis, with the paper's."""
     losses = points(rows, task, "median_error_percent_of_pca")
     draw_points(axes, losses, log_axis(axes, losses.values()))
     title(axes, "median test loss, mean ± SD", "A")
@@ -248,14 +245,12 @@ NOISE_MEASURES: Final = {
 """What the models are tested on; they are trained on noisy states in both."""
 
 
-def noise_figure(rows: Sequence[Row], tasks: Sequence[str], noises_rad: Sequence[float]) -> "Figure":
-    """Loss over noise, a line per model; tested with the noise (above) and without it (below).
-
-    Args:
-        rows: of the study.
-        tasks: those that were run.
-        noises_rad: SDs of the noise on states, rad, rising.
-    """
+def noise_figure(
+    rows: Sequence[Row],
+    tasks: Sequence[str],
+    noises_rad: Sequence[float],  # SDs of the noise on states, rad, rising
+) -> "Figure":
+    """Loss over noise, a line per model; tested with the noise (above) and without it (below)."""
     figure = new_figure(NOISE_MM, TWO_COLUMNS_MM)
     figure.suptitle(
         "Models trained with noise on the joint positions of simulated arms, mean ± SD over seeds",

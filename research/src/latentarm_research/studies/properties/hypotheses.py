@@ -64,11 +64,10 @@ def conditioned(model: str) -> bool:
     return KINDS[model].sees_context
 
 
-def compare_models(results: Sequence[PropertiesResult]) -> list[Comparison]:
+def compare_models(
+    results: Sequence[PropertiesResult],  # any cells; those with noise are not part of the hypotheses
+) -> list[Comparison]:
     """Every test of H1 and H2 that the results allow.
-
-    Args:
-        results: any cells; those with noise are not part of the hypotheses.
 
     Returns:
         Tests by hypothesis, the paper's models first, then by task and measure.

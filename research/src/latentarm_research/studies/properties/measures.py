@@ -50,27 +50,22 @@ RESOLUTION_M: Final = 1e-3
 as many latent axes as the plane has, any model comes so near."""
 
 
-def recorded_pairs(demonstrations: Demonstrations, noise_rad: float, rng: np.random.Generator) -> Pairs:
-    """State-action pairs as recorded, the contexts noisy and clean.
-
-    Args:
-        demonstrations: with recorded actions.
-        noise_rad: SD of the noise on states, rad.
-        rng: source of the noise.
-    """
+def recorded_pairs(
+    demonstrations: Demonstrations,
+    noise_rad: float,  # SD of the noise on states, rad
+    rng: np.random.Generator,
+) -> Pairs:
+    """State-action pairs as recorded, the contexts noisy and clean."""
     return make_pairs(demonstrations, 1, noise_rad, "state", rng, actions="recorded")
 
 
 def accuracy_figures(
-    model: EncodesActions, decoders: Sequence[DecodesActions], fitted: Pairs, pairs: Pairs
+    model: EncodesActions,
+    decoders: Sequence[DecodesActions],
+    fitted: Pairs,
+    pairs: Pairs,  # `recorded_pairs` of other demonstrations
 ) -> dict[str, FloatArray]:
     """Errors in percent of PCA's, with noise on the states and without.
-
-    Args:
-        model: of S seeds.
-        decoders: its S decoders.
-        fitted: `recorded_pairs` that its weights were fitted to, and PCA's are.
-        pairs: `recorded_pairs` of other demonstrations.
 
     Returns:
         Measure -> (S,), %: of the mean error over all pairs, and of the median of the episodes' mean errors
@@ -153,16 +148,12 @@ def control_figures(
 
 
 def start_goal_pairs(
-    motion: PlanarMotion, demonstrations: Demonstrations, count: int, rng: np.random.Generator
+    motion: PlanarMotion,
+    demonstrations: Demonstrations,  # E episodes, all of the same length
+    count: int,
+    rng: np.random.Generator,
 ) -> StartGoalPairs:
-    """Pairs of states of demonstrations at random.
-
-    Args:
-        motion: the task.
-        demonstrations: E episodes, all of the same length.
-        count: how many.
-        rng: picks them.
-    """
+    """Pairs of states of demonstrations at random."""
     state = np.stack([episode.state for episode in demonstrations.episodes])
     episode = rng.integers(len(state), size=(2, count))
     if isinstance(motion, Rotate):

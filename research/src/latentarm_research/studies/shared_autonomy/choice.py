@@ -29,14 +29,13 @@ _ENDS: Final = np.append(_STARTS[1:], 1.0)
 """(K,), ends of the segments over which the cost is linear: the dead zone is one of them."""
 
 
-def choose(cost: FloatArray, at_rest: FloatArray, beta: FloatArray, chance: FloatArray) -> FloatArray:
+def choose(
+    cost: FloatArray,  # (P, K), of the inputs `KNOWN`, m²
+    at_rest: FloatArray,  # (P,), of letting go, m²
+    beta: FloatArray,  # (P,), rationality, zero or more, 1/m²
+    chance: FloatArray,  # (P,), uniform in [0, 1): which input is drawn
+) -> FloatArray:
     """Inputs of P people.
-
-    Args:
-        cost: (P, K), of the inputs `KNOWN`, m².
-        at_rest: (P,), of letting go, m².
-        beta: (P,), rationality, zero or more, 1/m².
-        chance: (P,), uniform in [0, 1): which input is drawn.
 
     Returns:
         (P,), in [-1, 1]; 0 for those who let go.

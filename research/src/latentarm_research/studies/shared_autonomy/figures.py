@@ -271,17 +271,13 @@ def outcomes_of(results: Sequence[AutonomyResult], task: str, model: str) -> Out
 
 
 def draw_over(
-    axes: "Axes", outcomes: Outcomes, people: Sequence[str], measure: str, at: FloatArray | None = None
+    axes: "Axes",
+    outcomes: Outcomes,
+    people: Sequence[str],
+    measure: str,
+    at: FloatArray | None = None,  # (N,), where each person stands; one after another, evenly, where None
 ) -> None:
-    """Mean and 95 % interval of a measure over people, one line per method.
-
-    Args:
-        axes: the panel.
-        outcomes: by method and person.
-        people: labels, from left to right.
-        measure: which.
-        at: (N,), where each person stands; one after another, evenly, where None.
-    """
+    """Mean and 95 % interval of a measure over people, one line per method."""
     places = np.arange(len(people), dtype=float) if at is None else at
     shift = NUDGE * float(np.ptp(places))
     for index, method in enumerate(METHODS):

@@ -38,11 +38,10 @@ class Interval:
         return self.mean + self.half_width
 
 
-def interval(values: FloatArray) -> Interval:
+def interval(
+    values: FloatArray,  # (S, P), of S seeds' P drives; (S, 1) for figures of the seeds themselves
+) -> Interval:
     """Mean and interval of what was measured of drives.
-
-    Args:
-        values: (S, P), of S seeds' P drives; (S, 1) for figures of the seeds themselves.
 
     Returns:
         Over the seeds' means, or over all drives of fewer than `FEWEST_SEEDS` seeds.

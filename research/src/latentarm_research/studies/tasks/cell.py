@@ -164,12 +164,11 @@ def drive(cell: TaskRunCell) -> TaskRunResult:
         return TaskRunResult(cell.task, cell.condition, run, perf_counter() - began)
 
 
-def training_set(task: str, shown: Sequence[DemonstratedRun]) -> Demonstrations:
+def training_set(
+    task: str,  # a name of `latentarm_research.studies.tasks.moved.TASKS`
+    shown: Sequence[DemonstratedRun],
+) -> Demonstrations:
     """The demonstrations of a task that succeeded, as a dataset.
-
-    Args:
-        task: a name of `latentarm_research.studies.tasks.moved.TASKS`.
-        shown: of that task.
 
     Raises:
         UserError: fewer than two succeeded, and a model needs one to learn from and one for validation.

@@ -77,15 +77,11 @@ class DefaultVerdict:
 
 
 def decide(
-    by_task: ByTask, fit_s: Mapping[Condition, float], tasks: Sequence[str] = (*SCENE_TASKS,)
+    by_task: ByTask,
+    fit_s: Mapping[Condition, float],  # the candidates, and how long each trained for all tasks, s
+    tasks: Sequence[str] = (*SCENE_TASKS,),
 ) -> DefaultVerdict:
-    """Apply the rule.
-
-    Args:
-        by_task: all runs, by task and condition.
-        fit_s: the candidates, and how long each trained for all tasks, s.
-        tasks: those that count.
-    """
+    """Apply the rule."""
     cells = [(task, what.by(person)) for task in tasks for what in (SWITCHED, *fit_s) for person in PEOPLE]
     counts = {cell: len(by_task.get(cell[0], {}).get(cell[1], ())) for cell in cells}
     task, what = fewest = min(cells, key=lambda cell: counts[cell])

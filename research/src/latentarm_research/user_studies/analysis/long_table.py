@@ -30,14 +30,13 @@ class LongTable:
         return int(self.person.max()) + 1 if len(self.person) else 0
 
 
-def long_table(trials: Sequence[Trial], claim: Claim, *, on_both: bool) -> LongTable:
-    """The trials that a claim compares.
-
-    Args:
-        trials: that count.
-        claim: what is compared.
-        on_both: whether the same people stand on both sides, so that only those with both count.
-    """
+def long_table(
+    trials: Sequence[Trial],
+    claim: Claim,
+    *,
+    on_both: bool,  # whether the same people stand on both sides, so that only those with both count
+) -> LongTable:
+    """The trials that a claim compares."""
     tasks = tasks_of(trials, claim)
     every = [
         trial

@@ -27,13 +27,12 @@ class Answer:
     points: int  # 1, strongly disagree, to the points of its scale
 
 
-def read_answers(path: Path, definition: Definition, met: Mapping[int, Collection[str]]) -> list[Answer]:
+def read_answers(
+    path: Path,  # CSV with the columns `NEEDED`
+    definition: Definition,
+    met: Mapping[int, Collection[str]],
+) -> list[Answer]:
     """The answers of a file. A line without an answer is an item that was left out.
-
-    Args:
-        path: CSV with the columns `NEEDED`.
-        definition: of the study.
-        met: conditions that each person of the study met.
 
     Raises:
         UserError: the file cannot be read, or a line is not an answer to an item of this study.

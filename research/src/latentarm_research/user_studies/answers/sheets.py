@@ -17,13 +17,12 @@ COLUMNS: Final = ("person", "condition", "item", "text", "answer")
 """Of a CSV sheet; the last one is empty until people answer."""
 
 
-def write_sheet(path: Path, definition: Definition, asked: Sequence[Asked]) -> None:
+def write_sheet(
+    path: Path,  # ends in `.csv` or `.md`
+    definition: Definition,
+    asked: Sequence[Asked],
+) -> None:
     """Write a sheet.
-
-    Args:
-        path: ends in ``.csv`` or ``.md``.
-        definition: of the study.
-        asked: its lines.
 
     Raises:
         UserError: the file has another ending, exists, or cannot be written.

@@ -12,11 +12,10 @@ from latentarm_research.user_studies.own.checks import check_definition
 SUFFIX: Final = ".json"
 
 
-def find_definition(name: str) -> Definition:
+def find_definition(
+    name: str,  # a name in `latentarm_research.user_studies.catalogue.NAMES`, or the path of a JSON file
+) -> Definition:
     """The study of that name, or that of a file.
-
-    Args:
-        name: a name in `latentarm_research.user_studies.catalogue.NAMES`, or the path of a JSON file.
 
     Raises:
         UserError: there is no such study; or see `read_definition`.
@@ -28,11 +27,10 @@ def find_definition(name: str) -> Definition:
     raise UserError(f"There is no study {name!r}: choose from {', '.join(NAMES)}, or name a {SUFFIX} file.")
 
 
-def read_definition(path: Path) -> Definition:
+def read_definition(
+    path: Path,  # JSON; a field `digest`, if there is one, must be the definition's own
+) -> Definition:
     """A definition from a file.
-
-    Args:
-        path: JSON; a field ``digest``, if there is one, must be the definition's own.
 
     Raises:
         UserError: the file cannot be read, or a field is wrong: a sentence that names it.

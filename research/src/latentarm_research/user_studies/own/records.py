@@ -17,13 +17,12 @@ def _adapter(kind: type[Record]) -> TypeAdapter[Record]:
     return TypeAdapter(kind)
 
 
-def read_record(kind: type[Record], entry: object, where: str) -> Record:
+def read_record(
+    kind: type[Record],
+    entry: object,  # as JSON was parsed
+    where: str,
+) -> Record:
     """A record from a JSON object that has its fields, those with defaults optional, and no others.
-
-    Args:
-        kind: a dataclass of texts, numbers, literals, tuples and dataclasses.
-        entry: as JSON was parsed.
-        where: file and field, for messages.
 
     Raises:
         UserError: a field is missing, unknown, or not what it should be; or the record itself refuses.

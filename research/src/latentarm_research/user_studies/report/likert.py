@@ -20,14 +20,12 @@ PANEL_MM: Final = 17.0
 LEGEND_MM: Final = 12.0
 
 
-def likert_figure(definition: Definition, rated: Sequence[Rated], who: str) -> "Figure":
-    """A panel for each scale; in it a bar for each condition, agreement to the right.
-
-    Args:
-        definition: of the study.
-        rated: every scale in every condition; reversed items are turned.
-        who: the people, in words.
-    """
+def likert_figure(
+    definition: Definition,
+    rated: Sequence[Rated],  # every scale in every condition; reversed items are turned
+    who: str,
+) -> "Figure":
+    """A panel for each scale; in it a bar for each condition, agreement to the right."""
     from matplotlib import colormaps
     from matplotlib.colors import to_hex
     from matplotlib.patches import Patch

@@ -76,16 +76,12 @@ def as_trained(decoders: Decoders, models: Sequence[str]) -> list[DrawnModel]:
 
 
 def turned(
-    decoders: Decoders, models: Sequence[str], states: FloatArray, rising: Callable[[FloatArray], FloatArray]
+    decoders: Decoders,
+    models: Sequence[str],
+    states: FloatArray,  # (N, n), where to look, rad
+    rising: Callable[[FloatArray], FloatArray],  # from states (..., n) to the quantity (...)
 ) -> list[DrawnModel]:
-    """The same, with a 1-D z turned so that positive z, on the whole, raises a quantity.
-
-    Args:
-        decoders: of all models.
-        models: which to show.
-        states: (N, n), where to look, rad.
-        rising: from states (..., n) to the quantity (...).
-    """
+    """The same, with a 1-D z turned so that positive z, on the whole, raises a quantity."""
     ends = np.array([[-1.0], [1.0]])
     shown: list[DrawnModel] = []
     for plain in as_trained(decoders, models):
@@ -100,13 +96,12 @@ def passed_states(motion: PlanarMotion) -> FloatArray:
     return np.concatenate([episode.state for episode in demonstrations.episodes])
 
 
-def spread_states(states: FloatArray, quantity: FloatArray, count: int) -> FloatArray:
+def spread_states(
+    states: FloatArray,  # (K, n)
+    quantity: FloatArray,  # (K,), of each of them
+    count: int,
+) -> FloatArray:
     """States at which a quantity is spread evenly over the middle of its range.
-
-    Args:
-        states: (K, n).
-        quantity: (K,), of each of them.
-        count: how many.
 
     Returns:
         (count, n), those with the lowest quantity first.
@@ -129,16 +124,14 @@ GRID: Final = axis_grid(21)
 DASHES: Final = ("-", "--", ":")
 
 
-def draw_over_z(axes: "Axes", rows: Sequence[Row], task: str, model: str, effect: FloatArray) -> None:
-    """Draw an effect over z, and say how well a line fits it over all seeds and more states.
-
-    Args:
-        axes: where to draw.
-        rows: of the study, for R^2.
-        task: which task.
-        model: whose effect.
-        effect: (K, 3), at the K values of `GRID`, in three states, in the unit of the y axis.
-    """
+def draw_over_z(
+    axes: "Axes",  # where to draw
+    rows: Sequence[Row],
+    task: str,
+    model: str,
+    effect: FloatArray,  # (K, 3), at the K values of `GRID`, in three states, in the unit of the y axis
+) -> None:
+    """Draw an effect over z, and say how well a line fits it over all seeds and more states."""
     for place, (values, dash) in enumerate(zip(effect.T, DASHES, strict=True)):
         axes.plot(
             GRID,
