@@ -10,11 +10,11 @@ from latentarm.core.errors import UserError
 from latentarm.core.parallel import CellError
 from latentarm.core.style import new_figure
 from latentarm.core.types import Row
-from latentarm_research.studies import printing
-from latentarm_research.studies.page import plain
-from latentarm_research.studies.printing import HTML, PDF, print_page
+from latentarm_research.studies import page as printing
+from latentarm_research.studies.page import HTML, PDF, print_page
 from latentarm_research.studies.results_folder import CONFIG
 from latentarm_research.studies.study import ALWAYS_MADE, Report, Request, Study, again, run_study
+from latentarm_research.studies.tables import plain
 from result_rows import rows_in
 
 PAGE = (

@@ -11,7 +11,7 @@ import pytest
 
 from latentarm.core.errors import UserError
 from latentarm.core.untrusted.documents import read_object
-from latentarm_research.studies.printing import HTML, PDF
+from latentarm_research.studies.page import HTML, PDF
 from latentarm_research.studies.study import ALWAYS_MADE, Request, run_study
 from latentarm_research.user_studies import session
 from latentarm_research.user_studies.catalogue import NAMES, load_definition

@@ -60,7 +60,7 @@ ALLOWED = {
         "json.loads",
     },  # part of the package
     "research/user_studies/definition.py": {"json.loads"},  # what it has just written
-    "research/studies/html.py": {"(env['folder'] / str(image.attrs['src'])).read_bytes"},  # its own figures
+    "research/studies/page.py": {"(env['folder'] / str(image.attrs['src'])).read_bytes"},  # its own figures
     "research/measurements/ring_movements.py": {"json.loads", "np.loadtxt"},  # text read within bounds
     "research/measurements/bare_chromium.py": {"file.read_text", "json.loads"},  # what our own browser says
     "research/measurements/page_stops.py": {

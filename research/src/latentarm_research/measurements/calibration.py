@@ -22,7 +22,7 @@ from latentarm_research.measurements.options import Calibrating
 from latentarm_research.metrics.mode_switching import switching
 from latentarm_research.people.calibration import BEFORE, CALIBRATED, Calibration
 from latentarm_research.people.population import MIRRORED, TRAITS, draw_people
-from latentarm_research.studies.page import markdown_table
+from latentarm_research.studies.tables import markdown_table
 
 PRACTICE_S: Final = 300.0
 """Five minutes, the most that the paper's people had, s."""

@@ -9,7 +9,7 @@ from latentarm.core.types import Row
 from latentarm.evaluation.table import format_figure
 from latentarm.runs.folder import git_commit
 from latentarm_research.measurements.measurement import UNITS, Outcome, unit_of
-from latentarm_research.studies.page import markdown_table
+from latentarm_research.studies.tables import markdown_table
 
 
 def page_of(title: str, outcome: Outcome, command: str) -> str:

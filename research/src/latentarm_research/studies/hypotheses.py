@@ -12,8 +12,8 @@ from typing import Final
 from latentarm.evaluation.looks import look_of
 from latentarm.evaluation.table import ABSENT, format_figure
 from latentarm_research.studies.means_test import Direction
-from latentarm_research.studies.page import listed, markdown_table
 from latentarm_research.studies.statistics import LEVEL, Statistic, format_p, holm
+from latentarm_research.studies.tables import listed, markdown_table
 
 SIDES: Final[Mapping[Direction, str]] = {"less": "below", "greater": "above"}
 SIGNS: Final[Mapping[Direction, str]] = {"less": "<", "greater": ">"}

@@ -18,9 +18,7 @@ from latentarm.evaluation.results import write_results
 from latentarm.runs.checks import check_seed
 from latentarm.runs.results_folder import write_json
 from latentarm_research.studies.backends import BACKENDS, check_backend
-from latentarm_research.studies.html import html_page
-from latentarm_research.studies.page import SMOKE
-from latentarm_research.studies.printing import HTML, PDF, print_page
+from latentarm_research.studies.page import HTML, PDF, SMOKE, html_page, print_page
 from latentarm_research.studies.results_folder import ResultsFolder
 
 if TYPE_CHECKING:
@@ -71,7 +69,7 @@ class Request(Generic[Preset]):
     tasks: tuple[str, ...] = ()  # which of the study's tasks; all of them where empty
     seed: int = 0  # of everything random
     jobs: int = -1  # processes side by side; -1 is one per core
-    backend: str = "joblib"  # where they run, a name in `latentarm.core.parallel.backends.BACKENDS`
+    backend: str = "joblib"  # where they run, a name in `latentarm_research.studies.backends.BACKENDS`
     quiet: bool = False  # say nothing while working
     bars: bool = False  # show how far the grids are
 

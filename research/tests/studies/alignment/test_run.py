@@ -18,7 +18,7 @@ from latentarm_research.studies.alignment.preset import (
 )
 from latentarm_research.studies.alignment.study import STUDY, TASKS
 from latentarm_research.studies.alignment.tables import summary_tables
-from latentarm_research.studies.printing import PDF
+from latentarm_research.studies.page import PDF
 from latentarm_research.studies.results_folder import CONFIG
 from latentarm_research.studies.study import ALWAYS_MADE, Request, run_study
 

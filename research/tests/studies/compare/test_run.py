@@ -10,7 +10,7 @@ from latentarm.demonstrations.importing import import_to
 from latentarm.robots.catalogue import load_robot
 from latentarm_research.studies.compare.preset import Preset
 from latentarm_research.studies.compare.study import compare_study
-from latentarm_research.studies.printing import PDF
+from latentarm_research.studies.page import PDF
 from latentarm_research.studies.results_folder import CONFIG
 from latentarm_research.studies.study import ALWAYS_MADE, Report, Request, run_study
 

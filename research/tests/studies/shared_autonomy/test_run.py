@@ -6,7 +6,7 @@ import pytest
 
 from latentarm.core.errors import UserError
 from latentarm.evaluation.measures import MEASURES
-from latentarm_research.studies.printing import PDF
+from latentarm_research.studies.page import PDF
 from latentarm_research.studies.results_folder import CONFIG
 from latentarm_research.studies.shared_autonomy.ablations import variants
 from latentarm_research.studies.shared_autonomy.cell import METHODS, TASKS, measure_cell

@@ -15,7 +15,7 @@ from latentarm.models.saving import load_decoder
 from latentarm.tasks.catalogue import SCENE_TASKS, make_scene_task
 from latentarm.tasks.eating.marshmallows import Marshmallows
 from latentarm.tasks.scene_task import SceneTask
-from latentarm_research.studies.printing import PDF
+from latentarm_research.studies.page import PDF
 from latentarm_research.studies.results_folder import CONFIG
 from latentarm_research.studies.study import ALWAYS_MADE, Request, again, run_study
 from latentarm_research.studies.tasks.cell import TaskRunResult, show, training_set

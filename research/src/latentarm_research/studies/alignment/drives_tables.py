@@ -25,8 +25,8 @@ from latentarm_research.studies.alignment.preset import (
     WITHOUT_PRIORS,
 )
 from latentarm_research.studies.hypotheses import Comparison, comparison_table, corrected
-from latentarm_research.studies.page import markdown_table
 from latentarm_research.studies.statistics import Statistic, format_p, paired
+from latentarm_research.studies.tables import markdown_table
 
 REACHED: Final = "arrival_rate"
 TIME: Final = "time_s"

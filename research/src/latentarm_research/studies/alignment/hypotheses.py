@@ -35,8 +35,8 @@ from latentarm_research.studies.alignment.preset import (
 )
 from latentarm_research.studies.alignment.turning import FEW, TurningResult
 from latentarm_research.studies.hypotheses import Comparison, corrected
-from latentarm_research.studies.page import listed
 from latentarm_research.studies.statistics import compare_means
+from latentarm_research.studies.tables import listed
 
 NEAR: Final = 1.25
 """Up to this many times the error of Ideal Align counts as close to it."""

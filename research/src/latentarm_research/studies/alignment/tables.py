@@ -17,7 +17,7 @@ from latentarm_research.studies.alignment.hypotheses import PAPER_MODEL, Alignme
 from latentarm_research.studies.alignment.preset import CONDITIONS, Preset, under
 from latentarm_research.studies.alignment.rows import ENCODED, ERROR
 from latentarm_research.studies.alignment.turning import TURNING, TurningResult
-from latentarm_research.studies.page import markdown_table
+from latentarm_research.studies.tables import markdown_table
 
 
 def condition_table(results: Sequence[AlignmentErrors]) -> str:

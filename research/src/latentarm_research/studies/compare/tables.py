@@ -12,7 +12,7 @@ from latentarm.evaluation.table import ABSENT, format_figure, measure_name, rich
 from latentarm_research.studies.compare.measures import TABLES
 from latentarm_research.studies.compare.rows import OVER_FOLDS, condition
 from latentarm_research.studies.compare.targets import TargetVerdict
-from latentarm_research.studies.page import markdown_table
+from latentarm_research.studies.tables import markdown_table
 
 CORNER: Final = "mean ± SD over seeds [SD over folds]"
 

@@ -15,8 +15,8 @@ from latentarm.evaluation.looks import look_of
 from latentarm.evaluation.measures import measure_of
 from latentarm.evaluation.table import ABSENT, format_figure, measure_name
 from latentarm.models.catalogue import KINDS
-from latentarm_research.studies.page import markdown_table
 from latentarm_research.studies.properties.paper import OF_MEANS, PAPER
+from latentarm_research.studies.tables import markdown_table
 
 HALF_A_DIGIT: Final = 0.005
 """What a figure that is printed with two decimals and without SD may be off."""

@@ -7,9 +7,9 @@ from latentarm.core.types import Row
 from latentarm.evaluation.looks import look_of
 from latentarm.evaluation.measures import measure_of
 from latentarm.evaluation.table import ABSENT, format_figure, measure_name
-from latentarm_research.studies.page import markdown_table
 from latentarm_research.studies.properties.measures import RESOLUTION_M
 from latentarm_research.studies.properties.paper import LENGTHS, MODELS_OF_THE_PAPER, ratio_name
+from latentarm_research.studies.tables import markdown_table
 
 OURS: Final = "isometric"
 """The model that is compared with the best of the paper's."""

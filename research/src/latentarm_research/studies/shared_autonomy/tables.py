@@ -10,12 +10,12 @@ from latentarm.core.types import Row
 from latentarm.evaluation.looks import look_of
 from latentarm.evaluation.measures import label_of, unit_of
 from latentarm.evaluation.table import ABSENT, format_figure, measure_name
-from latentarm_research.studies.page import markdown_table
 from latentarm_research.studies.shared_autonomy.ablations import variants
 from latentarm_research.studies.shared_autonomy.cell import METHODS
 from latentarm_research.studies.shared_autonomy.hypotheses import MEASURE
 from latentarm_research.studies.shared_autonomy.preset import Preset
 from latentarm_research.studies.shared_autonomy.rows import EXTRA_TIME, MODEL, PAPER, RECONSTRUCTION, Figure
+from latentarm_research.studies.tables import markdown_table
 
 
 @final

@@ -4,12 +4,12 @@ from collections.abc import Iterator, Sequence
 from typing import Final, NamedTuple
 
 from latentarm.evaluation.looks import look_of
-from latentarm_research.studies.page import markdown_table
 from latentarm_research.studies.shared_autonomy.cell import WITH_ENTROPY, WITH_HELP
 from latentarm_research.studies.shared_autonomy.hypotheses import MEASURE
 from latentarm_research.studies.shared_autonomy.intervals import Interval
 from latentarm_research.studies.shared_autonomy.preset import Person, Preset, learner
 from latentarm_research.studies.shared_autonomy.rows import Figure
+from latentarm_research.studies.tables import markdown_table
 
 AT_LEAST: Final = 0.9
 """Final state error without entropy after the latest change of mind: people are trapped at the other cup."""

@@ -8,7 +8,7 @@ from typing import Final, final
 from scipy.stats import fisher_exact
 
 from latentarm.tasks.catalogue import SCENE_TASKS
-from latentarm_research.studies.page import listed, markdown_table
+from latentarm_research.studies.tables import listed, markdown_table
 from latentarm_research.studies.tasks.condition import SWITCHING, Condition
 from latentarm_research.studies.tasks.runs import Run, time_ratios
 

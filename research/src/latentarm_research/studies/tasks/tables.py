@@ -12,7 +12,7 @@ from latentarm.core.types import Row
 from latentarm.evaluation.looks import look_of
 from latentarm.evaluation.measures import label_of, unit_of
 from latentarm.evaluation.table import ABSENT, format_figure
-from latentarm_research.studies.page import markdown_table
+from latentarm_research.studies.tables import markdown_table
 from latentarm_research.studies.tasks.condition import SWITCHING, Condition
 from latentarm_research.studies.tasks.runs import Run, step_names, time_ratios
 

@@ -9,7 +9,7 @@ from typing import Final
 
 from latentarm.core.errors import UserError
 from latentarm.core.files import write_text
-from latentarm_research.studies.page import markdown_table
+from latentarm_research.studies.tables import markdown_table
 from latentarm_research.user_studies.answers.items import Asked
 from latentarm_research.user_studies.definition import Definition
 

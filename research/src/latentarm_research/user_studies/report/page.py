@@ -7,8 +7,9 @@ from typing import Final, final
 from latentarm.core.types import Row
 from latentarm.evaluation.measures import unit_of
 from latentarm.evaluation.table import ABSENT, format_figure
-from latentarm_research.studies.page import listed, render_page
+from latentarm_research.studies.page import render_page
 from latentarm_research.studies.statistics import format_p
+from latentarm_research.studies.tables import listed
 from latentarm_research.user_studies.analysis.analysis import Analysis
 from latentarm_research.user_studies.answers.scales import Ratings
 from latentarm_research.user_studies.definition import Definition

@@ -4,8 +4,8 @@ from typing import Final
 
 from latentarm.evaluation.table import ABSENT, format_figure
 from latentarm_research.studies.means_test import MeansTest
-from latentarm_research.studies.page import listed
 from latentarm_research.studies.statistics import format_p
+from latentarm_research.studies.tables import listed
 from latentarm_research.user_studies.analysis.analysis import Modelled
 from latentarm_research.user_studies.analysis.claims import Tested, worded
 from latentarm_research.user_studies.definition import Condition, Definition, StudyTask
