@@ -1,12 +1,12 @@
 """Drawing for the figures of all studies: panels, titles, legends, and planar arms."""
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Final
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from latentarm.core.style import FONT_SIZE, SMALL_FONT_SIZE, legend_below, tidy
+from latentarm.core.style import FONT_SIZE, SMALL_FONT_SIZE, TWO_COLUMNS_MM, legend_below, new_figure, tidy
 from latentarm.core.types import FloatArray
 from latentarm.evaluation.looks import look_of
 from latentarm.robots.robot import Robot
@@ -22,6 +22,39 @@ JOINT_COLOUR: Final = "#3c434b"
 
 View = tuple[tuple[float, float], tuple[float, float]]
 """What a panel shows of the plane: x from and to, y from and to, m."""
+
+
+def panel_grid(
+    heading: str,
+    down: int,
+    across: int,
+    row_mm: float,
+    frame_mm: float,
+    *,
+    width_mm: float = TWO_COLUMNS_MM,
+    **shared: Any,  # which axes panels share, as for `subplots`
+) -> "tuple[Figure, Any]":
+    """A figure with a heading, and its panels, an array (down, across)."""
+    figure = new_figure(row_mm * down + frame_mm, width_mm)
+    figure.suptitle(heading, fontsize=FONT_SIZE)
+    return figure, figure.subplots(down, across, squeeze=False, **shared)
+
+
+def first_panels(panels: Any, count: int) -> "list[Axes]":
+    """The first of an array of panels, row by row; the others are removed."""
+    every = list(panels.flat)
+    for axes in every[count:]:
+        axes.remove()
+    return every[:count]
+
+
+def label_axes(panels: "Iterable[Axes]", x: str = "", y: str = "") -> None:
+    """Label the axes of panels; an empty label leaves what is there."""
+    for axes in panels:
+        if x:
+            axes.set_xlabel(x, fontsize=FONT_SIZE)
+        if y:
+            axes.set_ylabel(y, fontsize=FONT_SIZE)
 
 
 def stacked_parts(figure: "Figure", heights_mm: Sequence[float]) -> "list[SubFigure]":

@@ -9,6 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Final
 
+from latentarm.core.types import FloatArray
 from latentarm.evaluation.looks import look_of
 from latentarm.evaluation.table import ABSENT, format_figure
 from latentarm_research.studies.means_test import Direction
@@ -35,12 +36,12 @@ class Comparison:
     subject: str  # what should be less or greater: a model, a method or a condition
     against: str | None  # than what; None for a fixed mark
     direction: Direction = "less"  # whether the subject should have less or more
-    mean: float | None  # of the subject's figures; None where it has none
+    mean: float | None = None  # of the subject's figures; None where it has none
     half_width: float | None = None  # of its 95 % interval, where the study takes one
-    mean_against: float | None  # of the other's figures, or the mark; None where it has none
+    mean_against: float | None = None  # of the other's figures, or the mark; None where it has none
     half_width_against: float | None = None  # of its 95 % interval; 0 for a mark
-    n: int  # figures of the subject
-    n_against: int  # figures of the other; 1 for a mark
+    n: int = 0  # figures of the subject
+    n_against: int = 0  # figures of the other; 1 for a mark
     test: str = "none"  # `Welch`, `one-sample`, `paired t`, `McNemar`, or the reason no test was run
     t: float | None = None  # its statistic, or None; below 0 where the subject has less
     dof: float | None = None  # degrees of freedom, or None
@@ -68,6 +69,12 @@ class Comparison:
     def tested(self, statistic: Statistic) -> "Comparison":
         """The same with the result of a test, before correction."""
         return replace(self, **asdict(statistic))
+
+    def of(self, values: FloatArray, reference: FloatArray, statistic: Statistic) -> "Comparison":
+        """The same of figures (n,) and those of the other (m,), with the result of their test."""
+        mean, mean_against = (float(one.mean()) if len(one) else None for one in (values, reference))
+        about = replace(self, mean=mean, mean_against=mean_against, n=len(values), n_against=len(reference))
+        return about.tested(statistic)
 
     def as_json(self) -> dict[str, object]:
         """Plain mapping, ready for ``json.dumps``."""

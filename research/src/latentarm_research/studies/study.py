@@ -3,10 +3,13 @@
 import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
+from functools import partial
 from math import inf
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, Final, Generic, Protocol, TypeVar
+
+from threadpoolctl import threadpool_limits
 
 from latentarm.core.errors import UserError
 from latentarm.core.files import write_text
@@ -110,6 +113,9 @@ class Grid:
     ) -> list[Result]:
         """Measure cells side by side; see `latentarm.core.parallel.run_grid`.
 
+        Linear algebra and torch have one thread each, since more of them add up in another order: figures are
+        the same to the last bit in whatever process a cell is measured.
+
         Args:
             what: the grid in a few words.
             function: measures one cell.
@@ -125,7 +131,7 @@ class Grid:
         began = perf_counter()
         measured = iter(
             run_grid(
-                function,
+                partial(_with_one_thread, function),
                 missing,
                 jobs=self._request.jobs,
                 backend=BACKENDS[self._request.backend],
@@ -136,6 +142,11 @@ class Grid:
         )
         self.took_s += perf_counter() - began
         return [next(measured) if one is None else one for one in found]
+
+
+def _with_one_thread(function: Callable[[Cell], Result], cell: Cell) -> Result:
+    with threadpool_limits(limits=1):
+        return function(cell)
 
 
 @dataclass(frozen=True)

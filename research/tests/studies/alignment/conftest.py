@@ -5,10 +5,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from latentarm_research.studies.alignment.cell import AlignmentCell, AlignmentErrors
-from latentarm_research.studies.alignment.curves import CHOICES, CurveCell, CurveResult
+from latentarm_research.studies.alignment.cell import AlignmentErrors
+from latentarm_research.studies.alignment.curves import CHOICES, CurveResult
 from latentarm_research.studies.alignment.preset import CHOSEN, CONDITIONS, NO_ALIGN, PRESETS
-from latentarm_research.studies.alignment.scene import DecoderCell, LearnedDecoder
+from latentarm_research.studies.alignment.scene import AlignmentCell, DecoderCell, LearnedDecoder
 
 AS_IN_THE_PAPER = (3.0, 2.0, 1.0, 0.4, 0.35, 0.4, 0.11, 0.1, 0.1, 0.1)
 """Means of the conditions, in their order."""
@@ -26,7 +26,10 @@ def make_result(means=AS_IN_THE_PAPER, task="plane", model="cae", noise=0.0, run
         for name, mean in zip(CONDITIONS, means, strict=True)
     }
     return AlignmentErrors(
-        AlignmentCell(decoder(task, model), noise), errors, 0.05, dict.fromkeys(CONDITIONS[2:], 1.0)
+        AlignmentCell("conditions", decoder(task, model), noise),
+        errors,
+        0.05,
+        dict.fromkeys(CONDITIONS[2:], 1.0),
     )
 
 
@@ -38,7 +41,10 @@ def make_curve(task="plane", noise=0.0, counts=(1, 3, 6, 10, 20), faster=1.0, ru
         for choice in CHOICES
     }
     return CurveResult(
-        CurveCell(decoder(task), noise), errors, np.full(runs, 6.0) + (np.arange(runs) % 2), spread / 6
+        AlignmentCell("curve", decoder(task), noise),
+        errors,
+        np.full(runs, 6.0) + (np.arange(runs) % 2),
+        spread / 6,
     )
 
 

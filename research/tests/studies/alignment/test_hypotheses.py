@@ -1,6 +1,7 @@
 """What is made of errors: tests, verdicts and targets. Warnings are errors, so every case is one without."""
 
 import json
+from dataclasses import asdict
 
 import numpy as np
 import pytest
@@ -14,7 +15,8 @@ from latentarm_research.studies.alignment.hypotheses import (
     targets,
 )
 from latentarm_research.studies.alignment.preset import ALL_PRIORS, CHOSEN, IDEAL, NO_ALIGN, WITHOUT_PRIORS
-from latentarm_research.studies.alignment.turning import FEW, TurningCell, TurningResult
+from latentarm_research.studies.alignment.scene import AlignmentCell
+from latentarm_research.studies.alignment.turning import FEW, TurningResult
 from latentarm_research.studies.hypotheses import verdicts
 
 AS_IN_THE_PAPER = (3.0, 2.0, 1.0, 0.4, 0.35, 0.4, 0.11, 0.1, 0.1, 0.1)
@@ -106,7 +108,7 @@ def test_targets_are_met_where_they_are(result, curve):
     found = targets([result(), result(task="pour")], [curve(faster=4.0), curve("pour", faster=4.0)], [])
     assert all(target.met for target in found if "lowest SD" not in target.name)
     assert found[0].figures == "1.00 to 1.00 times; 2 of 2"
-    assert json.loads(json.dumps([target.as_json() for target in found]))
+    assert json.loads(json.dumps([asdict(target) for target in found]))
 
 
 def test_a_target_that_is_missed_says_where_and_by_how_much(result):
@@ -150,7 +152,7 @@ def test_people_whose_axes_turn_are_compared_with_the_ideal_of_the_same_people(c
         FEW: np.array([0.2, 0.2, 0.6]),
         IDEAL: np.array([0.09, 0.09]),
     }
-    near, few = targets([], [], [TurningResult(TurningCell(curve().cell.learned, 0.0), errors)])
+    near, few = targets([], [], [TurningResult(AlignmentCell("turning", curve().cell.learned, 0.0), errors)])
     assert near.met
     assert near.figures == "0.1 against 0.09, 1.11 times, the same 2 people"
     assert not few.met

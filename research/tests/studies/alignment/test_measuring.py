@@ -10,13 +10,12 @@ import pytest
 from latentarm.alignment.answers import Answers
 from latentarm.alignment.contract import identity
 from latentarm.alignment.queries import order_of_questions
-from latentarm_research.studies.alignment.cell import AlignmentCell, measure_cell
+from latentarm_research.studies.alignment.cell import measure_cell
 from latentarm_research.studies.alignment.curves import (
     AT_RANDOM,
     CHOICES,
     CHOSEN,
     PRIORS_AT_RANDOM,
-    CurveCell,
     measure_curve,
 )
 from latentarm_research.studies.alignment.preset import (
@@ -32,7 +31,7 @@ from latentarm_research.studies.alignment.preset import (
     Stream,
 )
 from latentarm_research.studies.alignment.rows import time_alignment
-from latentarm_research.studies.alignment.scene import DecoderCell, learn_decoder, scene_of
+from latentarm_research.studies.alignment.scene import AlignmentCell, DecoderCell, learn_decoder, scene_of
 from latentarm_research.studies.alignment.turning import person
 from latentarm_research.tasks.pouring.tasks import FAR_LEFT_M, NEAR_RIGHT_M
 
@@ -64,7 +63,7 @@ def learned_at(task):
 
 @cache
 def measured_at(task):
-    return measure_cell(AlignmentCell(learned_at(task), 0.5))
+    return measure_cell(AlignmentCell("conditions", learned_at(task), 0.5))
 
 
 @pytest.fixture(scope="module", params=["plane", "reach_and_pour"])
@@ -90,7 +89,7 @@ def test_every_condition_has_an_error_for_each_run(learned):
 
 def test_a_cell_is_the_same_from_the_same_seed():
     learned, result = learned_at("reach_and_pour"), measured_at("reach_and_pour")
-    again = measure_cell(AlignmentCell(learned, 0.5))
+    again = measure_cell(AlignmentCell("conditions", learned, 0.5))
     for name, errors in result.errors.items():
         np.testing.assert_array_equal(errors, again.errors[name])
     assert again.encoded == result.encoded
@@ -145,7 +144,7 @@ def test_single_priors_weigh_what_they_weigh_among_all():
 
 @pytest.fixture(scope="module")
 def curve():
-    return measure_curve(CurveCell(learned_at("reach_and_pour"), 0.0))
+    return measure_curve(AlignmentCell("curve", learned_at("reach_and_pour"), 0.0))
 
 
 def test_a_curve_has_a_point_for_every_number_and_choice(curve):

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from time import perf_counter
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from latentarm.alignment.affine import fit_affine
 from latentarm.alignment.answers import Answers
@@ -25,30 +24,12 @@ from latentarm_research.studies.alignment.preset import (
     Preset,
     Stream,
 )
-from latentarm_research.studies.alignment.scene import LearnedDecoder, Scene, scene_of
-
-
-@dataclass(frozen=True, eq=False)
-class AlignmentCell:
-    """What is to be measured."""
-
-    learned: LearnedDecoder  # task and decoder
-    noise: float  # coefficient of variation of the answers
-
-    @property
-    def task(self) -> str:
-        """Name of the task."""
-        return self.learned.cell.task
-
-    @property
-    def model(self) -> str:
-        """Name of the decoder's model."""
-        return self.learned.cell.model
+from latentarm_research.studies.alignment.scene import AlignmentCell, scene_of
 
 
 @dataclass(frozen=True, eq=False)
 class AlignmentErrors:
-    """What was measured."""
+    """The errors of every condition."""
 
     cell: AlignmentCell
     # condition -> (R,), relative error of each run on the held-out motions; (1,) where nothing is learned
@@ -60,18 +41,12 @@ class AlignmentErrors:
 def measure_cell(cell: AlignmentCell) -> AlignmentErrors:
     """Ask, learn all runs of a condition in one fit, and measure the errors.
 
-    The errors are the same to the last bit in every process. All models and noises get the same motions, so
-    that nothing else differs.
+    All models and noises get the same motions, so that nothing else differs.
 
     Raises:
         UserError: the preset's sizes leave nothing to ask or to learn.
     """
-    with threadpool_limits(limits=1):
-        return _measure(cell, scene_of(cell.learned))
-
-
-def _measure(cell: AlignmentCell, scene: Scene) -> AlignmentErrors:
-    preset = cell.learned.cell.preset
+    scene, preset = scene_of(cell.learned), cell.preset
     runs = range(preset.runs)
 
     def ask(count: int) -> list[Answers]:

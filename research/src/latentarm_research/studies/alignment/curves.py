@@ -5,14 +5,13 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from latentarm.alignment.answers import Answers
 from latentarm.alignment.queries import TOO_FEW, StoppingRule, order_of_questions
 from latentarm.core.types import FloatArray
 from latentarm_research.alignment.training import FitConfig
-from latentarm_research.studies.alignment.preset import ALL_PRIORS, CHOSEN, TOOL_SPACE, Preset
-from latentarm_research.studies.alignment.scene import LearnedDecoder, Scene, scene_of
+from latentarm_research.studies.alignment.preset import ALL_PRIORS, CHOSEN, TOOL_SPACE
+from latentarm_research.studies.alignment.scene import AlignmentCell, Scene, scene_of
 
 PRIORS_AT_RANDOM: Final = f"{ALL_PRIORS}, at random"
 AT_RANDOM: Final = f"{TOOL_SPACE}, at random"
@@ -22,43 +21,24 @@ CHOICES: Final = (PRIORS_AT_RANDOM, AT_RANDOM, CHOSEN)
 
 
 @dataclass(frozen=True, eq=False)
-class CurveCell:
-    """What is to be measured."""
-
-    learned: LearnedDecoder  # task and decoder
-    noise: float  # coefficient of variation of the answers
-
-    @property
-    def preset(self) -> Preset:
-        """Sizes of the study."""
-        return self.learned.cell.preset
-
-
-@dataclass(frozen=True, eq=False)
 class CurveResult:
     """What was measured."""
 
-    cell: CurveCell
+    cell: AlignmentCell
     # choice -> number of answers -> (R,), relative error of each run on the held-out motions
     errors: Mapping[str, Mapping[int, FloatArray]]
     stopped_after: FloatArray  # (R,), answers after which `latentarm align` would have stopped
     stopped_at: FloatArray  # (R,), the error there
 
 
-def measure_curve(cell: CurveCell) -> CurveResult:
+def measure_curve(cell: AlignmentCell) -> CurveResult:
     """Ask one question after another, and measure what is learned from each number of answers.
 
-    The errors are the same to the last bit in every process. Every run has different candidates; the answer
-    to each does not depend on when it is asked.
+    Every run has different candidates; the answer to each does not depend on when it is asked.
 
     Raises:
         UserError: the preset's sizes leave nothing to ask or to learn.
     """
-    with threadpool_limits(limits=1):
-        return _measure(cell)
-
-
-def _measure(cell: CurveCell) -> CurveResult:
     scene, sizes = scene_of(cell.learned), cell.preset.curves
     said = scene.candidates(cell.noise)
     most = min(len(said[0]), max(sizes.answers))
@@ -103,7 +83,7 @@ def _stop(scene: Scene, said: Answers, order: Sequence[int]) -> int:
     return len(order)
 
 
-def _with_priors(cell: CurveCell, scene: Scene, said: Sequence[Answers], count: int) -> FloatArray:
+def _with_priors(cell: AlignmentCell, scene: Scene, said: Sequence[Answers], count: int) -> FloatArray:
     """Relative errors (R,) of All Priors with the first answers, which are at random."""
     answers = [one[np.arange(count)] for one in said]
     return scene.errors(scene.learn(answers, FitConfig(steps=cell.preset.steps), range(len(said))).alignments)

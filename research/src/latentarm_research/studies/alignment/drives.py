@@ -12,7 +12,6 @@ from time import perf_counter
 from typing import Final
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from latentarm.assistance.blending import FixedAlpha
 from latentarm.assistance.controllers.latent import LatentController
@@ -77,25 +76,22 @@ def drive_cells(preset: Preset, seed: int) -> list[AlignedDriveCell]:
 def measure_drives(cell: AlignedDriveCell) -> DrivesResult:
     """Learn, and drive in every condition.
 
-    The figures are the same to the last bit in whatever process this runs.
-
     Raises:
         UserError: the preset's sizes make no sense.
     """
-    with threadpool_limits(limits=1):
-        learned = learn(cell)
-        began = perf_counter()
-        drives = {condition: drive_all(cell, learned, condition) for condition in DRIVEN}
-        return DrivesResult(
-            cell=cell,
-            drives=drives,
-            errors=learned.errors,
-            directions=learned.person.directions,
-            speed_m_s=learned.person.speed_m_s,
-            fit_s=learned.fit_s,
-            align_s=learned.align_s,
-            drive_s=perf_counter() - began,
-        )
+    learned = learn(cell)
+    began = perf_counter()
+    drives = {condition: drive_all(cell, learned, condition) for condition in DRIVEN}
+    return DrivesResult(
+        cell=cell,
+        drives=drives,
+        errors=learned.errors,
+        directions=learned.person.directions,
+        speed_m_s=learned.person.speed_m_s,
+        fit_s=learned.fit_s,
+        align_s=learned.align_s,
+        drive_s=perf_counter() - began,
+    )
 
 
 def drive_all(cell: AlignedDriveCell, learned: Learned, condition: str) -> tuple[AlignedDrive, ...]:

@@ -6,14 +6,13 @@ test; both are one-sided, and corrected by Holm's method over all tests with one
 """
 
 from collections.abc import Sequence
+from itertools import product
 from typing import Final
 
 import numpy as np
 
 from latentarm.core.types import FloatArray, Row
-from latentarm.evaluation.measures import label_of, unit_of
-from latentarm.evaluation.summary import Subject, summarise
-from latentarm.evaluation.table import ABSENT, format_figure
+from latentarm.evaluation.table import ABSENT
 from latentarm.tasks.table_top import TableTop
 from latentarm_research.studies.alignment.drives import DRIVEN, HELPED, KNOWS, DrivesResult
 from latentarm_research.studies.alignment.drives_learning import TASK
@@ -25,8 +24,9 @@ from latentarm_research.studies.alignment.preset import (
     WITHOUT_PRIORS,
 )
 from latentarm_research.studies.hypotheses import Comparison, comparison_table, corrected
+from latentarm_research.studies.series import Series
 from latentarm_research.studies.statistics import Statistic, format_p, paired
-from latentarm_research.studies.tables import markdown_table
+from latentarm_research.studies.tables import heading, markdown_table, mean_and_sd
 
 REACHED: Final = "arrival_rate"
 TIME: Final = "time_s"
@@ -69,11 +69,11 @@ def drives_rows(results: Sequence[DrivesResult]) -> list[Row]:
     rows: list[Row] = []
     for result in results:
         for condition in DRIVEN:
-            subject = Subject("alignment", TASK, result.cell.model, condition)
-            if condition in result.errors:
-                rows.append(summarise(subject, ERROR, result.errors[condition]))
+            errors = {ERROR: result.errors[condition]} if condition in result.errors else {}
+            figures = {**errors, **drive_figures(result, condition)}
             rows += [
-                summarise(subject, name, values) for name, values in drive_figures(result, condition).items()
+                Series(TASK, result.cell.model, condition, measure, values).row("alignment")
+                for measure, values in figures.items()
             ]
     return rows
 
@@ -83,33 +83,23 @@ def compare_drives(results: Sequence[DrivesResult]) -> list[Comparison]:
     comparisons: list[Comparison] = []
     for result in results:
         figures = {name: drive_figures(result, name) for name in (TOOL_SPACE, *AGAINST)}
-        comparisons += [
-            _test(
-                result.cell.model, measure, against, figures[TOOL_SPACE][measure], figures[against][measure]
+        for measure, against in product((REACHED, TIME), AGAINST):
+            own, other = figures[TOOL_SPACE][measure], figures[against][measure]
+            more = measure == REACHED
+            one = Comparison(
+                hypothesis="drives",
+                family=result.cell.model,
+                task=TASK,
+                model=result.cell.model,
+                measure=measure,
+                subject=TOOL_SPACE,
+                against=against,
+                direction="greater" if more else "less",
             )
-            for measure in (REACHED, TIME)
-            for against in AGAINST
-        ]
+            comparisons.append(
+                one.of(own, other, _mcnemar(own, other) if more else paired(own, other, "less"))
+            )
     return corrected(comparisons)
-
-
-def _test(model: str, measure: str, against: str, own: FloatArray, other: FloatArray) -> Comparison:
-    """One test, without correction."""
-    more = measure == REACHED
-    return Comparison(
-        hypothesis="drives",
-        family=model,
-        task=TASK,
-        model=model,
-        measure=measure,
-        subject=TOOL_SPACE,
-        against=against,
-        direction="greater" if more else "less",
-        mean=float(own.mean()),
-        mean_against=float(other.mean()),
-        n=len(own),
-        n_against=len(other),
-    ).tested(_mcnemar(own, other) if more else paired(own, other, "less"))
 
 
 def _mcnemar(own: FloatArray, other: FloatArray) -> Statistic:
@@ -162,27 +152,22 @@ def ways(result: DrivesResult) -> list[str]:
 
 def _table(result: DrivesResult) -> str:
     """Conditions down, figures across."""
-    head = ["simulated", *(_name(measure) for measure in (ERROR, REACHED, TIME)), MISSED, _name(DONE)]
-    return markdown_table(head, [_line(result, condition) for condition in DRIVEN])
-
-
-def _name(measure: str) -> str:
-    own = {REACHED: "reaches the goal", DONE: "stabs or scoops, too", TIME: "time to the goal"}
-    unit = unit_of(measure)
-    return own.get(measure, label_of(measure)) + ("" if unit == "1" else f" ({unit})")
-
-
-def _line(result: DrivesResult, condition: str) -> list[str]:
-    figures = drive_figures(result, condition)
-    errors = result.errors.get(condition)
-    return [
-        condition,
-        ABSENT if errors is None else _mean_and_sd(errors),
-        _share(figures[REACHED]),
-        _mean_and_sd(figures[TIME]),
-        _misses(misses(result, condition)),
-        _share(figures[DONE]),
-    ]
+    names = {REACHED: "reaches the goal", TIME: "time to the goal", DONE: "stabs or scoops, too"}
+    reached, time, done = (heading(measure, name) for measure, name in names.items())
+    lines: list[list[str]] = []
+    for condition in DRIVEN:
+        figures, errors = drive_figures(result, condition), result.errors.get(condition)
+        lines.append(
+            [
+                condition,
+                ABSENT if errors is None else mean_and_sd(errors),
+                _share(figures[REACHED]),
+                mean_and_sd(figures[TIME]),
+                _misses(misses(result, condition)),
+                _share(figures[DONE]),
+            ]
+        )
+    return markdown_table(["simulated", heading(ERROR), reached, time, MISSED, done], lines)
 
 
 def _share(happened: FloatArray) -> str:
@@ -192,10 +177,6 @@ def _share(happened: FloatArray) -> str:
 def _misses(off_m: FloatArray) -> str:
     along, across = 1000 * off_m.mean(axis=0) if len(off_m) else (None, None)
     return ABSENT if along is None else f"{along:.0f}, {across:.0f}"
-
-
-def _mean_and_sd(values: FloatArray) -> str:
-    return format_figure(float(values.mean()), float(np.std(values, ddof=1)) if len(values) > 1 else None)
 
 
 def _said(tests: Sequence[Comparison]) -> list[str]:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from latentarm.core.style import FONT_SIZE, TWO_COLUMNS_MM, legend_below, new_figure, tidy
+from latentarm.core.style import legend_below, tidy
 from latentarm.core.types import Goal
 from latentarm.evaluation.looks import look_of
 from latentarm.tasks.table_top import TableTop
@@ -16,13 +16,22 @@ from latentarm_research.studies.alignment.drives import DRIVEN, AlignedDrive, Dr
 from latentarm_research.studies.alignment.hypotheses import RANDOM_ANSWERS
 from latentarm_research.studies.alignment.preset import CHOSEN, CONDITIONS
 from latentarm_research.studies.alignment.rows import ENCODED
-from latentarm_research.studies.drawing import draw_series, name_series, plain_ticks, title
+from latentarm_research.studies.drawing import (
+    draw_series,
+    label_axes,
+    name_series,
+    panel_grid,
+    plain_ticks,
+    title,
+)
 from latentarm_research.studies.statistics import bootstrap_interval, reach_of_interval
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+
+HEADING: Final = "Relative alignment error, mean over runs with 95 % interval; people and arm simulated"
 
 CONDITIONS_ROW_MM: Final = 48.0
 CONDITIONS_FRAME_MM: Final = 20.0
@@ -40,25 +49,19 @@ def conditions_figure(
     noises: Sequence[float],  # coefficients of variation of the answers
 ) -> "Figure":
     """Means with 95 % intervals, a panel per task, a row per model, grouped by noise."""
-    figure = new_figure(CONDITIONS_ROW_MM * len(models) + CONDITIONS_FRAME_MM, TWO_COLUMNS_MM)
-    figure.suptitle(
-        "Relative alignment error, mean over runs with 95 % interval; people and arm simulated",
-        fontsize=FONT_SIZE,
-    )
-    panels = figure.subplots(len(models), len(tasks), sharex=True, sharey="row", squeeze=False)
+    size = len(models), len(tasks), CONDITIONS_ROW_MM, CONDITIONS_FRAME_MM
+    figure, panels = panel_grid(HEADING, *size, sharex=True, sharey="row")
     for line, model in zip(panels, models, strict=True):
         for axes, task in zip(line, tasks, strict=True):
             here = [result for result in results if (result.cell.model, result.cell.task) == (model, task)]
             _draw_conditions(axes, here)
-            title(
-                axes,
-                look_of(task).label if len(models) == 1 else f"{look_of(task).label}, {look_of(model).label}",
-            )
+            beside = "" if len(models) == 1 else f", {look_of(model).label}"
+            title(axes, look_of(task).label + beside)
         _log_axis(line[0], [result for result in results if result.cell.model == model])
-        line[0].set_ylabel("relative error", fontsize=FONT_SIZE)
     for axes in panels[-1]:
         axes.set_xticks(range(len(noises)), [f"{noise:g}" for noise in noises])
-        axes.set_xlabel("coefficient of variation of answers", fontsize=FONT_SIZE)
+    label_axes(panels[:, 0], y="relative error")
+    label_axes(panels[-1], x="coefficient of variation of answers")
     (line, *points), (encoded, *names) = panels[0, 0].get_legend_handles_labels()
     legend_below(figure, [*points, line], [*names, encoded])
     return figure
@@ -83,14 +86,7 @@ def _draw_conditions(axes: "Axes", results: Sequence[AlignmentErrors]) -> None:
             label=look.label,
             zorder=2,
         )
-    axes.axhline(
-        results[0].encoded,
-        color="black",
-        linestyle=":",
-        linewidth=0.9,
-        label=ENCODED,
-        zorder=3,
-    )
+    axes.axhline(results[0].encoded, color="black", linestyle=":", linewidth=0.9, label=ENCODED, zorder=3)
     tidy(axes)
     axes.grid(False, axis="x")
 
@@ -113,24 +109,16 @@ NUDGE: Final = 0.16
 
 def curves_figure(curves: Sequence[CurveResult], tasks: Sequence[str]) -> "Figure":
     """Means with 95 % intervals over the number of answers, a panel per task, a row per model and noise."""
-    places = list(dict.fromkeys((curve.cell.learned.cell.model, curve.cell.noise) for curve in curves))
-    figure = new_figure(CURVES_ROW_MM * len(places) + CURVES_FRAME_MM, TWO_COLUMNS_MM)
-    figure.suptitle(
-        "Relative alignment error, mean over runs with 95 % interval; people and arm simulated",
-        fontsize=FONT_SIZE,
-    )
-    panels = figure.subplots(len(places), len(tasks), sharex=True, squeeze=False)
-    known = {
-        (curve.cell.learned.cell.model, curve.cell.noise, curve.cell.learned.cell.task): curve
-        for curve in curves
-    }
+    known = {(one.cell.model, one.cell.noise, one.cell.task): one for one in curves}
+    places = list(dict.fromkeys((model, noise) for model, noise, _ in known))
+    size = len(places), len(tasks), CURVES_ROW_MM, CURVES_FRAME_MM
+    figure, panels = panel_grid(HEADING, *size, sharex=True)
     for line, (model, noise) in zip(panels, places, strict=True):
         for axes, task in zip(line, tasks, strict=True):
             _draw_curves(axes, known[model, noise, task])
             title(axes, f"{look_of(task).label}, {look_of(model).label}, noise {noise:g}")
-        line[0].set_ylabel("relative error", fontsize=FONT_SIZE)
-    for axes in panels[-1]:
-        axes.set_xlabel("answers", fontsize=FONT_SIZE)
+    label_axes(panels[:, 0], y="relative error")
+    label_axes(panels[-1], x="answers")
     name_series(figure, panels[0, 0], handle_length=2.6)
     return figure
 
@@ -186,11 +174,10 @@ VIEW: Final = ((-0.6, 0.6), (-0.2, 0.85))
 def drives_figure(results: Sequence[DrivesResult]) -> "Figure":
     """All paths until the goal from above: a panel for each condition, one model after the other."""
     goals, rows_each = TableTop().goals, -(-len(DRIVEN) // DRIVES_ACROSS)
-    rows = rows_each * len(results)
-    figure = new_figure(height_mm=DRIVES_ROW_MM * rows + DRIVES_LEGEND_MM, width_mm=TWO_COLUMNS_MM)
+    name = "Simulated drives from above, and how many reach their goal"
+    size = rows_each * len(results), DRIVES_ACROSS, DRIVES_ROW_MM, DRIVES_LEGEND_MM
+    figure, panels = panel_grid(name, *size, sharex=True, sharey=True)
     figure.set_layout_engine("compressed")  # panels keep their shape; without it the rest of a row is blank
-    figure.suptitle("Simulated drives from above, and how many reach their goal", fontsize=FONT_SIZE)
-    panels = figure.subplots(rows, DRIVES_ACROSS, squeeze=False, sharex=True, sharey=True)
     for result, own in zip(results, panels.reshape(len(results), -1), strict=True):
         for axes, condition in zip(own, DRIVEN, strict=False):
             drives = result.drives[condition]

@@ -14,8 +14,8 @@ All tests are one-sided at `LEVEL`, Welch's where both sides have spread, after 
 tests of one hypothesis with one model. Targets compare means and test nothing.
 """
 
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Final
 
 from latentarm.core.types import FloatArray
@@ -37,6 +37,7 @@ from latentarm_research.studies.alignment.turning import FEW, TurningResult
 from latentarm_research.studies.hypotheses import Comparison, corrected
 from latentarm_research.studies.statistics import compare_means
 from latentarm_research.studies.tables import listed
+from latentarm_research.studies.targets import Target
 
 NEAR: Final = 1.25
 """Up to this many times the error of Ideal Align counts as close to it."""
@@ -77,11 +78,7 @@ def _test(claim: ConditionClaim, result: AlignmentErrors) -> Comparison:
         where=f"noise {result.cell.noise:g}",
         subject=claim.condition,
         against=claim.against if claim.times == 1 else f"{claim.times:g} times {claim.against}",
-        mean=float(values.mean()),
-        mean_against=float(reference.mean()),
-        n=len(values),
-        n_against=len(reference),
-    ).tested(compare_means(values, reference, "less"))
+    ).of(values, reference, compare_means(values, reference, "less"))
 
 
 SINGLE_SHARE: Final = 0.6
@@ -97,24 +94,11 @@ CHOSEN_ANSWERS: Final = 4
 """... so many chosen ones in tool space should reach."""
 
 
-@dataclass(frozen=True)
-class AlignmentTarget:
-    """One target."""
-
-    name: str  # what should be reached
-    met: bool  # whether it was
-    figures: str  # how far it was met, or by how much it was missed
-
-    def as_json(self) -> dict[str, object]:
-        """Plain mapping, ready for ``json.dumps``."""
-        return asdict(self)
-
-
 def targets(
     results: Sequence[AlignmentErrors], curves: Sequence[CurveResult], turning: Sequence[TurningResult]
-) -> list[AlignmentTarget]:
+) -> list[Target]:
     """Every target that the results can decide, model by model."""
-    found: list[AlignmentTarget] = []
+    found: list[Target] = []
     for model in dict.fromkeys(result.cell.model for result in results):
         of_model = [result for result in results if result.cell.model == model]
         found += [
@@ -142,52 +126,49 @@ def answers_needed(curve: CurveResult) -> int | None:
     return next((count for count, errors in curve.errors[CHOSEN].items() if errors.mean() <= wanted), None)
 
 
-def _lowest(
-    results: Sequence[AlignmentErrors], what: str, of: Callable[[FloatArray], float]
-) -> AlignmentTarget:
+def _lowest(results: Sequence[AlignmentErrors], what: str, of: Callable[[FloatArray], float]) -> Target:
     missed: list[str] = []
     for result in results:
         figures = {name: of(result.errors[name]) for name in FEW_ANSWERS if name != TOOL_SPACE}
         best = min(figures, key=lambda name: figures[name])
         if figures[best] < figures[ALL_PRIORS]:
             missed.append(f"{_place(result)}: {figures[ALL_PRIORS]:.3g}, {best} {figures[best]:.3g}")
-    return AlignmentTarget(
+    return Target(
         f"{ALL_PRIORS} has the lowest {what} of the paper's conditions with few answers, {_model(results)}",
         not missed,
         _counted(len(results), missed),
     )
 
 
-def _single_priors(results: Sequence[AlignmentErrors]) -> AlignmentTarget:
+def _single_priors(results: Sequence[AlignmentErrors]) -> Target:
     ratios = {
         f"{_place(result)}: {name}": float(result.errors[name].mean() / result.errors[WITHOUT_PRIORS].mean())
         for result in results
         for name in SINGLE_PRIORS
     }
-    missed = [f"{place} {ratio:.2f}" for place, ratio in ratios.items() if ratio > SINGLE_SHARE]
-    return AlignmentTarget(
-        f"each single prior has at most {SINGLE_SHARE:g} of the error of {WITHOUT_PRIORS}, {_model(results)}",
-        not missed,
-        f"{min(ratios.values()):.2f} to {max(ratios.values()):.2f}; {_counted(len(ratios), missed)}",
-    )
+    name = f"each single prior has at most {SINGLE_SHARE:g} of the error of {WITHOUT_PRIORS}"
+    return _at_most(SINGLE_SHARE, ratios, f"{name}, {_model(results)}", "; ")
 
 
-def _near_ideal(results: Sequence[AlignmentErrors], condition: str) -> AlignmentTarget:
+def _near_ideal(results: Sequence[AlignmentErrors], condition: str) -> Target:
     ratios = {
         _place(result): float(result.errors[condition].mean() / result.errors[IDEAL].mean())
         for result in results
     }
-    missed = [f"{place} {ratio:.2f}" for place, ratio in ratios.items() if ratio > NEAR]
-    return AlignmentTarget(
-        f"{condition} has at most {NEAR:g} times the error of {IDEAL}, {_model(results)}",
-        not missed,
-        f"{min(ratios.values()):.2f} to {max(ratios.values()):.2f} times; {_counted(len(ratios), missed)}",
-    )
+    name = f"{condition} has at most {NEAR:g} times the error of {IDEAL}"
+    return _at_most(NEAR, ratios, f"{name}, {_model(results)}", " times; ")
 
 
-def _fewer_answers(curves: Sequence[CurveResult]) -> AlignmentTarget:
-    needed = {curve.cell.learned.cell.task: answers_needed(curve) for curve in curves}
-    return AlignmentTarget(
+def _at_most(most: float, ratios: Mapping[str, float], name: str, between: str) -> Target:
+    """That no ratio is above a mark."""
+    missed = [f"{place} {ratio:.2f}" for place, ratio in ratios.items() if ratio > most]
+    ends = f"{min(ratios.values()):.2f} to {max(ratios.values()):.2f}"
+    return Target(name, not missed, f"{ends}{between}{_counted(len(ratios), missed)}")
+
+
+def _fewer_answers(curves: Sequence[CurveResult]) -> Target:
+    needed = {curve.cell.task: answers_needed(curve) for curve in curves}
+    return Target(
         f"chosen questions in tool space reach the error of {RANDOM_ANSWERS} random ones of {ALL_PRIORS} with"
         f" at most {CHOSEN_ANSWERS}, noise {curves[0].cell.noise:g}",
         all(count is not None and count <= CHOSEN_ANSWERS for count in needed.values()),
@@ -198,19 +179,19 @@ def _fewer_answers(curves: Sequence[CurveResult]) -> AlignmentTarget:
     )
 
 
-def _turning(result: TurningResult) -> list[AlignmentTarget]:
+def _turning(result: TurningResult) -> list[Target]:
     """For people whose axes turn: as near to Ideal Align, and with as few answers."""
     mean = {name: float(errors.mean()) for name, errors in result.errors.items()}
     who = f"people whose axes turn, noise {result.cell.noise:g}"
     many = len(result.errors[IDEAL])
     ours, ideal = float(result.errors[CHOSEN][:many].mean()), mean[IDEAL]
     return [
-        AlignmentTarget(
+        Target(
             f"{CHOSEN}, has at most {NEAR:g} times the error of {IDEAL}, {who}",
             ours <= NEAR * ideal,
             f"{ours:.3g} against {ideal:.3g}, {ours / ideal:.2f} times, the same {many} people",
         ),
-        AlignmentTarget(
+        Target(
             f"{FEW}, have at most the error of {RANDOM_ANSWERS} random ones of {ALL_PRIORS}, {who}",
             mean[FEW] <= mean[PRIORS_AT_RANDOM],
             f"{mean[FEW]:.3g} against {mean[PRIORS_AT_RANDOM]:.3g}",

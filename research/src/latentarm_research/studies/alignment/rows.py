@@ -1,15 +1,14 @@
-"""Everything that the study measured, as its rows, the figures of every run, and how long it took."""
+"""Everything that the study measured, as its series, and how long it took."""
 
 import timeit
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from time import perf_counter
 from typing import Final
 
+import numpy as np
 from threadpoolctl import threadpool_limits
 
-from latentarm.core.types import FloatArray, Row
-from latentarm.evaluation.summary import Subject, summarise
 from latentarm_research.alignment.training import FitConfig
 from latentarm_research.studies.alignment.cell import AlignmentErrors
 from latentarm_research.studies.alignment.curves import CurveResult
@@ -17,6 +16,7 @@ from latentarm_research.studies.alignment.drives import DrivesResult
 from latentarm_research.studies.alignment.preset import ALL_PRIORS, CHOSEN, CONDITIONS, LEARNED, Stream, under
 from latentarm_research.studies.alignment.scene import LearnedDecoder, scene_of
 from latentarm_research.studies.alignment.turning import TurningResult
+from latentarm_research.studies.series import Series
 
 STUDY: Final = "alignment"
 
@@ -28,60 +28,8 @@ ANSWERS: Final = "answers"
 ENCODED: Final = "the encoder's own choice"
 """Condition of the rows that say what the encoder's own latent actions come to."""
 
-
-def rows_of(
-    results: Sequence[AlignmentErrors], curves: Sequence[CurveResult], turning: Sequence[TurningResult]
-) -> list[Row]:
-    """Mean and SD of every figure: the tables, then the curves, then people whose axes turn."""
-    rows: list[Row] = []
-    for task, model in dict.fromkeys((result.cell.task, result.cell.model) for result in results):
-        here = [result for result in results if (result.cell.task, result.cell.model) == (task, model)]
-        rows.append(summarise(Subject(STUDY, task, model, ENCODED), ERROR, [here[0].encoded]))
-        rows += [
-            summarise(Subject(STUDY, task, model, under(name, result.cell.noise)), ERROR, result.errors[name])
-            for result in here
-            for name in CONDITIONS
-        ]
-    for curve in curves:
-        cell = curve.cell.learned.cell
-        rows += [
-            summarise(Subject(STUDY, cell.task, cell.model, condition), measure, values)
-            for condition, measure, values in curve_figures(curve)
-        ]
-    for result in turning:
-        cell = result.cell.learned.cell
-        rows += [
-            summarise(
-                Subject(STUDY, cell.task, cell.model, of_turning(name, result.cell.noise)), ERROR, values
-            )
-            for name, values in result.errors.items()
-        ]
-    return rows
-
-
-def of_turning(condition: str, noise: float) -> str:
-    """How rows name a condition with people whose axes turn."""
-    return under(f"axes turn, {condition}", noise)
-
-
-def curve_figures(curve: CurveResult) -> Iterator[tuple[str, str, FloatArray]]:
-    """Condition, measure and figures (R,) of every point of a curve, and of where asking stops."""
-    noise = curve.cell.noise
-    for choice, errors in curve.errors.items():
-        for count, values in errors.items():
-            yield under(asked(choice, count), noise), ERROR, values
-    stopped = under(f"{CHOSEN}, stopped", noise)
-    yield stopped, ANSWERS, curve.stopped_after
-    yield stopped, ERROR, curve.stopped_at
-
-
 CALLS: Final = 200
 """Calls of an alignment that are timed; the fastest counts."""
-
-
-def asked(choice: str, count: int) -> str:
-    """How rows name a point of a curve."""
-    return f"{choice}, {count} answer{'s' * (count != 1)}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,41 +43,38 @@ class AlignmentResults:
     drives: Sequence[DrivesResult]  # one for each kind of model that was driven with
 
 
-def by_run(measured: AlignmentResults) -> list[dict[str, object]]:
-    """The figures of every run that rows are means of."""
-    table = [
-        (result.cell.task, result.cell.model, name, result.cell.noise, ERROR, values)
-        for result in measured.results
-        for name, values in result.errors.items()
-    ]
-    curves = [
-        (curve.cell.learned.cell.task, curve.cell.learned.cell.model, name, curve.cell.noise, measure, values)
-        for curve in measured.curves
-        for name, measure, values in curve_figures(curve)
-    ]
-    turning = [
-        (
-            result.cell.learned.cell.task,
-            result.cell.learned.cell.model,
-            of_turning(name, result.cell.noise),
-            result.cell.noise,
-            ERROR,
-            values,
-        )
-        for result in measured.turning
-        for name, values in result.errors.items()
-    ]
-    return [
-        {
-            "task": task,
-            "model": model,
-            "condition": name,
-            "noise": noise,
-            "measure": measure,
-            "values": values.tolist(),
-        }
-        for task, model, name, noise, measure, values in (*table, *curves, *turning)
-    ]
+def series_of(measured: AlignmentResults) -> list[Series]:
+    """The errors of every run: the tables, then the curves, then people whose axes turn."""
+    found: list[Series] = []
+    for task, model in dict.fromkeys((one.cell.task, one.cell.model) for one in measured.results):
+        here = [one for one in measured.results if (one.cell.task, one.cell.model) == (task, model)]
+        found.append(Series(task, model, ENCODED, ERROR, np.array([here[0].encoded])))
+        found += [
+            Series(task, model, under(name, one.cell.noise), ERROR, one.errors[name])
+            for one in here
+            for name in CONDITIONS
+        ]
+    for one in measured.curves:
+        cell, stopped = one.cell, under(f"{CHOSEN}, stopped", one.cell.noise)
+        found += [
+            Series(cell.task, cell.model, under(_asked(choice, count), cell.noise), ERROR, values)
+            for choice, errors in one.errors.items()
+            for count, values in errors.items()
+        ]
+        found.append(Series(cell.task, cell.model, stopped, ANSWERS, one.stopped_after))
+        found.append(Series(cell.task, cell.model, stopped, ERROR, one.stopped_at))
+    for one in measured.turning:
+        cell = one.cell
+        found += [
+            Series(cell.task, cell.model, under(f"axes turn, {name}", cell.noise), ERROR, values)
+            for name, values in one.errors.items()
+        ]
+    return found
+
+
+def _asked(choice: str, count: int) -> str:
+    """How rows name a point of a curve."""
+    return f"{choice}, {count} answer{'s' * (count != 1)}"
 
 
 def timings(measured: AlignmentResults) -> dict[str, object]:
@@ -140,12 +85,12 @@ def timings(measured: AlignmentResults) -> dict[str, object]:
         ],
         "alignments": [
             {
-                "task": result.cell.task,
-                "model": result.cell.model,
-                "noise": result.cell.noise,
-                "learn_s": dict(result.learn_s),
+                "task": one.cell.task,
+                "model": one.cell.model,
+                "noise": one.cell.noise,
+                "learn_s": dict(one.learn_s),
             }
-            for result in measured.results
+            for one in measured.results
         ],
         "drives": [
             {

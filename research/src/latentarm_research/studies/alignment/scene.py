@@ -4,10 +4,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from time import perf_counter
-from typing import Final, final
+from typing import Final, Literal, final
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from latentarm.alignment.answers import Answers, Motions
 from latentarm.alignment.contract import Alignment
@@ -64,20 +63,41 @@ class LearnedDecoder:
     fit_s: float  # how long that took, s
 
 
+@final
+@dataclass(frozen=True, eq=False)
+class AlignmentCell:
+    """What is to be measured with a decoder."""
+
+    kind: Literal["conditions", "curve", "turning"]  # of the measurement
+    learned: LearnedDecoder  # task and decoder
+    noise: float  # coefficient of variation of the answers
+
+    @property
+    def task(self) -> str:
+        """Name of the task."""
+        return self.learned.cell.task
+
+    @property
+    def model(self) -> str:
+        """Name of the decoder's model."""
+        return self.learned.cell.model
+
+    @property
+    def preset(self) -> Preset:
+        """Sizes of the study."""
+        return self.learned.cell.preset
+
+
 def learn_decoder(cell: DecoderCell) -> LearnedDecoder:
     """Demonstrate and fit.
-
-    The weights are the same to the last bit in whatever process this runs: one thread each for linear algebra
-    and for torch, since more of them add up in another order.
 
     Raises:
         UserError: the preset's sizes make no sense to the model or to the task.
     """
-    with threadpool_limits(limits=1):
-        demonstrations = demonstrate(cell, Stream.TRAINING)
-        began = perf_counter()
-        model = _fit(cell, demonstrations)
-        return LearnedDecoder(cell, model, perf_counter() - began)
+    demonstrations = demonstrate(cell, Stream.TRAINING)
+    began = perf_counter()
+    model = _fit(cell, demonstrations)
+    return LearnedDecoder(cell, model, perf_counter() - began)
 
 
 def demonstrate(cell: DecoderCell, stream: Stream) -> Demonstrations:

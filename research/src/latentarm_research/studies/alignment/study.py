@@ -1,6 +1,7 @@
 """`latentarm reproduce alignment`: learning what simulated people mean by their stick (section 8.3)."""
 
 from collections.abc import Sequence
+from dataclasses import asdict
 from math import degrees, exp
 from typing import TYPE_CHECKING, Final
 
@@ -13,8 +14,8 @@ from latentarm.tasks.task import REACHED_ANGLE, REACHED_DISTANCE
 from latentarm_research.alignment.priors import Priors
 from latentarm_research.studies.alignment import curves, drives
 from latentarm_research.studies.alignment import preset as conditions
-from latentarm_research.studies.alignment.cell import AlignmentCell, AlignmentErrors, measure_cell
-from latentarm_research.studies.alignment.curves import CurveCell, CurveResult, measure_curve
+from latentarm_research.studies.alignment.cell import AlignmentErrors, measure_cell
+from latentarm_research.studies.alignment.curves import CurveResult, measure_curve
 from latentarm_research.studies.alignment.drives import DrivesResult, drive_cells, measure_drives
 from latentarm_research.studies.alignment.drives_learning import TASK, TURN_RAD, AlignedDriveCell
 from latentarm_research.studies.alignment.drives_tables import (
@@ -28,7 +29,6 @@ from latentarm_research.studies.alignment.figures import conditions_figure, curv
 from latentarm_research.studies.alignment.hypotheses import (
     NEAR,
     PAPER_MODEL,
-    AlignmentTarget,
     compare_conditions,
     targets,
 )
@@ -36,26 +36,30 @@ from latentarm_research.studies.alignment.preset import PRESETS, Preset
 from latentarm_research.studies.alignment.rows import STUDY as NAME
 from latentarm_research.studies.alignment.rows import (
     AlignmentResults,
-    by_run,
-    rows_of,
+    series_of,
     time_alignment,
     timings,
 )
-from latentarm_research.studies.alignment.scene import DecoderCell, LearnedDecoder, learn_decoder
+from latentarm_research.studies.alignment.scene import (
+    AlignmentCell,
+    DecoderCell,
+    LearnedDecoder,
+    learn_decoder,
+)
 from latentarm_research.studies.alignment.tables import (
     condition_table,
     curve_table,
     stopping_table,
     summary_tables,
-    target_table,
     turning_table,
 )
 from latentarm_research.studies.alignment.turning import TASK as TURNING_TASK
-from latentarm_research.studies.alignment.turning import TurningCell, TurningResult, measure_turning
+from latentarm_research.studies.alignment.turning import TurningResult, measure_turning
 from latentarm_research.studies.hypotheses import Comparison, comparison_table, verdicts
 from latentarm_research.studies.page import render_page
 from latentarm_research.studies.statistics import LEVEL
 from latentarm_research.studies.study import Grid, Report, Request, Study, again
+from latentarm_research.studies.targets import Target, target_table
 from latentarm_research.tasks.pouring.tasks import AT_BOWL_M, BOWL_M, POURING_TASKS
 from latentarm_research.tasks.pouring.tool_path import RATE_HZ, SPEED_M_S, TURN_RAD_S
 
@@ -65,8 +69,10 @@ if TYPE_CHECKING:
 TASKS: Final = (*POURING_TASKS, TASK)
 """The paper's tasks, and the demo's table, where goals are driven to."""
 
-AnyCell = AlignmentCell | CurveCell | TurningCell | AlignedDriveCell
+AnyCell = AlignmentCell | AlignedDriveCell
 AnyResult = AlignmentErrors | CurveResult | TurningResult | DrivesResult
+
+MEASURES: Final = {"conditions": measure_cell, "curve": measure_curve, "turning": measure_turning}
 
 
 def _measure(request: Request[Preset], grid: Grid) -> AlignmentResults:
@@ -76,7 +82,7 @@ def _measure(request: Request[Preset], grid: Grid) -> AlignmentResults:
         for task in request.tasks
         if task in POURING_TASKS
     ]
-    decoders = grid.run("Decoders", learn_decoder, wanted, _decoder_label)
+    decoders = grid.run("Decoders", learn_decoder, wanted, lambda cell: f"{cell.task}, {cell.model}, decoder")
     cells = _cells(request, decoders)
     found = grid.run("Alignments, learning curves and drives", measure, cells, _label)
     return AlignmentResults(
@@ -94,54 +100,37 @@ def measure(cell: AnyCell) -> AnyResult:
     Raises:
         UserError: it cannot be measured as asked.
     """
-    if isinstance(cell, AlignmentCell):
-        return measure_cell(cell)
-    if isinstance(cell, TurningCell):
-        return measure_turning(cell)
-    return measure_curve(cell) if isinstance(cell, CurveCell) else measure_drives(cell)
+    return measure_drives(cell) if isinstance(cell, AlignedDriveCell) else MEASURES[cell.kind](cell)
 
 
 def _cells(request: Request[Preset], decoders: Sequence[LearnedDecoder]) -> list[AnyCell]:
     """The second grid, its longest cells first."""
     preset = request.preset
-    curves = [
-        CurveCell(learned, noise)
-        for noise in preset.curves.noises
-        for learned in decoders
-        if learned.cell.model == PAPER_MODEL
+    papers = [one for one in decoders if one.cell.model == PAPER_MODEL]
+    turning = [one for one in papers if one.cell.task == TURNING_TASK]
+    return [
+        *(drive_cells(preset, request.seed) if TASK in request.tasks else []),
+        *(AlignmentCell("turning", one, noise) for one in turning for noise in preset.turning.noises),
+        *(AlignmentCell("curve", one, noise) for noise in preset.curves.noises for one in papers),
+        *(AlignmentCell("conditions", one, noise) for one in decoders for noise in preset.noises),
     ]
-    turning = [
-        TurningCell(learned, noise)
-        for learned in decoders
-        if (learned.cell.task, learned.cell.model) == (TURNING_TASK, PAPER_MODEL)
-        for noise in preset.turning.noises
-    ]
-    drives = drive_cells(preset, request.seed) if TASK in request.tasks else []
-    table = [AlignmentCell(learned, noise) for learned in decoders for noise in preset.noises]
-    return [*drives, *turning, *curves, *table]
 
 
 def _place(result: AlignmentErrors) -> tuple[int, int, float]:
     """Where a cell stands in tables."""
-    models = result.cell.learned.cell.preset.models
-    return TASKS.index(result.cell.task), models.index(result.cell.model), result.cell.noise
-
-
-def _decoder_label(cell: DecoderCell) -> str:
-    return f"{cell.task}, {cell.model}, decoder"
+    cell = result.cell
+    return TASKS.index(cell.task), cell.preset.models.index(cell.model), cell.noise
 
 
 def _label(cell: AnyCell) -> str:
     if isinstance(cell, AlignedDriveCell):
         return f"{TASK}, {cell.model}, drives"
-    if isinstance(cell, TurningCell):
-        return f"{TURNING_TASK}, {cell.learned.cell.model}, noise {cell.noise:g}, axes turn"
-    what = ", curve" if isinstance(cell, CurveCell) else ""
-    return f"{cell.learned.cell.task}, {cell.learned.cell.model}, noise {cell.noise:g}{what}"
+    return f"{cell.task}, {cell.model}, noise {cell.noise:g}, {cell.kind}"
 
 
 def _report(request: Request[Preset], measured: AlignmentResults) -> Report:
-    rows = [*rows_of(measured.results, measured.curves, measured.turning), *drives_rows(measured.drives)]
+    series = series_of(measured)
+    rows = [*(one.row(NAME) for one in series), *drives_rows(measured.drives)]
     tests, drive_tests = compare_conditions(measured.results), compare_drives(measured.drives)
     reached = targets(measured.results, measured.curves, measured.turning)
     figures = _figures(measured)
@@ -153,8 +142,8 @@ def _report(request: Request[Preset], measured: AlignmentResults) -> Report:
         figures=figures,
         tests=[*tests, *drive_tests],
         documents={
-            "targets.json": [one.as_json() for one in reached],
-            "runs.json": by_run(measured),
+            "targets.json": [asdict(one) for one in reached],
+            "runs.json": [one.as_json() for one in series],
         },
         timings={"one_alignment": alone, **timings(measured)},
         tables=summary_tables(rows, request.preset),
@@ -185,7 +174,7 @@ def _page(
     measured: AlignmentResults,
     tests: Sequence[Comparison],
     drive_tests: Sequence[Comparison],
-    reached: Sequence[AlignmentTarget],
+    reached: Sequence[Target],
     figures: "dict[str, Figure]",
 ) -> str:
     by_task: dict[str, dict[str, list[AlignmentErrors]]] = {}
@@ -240,8 +229,8 @@ def _page(
 
 
 def _curve_name(curve: CurveResult) -> str:
-    cell = curve.cell.learned.cell
-    return f"{look_of(cell.task).label}, {look_of(cell.model).label}, noise {curve.cell.noise:g}"
+    cell = curve.cell
+    return f"{look_of(cell.task).label}, {look_of(cell.model).label}, noise {cell.noise:g}"
 
 
 STUDY: Final = Study(

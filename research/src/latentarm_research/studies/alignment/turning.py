@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from typing import Final, final
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from latentarm.alignment.answers import Answers, Motions
 from latentarm.alignment.meaning import rotations
@@ -17,8 +16,8 @@ from latentarm_research.alignment.preferences import Imprecise
 from latentarm_research.alignment.training import FitConfig
 from latentarm_research.studies.alignment.cell import ideal_config
 from latentarm_research.studies.alignment.curves import AT_RANDOM, PRIORS_AT_RANDOM
-from latentarm_research.studies.alignment.preset import CHOSEN, IDEAL, Preset, Stream
-from latentarm_research.studies.alignment.scene import LearnedDecoder, Scene, scene_of
+from latentarm_research.studies.alignment.preset import CHOSEN, IDEAL, Stream
+from latentarm_research.studies.alignment.scene import AlignmentCell, Scene, scene_of
 from latentarm_research.studies.streams import generator
 from latentarm_research.tasks.pouring.tasks import FAR_LEFT_M, NEAR_RIGHT_M
 
@@ -71,39 +70,21 @@ def person(scene: Scene, number: int) -> TurningAxes:
 
 
 @dataclass(frozen=True, eq=False)
-class TurningCell:
-    """What is to be measured."""
-
-    learned: LearnedDecoder  # the decoder
-    noise: float  # coefficient of variation of the answers
-
-    @property
-    def preset(self) -> Preset:
-        """Sizes of the study."""
-        return self.learned.cell.preset
-
-
-@dataclass(frozen=True, eq=False)
 class TurningResult:
     """What was measured."""
 
-    cell: TurningCell
+    cell: AlignmentCell
     # condition of `TURNING` -> (people,), relative errors on the held-out motions; of Ideal Align for the
     # first people alone
     errors: Mapping[str, FloatArray]
 
 
-def measure_turning(cell: TurningCell) -> TurningResult:
+def measure_turning(cell: AlignmentCell) -> TurningResult:
     """Ask all people, learn, and measure.
 
     Raises:
         UserError: the preset's sizes leave nothing to ask or to learn.
     """
-    with threadpool_limits(limits=1):
-        return _measure(cell)
-
-
-def _measure(cell: TurningCell) -> TurningResult:
     scene, preset = scene_of(cell.learned), cell.preset
     everyone = [person(scene, number) for number in range(preset.turning.people)]
     tests = [Answers(scene.test.motions, one.inputs(scene.test.motions)) for one in everyone]
@@ -128,7 +109,7 @@ def _measure(cell: TurningCell) -> TurningResult:
     return TurningResult(cell, errors)
 
 
-def _ask(cell: TurningCell, scene: Scene, number: int, count: int) -> Answers:
+def _ask(cell: AlignmentCell, scene: Scene, number: int, count: int) -> Answers:
     """A person's answers about motions drawn at random."""
     where = cell.learned.cell
     rows = generator(where.seed, where.task, Stream.PEOPLE_QUESTIONS, number).permutation(len(scene.shown))
