@@ -4,7 +4,8 @@ from latentarm_research.studies.shared_autonomy.cell import WITH_ENTROPY, WITH_H
 from latentarm_research.studies.shared_autonomy.hypotheses import MEASURE
 from latentarm_research.studies.shared_autonomy.preset import Preset
 from latentarm_research.studies.shared_autonomy.rows import Figure
-from latentarm_research.studies.shared_autonomy.targets import target_table, targets
+from latentarm_research.studies.shared_autonomy.targets import targets
+from latentarm_research.studies.targets import target_table
 
 PRESET = Preset("tiny", learners={"slow": 2.5}, slopes=(), changes_s=(8.0,))
 
@@ -43,7 +44,9 @@ def test_learners_must_be_apart_with_their_intervals():
 
 
 def test_the_table_says_what_was_missed():
-    table = target_table(targets(found([0.5] * 3, [0.05] * 3, [0.5] * 3, [0.1] * 3), PRESET))
+    table = target_table(
+        targets(found([0.5] * 3, [0.05] * 3, [0.5] * 3, [0.1] * 3), PRESET), ("arm", "model")
+    )
     assert table.count("**missed**") == 1
     assert table.count("| met |") == 2
     assert "0.500 ± 0.000 and 0.100 ± 0.000" in table

@@ -7,7 +7,6 @@ from time import perf_counter
 from typing import Final
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from latentarm.assistance.annotation import annotate
 from latentarm.assistance.blending import Arbitration
@@ -29,7 +28,7 @@ from latentarm_research.studies.shared_autonomy.drive import (
 )
 from latentarm_research.studies.shared_autonomy.measures import measure, state_error, true_belief
 from latentarm_research.studies.shared_autonomy.preset import Entropy, Person, Preset
-from latentarm_research.studies.streams import integer, sequence
+from latentarm_research.studies.streams import generator, integer, sequence
 from latentarm_research.tasks.two_cups import TWO_CUPS, TwoCups
 
 WITHOUT_HELP: Final = "LA"
@@ -98,20 +97,16 @@ class AutonomyResult:
 def measure_cell(cell: AutonomyCell) -> AutonomyResult:
     """Demonstrate, fit all seeds in one fit, drive, measure.
 
-    The figures are the same to the last bit in whatever process this runs: one thread each for linear algebra
-    and for torch, since more of them add up in another order.
-
     Raises:
         UserError: the preset's sizes make no sense to the model or to the task.
     """
-    with threadpool_limits(limits=1):
-        return _measure(cell)
-
-
-def _measure(cell: AutonomyCell) -> AutonomyResult:
     task, preset = TASKS[cell.task](), cell.preset
-    training = annotate(task.demonstrate(preset.demonstrations, _generator(cell, Stream.TRAINING)), RULE)
-    test = annotate(task.demonstrate(preset.test_demonstrations, _generator(cell, Stream.TEST)), RULE)
+    training = annotate(
+        task.demonstrate(preset.demonstrations, generator(cell.seed, cell.task, Stream.TRAINING)), RULE
+    )
+    test = annotate(
+        task.demonstrate(preset.test_demonstrations, generator(cell.seed, cell.task, Stream.TEST)), RULE
+    )
     began = perf_counter()
     model = _fit(cell, task, training)
     fitted = perf_counter()
@@ -210,11 +205,11 @@ def _outcomes(
 ) -> list[Outcome]:
     """Results of people who drive in one batch."""
     target = np.arange(cell.drives) % len(scene.goals)
-    of_seeds: list[tuple[dict[str, FloatArray], FloatArray, FloatArray]] = []
+    figures: list[dict[str, FloatArray]] = []
+    courses: list[tuple[FloatArray, FloatArray]] = []
     for seed in range(cell.seeds):
-        starts = _generator(cell, Stream.STARTS, seed)
+        starts = generator(cell.seed, cell.task, Stream.STARTS, seed)
         start = np.stack([task.sample_start(int(goal), starts) for goal in target])
-        chances = [_chances(cell, seed, person) for person in people]
         decoder = model.decoder(seed)
         drives = drive(
             decoder,
@@ -223,33 +218,23 @@ def _outcomes(
             METHODS[method],
             np.tile(start, (len(people), 1)),
             np.tile(target, len(people)),
-            np.concatenate(chances),
+            np.concatenate([_chances(cell, seed, person) for person in people]),
         )
-        of_seeds.append((measure(drives, scene, decoder), state_error(drives, scene), true_belief(drives)))
+        figures.append(measure(drives, scene, decoder))
+        courses.append((state_error(drives, scene), true_belief(drives)))
     outcomes: list[Outcome] = []
     for index, person in enumerate(people):
         own = slice(index * cell.drives, (index + 1) * cell.drives)
-        outcomes.append(
-            Outcome(
-                method,
-                person,
-                {
-                    name: np.stack([figures[name][own] for figures, _, _ in of_seeds])
-                    for name in of_seeds[0][0]
-                },
-                np.stack([error[own].mean(axis=0) for _, error, _ in of_seeds]),
-                np.stack([belief[own].mean(axis=0) for _, _, belief in of_seeds]),
-            )
+        own_figures = {name: np.stack([one[name][own] for one in figures]) for name in figures[0]}
+        error, belief = (
+            np.stack([course[own].mean(axis=0) for course in of_seeds])
+            for of_seeds in zip(*courses, strict=True)
         )
+        outcomes.append(Outcome(method, person, own_figures, error, belief))
     return outcomes
 
 
 def _chances(cell: AutonomyCell, seed: int, person: Person) -> FloatArray:
     """Random numbers (P, T) for one person's drives with one seed, independent of who else drives."""
-    chances = _generator(cell, Stream.CHANCES, seed, int.from_bytes(person.label.encode()))
+    chances = generator(cell.seed, cell.task, Stream.CHANCES, seed, int.from_bytes(person.label.encode()))
     return chances.random((cell.drives, steps_of(person)))
-
-
-def _generator(cell: AutonomyCell, *use: int) -> np.random.Generator:
-    """The same for every model and method."""
-    return np.random.default_rng(sequence(cell.seed, cell.task, *use))

@@ -1,17 +1,26 @@
 """The study's figures: those of the paper, its models, the weight of the entropy, and the tasks."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from latentarm.core.style import FONT_SIZE, TWO_COLUMNS_MM, new_figure, tidy
+from latentarm.core.style import COLUMN_MM, FONT_SIZE, new_figure, tidy
 from latentarm.core.types import FloatArray
 from latentarm.evaluation.looks import look_of
 from latentarm_research.drives.arm_figure import draw_arm as draw_solid_arm
 from latentarm_research.drives.arm_figure import frame
 from latentarm_research.drives.drive_figures import GOAL_COLOURS, GOAL_MARKERS
-from latentarm_research.studies.drawing import arm_line, draw_series, name_series, plane, title
+from latentarm_research.studies.drawing import (
+    arm_line,
+    draw_series,
+    label_axes,
+    name_series,
+    panel_grid,
+    plane,
+    title,
+)
 from latentarm_research.studies.drawing import draw_arm as draw_planar_arm
 from latentarm_research.studies.shared_autonomy.ablations import weight_label
 from latentarm_research.studies.shared_autonomy.cell import METHODS, AutonomyResult, Outcome
@@ -68,8 +77,9 @@ Outcomes = dict[tuple[str, str], Outcome]
 
 def expertise_figure(results: Sequence[AutonomyResult], preset: Preset, tasks: Sequence[str]) -> "Drawing":
     """Final error and time over rationality, a column per arm, as in the paper's figure 9."""
-    figure = _figure(EXPERTISE_MM, "Fixed expertise, mean with 95 % interval; simulated", wide=False)
-    panels = figure.subplots(len(EXPERTISE_MEASURES), len(tasks), sharex=True, sharey="row", squeeze=False)
+    heading = "Fixed expertise, mean with 95 % interval; simulated"
+    size = len(EXPERTISE_MEASURES), len(tasks), 0.0, EXPERTISE_MM
+    figure, panels = panel_grid(heading, *size, width_mm=COLUMN_MM, sharex=True, sharey="row")
     people = [of_fixed_expertise(beta).label for beta in preset.betas]
     named = np.arange(0, len(people), 1 if len(people) < 5 else 2)
     for column, task in zip(panels.T, tasks, strict=True):
@@ -81,104 +91,98 @@ def expertise_figure(results: Sequence[AutonomyResult], preset: Preset, tasks: S
         names = [RATIONALITIES.get(preset.betas[place], f"{preset.betas[place]:g}") for place in named]
         column[-1].set_xticks(named, names)
     _from_zero(panels.flat)
-    _label(panels[-1], x="rationality β (1/m²)")
+    label_axes(panels[-1], x="rationality β (1/m²)")
     for axes, name in zip(panels[:, 0], EXPERTISE_MEASURES.values(), strict=True):
-        _label([axes], y=name)
+        label_axes([axes], y=name)
     name_series(figure, panels[0, 0])
     return figure
 
 
 def changes_figure(results: Sequence[AutonomyResult], preset: Preset, tasks: Sequence[str]) -> "Drawing":
     """Final error over the time of a change; belief over time for two, as in the paper's figure 10."""
-    figure = _figure(
-        CHANGES_ROW_MM * len(tasks) + FRAME_MM,
-        "People who change their mind about the cup, mean with 95 % interval; people and arms simulated",
-    )
+    heading = "People who change their mind about the cup, mean with 95 % interval; people and arms simulated"
     drawn = preset.drawn_changes_s
-    panels = figure.subplots(len(tasks), 1 + len(drawn), sharex="col", squeeze=False)
+    figure, panels = panel_grid(heading, len(tasks), 1 + len(drawn), CHANGES_ROW_MM, FRAME_MM, sharex="col")
     for (error, *beliefs), task in zip(panels, tasks, strict=True):
         outcomes = outcomes_of(results, task, MODEL)
         _draw_changes(error, outcomes, preset)
         _from_zero([error])
         title(error, look_of(task).label)
-        _label([error], y="final state error")
+        label_axes([error], y="final state error")
         for axes, after_s in zip(beliefs, drawn, strict=True):
             draw_course(axes, outcomes, changing(after_s).label, "belief")
             axes.axvline(after_s, color="black", linestyle=":", linewidth=1.0, label="change of mind")
             title(axes, f"change after {after_s:g} s")
             axes.set_ylim(-0.03, 1.03)
-            _label([axes], y="belief in the true goal")
+            label_axes([axes], y="belief in the true goal")
             tidy(axes)
-    _label(panels[-1, :1], x="change after (s)")
-    _label(panels[-1, 1:], x="time (s)")
+    label_axes(panels[-1, :1], x="change after (s)")
+    label_axes(panels[-1, 1:], x="time (s)")
     name_series(figure, *panels[0])
     return figure
 
 
 def learners_figure(results: Sequence[AutonomyResult], preset: Preset, tasks: Sequence[str]) -> "Drawing":
     """State error and belief of people who learn over time, a row per arm, as in the paper's figure 11."""
-    figure = _figure(
-        ROW_MM * len(tasks) + FRAME_MM,
-        "People who learn while they drive, β = m t, mean with 95 % interval; people and arms simulated",
-    )
+    heading = "People who learn while they drive, β = m t, mean with 95 % interval; people and arms simulated"
     columns = [(what, name) for what in COURSES for name in preset.learners]
-    panels = figure.subplots(len(tasks), len(columns), sharex=True, squeeze=False)
+    figure, panels = panel_grid(heading, len(tasks), len(columns), ROW_MM, FRAME_MM, sharex=True)
     for line, task in zip(panels, tasks, strict=True):
         outcomes = outcomes_of(results, task, MODEL)
         for axes, (what, name) in zip(line, columns, strict=True):
             draw_course(axes, outcomes, learner(name, preset.learners[name]).label, what)
             title(axes, f"{look_of(task).label}, {name}")
-            _label([axes], y=COURSES[what])
+            label_axes([axes], y=COURSES[what])
             tidy(axes)
     for what in COURSES:
         alike = list(panels[:, [place for place, column in enumerate(columns) if column[0] == what]].flat)
         top = max(axes.get_ylim()[1] for axes in alike) if what == "error" else 1.03
         for axes in alike:
             axes.set_ylim(0.0 if what == "error" else -0.03, top)
-    _label(panels[-1], x="time (s)")
+    label_axes(panels[-1], x="time (s)")
     name_series(figure, panels[0, 0])
     return figure
 
 
 def slopes_figure(results: Sequence[AutonomyResult], preset: Preset, tasks: Sequence[str]) -> "Drawing":
     """Final error over the slope of learning, a row per arm and a column per model."""
-    figure = _figure(
-        ROW_MM * len(tasks) + FRAME_MM,
-        "Learners, β = m t, by slope with each model, mean with 95 % interval; people and arms simulated",
-    )
-    models = list(dict.fromkeys(result.cell.model for result in results))
-    panels = figure.subplots(len(tasks), len(models), sharex=True, sharey=True, squeeze=False)
     people = preset.by_slope
-    for line, task in zip(panels, tasks, strict=True):
-        for axes, model in zip(line, models, strict=True):
-            draw_over(
-                axes, outcomes_of(results, task, model), [person.label for person in people.values()], MEASURE
-            )
-            axes.set_xticks(np.arange(len(people)), [f"{slope:.3g}" for slope in people])
-            tidy(axes)
-            title(axes, f"{look_of(model).label}, {look_of(task).label}")
-    _from_zero(panels.flat)
-    _label(panels[:, 0], y="final state error")
-    _label(panels[-1], x="slope m (1/m² per s)")
-    name_series(figure, panels[0, 0])
-    return figure
+
+    def draw(axes: "Axes", outcomes: Outcomes) -> None:
+        draw_over(axes, outcomes, [person.label for person in people.values()], MEASURE)
+        axes.set_xticks(np.arange(len(people)), [f"{slope:.3g}" for slope in people])
+        tidy(axes)
+
+    heading = (
+        "Learners, β = m t, by slope with each model, mean with 95 % interval; people and arms simulated"
+    )
+    return _by_model(results, tasks, heading, draw, "slope m (1/m² per s)")
 
 
 def models_figure(results: Sequence[AutonomyResult], preset: Preset, tasks: Sequence[str]) -> "Drawing":
     """Final error over the time of the change, a row per arm and a column per model."""
-    figure = _figure(
-        ROW_MM * len(tasks) + FRAME_MM,
-        "A change of mind with each model, mean with 95 % interval; people and arms simulated",
-    )
+    heading = "A change of mind with each model, mean with 95 % interval; people and arms simulated"
+    draw = partial(_draw_changes, preset=preset)
+    return _by_model(results, tasks, heading, draw, "change after (s)")
+
+
+def _by_model(
+    results: Sequence[AutonomyResult],
+    tasks: Sequence[str],
+    heading: str,
+    draw: "Callable[[Axes, Outcomes], None]",
+    x: str,
+) -> "Drawing":
+    """Final errors, a row per arm and a column per model."""
     models = list(dict.fromkeys(result.cell.model for result in results))
-    panels = figure.subplots(len(tasks), len(models), sharex=True, sharey=True, squeeze=False)
+    figure, panels = panel_grid(heading, len(tasks), len(models), ROW_MM, FRAME_MM, sharex=True, sharey=True)
     for line, task in zip(panels, tasks, strict=True):
         for axes, model in zip(line, models, strict=True):
-            _draw_changes(axes, outcomes_of(results, task, model), preset)
+            draw(axes, outcomes_of(results, task, model))
             title(axes, f"{look_of(model).label}, {look_of(task).label}")
     _from_zero(panels.flat)
-    _label(panels[:, 0], y="final state error")
-    _label(panels[-1], x="change after (s)")
+    label_axes(panels[:, 0], y="final state error")
+    label_axes(panels[-1], x=x)
     name_series(figure, panels[0, 0])
     return figure
 
@@ -187,13 +191,13 @@ def weights_figure(
     found: Sequence[Figure], ablation: Ablation, person: str, tasks: Sequence[str]
 ) -> "Drawing":
     """Reconstruction and a person's final error over lambda_2, a line per arm."""
-    figure = _figure(WEIGHTS_MM, "Weight of the entropy, mean with 95 % interval; simulated", wide=False)
+    heading = "Weight of the entropy, mean with 95 % interval; simulated"
+    figure, ((one, other),) = panel_grid(heading, 1, 2, 0.0, WEIGHTS_MM, width_mm=COLUMN_MM)
     labels = [weight_label(weight) for weight in ablation.weights]
-    known = {(one.task, one.condition, one.measure): one.interval for one in found}
-    panels = figure.subplots(1, 2)
+    known = {(each.task, each.condition, each.measure): each.interval for each in found}
     for axes, name, measure, label, conditions in (
-        (panels[0], "reconstruction", RECONSTRUCTION, "test error (% of PCA)", labels),
-        (panels[1], person, "final_state_error", "final state error", [f"{one}, {person}" for one in labels]),
+        (one, "reconstruction", RECONSTRUCTION, "test error (% of PCA)", labels),
+        (other, person, "final_state_error", "final state error", [f"{label}, {person}" for label in labels]),
     ):
         for index, task in enumerate(tasks):
             places = np.arange(len(labels), dtype=np.float64) + WEIGHT_NUDGE * (index - (len(tasks) - 1) / 2)
@@ -201,15 +205,16 @@ def weights_figure(
         title(axes, name)
         axes.set_ylim(bottom=0.0)
         axes.set_xticks(range(len(labels)), [f"{weight:g}" for weight in ablation.weights])
-        _label([axes], "weight $\\lambda_2$", label)
+        label_axes([axes], "weight $\\lambda_2$", label)
         tidy(axes)
-    name_series(figure, panels[0])
+    name_series(figure, one)
     return figure
 
 
 def task_figure(task: TwoCups) -> "Drawing":
     """The arm at its start, the goals before the cups and where the tool goes from there."""
-    figure = _figure(TASK_MM, f"Two cups, {look_of(task.name).label}; all simulated", wide=False)
+    figure = new_figure(TASK_MM)
+    figure.suptitle(f"Two cups, {look_of(task.name).label}; all simulated", fontsize=FONT_SIZE)
     demonstrations = task.demonstrate(DRAWN, np.random.default_rng(STREAM))
     chain = task.robot.chain
     paths = [chain.forward(episode.state).position for episode in demonstrations.episodes]
@@ -326,21 +331,7 @@ def _draw_series(
     draw_series(axes, name, places, means, widths, zorder=zorder)
 
 
-def _figure(height_mm: float, name: str, *, wide: bool = True) -> "Drawing":
-    figure = new_figure(height_mm, TWO_COLUMNS_MM) if wide else new_figure(height_mm)
-    figure.suptitle(name, fontsize=FONT_SIZE)
-    return figure
-
-
 def _from_zero(panels: "Iterable[Axes]") -> None:
     """Begin the y axes at zero, once all is drawn: a limit ends the fitting of panels that share it."""
     for axes in panels:
         axes.set_ylim(bottom=0.0)
-
-
-def _label(panels: "Iterable[Axes]", x: str = "", y: str = "") -> None:
-    for axes in panels:
-        if x:
-            axes.set_xlabel(x, fontsize=FONT_SIZE)
-        if y:
-            axes.set_ylabel(y, fontsize=FONT_SIZE)

@@ -13,7 +13,7 @@ Two methods are compared seed by seed (paired t): the same demonstrations, start
 initial weights. H1 also asks that their 95 % intervals are apart.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -72,36 +72,23 @@ def claims(preset: Preset) -> list[MethodClaim]:
     ]
 
 
-Errors = Mapping[tuple[str, str], FloatArray]
-"""Errors of all drives (S, P) by method and person."""
-
-
 def compare_methods(results: Sequence[AutonomyResult], preset: Preset) -> list[Comparison]:
     """Every test that the results of the study proper allow, by hypothesis, then by model, then by task."""
-    errors = _errors(results)
-    return corrected(
-        [
-            _test(claim, task, model, found)
-            for model in dict.fromkeys(model for _, model in errors)
-            for (task, name), found in errors.items()
-            if name == model
-            for claim in claims(preset)
-        ]
-    )
-
-
-def _errors(results: Iterable[AutonomyResult]) -> dict[tuple[str, str], Errors]:
-    """Errors by task and model."""
     found: dict[tuple[str, str], dict[tuple[str, str], FloatArray]] = {}
     for result in results:
         if result.cell.variant is None:
-            here = found.setdefault((result.cell.task, result.cell.model), {})
+            here = found.setdefault((result.cell.model, result.cell.task), {})
             here |= {(one.method, one.person.label): one.figures[MEASURE] for one in result.outcomes}
-    return dict(found)
+    models = list(dict.fromkeys(model for model, _ in found))
+    ordered = sorted(found, key=lambda place: models.index(place[0]))
+    tests = [_test(claim, *place, found[place]) for place in ordered for claim in claims(preset)]
+    return corrected(tests)
 
 
-def _test(claim: MethodClaim, task: str, model: str, errors: Errors) -> Comparison:
-    """One test, without correction."""
+def _test(
+    claim: MethodClaim, model: str, task: str, errors: Mapping[tuple[str, str], FloatArray]
+) -> Comparison:
+    """One test of errors (S, P) by method and person, without correction."""
     values = errors[claim.method, claim.person.label]
     mark = None if isinstance(claim.against, str) else np.full_like(values, claim.against)
     against = errors[str(claim.against), claim.person.label] if mark is None else mark

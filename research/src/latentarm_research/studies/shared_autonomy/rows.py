@@ -5,12 +5,11 @@ results are curves without printed numbers.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import replace
 from typing import Final, NamedTuple
 
 from latentarm.core.types import FloatArray, Row
 from latentarm.evaluation.measures import unit_of
-from latentarm_research.studies.shared_autonomy.cell import WITH_HELP, WITHOUT_HELP, AutonomyResult, Outcome
+from latentarm_research.studies.shared_autonomy.cell import WITH_HELP, WITHOUT_HELP, AutonomyResult
 from latentarm_research.studies.shared_autonomy.intervals import Interval, interval
 
 EXTRA_TIME: Final = "extra_time_percent"
@@ -24,15 +23,6 @@ PAPER: Final = {
     ("panda_two_cups", MODEL, EXTRA_TIME, "beta 1000"): 30.0,
 }
 """By task, model, measure and condition, %."""
-
-
-def with_paper(rows: Sequence[Row]) -> list[Row]:
-    """The same rows, with the paper's figure in those that have one."""
-    return [replace(row, paper_mean=PAPER.get(_place(row))) for row in rows]
-
-
-def _place(row: Row) -> tuple[str, str, str, str]:
-    return row.task or "", row.model or "", row.measure, row.condition or ""
 
 
 STUDY: Final = "shared_autonomy"
@@ -57,10 +47,8 @@ class Figure(NamedTuple):
 
 def figures(results: Sequence[AutonomyResult]) -> list[Figure]:
     """Every figure: the study proper in its order, then the ablations."""
-    return [
-        *(figure for result in results if result.cell.variant is None for figure in _proper(result)),
-        *(figure for result in results if result.cell.variant is not None for figure in _varied(result)),
-    ]
+    ordered = sorted(results, key=lambda one: one.cell.variant is not None)
+    return [figure for result in ordered for figure in _figures(result)]
 
 
 def rows_of(found: Iterable[Figure]) -> list[Row]:
@@ -68,6 +56,7 @@ def rows_of(found: Iterable[Figure]) -> list[Row]:
     rows: list[Row] = []
     for figure in found:
         over = figure.interval
+        place = figure.task, figure.model, figure.measure, figure.condition
         rows.append(
             Row(
                 study=STUDY,
@@ -79,32 +68,23 @@ def rows_of(found: Iterable[Figure]) -> list[Row]:
                 task=figure.task,
                 model=figure.model,
                 condition=figure.condition,
+                paper_mean=PAPER.get(place),
             )
         )
-    return with_paper(rows)
+    return rows
 
 
-def condition(outcome: Outcome) -> str:
-    """How rows name a method and a person."""
-    return f"{outcome.method}, {outcome.person.label}"
-
-
-def _proper(result: AutonomyResult) -> Iterator[Figure]:
+def _figures(result: AutonomyResult) -> Iterator[Figure]:
+    """Of one cell; those of an ablation name the variant and not the method."""
     cell = result.cell
-    trained = "without entropy" if cell.entropy is None else "with entropy"
+    trained = cell.variant or ("without entropy" if cell.entropy is None else "with entropy")
     yield Figure(cell.task, cell.model, trained, RECONSTRUCTION, result.reconstruction[:, None])
     for outcome in result.outcomes:
+        condition = f"{cell.variant or outcome.method}, {outcome.person.label}"
         for measure, values in outcome.figures.items():
-            yield Figure(cell.task, cell.model, condition(outcome), measure, values)
-    yield from _extra_times(result)
-
-
-def _varied(result: AutonomyResult) -> Iterator[Figure]:
-    cell, variant = result.cell, result.cell.variant
-    yield Figure(cell.task, cell.model, str(variant), RECONSTRUCTION, result.reconstruction[:, None])
-    for outcome in result.outcomes:
-        for measure, values in outcome.figures.items():
-            yield Figure(cell.task, cell.model, f"{variant}, {outcome.person.label}", measure, values)
+            yield Figure(cell.task, cell.model, condition, measure, values)
+    if cell.variant is None:
+        yield from _extra_times(result)
 
 
 def _extra_times(result: AutonomyResult) -> Iterator[Figure]:

@@ -30,13 +30,14 @@ from latentarm_research.studies.shared_autonomy.figures import (
 from latentarm_research.studies.shared_autonomy.hypotheses import MEASURE, REACHED, TRAPPED, compare_methods
 from latentarm_research.studies.shared_autonomy.intervals import FEWEST_SEEDS, band
 from latentarm_research.studies.shared_autonomy.measures import ARRIVED
-from latentarm_research.studies.shared_autonomy.preset import PRESETS, Preset
+from latentarm_research.studies.shared_autonomy.preset import PRESETS, Entropy, Preset
 from latentarm_research.studies.shared_autonomy.rows import MODEL, Figure, figures, rows_of
 from latentarm_research.studies.shared_autonomy.rows import STUDY as NAME
 from latentarm_research.studies.shared_autonomy.tables import Tables, summary_tables
-from latentarm_research.studies.shared_autonomy.targets import target_table, targets
+from latentarm_research.studies.shared_autonomy.targets import targets
 from latentarm_research.studies.statistics import LEVEL
 from latentarm_research.studies.study import Grid, Report, Request, Study, again
+from latentarm_research.studies.targets import target_table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Drawing
@@ -50,46 +51,33 @@ MAIN: Final = (MEASURE, "time_s")
 
 def cells_of(request: Request[Preset]) -> list[AutonomyCell]:
     """The study proper, its longest cells first, and the ablations."""
-    preset = request.preset
-    proper = [
-        AutonomyCell(
+    preset, ablation = request.preset, request.preset.ablation
+
+    def cell(task: str, model: str, entropy: Entropy | None, variant: str | None) -> AutonomyCell:
+        alone = (WITHOUT_HELP, WITH_HELP) if variant is None else (WITH_HELP,)
+        sizes = preset if variant is None or ablation is None else ablation
+        return AutonomyCell(
             task=task,
             model=model,
             entropy=entropy,
-            variant=None,
-            methods=(WITHOUT_HELP, WITH_HELP) if entropy is None else (WITH_ENTROPY,),
-            people=preset.people,
-            seeds=preset.seeds,
-            drives=preset.drives,
+            variant=variant,
+            methods=alone if entropy is None else (WITH_ENTROPY,),
+            people=preset.people if variant is None else preset.varied_people,
+            seeds=sizes.seeds,
+            drives=sizes.drives,
             preset=preset,
             seed=request.seed,
         )
-        for model in reversed(MODELS)
-        for entropy in (None, preset.entropy)
-        for task in request.tasks
-    ]
-    return [*proper, *(cell for task in request.tasks for cell in _varied(request, task))]
 
-
-def _varied(request: Request[Preset], task: str) -> list[AutonomyCell]:
-    """The ablation of one arm."""
-    preset, ablation = request.preset, request.preset.ablation
-    if ablation is None:
-        return []
+    varied = {} if ablation is None else variants(ablation, preset.entropy)
     return [
-        AutonomyCell(
-            task=task,
-            model=MODEL,
-            entropy=entropy,
-            variant=name,
-            methods=(WITH_HELP,) if entropy is None else (WITH_ENTROPY,),
-            people=preset.varied_people,
-            seeds=ablation.seeds,
-            drives=ablation.drives,
-            preset=preset,
-            seed=request.seed,
-        )
-        for name, entropy in variants(ablation, preset.entropy).items()
+        *(
+            cell(task, model, entropy, None)
+            for model in reversed(MODELS)
+            for entropy in (None, preset.entropy)
+            for task in request.tasks
+        ),
+        *(cell(task, MODEL, entropy, name) for task in request.tasks for name, entropy in varied.items()),
     ]
 
 
@@ -181,7 +169,7 @@ def _page(
         reached=REACHED,
         trapped=TRAPPED,
         level=LEVEL,
-        target_table=target_table(targets(found, preset)),
+        target_table=target_table(targets(found, preset), ("arm", "model")),
         choice=choice,
         measures_of=measures_of,
         belief=drive.RULE.keywords,
