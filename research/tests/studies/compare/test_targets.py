@@ -38,7 +38,7 @@ def judged(ours: str = "isometric", **of: dict[str, float]) -> dict[str, tuple[b
         if measure != FIT_S
     ]
     times = {("pour", 0.01, model): means[FIT_S] for model, means in of.items()}
-    return {one.target: (one.met, one.said) for one in verdicts(rows, ours, ["pour"], [0.01], times)}
+    return {one.name: (one.met, one.figures) for one in verdicts(rows, ours, ["pour"], [0.01], times)}
 
 
 def test_a_model_at_the_edge_of_every_target_meets_them() -> None:

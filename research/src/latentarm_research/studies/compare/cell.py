@@ -6,7 +6,6 @@ from time import process_time
 from typing import Final
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from latentarm.core.types import FloatArray
 from latentarm.demonstrations.split import Fold, select_episodes
@@ -69,25 +68,21 @@ class FoldResult:
 def measure_cell(cell: FoldCell) -> FoldResult:
     """Fit all seeds in one fit and measure them on the held-out episodes.
 
-    The figures are the same to the last bit in whatever process this runs: one thread each for linear algebra
-    and for torch, since more of them add up in another order.
-
     Raises:
         UserError: the demonstrations or the sizes make no sense to the model.
     """
-    with threadpool_limits(limits=1):
-        robot = load_recorded_robot(cell.dataset.demonstrations)
-        began = process_time()
-        model = _fit(cell, robot)
-        fit_s = process_time() - began
-        measured = measure_model(
-            model,
-            cell.dataset.demonstrations,
-            cell.fold.held_out,
-            robot,
-            cell.preset,
-            np.random.default_rng(_stream(cell, Stream.TEST_NOISE)),
-        )
+    robot = load_recorded_robot(cell.dataset.demonstrations)
+    began = process_time()
+    model = _fit(cell, robot)
+    fit_s = process_time() - began
+    measured = measure_model(
+        model,
+        cell.dataset.demonstrations,
+        cell.fold.held_out,
+        robot,
+        cell.preset,
+        np.random.default_rng(_stream(cell, Stream.TEST_NOISE)),
+    )
     return FoldResult(
         place=cell.place,
         figures=measured.figures,

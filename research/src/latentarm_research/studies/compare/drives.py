@@ -11,7 +11,6 @@ from time import perf_counter
 from typing import Final
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from latentarm.assistance.controllers.contract import Controller
 from latentarm.assistance.controllers.end_effector import EndEffectorController
@@ -96,21 +95,20 @@ def drive_cells(
 
 def measure_drive_cell(cell: ModelDriveCell) -> DriveResult:
     """Drive once; the start and the operator's randomness depend on the episode, not on the controller."""
-    with threadpool_limits(limits=1):
-        began = perf_counter()
-        robot = load_recorded_robot(cell.dataset.demonstrations)
-        task = Replay(robot, routes_of(robot, select_episodes(cell.dataset.demonstrations, [cell.episode])))
-        controller: Controller = (
-            EndEffectorController(robot) if cell.decoder is None else LatentController(cell.decoder)
-        )
-        setup = Setup(
-            GoalTask(task, task.manners[0], cell.limit_s),
-            controller,
-            PEOPLE[usual_operator(task.name)],
-        )
-        streams = sequence(cell.seed, cell.dataset.name, Stream.DRIVES, cell.episode)
-        trace = drive(setup, 0, np.random.default_rng(streams))
-        shown = robot.chain.forward(cell.dataset.demonstrations.episodes[cell.episode].state)
+    began = perf_counter()
+    robot = load_recorded_robot(cell.dataset.demonstrations)
+    task = Replay(robot, routes_of(robot, select_episodes(cell.dataset.demonstrations, [cell.episode])))
+    controller: Controller = (
+        EndEffectorController(robot) if cell.decoder is None else LatentController(cell.decoder)
+    )
+    setup = Setup(
+        GoalTask(task, task.manners[0], cell.limit_s),
+        controller,
+        PEOPLE[usual_operator(task.name)],
+    )
+    streams = sequence(cell.seed, cell.dataset.name, Stream.DRIVES, cell.episode)
+    trace = drive(setup, 0, np.random.default_rng(streams))
+    shown = robot.chain.forward(cell.dataset.demonstrations.episodes[cell.episode].state)
     return DriveResult(
         dataset=cell.dataset.name,
         controller=cell.controller,

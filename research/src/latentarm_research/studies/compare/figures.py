@@ -4,11 +4,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from latentarm.core.style import FONT_SIZE, TWO_COLUMNS_MM, legend_below, literal, new_figure, tidy
+from latentarm.core.style import FONT_SIZE, legend_below, literal, tidy
 from latentarm.core.types import Row
 from latentarm.evaluation.looks import look_of
 from latentarm_research.studies.compare.rows import condition, with_demonstrations
-from latentarm_research.studies.drawing import title
+from latentarm_research.studies.drawing import panel_grid, title
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -62,15 +62,12 @@ def pareto_figure(
     up: Sequence[Axis] = (REVERSAL, REACH),
 ) -> "Figure":
     """Models in two measures at a time, best at the lower left."""
-    figure = new_figure(HEIGHT_MM, TWO_COLUMNS_MM)
     said = ", ".join(
         f"{fill} {noise_rad:g} rad"
         for noise_rad, fill in zip(noises_rad, ("filled:", "open:", *("further:",) * 4), strict=False)
     )
-    figure.suptitle(
-        f"Models on held-out episodes, mean ± SD over seeds; noise on states, {said}", fontsize=FONT_SIZE
-    )
-    panels = figure.subplots(len(up), len(datasets), sharex="col", sharey="row", squeeze=False)
+    heading = f"Models on held-out episodes, mean ± SD over seeds; noise on states, {said}"
+    figure, panels = panel_grid(heading, len(up), len(datasets), 0.0, HEIGHT_MM, sharex="col", sharey="row")
     for line, axis in zip(panels, up, strict=True):
         for axes, dataset in zip(line, datasets, strict=True):
             for noise_rad, fill in zip(noises_rad, FILLS, strict=False):
@@ -83,8 +80,7 @@ def pareto_figure(
         title(axes, literal(dataset))
     for axes in panels[-1]:
         axes.set_xlabel(across.label, fontsize=FONT_SIZE)
-    handles, labels = panels[0, 0].get_legend_handles_labels()
-    legend_below(figure, handles, labels)
+    legend_below(figure, *panels[0, 0].get_legend_handles_labels())
     return figure
 
 
@@ -149,14 +145,11 @@ def fewer_figure(
         noises_rad: rad; the first has filled markers and a solid line, further ones open and dashed.
         counts: numbers of demonstrations, rising.
     """
-    figure = new_figure(LINE_MM * len(MEASURES) + 20.0, TWO_COLUMNS_MM)
     levels = ", ".join(f"{noise_rad:g} rad" for noise_rad in noises_rad)
-    figure.suptitle(
-        f"Fewer training demonstrations, mean ± SD over seeds; noise on states {levels}"
-        f"{' (the latter open and dashed)' if len(noises_rad) > 1 else ''}",
-        fontsize=FONT_SIZE,
-    )
-    panels = figure.subplots(len(MEASURES), len(datasets), sharex=True, sharey="row", squeeze=False)
+    dashed = " (the latter open and dashed)" if len(noises_rad) > 1 else ""
+    heading = f"Fewer training demonstrations, mean ± SD over seeds; noise on states {levels}{dashed}"
+    size = len(MEASURES), len(datasets), LINE_MM, 20.0
+    figure, panels = panel_grid(heading, *size, sharex=True, sharey="row")
     for line, (measure, (label, scale)) in zip(panels, MEASURES.items(), strict=True):
         for axes, dataset in zip(line, datasets, strict=True):
             _draw_fewer(axes, rows, dataset, noises_rad, counts, measure, scale)
@@ -168,8 +161,7 @@ def fewer_figure(
     for axes in panels[-1]:
         axes.set_xlabel("training demonstrations", fontsize=FONT_SIZE)
         axes.set_xticks(range(len(counts)), [str(count) for count in counts])
-    handles, labels = panels[0, 0].get_legend_handles_labels()
-    legend_below(figure, handles, labels)
+    legend_below(figure, *panels[0, 0].get_legend_handles_labels())
     return figure
 
 

@@ -7,6 +7,7 @@ over folds, of the means over seeds. One family per way of encoding.
 """
 
 from collections.abc import Sequence
+from itertools import product
 from typing import Final
 
 import numpy as np
@@ -34,29 +35,20 @@ def compared(results: Sequence[FoldResult]) -> list[Comparison]:
     """Every test, after Holm's correction within its family."""
     places = dict.fromkeys((one.place.dataset, one.place.noise_rad) for one in results)
     found: list[Comparison] = []
-    for measure, family in ENCODINGS.items():
-        for sees, does_not in PAIRS:
-            for dataset, noise_rad in places:
-                values, reference = (
-                    _over_folds(results, dataset, noise_rad, model, measure) for model in (sees, does_not)
-                )
-                if len(values) == len(reference) > 0:
-                    found.append(
-                        Comparison(
-                            hypothesis=HYPOTHESIS,
-                            family=family,
-                            task=dataset,
-                            model=sees,
-                            measure=label_of(measure),
-                            where=condition(noise_rad),
-                            subject=sees,
-                            against=does_not,
-                            mean=float(values.mean()),
-                            mean_against=float(reference.mean()),
-                            n=len(values),
-                            n_against=len(reference),
-                        ).tested(paired(values, reference, "less"))
-                    )
+    for (measure, family), (sees, does_not), place in product(ENCODINGS.items(), PAIRS, places):
+        values, reference = (_over_folds(results, *place, model, measure) for model in (sees, does_not))
+        if len(values) == len(reference) > 0:
+            one = Comparison(
+                hypothesis=HYPOTHESIS,
+                family=family,
+                task=place[0],
+                model=sees,
+                measure=label_of(measure),
+                where=condition(place[1]),
+                subject=sees,
+                against=does_not,
+            )
+            found.append(one.of(values, reference, paired(values, reference, "less")))
     return corrected(found)
 
 

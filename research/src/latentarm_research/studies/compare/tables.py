@@ -1,6 +1,6 @@
 """The comparison's tables, for the terminal and for the page."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Final
 
@@ -8,11 +8,11 @@ from rich.console import RenderableType
 
 from latentarm.core.types import Row
 from latentarm.evaluation.looks import look_of
-from latentarm.evaluation.table import ABSENT, format_figure, measure_name, rich_figures
+from latentarm.evaluation.table import format_figure, measure_name, rich_figures
 from latentarm_research.studies.compare.measures import TABLES
 from latentarm_research.studies.compare.rows import OVER_FOLDS, condition
-from latentarm_research.studies.compare.targets import TargetVerdict
-from latentarm_research.studies.tables import markdown_table
+from latentarm_research.studies.tables import grid_table
+from latentarm_research.studies.targets import Target
 
 CORNER: Final = "mean ± SD over seeds [SD over folds]"
 
@@ -46,36 +46,28 @@ def terminal_tables(
 
 def page_table(rows: Sequence[Row], dataset: str, noise_rad: float, of: Sequence[str]) -> str:
     """The same for a page, of some measures."""
-    measures, models, figures = _arranged(rows, dataset, noise_rad, of)
-    lines = [[measure, *(figures.get((measure, model), ABSENT) for model in models)] for measure in measures]
-    return markdown_table([CORNER, *models], lines)
+    return _grid(CORNER, _arranged(rows, dataset, noise_rad, of)[2])
 
 
-def target_table(verdicts: Sequence[TargetVerdict]) -> str:
+def target_table(found: Sequence[Target]) -> str:
     """Targets down, datasets and noises across."""
-    columns = list(dict.fromkeys((one.dataset, one.noise_rad) for one in verdicts))
-    head = ["", *(f"{dataset}, {noise_rad:g} rad" for dataset, noise_rad in columns)]
-    said = {
-        (one.target, one.dataset, one.noise_rad): f"{'met' if one.met else '**missed**'}: {one.said}"
-        for one in verdicts
-    }
-    lines = [
-        [target, *(said.get((target, *column), ABSENT) for column in columns)]
-        for target in dict.fromkeys(one.target for one in verdicts)
-    ]
-    return markdown_table(head, lines)
+    words = {True: "met", False: "**missed**"}
+    return _grid("", {(one.name, one.where[0]): f"{words[one.met]}: {one.figures}" for one in found})
 
 
 def drive_table(rows: Sequence[Row], dataset: str) -> str:
     """Drives of one dataset: measures down, controllers across."""
     here = [row for row in rows if row.task == dataset]
-    controllers = list(dict.fromkeys(row.model or "" for row in here))
-    figures = {(measure_name(row), row.model): format_figure(row.mean, row.sd) for row in here}
-    lines = [
-        [measure, *(figures.get((measure, controller), ABSENT) for controller in controllers)]
-        for measure in dict.fromkeys(measure_name(row) for row in here)
-    ]
-    return markdown_table(["mean ± SD over drives", *(look_of(name).label for name in controllers)], lines)
+    figures = {
+        (measure_name(row), look_of(row.model or "").label): format_figure(row.mean, row.sd) for row in here
+    }
+    return _grid("mean ± SD over drives", figures)
+
+
+def _grid(corner: str, texts: Mapping[tuple[str, str], str]) -> str:
+    """A table of texts by line and column, in the order in which they first stand there."""
+    lines, columns = ({name[place]: name[place] for name in texts} for place in (0, 1))
+    return grid_table(corner, lines, columns, lambda line, column: texts.get((line, column)))
 
 
 def _arranged(

@@ -8,6 +8,7 @@ from latentarm.core.types import Row
 from latentarm.evaluation.looks import look_of
 from latentarm_research.studies.compare.preset import BASELINE, REFERENCE
 from latentarm_research.studies.compare.rows import condition
+from latentarm_research.studies.targets import Target
 
 Means = Mapping[str, float]
 """Measure, or `FIT_S`, -> mean of one model, on one dataset under one noise."""
@@ -31,17 +32,6 @@ class ModelTarget:
     other: str | None = None
     scale: float = 1.0  # by which figures are multiplied to be shown
     unit: str = ""  # in which they are shown
-
-
-@dataclass(frozen=True)
-class TargetVerdict:
-    """The result of one target."""
-
-    target: str  # its name
-    dataset: str  # where
-    noise_rad: float  # under which noise, rad
-    met: bool  # whether it was met
-    said: str  # the figures
 
 
 def _at_most(name: str, measure: str, limit: float, scale: float = 1.0, unit: str = "") -> ModelTarget:
@@ -91,13 +81,13 @@ def verdicts(
     datasets: Sequence[str],
     noises_rad: Sequence[float],  # rad
     fit_times: FitTimes,
-) -> list[TargetVerdict]:
+) -> list[Target]:
     """Every target on every dataset under every noise; means are compared.
 
     Returns:
         Target by target, without those that are relative to a model that was not compared, or to itself.
     """
-    found: list[TargetVerdict] = []
+    found: list[Target] = []
     for target in TARGETS:
         if target.other == ours:
             continue
@@ -111,9 +101,8 @@ def verdicts(
                     said = _said(target, mine)
                     if target.other is not None:
                         said += f" ({look_of(target.other).label} {_said(target, other)})"
-                    found.append(
-                        TargetVerdict(target.name, dataset, noise_rad, target.met(mine, other), said)
-                    )
+                    where = (f"{dataset}, {noise_rad:g} rad",)
+                    found.append(Target(target.name, target.met(mine, other), said, where))
     return found
 
 

@@ -8,7 +8,6 @@ from time import perf_counter
 from typing import Final
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from latentarm.core.types import Demonstrations, FloatArray
 from latentarm.demonstrations.split import select_episodes
@@ -74,19 +73,6 @@ class PropertiesResult:
     fit_s: float  # how long the fit of all seeds took, s
 
 
-def measure_cell(cell: PropertiesCell) -> PropertiesResult:
-    """Demonstrate, fit all seeds in one fit, measure.
-
-    The figures are the same to the last bit in whatever process this runs: one thread each for linear algebra
-    and for torch, since more of them add up in another order.
-
-    Raises:
-        UserError: the preset's sizes make no sense to the model or to the task.
-    """
-    with threadpool_limits(limits=1):
-        return _measure(cell)
-
-
 @dataclass(frozen=True, eq=False)
 class Demonstrated:
     """One seed's demonstrations."""
@@ -114,7 +100,12 @@ def demonstrated(
     )
 
 
-def _measure(cell: PropertiesCell) -> PropertiesResult:
+def measure_cell(cell: PropertiesCell) -> PropertiesResult:
+    """Demonstrate, fit all seeds in one fit, measure.
+
+    Raises:
+        UserError: the preset's sizes make no sense to the model or to the task.
+    """
     preset = cell.preset
     motion = MOTIONS[cell.task](preset.design)
     sizes = preset.episodes, preset.test_episodes

@@ -3,11 +3,11 @@
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Final, NamedTuple
 
-from latentarm.core.style import FONT_SIZE, SMALL_FONT_SIZE, TWO_COLUMNS_MM, new_figure, tidy
+from latentarm.core.style import FONT_SIZE, SMALL_FONT_SIZE, tidy
 from latentarm.core.types import Row
 from latentarm.evaluation.looks import look_of
 from latentarm.evaluation.table import format_figure
-from latentarm_research.studies.drawing import draw_series, name_series, title
+from latentarm_research.studies.drawing import draw_series, first_panels, name_series, panel_grid, title
 from latentarm_research.studies.properties.cell import condition
 from latentarm_research.studies.properties.tables import OURS
 
@@ -169,13 +169,9 @@ def beside_paper_figure(rows: Sequence[Row], tasks: Sequence[str]) -> "Figure":
     models = [
         model for model in dict.fromkeys(m for figures in found for m in figures) if model in {*printed, OURS}
     ]
-    down = -(-len(compared) // ACROSS)
-    figure = new_figure(down * (FRAME_MM + LINE_MM * max(len(models), 2)) + 8.0, TWO_COLUMNS_MM)
-    figure.suptitle(
-        "The paper's simulations (hollow) and ours (filled), mean ± SD over seeds; all arms simulated",
-        fontsize=FONT_SIZE,
-    )
-    panels = figure.subplots(down, ACROSS, sharey=True, squeeze=False)
+    heading = "The paper's simulations (hollow) and ours (filled), mean ± SD over seeds; all arms simulated"
+    size = -(-len(compared) // ACROSS), ACROSS, FRAME_MM + LINE_MM * max(len(models), 2), 8.0
+    figure, panels = panel_grid(heading, *size, sharey=True)
     for axes, (task, measure, label), figures in zip(panels.flat, compared, found, strict=False):
         _draw_measure(axes, {model: figures[model] for model in models if model in figures}, models, measure)
         title(axes, task.capitalize())
@@ -183,8 +179,7 @@ def beside_paper_figure(rows: Sequence[Row], tasks: Sequence[str]) -> "Figure":
         axes.set_yticks(range(len(models)), [look_of(model).label for model in models])
         axes.set_ylim(len(models) - 0.4, -0.6)
         tidy(axes)
-    for axes in panels.flat[len(compared) :]:
-        axes.remove()
+    first_panels(panels, len(compared))
     return figure
 
 
@@ -213,14 +208,10 @@ def measure_of(task: str) -> str:
 
 def controllability_figure(rows: Sequence[Row], tasks: Sequence[str]) -> "Figure":
     """Least distance of the tool from its goal, one panel per task, with the distance at the start."""
-    down = -(-len(tasks) // COLUMNS)
-    figure = new_figure(down * ROW_MM + 6.0, TWO_COLUMNS_MM)
-    figure.suptitle(
-        "How near simulated arms come to their goals by latent actions alone, mean ± SD over seeds",
-        fontsize=FONT_SIZE,
-    )
-    panels = list(figure.subplots(down, COLUMNS, squeeze=False).flat)
-    for axes, task in zip(panels, tasks, strict=False):
+    heading = "How near simulated arms come to their goals by latent actions alone, mean ± SD over seeds"
+    figure, grid = panel_grid(heading, -(-len(tasks) // COLUMNS), COLUMNS, ROW_MM, 6.0)
+    panels = first_panels(grid, len(tasks))
+    for axes, task in zip(panels, tasks, strict=True):
         distances = in_mm(points(rows, task, measure_of(task)))
         starts = in_mm(points(rows, task, "start_distance_m"))
         left = log_axis(axes, [*distances.values(), *starts.values()], LEAST_MM)
@@ -231,8 +222,6 @@ def controllability_figure(rows: Sequence[Row], tasks: Sequence[str]) -> "Figure
             )
         title(axes, task.capitalize())
         axes.set_xlabel("tool from goal (mm)")
-    for axes in panels[len(tasks) :]:
-        axes.remove()
     name_series(figure, panels[0], handle_length=2.0)
     return figure
 
@@ -251,12 +240,9 @@ def noise_figure(
     noises_rad: Sequence[float],  # SDs of the noise on states, rad, rising
 ) -> "Figure":
     """Loss over noise, a line per model; tested with the noise (above) and without it (below)."""
-    figure = new_figure(NOISE_MM, TWO_COLUMNS_MM)
-    figure.suptitle(
-        "Models trained with noise on the joint positions of simulated arms, mean ± SD over seeds",
-        fontsize=FONT_SIZE,
-    )
-    panels = figure.subplots(len(NOISE_MEASURES), len(tasks), sharex=True, sharey=True, squeeze=False)
+    heading = "Models trained with noise on the joint positions of simulated arms, mean ± SD over seeds"
+    size = len(NOISE_MEASURES), len(tasks), 0.0, NOISE_MM
+    figure, panels = panel_grid(heading, *size, sharex=True, sharey=True)
     for line, (measure, where) in zip(panels, NOISE_MEASURES.items(), strict=True):
         for axes, task in zip(line, tasks, strict=True):
             _draw_sweep(axes, rows, task, measure, noises_rad)

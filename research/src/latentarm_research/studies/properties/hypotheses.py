@@ -131,8 +131,4 @@ def _test(
         subject=model,
         against=against,
         direction=claim.direction,
-        mean=float(known.mean()) if len(known) else None,
-        mean_against=float(known_reference.mean()) if len(known_reference) else None,
-        n=len(known),
-        n_against=len(known_reference),
-    ).tested(statistic)
+    ).of(known, known_reference, statistic)

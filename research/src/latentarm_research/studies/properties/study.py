@@ -1,13 +1,11 @@
 """`latentarm reproduce properties`: every model on every task (section 8.1)."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import product
 from typing import TYPE_CHECKING, Final
 
 from latentarm.core.types import Row
-from latentarm.evaluation.summary import Subject, summarise
 from latentarm_research.studies.hypotheses import Comparison, comparison_table, verdicts
 from latentarm_research.studies.page import render_page
 from latentarm_research.studies.properties.cell import (
@@ -34,6 +32,7 @@ from latentarm_research.studies.properties.tables import (
     noise_table,
     paper_table,
 )
+from latentarm_research.studies.series import Series
 from latentarm_research.studies.statistics import LEVEL
 from latentarm_research.studies.study import Grid, Report, Request, Study, again
 from latentarm_research.tasks.planar.catalogue import MOTIONS
@@ -65,6 +64,15 @@ def _report(request: Request[Preset], results: list[PropertiesResult]) -> Report
     tests = compare_models(proper)
     figures = _figures(proper, rows, request.tasks)
     swept = _swept(request, results)
+    cells = [
+        {
+            "task": cell.task,
+            "model": cell.model,
+            "condition": condition(cell.noise_rad),
+            "design": cell.design,
+        }
+        for cell in (result.cell for result in results)
+    ]
     return Report(
         rows=rows + swept,
         page=_page(request, rows, swept, tests, figures),
@@ -72,26 +80,19 @@ def _report(request: Request[Preset], results: list[PropertiesResult]) -> Report
         tests=tests,
         documents={
             "seeds.json": [
-                {
-                    **_place(result.cell),
-                    "measure": measure,
-                    "values": [x if math.isfinite(x) else None for x in values.tolist()],
-                }
-                for result in results
-                for measure, values in result.figures.items()
+                {**one.as_json(), **cell}
+                for cell, result in zip(cells, results, strict=True)
+                for one in _series(result)
             ]
         },
-        timings={"cells": [{**_place(result.cell), "fit_s": result.fit_s} for result in results]},
+        timings={"cells": [{**cell, "fit_s": one.fit_s} for cell, one in zip(cells, results, strict=True)]},
     )
 
 
-def _place(cell: PropertiesCell) -> dict[str, object]:
-    return {
-        "task": cell.task,
-        "model": cell.model,
-        "condition": condition(cell.noise_rad),
-        "design": cell.design,
-    }
+def _series(result: PropertiesResult, under: str | None = None) -> list[Series]:
+    """The figures of a cell, under the condition by which rows name it."""
+    cell = result.cell
+    return [Series(cell.task, cell.model, under, *figures) for figures in result.figures.items()]
 
 
 def _swept(request: Request[Preset], results: Sequence[PropertiesResult]) -> list[Row]:
@@ -99,40 +100,23 @@ def _swept(request: Request[Preset], results: Sequence[PropertiesResult]) -> lis
     names = designs(request.preset)
     if len(names) < 2:
         return []
-    return [
-        replace(row, condition=name)
-        for name in names
-        for row in with_paper(
-            [
-                row
-                for task in request.tasks
-                for row in _rows([one for one in results if one.cell.design == name], task)
-            ]
-        )
-        if row.condition is None
-    ]
+    found: list[Row] = []
+    for name in names:
+        own = [one for one in results if one.cell.design == name]
+        rows = with_paper([row for task in request.tasks for row in _rows(own, task)])
+        found += [replace(row, condition=name) for row in rows if row.condition is None]
+    return found
 
 
 def _rows(results: Sequence[PropertiesResult], task: str) -> list[Row]:
     """One task's rows: without noise everything, and in the sweep what is measured under every noise."""
     here = [result for result in results if result.cell.task == task]
-    rows = [
-        summarise(Subject(STUDY.name, task, result.cell.model), measure, values)
-        for result in here
-        if result.cell.noise_rad == 0
-        for measure, values in result.figures.items()
-    ]
-    if len({result.cell.noise_rad for result in here}) < 2:
-        return rows
-    swept = set[str].intersection(*(set(result.figures) for result in here))
-    return rows + [
-        summarise(
-            Subject(STUDY.name, task, result.cell.model, condition(result.cell.noise_rad)), measure, values
-        )
-        for result in here
-        for measure, values in result.figures.items()
-        if measure in swept
-    ]
+    series = [one for result in here if result.cell.noise_rad == 0 for one in _series(result)]
+    if len({result.cell.noise_rad for result in here}) > 1:
+        swept = set[str].intersection(*(set(result.figures) for result in here))
+        noisy = [one for result in here for one in _series(result, condition(result.cell.noise_rad))]
+        series += [one for one in noisy if one.measure in swept]
+    return [one.row(STUDY.name) for one in series]
 
 
 def _figures(
