@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from latentarm_research.user_studies.definition import Definition
-from latentarm_research.user_studies.designs.catalogue import design_of
+from latentarm_research.user_studies.designs import design_of
 from latentarm_research.user_studies.record import Trial
 
 

@@ -15,8 +15,7 @@ from latentarm_research.user_studies.analysis.analysis import analyse
 from latentarm_research.user_studies.analysis.anova import repeated_measures
 from latentarm_research.user_studies.analysis.as_printed import as_printed
 from latentarm_research.user_studies.analysis.claims import claims_tested, sides_of, verdicts
-from latentarm_research.user_studies.analysis.long_table import long_table
-from latentarm_research.user_studies.analysis.means import sides
+from latentarm_research.user_studies.analysis.means import long_table, sides
 from latentarm_research.user_studies.analysis.mixed import mixed_model
 from latentarm_research.user_studies.analysis.randomisation import randomisation_p
 from latentarm_research.user_studies.catalogue import load_definition

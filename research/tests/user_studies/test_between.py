@@ -18,9 +18,9 @@ from latentarm.core.types import FloatArray
 from latentarm_research.studies.means_test import welch_test
 from latentarm_research.user_studies.analysis.analysis import analyse
 from latentarm_research.user_studies.analysis.anova import between_people
-from latentarm_research.user_studies.analysis.permutation import permutation_p
+from latentarm_research.user_studies.analysis.randomisation import permutation_p
 from latentarm_research.user_studies.catalogue import load_definition
-from latentarm_research.user_studies.order import assigned
+from latentarm_research.user_studies.designs import assigned
 from latentarm_research.user_studies.power import NUMBERS, power_of
 from latentarm_research.user_studies.record import Trial
 from latentarm_research.user_studies.recorded import PeopleAre, Recorded

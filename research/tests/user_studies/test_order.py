@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from latentarm.core.errors import UserError
-from latentarm_research.user_studies.order import orders, williams
+from latentarm_research.user_studies.designs import orders, williams
 
 
 @given(st.integers(2, 12))

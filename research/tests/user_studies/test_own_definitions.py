@@ -10,8 +10,11 @@ import pytest
 from latentarm.cli import main
 from latentarm.core.errors import UserError
 from latentarm_research.user_studies.catalogue import NAMES, load_definition
-from latentarm_research.user_studies.own.checks import check_definition
-from latentarm_research.user_studies.own.definition_file import find_definition, read_definition
+from latentarm_research.user_studies.own.definition_file import (
+    check_definition,
+    find_definition,
+    read_definition,
+)
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "pie_apart.json"
 OWN: dict[str, Any] = json.loads(EXAMPLE.read_text(encoding="utf-8"))

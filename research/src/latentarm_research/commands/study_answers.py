@@ -32,8 +32,7 @@ def questions(
 
     For example: latentarm study questions eating --out sheets.md
     """
-    from latentarm_research.user_studies.answers.items import sheet
-    from latentarm_research.user_studies.answers.sheets import write_sheet
+    from latentarm_research.user_studies.answers.items import sheet, write_sheet
 
     definition = find_definition(name)
     count = definition.people if people is None else people

@@ -19,7 +19,7 @@ from latentarm_research.studies.statistics import LEVEL
 from latentarm_research.user_studies.analysis.claims import claims_tested, sides_of
 from latentarm_research.user_studies.catalogue import load_definition
 from latentarm_research.user_studies.definition import Definition, Factor
-from latentarm_research.user_studies.designs.catalogue import design_of
+from latentarm_research.user_studies.designs import design_of
 from latentarm_research.user_studies.hypothesis import Claim, Hypothesis
 from latentarm_research.user_studies.record import Trial
 

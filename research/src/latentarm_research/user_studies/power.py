@@ -10,7 +10,7 @@ from latentarm.core.errors import UserError
 from latentarm_research.user_studies.analysis.claims import claims_tested, sides_of, verdicts, worded
 from latentarm_research.user_studies.analysis.means import Sides
 from latentarm_research.user_studies.definition import Definition
-from latentarm_research.user_studies.designs.catalogue import design_of
+from latentarm_research.user_studies.designs import design_of
 from latentarm_research.user_studies.exclusion import counted
 from latentarm_research.user_studies.record import Trial
 
@@ -81,7 +81,7 @@ def power_of(definition: Definition, trials: Sequence[Trial], draws: int, seed: 
         )
     both = sides_of(definition, kept)
     rng = np.random.default_rng(seed)
-    numbers = design.numbers(conditions, NUMBERS)
+    numbers = tuple(design.number(conditions, each) for each in NUMBERS)
     shares = [_shares(definition, both, people, number, draws, rng) for number in numbers]
     claims = {worded(definition, claim): index for index, claim in enumerate(definition.claims)}
     measured = {name: index for name, index in claims.items() if len(both[index].subject)}

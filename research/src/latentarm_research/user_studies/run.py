@@ -12,17 +12,10 @@ from latentarm_research.studies.results_folder import package_versions
 from latentarm_research.studies.source import source_digest
 from latentarm_research.studies.streams import generator
 from latentarm_research.studies.study import Grid, Report, Request, Study, again
-from latentarm_research.user_studies import (
-    alignments,
-    conditions,
-    limited_time,
-    order,
-    scenes,
-    session,
-    training,
-)
+from latentarm_research.user_studies import alignments, conditions, designs, scenes, session, training
+from latentarm_research.user_studies import scenes as limited_time
 from latentarm_research.user_studies.definition import Definition
-from latentarm_research.user_studies.designs.catalogue import design_of
+from latentarm_research.user_studies.designs import design_of
 from latentarm_research.user_studies.kept import KEEP_SESSIONS, SESSIONS
 from latentarm_research.user_studies.recorded import DOCUMENTS, Recorded
 from latentarm_research.user_studies.report.figures import figure_names
@@ -112,7 +105,7 @@ def _trained_as(cell: SessionCell) -> str:
 
 def _depends_on(definition: Definition) -> dict[str, object]:
     """The definition, and the code of a session, so that a study does not go on with other code."""
-    used = (alignments, conditions, fitting, limited_time, order, scenes, session, streams, training)
+    used = (alignments, conditions, designs, fitting, limited_time, scenes, session, streams, training)
     code = source_digest([Path(module.__file__ or "") for module in used])
     return {"definition": definition.digest, "code": code, "versions": package_versions()}
 

@@ -16,9 +16,8 @@ from latentarm_research.people.traits import Traits
 from latentarm_research.studies.streams import generator
 from latentarm_research.user_studies.conditions import setup_of
 from latentarm_research.user_studies.definition import Condition, Definition, StudyTask
-from latentarm_research.user_studies.limited_time import LimitedTime
 from latentarm_research.user_studies.record import Trial
-from latentarm_research.user_studies.scenes import scene_of
+from latentarm_research.user_studies.scenes import LimitedTime, scene_of
 from latentarm_research.user_studies.sizes import Sizes, Stream
 from latentarm_research.user_studies.trace import Trace, trace_of
 from latentarm_research.user_studies.training import Trained

@@ -22,8 +22,7 @@ from latentarm_research.studies.fitting import fit_model, validation_episodes
 from latentarm_research.studies.streams import generator, integer, sequence
 from latentarm_research.user_studies.alignments import PRIORS, Aligned, learn_alignments
 from latentarm_research.user_studies.definition import Aligns, Condition, Definition, StudyTask
-from latentarm_research.user_studies.limited_time import LimitedTime
-from latentarm_research.user_studies.scenes import scene_of
+from latentarm_research.user_studies.scenes import LimitedTime, scene_of
 from latentarm_research.user_studies.sizes import LEAST_DEMONSTRATIONS, Sizes, Stream
 
 MOST_TRIES: Final = 10

@@ -10,8 +10,7 @@ from latentarm_research.user_studies.analysis.claims import Tested, Verdict, cla
 from latentarm_research.user_studies.analysis.means import Sides, tasks_of
 from latentarm_research.user_studies.analysis.mixed import Mixed, mixed_model
 from latentarm_research.user_studies.definition import Definition
-from latentarm_research.user_studies.designs.catalogue import design_of
-from latentarm_research.user_studies.designs.design import StudyDesign
+from latentarm_research.user_studies.designs import StudyDesign, design_of
 from latentarm_research.user_studies.exclusion import Excluded, counted
 from latentarm_research.user_studies.record import Trial
 

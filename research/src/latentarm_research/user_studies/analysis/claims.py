@@ -9,8 +9,7 @@ from latentarm_research.studies.means_test import MeansTest
 from latentarm_research.studies.statistics import LEVEL, holm
 from latentarm_research.user_studies.analysis.means import Sides
 from latentarm_research.user_studies.definition import Definition
-from latentarm_research.user_studies.designs.catalogue import design_of
-from latentarm_research.user_studies.designs.design import StudyDesign
+from latentarm_research.user_studies.designs import StudyDesign, design_of
 from latentarm_research.user_studies.hypothesis import Claim, Hypothesis
 from latentarm_research.user_studies.record import Trial
 

@@ -7,7 +7,7 @@ from typing import Any, final
 import numpy as np
 
 from latentarm_research.studies.means_test import spreads
-from latentarm_research.user_studies.analysis.long_table import LongTable
+from latentarm_research.user_studies.analysis.means import LongTable
 
 
 @final

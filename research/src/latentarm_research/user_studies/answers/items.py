@@ -1,15 +1,21 @@
-"""Items of a questionnaire by name, and in which order each person is given them."""
+"""Items of a questionnaire in each person's order, and sheets of them: CSV to fill in, Markdown to print."""
 
+import csv
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import final
+from io import StringIO
+from itertools import groupby
+from pathlib import Path
+from typing import Final, final
 
 import numpy as np
 
 from latentarm.core.errors import UserError
+from latentarm.core.files import write_text
 from latentarm_research.studies.streams import generator
+from latentarm_research.studies.tables import markdown_table
 from latentarm_research.user_studies.definition import Definition
-from latentarm_research.user_studies.designs.catalogue import design_of
+from latentarm_research.user_studies.designs import design_of
 from latentarm_research.user_studies.questionnaire import Item, Scale
 from latentarm_research.user_studies.sizes import Stream
 
@@ -57,3 +63,48 @@ def sheet(definition: Definition, people: int, seed: int) -> list[Asked]:
 
 def _shuffled(names: Sequence[str], rng: np.random.Generator) -> list[str]:
     return [names[int(place)] for place in rng.permutation(len(names))]
+
+
+COLUMNS: Final = ("person", "condition", "item", "text", "answer")
+"""Of a CSV sheet; the last one is empty until people answer."""
+
+
+def write_sheet(
+    path: Path,  # ends in `.csv` or `.md`
+    definition: Definition,
+    asked: Sequence[Asked],
+) -> None:
+    """Write a sheet.
+
+    Raises:
+        UserError: the file has another ending, exists, or cannot be written.
+    """
+    kinds = {".csv": _csv, ".md": _markdown}
+    if path.suffix not in kinds:
+        raise UserError(f"{path} must end in {' or '.join(kinds)}.")
+    if path.exists():
+        raise UserError(f"{path} already exists, and may hold answers: name another file with --out.")
+    write_text(path, kinds[path.suffix](definition, asked))
+
+
+def _csv(definition: Definition, asked: Sequence[Asked]) -> str:
+    stream = StringIO()
+    lines = csv.writer(stream, lineterminator="\n")
+    lines.writerow(COLUMNS)
+    lines.writerows((one.person, one.condition, one.item, one.text, "") for one in asked)
+    return stream.getvalue()
+
+
+def _markdown(definition: Definition, asked: Sequence[Asked]) -> str:
+    points = definition.questionnaire[0].points
+    scale = [str(point) for point in range(1, points + 1)]
+    parts = [f"# {definition.title}\n"]
+    for (person, condition), lines in groupby(asked, lambda one: (one.person, one.condition)):
+        parts.append(f"## Person {person}, after {condition}\n")
+        parts.append(f"1: I strongly disagree. {points}: I strongly agree. Mark one number on each line.\n")
+        parts.append(
+            markdown_table(
+                ["statement", *scale, "item"], [[one.text, *("☐" for _ in scale), one.item] for one in lines]
+            )
+        )
+    return "\n".join(parts)

@@ -7,10 +7,14 @@ from typing import TYPE_CHECKING, final
 from latentarm_research.user_studies.answers.scales import Ratings
 from latentarm_research.user_studies.definition import Definition
 from latentarm_research.user_studies.record import Trial
-from latentarm_research.user_studies.report.boxes import box_figure, idle_figure
-from latentarm_research.user_studies.report.likert import likert_figure
-from latentarm_research.user_studies.report.people_apart import MOST_PEOPLE, people_figure, people_measures
-from latentarm_research.user_studies.report.steps import step_figure
+from latentarm_research.user_studies.report.boxes import (
+    MOST_PEOPLE,
+    box_figure,
+    idle_figure,
+    people_figure,
+    people_measures,
+)
+from latentarm_research.user_studies.report.likert import likert_figure, step_figure
 from latentarm_research.user_studies.report.ways import plate_figure, stick_figure, way_figure
 from latentarm_research.user_studies.trace import Trace
 

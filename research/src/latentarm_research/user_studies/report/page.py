@@ -5,25 +5,29 @@ from dataclasses import dataclass
 from typing import Final, final
 
 from latentarm.core.types import Row
-from latentarm.evaluation.measures import unit_of
 from latentarm.evaluation.table import ABSENT, format_figure
 from latentarm_research.studies.page import render_page
 from latentarm_research.studies.statistics import format_p
-from latentarm_research.studies.tables import listed
+from latentarm_research.studies.tables import heading, listed
 from latentarm_research.user_studies.analysis.analysis import Analysis
 from latentarm_research.user_studies.answers.scales import Ratings
 from latentarm_research.user_studies.definition import Definition
 from latentarm_research.user_studies.printed import WRONG
 from latentarm_research.user_studies.recorded import Recorded
-from latentarm_research.user_studies.report.designs import WORDS, claim_head, order_words
 from latentarm_research.user_studies.report.figures import Drawn
-from latentarm_research.user_studies.report.people import HEAD as PEOPLE_HEAD
-from latentarm_research.user_studies.report.people import people_lines
-from latentarm_research.user_studies.report.whose import QUOTED, REAL, SIMULATED, PeopleWords
 from latentarm_research.user_studies.report.words import (
+    DESIGN_WORDS,
+    PEOPLE_HEAD,
+    QUOTED,
+    REAL,
+    SIMULATED,
+    PeopleWords,
+    claim_head,
     claim_line,
     condition_parts,
     exclusion_words,
+    order_words,
+    people_lines,
     task_words,
     yes_no,
 )
@@ -64,7 +68,7 @@ def report_page(content: Content) -> str:
         who=recorded.who,
         command=content.command,
         notice=f"{content.words.notice} {QUOTED}" if definition.printed else content.words.notice,
-        design=WORDS[definition.design],
+        design=DESIGN_WORDS[definition.design],
         practice=_practice(definition),
         order_words=order_words(definition),
         verdict_lines=[
@@ -108,8 +112,7 @@ def _result_lines(definition: Definition, rows: Sequence[Row]) -> list[list[str]
     found = {(row.task or "", row.measure, row.condition): row for row in rows}
     lines: list[list[str]] = []
     for task, measure in places:
-        unit = unit_of(measure)
-        name = definition.label(measure) + ("" if unit == "1" else f" ({unit})")
+        name = heading(measure, definition.label(measure))
         shown = [found.get((task, measure, one.name)) for one in definition.conditions]
         cells = [ABSENT if row is None else format_figure(row.mean, row.sd) for row in shown]
         lines.append([labels[task], name, *cells])

@@ -16,7 +16,7 @@ from latentarm.core.style import (
 )
 from latentarm.core.types import FloatArray
 from latentarm_research.user_studies.definition import Definition, StudyTask
-from latentarm_research.user_studies.report.looks import colours
+from latentarm_research.user_studies.report.boxes import colours
 from latentarm_research.user_studies.trace import BINS, Trace
 
 if TYPE_CHECKING:

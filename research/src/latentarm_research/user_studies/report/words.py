@@ -1,14 +1,147 @@
-"""What the report says in words: the methods, from the definition, and figures as people read them."""
+"""What the report says in words: people, design, methods, and figures as people read them."""
 
-from typing import Final
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final, final
 
 from latentarm.evaluation.table import ABSENT, format_figure
-from latentarm_research.studies.means_test import MeansTest
+from latentarm_research.people.population import MIRRORED, TRAITS
+from latentarm_research.people.traits import Traits
+from latentarm_research.studies.means_test import CONFIDENCE, MeansTest
 from latentarm_research.studies.statistics import format_p
 from latentarm_research.studies.tables import listed
 from latentarm_research.user_studies.analysis.analysis import Modelled
 from latentarm_research.user_studies.analysis.claims import Tested, worded
-from latentarm_research.user_studies.definition import Condition, Definition, StudyTask
+from latentarm_research.user_studies.definition import Condition, Definition, Design, StudyTask
+
+PEOPLE_HEAD: Final = ("trait", "mean (range)", "where it comes from")
+
+
+def people_lines(people: Sequence[Traits]) -> list[tuple[str, str, str]]:
+    """Every trait over some people, with its source."""
+    lines = [
+        (
+            f"{one.meaning} ({one.unit})" if one.unit else one.meaning,
+            _spans([float(getattr(person, one.name)) for person in people]),
+            one.source,
+        )
+        for one in TRAITS
+    ]
+    mirrored = sum(person.mirrored for person in people)
+    upside_down = (
+        "second axis upside down for them",
+        f"{mirrored} of {len(people)}",
+        f"chosen: a share of {MIRRORED:g}",
+    )
+    return [*lines, upside_down]
+
+
+def _spans(values: Sequence[float]) -> str:
+    mean, low, high = (f"{value:,.0f}" if value >= 100.0 else f"{value:.3g}" for value in _ends(values))
+    return f"{mean} ({low} to {high})"
+
+
+def _ends(values: Sequence[float]) -> tuple[float, float, float]:
+    """Mean, least and most."""
+    return sum(values) / len(values), min(values), max(values)
+
+
+@final
+@dataclass(frozen=True)
+class PeopleWords:
+    """People in words."""
+
+    notice: str  # over everything
+    unasked: str  # of a questionnaire without answers
+
+
+SIMULATED: Final = PeopleWords(
+    notice="Everything here is simulated: the arm, the things, the demonstrator and the people who drive. No"
+    " person took part.",
+    unasked="Simulated people have no opinions: nobody was asked, and every claim about ratings could not be"
+    " tested.",
+)
+
+REAL: Final = PeopleWords(
+    notice="The trials are those of real people.",
+    unasked="No answers were given to this analysis: every claim about ratings could not be tested.",
+)
+
+QUOTED: Final = "Figures of the paper are quoted as the paper's and come from the paper's own people."
+
+
+_CLAIMS: Final = (
+    "Claims of equality are tested by two one-sided tests (TOST). p is also given after Holm's correction"
+    " over all claims of the study."
+)
+
+
+@final
+@dataclass(frozen=True)
+class DesignWords:
+    """A design in words."""
+
+    met: str  # who met which conditions
+    order: str  # how conditions were assigned, unless the definition has orders of its own
+    tests: str  # how claims are tested
+    effect_head: str  # heading of the column of effect sizes
+    anova: str  # what the analysis of variance of a 2 x 2 design is called
+
+
+DESIGN_WORDS: Final[Mapping[Design, DesignWords]] = {
+    "within": DesignWords(
+        met="Each person has all conditions (within subjects).",
+        order="Each person meets the conditions in an order of a Williams design: every condition stands at"
+        " every place, and follows every other, equally often. Conditions and rows of the design are assigned"
+        " at random, from the seed.",
+        tests="Paired t-tests on people's means, two-sided; intervals are of 95 %; dz is the mean difference"
+        " over its SD, with its interval from the noncentral t distribution, and g is dz without its bias in"
+        f" small samples. {_CLAIMS} The mixed model has condition, order, trial and task as fixed and the"
+        " person as random; its p is that of a randomisation test, which swaps the two conditions of each"
+        " person, because degrees of freedom of mixed models do not hold for so few people.",
+        effect_head=f"dz [{CONFIDENCE:.0%}]; g",
+        anova="Repeated-measures analysis of variance",
+    ),
+    "between": DesignWords(
+        met="Each person has one condition (between subjects).",
+        order="People are assigned to conditions at random, from the seed, in blocks that each have every"
+        " condition once.",
+        tests="Welch's t-tests on people's means, two-sided; intervals are of 95 %; g is the difference over"
+        " the pooled SD, without its bias in small samples, with its interval from the noncentral t"
+        f" distribution. {_CLAIMS} The mixed model has condition, trial and task as fixed and the person as"
+        " random; it is left out where each person has a single trial. The p of the randomisation test"
+        " permutes people between the two conditions, on their means.",
+        effect_head=f"g [{CONFIDENCE:.0%}]",
+        anova="Analysis of variance between people",
+    ),
+}
+
+
+def order_words(definition: Definition) -> str:
+    """How people came to their conditions, in a sentence or two."""
+    if definition.orders:
+        every = "; ".join(" then ".join(order) for order in definition.orders)
+        return f"People take turns with these orders: {every}."
+    return DESIGN_WORDS[definition.design].order
+
+
+def claim_head(definition: Definition) -> tuple[str, ...]:
+    """Headings of the table of claims."""
+    return (
+        "",
+        "claim",
+        "n",
+        "subject, mean ± SD",
+        "other, mean ± SD",
+        f"difference [{CONFIDENCE:.0%}]",
+        "test",
+        "p / p, Holm",
+        DESIGN_WORDS[definition.design].effect_head,
+        "mixed model ± SE",
+        "p, randomisation",
+        "says",
+    )
+
 
 CONTROLS: Final = {
     "modes": "two axes of the end-effector at a time; a button switches which",
