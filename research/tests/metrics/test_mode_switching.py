@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from latentarm_research.metrics.mode_switching import switching
+from latentarm_research.metrics.stick import switching
 
 
 def test_time_without_a_push_about_a_switch_counts_and_no_other():

@@ -8,10 +8,7 @@ from latentarm.core.errors import UserError
 from latentarm.core.types import Context
 from latentarm.robots.catalogue import load_robot
 from latentarm_research.people.boltzmann import BoltzmannConfig, OneStep
-from latentarm_research.people.foresight import KnowsTheArm
-from latentarm_research.people.imagination import Settled
-from latentarm_research.people.loop_limits import UNLIMITED, LoopLimits
-from latentarm_research.people.moment import Moment
+from latentarm_research.people.contract import UNLIMITED, KnowsTheArm, LoopLimits, Moment, Settled
 from latentarm_research.people.person import Person, SimulatedPerson
 
 PLANAR = load_robot("planar")

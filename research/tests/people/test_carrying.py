@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from latentarm.core.types import Context, Pose
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.kinematics.pose_rows import pose_rows
-from latentarm_research.people.carrying import carried
+from latentarm_research.people.motion import carried
 
 JOINTS = st.lists(st.floats(-0.5, 0.5), min_size=7, max_size=7).map(np.array)
 

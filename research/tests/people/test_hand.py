@@ -5,8 +5,8 @@ import pytest
 
 from latentarm.core.errors import UserError
 from latentarm.core.types import Context, Input, Pose
+from latentarm_research.people.contract import Moment
 from latentarm_research.people.hand import UNSTEADY, Hand, HandConfig
-from latentarm_research.people.moment import Moment
 
 NOWHERE = Pose(np.zeros(3), np.eye(3))
 PERIOD_S = 0.01

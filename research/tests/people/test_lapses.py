@@ -5,9 +5,8 @@ import pytest
 
 from latentarm.core.errors import UserError
 from latentarm.core.types import Context, Input, Pose
-from latentarm_research.people.decision import Decision
+from latentarm_research.people.contract import Decision, Moment
 from latentarm_research.people.lapses import SHORTEST_S, LapseConfig, Lapsing
-from latentarm_research.people.moment import Moment
 
 PERIOD_S = 0.01
 SOMEWHERE = Moment(Context(np.zeros(2), np.zeros(0)), 0, Pose(np.zeros(3), np.eye(3)), np.zeros(2))

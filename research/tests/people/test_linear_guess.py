@@ -7,8 +7,8 @@ from scipy.spatial.transform import Rotation
 from latentarm.core.errors import UserError
 from latentarm.core.types import Context, Pose
 from latentarm.robots.catalogue import load_robot
+from latentarm_research.people.contract import Moment
 from latentarm_research.people.linear_guess import LinearGuess, LinearGuessConfig, Regression
-from latentarm_research.people.moment import Moment
 from latentarm_research.people.person import Person, SimulatedPerson
 
 PANDA = load_robot("panda")

@@ -12,11 +12,9 @@ from latentarm.alignment.preference import ToolAxes
 from latentarm.core.errors import UserError
 from latentarm.core.types import Context
 from latentarm.robots.catalogue import load_robot
+from latentarm_research.people.contract import LoopLimits, Moment
 from latentarm_research.people.linear_guess import LinearGuess, LinearGuessConfig
-from latentarm_research.people.loop_limits import LoopLimits
-from latentarm_research.people.moment import Moment
-from latentarm_research.people.own_directions import InOwnDirections, OwnDirections
-from latentarm_research.people.own_speed import OwnSpeed
+from latentarm_research.people.own_directions import InOwnDirections, OwnDirections, OwnSpeed
 from latentarm_research.people.population import draw_people
 
 PANDA = load_robot("panda")

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from latentarm.core.errors import UserError
 from latentarm.core.types import Context, Input, Pose
 from latentarm.web.server.drive_socket import DRIVER_PERIOD_S
-from latentarm_research.people.moment import Moment
+from latentarm_research.people.contract import Moment
 from latentarm_research.people.page_rates import PAGE, PageRates, Screen, Wire
 
 PERIOD_S = 0.01

@@ -8,12 +8,9 @@ import pytest
 from latentarm.core.errors import UserError
 from latentarm.core.types import Context
 from latentarm_research.people.boltzmann import BoltzmannConfig, OneStep
-from latentarm_research.people.foresight import KnowsTheArm
+from latentarm_research.people.contract import KnowsTheArm, LoopLimits, Moment, Settled
 from latentarm_research.people.hand import UNSTEADY, Hand, HandConfig
-from latentarm_research.people.imagination import Settled
 from latentarm_research.people.linear_guess import LinearGuessConfig
-from latentarm_research.people.loop_limits import LoopLimits
-from latentarm_research.people.moment import Moment
 from latentarm_research.people.page_rates import PAGE
 from latentarm_research.people.person import Person, SimulatedPerson
 

@@ -6,8 +6,8 @@ from latentarm.core.errors import UserError
 from latentarm.core.types import Context
 from latentarm.robots.planar import planar
 from latentarm_research.people.boltzmann import BoltzmannConfig
+from latentarm_research.people.contract import UNLIMITED, LoopLimits
 from latentarm_research.people.expectation import Expectation
-from latentarm_research.people.loop_limits import UNLIMITED, LoopLimits
 from latentarm_research.people.person import Person, SimulatedPerson
 from latentarm_research.people.planning import PlanningConfig
 

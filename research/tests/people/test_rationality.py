@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from latentarm.core.errors import UserError
-from latentarm_research.people.rationality import boltzmann
+from latentarm_research.people.boltzmann import boltzmann
 
 COSTS = arrays(np.float64, st.tuples(st.integers(1, 4), st.integers(1, 6)), elements=st.floats(0, 1e3))
 ANY_COSTS = arrays(np.float64, st.tuples(st.integers(1, 4), st.integers(1, 6)), elements=st.floats())

@@ -12,10 +12,10 @@ from latentarm.core.types import Context
 from latentarm.robots.catalogue import load_robot
 from latentarm_research.people.boltzmann import BoltzmannConfig
 from latentarm_research.people.catalogue import PEOPLE
-from latentarm_research.people.loop_limits import LoopLimits
+from latentarm_research.people.contract import LoopLimits
+from latentarm_research.people.motion import shifted
 from latentarm_research.people.person import Person, SimulatedPerson
 from latentarm_research.people.ring_reading import RingReading, RingReadingConfig, nearest_drawn
-from latentarm_research.people.shifted import shifted
 
 PANDA = load_robot("panda")
 LINES = EndEffectorController(PANDA)

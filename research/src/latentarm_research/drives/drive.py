@@ -29,8 +29,7 @@ from latentarm.tasks.step_goals import StepGoals
 from latentarm.tasks.steps import Progress
 from latentarm_research.drives.following import Following, poses_at
 from latentarm_research.drives.trace import Trace
-from latentarm_research.people.loop_limits import LoopLimits
-from latentarm_research.people.operator import Operator
+from latentarm_research.people.contract import LoopLimits, Operator
 from latentarm_research.people.person import Person, SimulatedPerson
 
 RATE_HZ: Final = 100.0

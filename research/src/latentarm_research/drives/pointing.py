@@ -16,7 +16,7 @@ from latentarm.core.types import Context, FloatArray, Input, Pose
 from latentarm.robots.robot import Robot
 from latentarm.safety.config import SafetyConfig
 from latentarm_research.drives.drive import RATE_HZ
-from latentarm_research.people.loop_limits import LoopLimits
+from latentarm_research.people.contract import LoopLimits
 from latentarm_research.people.person import Person, SimulatedPerson
 
 DWELL_S: Final = 0.3

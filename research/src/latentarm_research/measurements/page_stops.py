@@ -25,8 +25,7 @@ from latentarm.control.journal import JournalEpisode, read_journal
 from latentarm.core.errors import UserError
 from latentarm.core.types import BoolArray, FloatArray
 from latentarm.robots.kinematics.stillness import STILL_RAD_S
-from latentarm_research.measurements.bare_chromium import Browser, Tab, browser
-from latentarm_research.measurements.cut_network import Proxy
+from latentarm_research.measurements.bare_chromium import Browser, Proxy, Tab, browser
 from latentarm_research.measurements.measurement import Outcome, Work, line
 from latentarm_research.measurements.options import PageStops
 

@@ -22,7 +22,7 @@ from latentarm.assistance.controllers.end_effector import EndEffectorController
 from latentarm.core.types import Context, FloatArray, Pose
 from latentarm.core.untrusted.opening import read_bytes
 from latentarm.robots.catalogue import load_robot
-from latentarm_research.people.loop_limits import LoopLimits
+from latentarm_research.people.contract import LoopLimits
 from latentarm_research.people.person import SimulatedPerson
 from latentarm_research.people.population import TRAITS, draw_people
 from latentarm_research.people.traits import Traits

@@ -4,7 +4,7 @@ from typing import Final
 
 import numpy as np
 
-from latentarm.core.types import FloatArray
+from latentarm.core.types import BoolArray, FloatArray
 
 TURNED_ROUND_S: Final = 0.5
 """A change of direction counts as one where it takes no longer than this, s."""
@@ -38,3 +38,21 @@ def turned_round_share(
     for back in range(1, min(round(TURNED_ROUND_S / period_s), len(u) - 1) + 1):
         turned[back:] |= np.vecdot(u[back:], u[:-back]) < 0.0
     return float(np.mean(turned[:-1]))
+
+
+def switching(
+    mode: FloatArray,  # (T,), the controller's mode
+    pushed: BoolArray,  # (T,), whether the stick was pushed
+) -> BoolArray:
+    """Which samples of a drive are spent on switching modes, (T,).
+
+    Those from the last push before a switch until the first one after it; several switches on the way to a
+    mode are one such time.
+    """
+    spent = np.zeros(len(mode), dtype=np.bool_)
+    pushes = np.flatnonzero(pushed)
+    for switched in np.flatnonzero(np.diff(mode)) + 1:
+        before, after = pushes[pushes < switched], pushes[pushes >= switched]
+        first = before[-1] + 1 if len(before) else 0
+        spent[first : after[0] if len(after) else len(mode)] = True
+    return spent

@@ -11,9 +11,8 @@ import numpy as np
 from latentarm.assistance.controllers.contract import Controller
 from latentarm.core.types import FloatArray
 from latentarm.robots.kinematics.chain import Chain
-from latentarm_research.people.carrying import carried
-from latentarm_research.people.loop_limits import LoopLimits
-from latentarm_research.people.moment import Moment
+from latentarm_research.people.contract import LoopLimits, Moment
+from latentarm_research.people.motion import carried
 
 LONGEST_S: Final = 2.0
 """Nobody makes up for more than this, s: far longer than any reaction."""

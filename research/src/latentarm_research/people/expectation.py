@@ -20,7 +20,7 @@ class Expectation:
     """A simulated person who expects a push along axis i of the stick to move the tool along direction i.
 
     They answer questions by it (`inputs`), and they steer by it (a
-    `latentarm_research.people.foresight.Foresight`): they see where the tool is, and know nothing of decoder,
+    `latentarm_research.people.contract.Foresight`): they see where the tool is, and know nothing of decoder,
     alignment and arm. They ignore how the tool turns and any motion outside their directions.
 
     Raises:

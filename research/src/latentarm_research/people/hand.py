@@ -8,7 +8,7 @@ import numpy as np
 
 from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray, Input
-from latentarm_research.people.moment import Moment
+from latentarm_research.people.contract import Moment
 
 SINUSOIDS: Final = 24
 """Of which a tremor is the sum."""

@@ -8,9 +8,7 @@ import numpy as np
 from latentarm.assistance.controllers.contract import Controller
 from latentarm.core.errors import UserError
 from latentarm.core.types import Input
-from latentarm_research.people.decision import Decision
-from latentarm_research.people.imagination import Imagination
-from latentarm_research.people.moment import Moment
+from latentarm_research.people.contract import Decision, Imagination, Moment
 
 SHORTEST_S: Final = 0.5
 """A lapse is a response later than 500 ms in the psychomotor vigilance task (Dinges and Powell, Behav. Res.

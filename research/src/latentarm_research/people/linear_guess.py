@@ -12,10 +12,8 @@ from latentarm.core.errors import UserError
 from latentarm.core.types import Context, FloatArray, Pose
 from latentarm.robots.kinematics.chain import Chain
 from latentarm.robots.kinematics.rotations import pose_error
-from latentarm_research.people.foresight import Foresight
-from latentarm_research.people.imagination import Imagination
-from latentarm_research.people.moment import Moment
-from latentarm_research.people.shifted import shifted
+from latentarm_research.people.contract import Foresight, Imagination, Moment
+from latentarm_research.people.motion import shifted
 
 
 @final

@@ -1,4 +1,4 @@
-"""A simulated person for whom the stick is turned, or upside down, before anything was aligned to them."""
+"""What is a person's own: how fast they go, and how the stick is turned, or upside down, for them."""
 
 import math
 from dataclasses import dataclass
@@ -10,6 +10,33 @@ from latentarm.alignment.answers import Motions
 from latentarm.alignment.preference import Preference
 from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray
+from latentarm_research.people.contract import LoopLimits
+
+
+@final
+@dataclass(frozen=True)
+class OwnSpeed:
+    """How fast a simulated person likes to go.
+
+    Raises:
+        UserError: the share is out of its range.
+    """
+
+    share: float = 1.0  # of the speed of somebody who pushes as far as it takes, in (0, 1]
+
+    def __post_init__(self) -> None:
+        if not 0 < self.share <= 1:
+            raise UserError(f"A person's own speed must be a share in (0, 1], not {self.share}.")
+
+    def pushed(self, u: FloatArray, limits: LoopLimits) -> FloatArray:
+        """Where they push the stick (d,), where somebody who goes full speed would push it to u (d,).
+
+        Pushes shrink in proportion beyond the dead zone, so that what is a push remains one.
+        """
+        if self.share == 1.0 or not limits.is_push(u):
+            return u
+        length = float(np.linalg.norm(u))
+        return u * ((limits.dead_zone + self.share * (length - limits.dead_zone)) / length)
 
 
 @final

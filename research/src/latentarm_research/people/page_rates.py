@@ -9,7 +9,7 @@ import numpy as np
 
 from latentarm.core.errors import UserError
 from latentarm.core.types import Input
-from latentarm_research.people.moment import Moment
+from latentarm_research.people.contract import Moment
 
 
 @final

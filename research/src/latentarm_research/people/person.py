@@ -11,16 +11,23 @@ from latentarm.core.types import BoolArray, Context, Input, Pose
 from latentarm.robots.robot import Robot
 from latentarm_research.people.anticipation import Anticipation
 from latentarm_research.people.boltzmann import BoltzmannConfig, OneStep
-from latentarm_research.people.decision import Decision
-from latentarm_research.people.foresight import Foresight, KnowsTheArm
+from latentarm_research.people.contract import (
+    NOTHING_HELD,
+    UNLIMITED,
+    USUAL_WITHIN_M,
+    Decision,
+    Foresight,
+    Imagination,
+    KnowsTheArm,
+    LoopLimits,
+    Moment,
+    Operator,
+    Settled,
+)
 from latentarm_research.people.hand import Hand, HandConfig
-from latentarm_research.people.imagination import Imagination, Settled
 from latentarm_research.people.lapses import LapseConfig, Lapsing
 from latentarm_research.people.linear_guess import LinearGuess, LinearGuessConfig
-from latentarm_research.people.loop_limits import UNLIMITED, LoopLimits
-from latentarm_research.people.moment import NOTHING_HELD, USUAL_WITHIN_M, Moment
-from latentarm_research.people.operator import Operator
-from latentarm_research.people.own_speed import OwnSpeed
+from latentarm_research.people.own_directions import OwnSpeed
 from latentarm_research.people.page_rates import PageRates, Screen, Wire
 from latentarm_research.people.planning import Planning, PlanningConfig
 from latentarm_research.people.ring_reading import RingDecision, RingReading, RingReadingConfig

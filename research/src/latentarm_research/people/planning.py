@@ -10,12 +10,9 @@ from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray, Input, IntArray
 from latentarm.robots.robot import Robot
 from latentarm_research.people.boltzmann import BoltzmannConfig, OneStep
-from latentarm_research.people.carrying import carried
-from latentarm_research.people.decision import Decision
+from latentarm_research.people.contract import Decision, Imagination, LoopLimits, Moment
 from latentarm_research.people.hand import within_reach
-from latentarm_research.people.imagination import Imagination
-from latentarm_research.people.loop_limits import LoopLimits
-from latentarm_research.people.moment import Moment
+from latentarm_research.people.motion import carried
 
 BEYOND: Final = 0.01
 """Initial inputs of a plan lie this far beyond the dead zone: within it nothing they do changes anything, and

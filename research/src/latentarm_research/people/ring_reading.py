@@ -15,12 +15,8 @@ from latentarm.core.types import Context, FloatArray, Input, IntArray, Pose
 from latentarm.robots.kinematics.chain import Chain
 from latentarm.robots.kinematics.rotations import pose_error
 from latentarm_research.people.boltzmann import BoltzmannConfig, OneStep
-from latentarm_research.people.decision import Decision
-from latentarm_research.people.foresight import Foresight
-from latentarm_research.people.imagination import Imagination
-from latentarm_research.people.loop_limits import LoopLimits
-from latentarm_research.people.moment import Moment
-from latentarm_research.people.shifted import shifted
+from latentarm_research.people.contract import Decision, Foresight, Imagination, LoopLimits, Moment
+from latentarm_research.people.motion import shifted
 
 
 @final

@@ -9,8 +9,7 @@ from latentarm_research.people.boltzmann import BoltzmannConfig
 from latentarm_research.people.hand import HandConfig
 from latentarm_research.people.lapses import LapseConfig
 from latentarm_research.people.linear_guess import LinearGuessConfig
-from latentarm_research.people.own_directions import OwnDirections
-from latentarm_research.people.own_speed import OwnSpeed
+from latentarm_research.people.own_directions import OwnDirections, OwnSpeed
 from latentarm_research.people.page_rates import PAGE, PageRates
 from latentarm_research.people.person import Person
 from latentarm_research.people.planning import PlanningConfig

@@ -14,8 +14,7 @@ from latentarm_research.studies.properties.cells import (
     sweep_table,
 )
 from latentarm_research.studies.properties.paper import OF_MEANS, PAPER
-from latentarm_research.studies.properties.preset import PRESETS
-from latentarm_research.studies.properties.sweep import AS_CHOSEN, designs
+from latentarm_research.studies.properties.preset import AS_CHOSEN, PRESETS, designs
 
 FAVOUR, WITHIN, MISSED = PaperVerdict.IN_FAVOUR, PaperVerdict.WITHIN, PaperVerdict.MISSED
 

@@ -6,9 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from latentarm_research.studies.shared_autonomy.ablations import LETTER
 from latentarm_research.studies.shared_autonomy.cell import METHODS, TASKS
-from latentarm_research.studies.shared_autonomy.preset import PRESETS
+from latentarm_research.studies.shared_autonomy.preset import LETTER, PRESETS
 from latentarm_research.studies.shared_autonomy.rows import EXTRA_TIME, Figure, figures, rows_of
 from latentarm_research.studies.shared_autonomy.study import STUDY
 from latentarm_research.studies.shared_autonomy.tables import Tables, summary_tables

@@ -8,9 +8,8 @@ from latentarm.core.errors import UserError
 from latentarm.evaluation.measures import MEASURES
 from latentarm_research.studies.page import PDF
 from latentarm_research.studies.results_folder import CONFIG
-from latentarm_research.studies.shared_autonomy.ablations import variants
 from latentarm_research.studies.shared_autonomy.cell import METHODS, TASKS, measure_cell
-from latentarm_research.studies.shared_autonomy.preset import PRESETS, Ablation, Entropy, Preset
+from latentarm_research.studies.shared_autonomy.preset import PRESETS, Ablation, Entropy, Preset, variants
 from latentarm_research.studies.shared_autonomy.study import MODELS, STUDY, cells_of
 from latentarm_research.studies.study import ALWAYS_MADE, Request, run_study
 

@@ -22,8 +22,7 @@ from latentarm_research.studies.properties.measures import (
     recorded_pairs,
     start_goal_pairs,
 )
-from latentarm_research.studies.properties.preset import Preset
-from latentarm_research.studies.properties.sweep import AS_CHOSEN
+from latentarm_research.studies.properties.preset import AS_CHOSEN, Preset
 from latentarm_research.studies.streams import generator, integer, sequence
 from latentarm_research.tasks.planar.catalogue import MOTIONS
 from latentarm_research.tasks.planar.motion import Design, PlanarMotion

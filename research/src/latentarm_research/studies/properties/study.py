@@ -23,8 +23,7 @@ from latentarm_research.studies.properties.figures import (
 from latentarm_research.studies.properties.hypotheses import CLAIMS, LINEAR, compare_models
 from latentarm_research.studies.properties.motion_figures.catalogue import TASK_FIGURES
 from latentarm_research.studies.properties.paper import with_paper
-from latentarm_research.studies.properties.preset import PRESETS, Preset
-from latentarm_research.studies.properties.sweep import AS_CHOSEN, designs
+from latentarm_research.studies.properties.preset import AS_CHOSEN, PRESETS, Preset, designs
 from latentarm_research.studies.properties.tables import (
     OURS,
     UNIT_NOT_STATED,

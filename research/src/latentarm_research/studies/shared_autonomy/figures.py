@@ -22,7 +22,6 @@ from latentarm_research.studies.drawing import (
     title,
 )
 from latentarm_research.studies.drawing import draw_arm as draw_planar_arm
-from latentarm_research.studies.shared_autonomy.ablations import weight_label
 from latentarm_research.studies.shared_autonomy.cell import METHODS, AutonomyResult, Outcome
 from latentarm_research.studies.shared_autonomy.drive import STEP_S
 from latentarm_research.studies.shared_autonomy.hypotheses import MEASURE
@@ -33,6 +32,7 @@ from latentarm_research.studies.shared_autonomy.preset import (
     changing,
     learner,
     of_fixed_expertise,
+    weight_label,
 )
 from latentarm_research.studies.shared_autonomy.rows import MODEL, RECONSTRUCTION, Figure
 from latentarm_research.tasks.two_cups import BEARING_RAD, Place, PlanarTwoCups, TwoCups

@@ -8,7 +8,6 @@ from latentarm_research.studies.page import render_page
 from latentarm_research.studies.shared_autonomy import choice, drive
 from latentarm_research.studies.shared_autonomy import measures as measures_of
 from latentarm_research.studies.shared_autonomy import preset as people
-from latentarm_research.studies.shared_autonomy.ablations import variants
 from latentarm_research.studies.shared_autonomy.cell import (
     TASKS,
     WITH_ENTROPY,
@@ -30,7 +29,7 @@ from latentarm_research.studies.shared_autonomy.figures import (
 from latentarm_research.studies.shared_autonomy.hypotheses import MEASURE, REACHED, TRAPPED, compare_methods
 from latentarm_research.studies.shared_autonomy.intervals import FEWEST_SEEDS, band
 from latentarm_research.studies.shared_autonomy.measures import ARRIVED
-from latentarm_research.studies.shared_autonomy.preset import PRESETS, Entropy, Preset
+from latentarm_research.studies.shared_autonomy.preset import PRESETS, Entropy, Preset, variants
 from latentarm_research.studies.shared_autonomy.rows import MODEL, Figure, figures, rows_of
 from latentarm_research.studies.shared_autonomy.rows import STUDY as NAME
 from latentarm_research.studies.shared_autonomy.tables import Tables, summary_tables

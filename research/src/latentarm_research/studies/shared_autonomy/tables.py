@@ -6,10 +6,9 @@ from typing import TYPE_CHECKING, final
 from latentarm.core.types import Row
 from latentarm.evaluation.looks import look_of
 from latentarm.evaluation.table import ABSENT, format_figure
-from latentarm_research.studies.shared_autonomy.ablations import variants
 from latentarm_research.studies.shared_autonomy.cell import METHODS
 from latentarm_research.studies.shared_autonomy.hypotheses import MEASURE
-from latentarm_research.studies.shared_autonomy.preset import Preset
+from latentarm_research.studies.shared_autonomy.preset import Preset, variants
 from latentarm_research.studies.shared_autonomy.rows import EXTRA_TIME, MODEL, PAPER, RECONSTRUCTION, Figure
 from latentarm_research.studies.tables import grid_table, heading, terminal_table
 

@@ -1,12 +1,27 @@
-"""Simulated people expect things that the tool holds to move with it."""
+"""Motions that simulated people imagine: of the tool, and of what it holds."""
 
 from dataclasses import replace
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
-from latentarm.core.types import BoolArray, Context, FloatArray
+from latentarm.core.types import BoolArray, Context, FloatArray, Pose
 from latentarm.robots.kinematics.chain import Chain
 from latentarm.robots.kinematics.pose_rows import moved_along
+
+
+def shifted(pose: Pose, change: FloatArray) -> Pose:
+    """Poses (...) after changes of one pose.
+
+    Args:
+        pose: from which they begin.
+        change: (..., 6), m and rad, in the base frame; see `pose_error` in `latentarm.robots.kinematics`.
+    """
+    turn = Rotation.from_rotvec(change[..., 3:].reshape(-1, 3)).as_matrix()
+    return Pose(
+        position=pose.position + change[..., :3],
+        rotation=turn.reshape(*change.shape[:-1], 3, 3) @ pose.rotation,
+    )
 
 
 def carried(
