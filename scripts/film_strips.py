@@ -24,9 +24,8 @@ from latentarm_research.people.catalogue import PEOPLE
 from latentarm_research.studies.results_folder import CONFIG
 from latentarm_research.studies.streams import generator
 from latentarm_research.studies.tasks.cell import ModelCell, ShownCell, show, train, training_set
-from latentarm_research.studies.tasks.condition import Condition
 from latentarm_research.studies.tasks.kept import MODELS
-from latentarm_research.studies.tasks.preset import PRESETS, Preset, Stream
+from latentarm_research.studies.tasks.preset import PRESETS, Condition, Preset, Stream
 from latentarm_research.studies.tasks.rows import STUDY
 from latentarm_research.studies.tasks.runs import Driver, choice_of, decoders_of, kept_in
 

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from latentarm_research.studies.shared_autonomy.intervals import band, interval
+from latentarm_research.studies.shared_autonomy.rows import band, interval
 
 
 def test_three_seeds_by_hand():

@@ -2,7 +2,7 @@
 
 import pytest
 
-from latentarm_research.studies.tasks.condition import Condition
+from latentarm_research.studies.tasks.preset import Condition
 from latentarm_research.studies.tasks.rule import LEAST, PEOPLE, PRACTISED, SWITCHED, decide
 from latentarm_research.studies.tasks.runs import Run
 

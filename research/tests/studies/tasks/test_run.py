@@ -19,10 +19,16 @@ from latentarm_research.studies.page import PDF
 from latentarm_research.studies.results_folder import CONFIG
 from latentarm_research.studies.study import ALWAYS_MADE, Request, again, run_study
 from latentarm_research.studies.tasks.cell import TaskRunResult, show, training_set
-from latentarm_research.studies.tasks.condition import DEMONSTRATOR, ORIENTED, SWITCHING, Condition
 from latentarm_research.studies.tasks.figures import success_figure
 from latentarm_research.studies.tasks.kept import MODELS
-from latentarm_research.studies.tasks.preset import PRESETS, Preset
+from latentarm_research.studies.tasks.preset import (
+    DEMONSTRATOR,
+    ORIENTED,
+    PRESETS,
+    SWITCHING,
+    Condition,
+    Preset,
+)
 from latentarm_research.studies.tasks.rows import rows_of, runs_as_json
 from latentarm_research.studies.tasks.runs import Run, kept_in, time_ratios
 from latentarm_research.studies.tasks.study import STUDY

@@ -14,7 +14,6 @@ from latentarm_research.studies.properties.cell import (
     condition,
     measure_cell,
 )
-from latentarm_research.studies.properties.cells import cells_table, count, paper_cells, sweep_table
 from latentarm_research.studies.properties.figures import (
     beside_paper_figure,
     controllability_figure,
@@ -28,8 +27,12 @@ from latentarm_research.studies.properties.tables import (
     OURS,
     UNIT_NOT_STATED,
     as_good_as_paper,
+    cells_table,
+    count,
     noise_table,
+    paper_cells,
     paper_table,
+    sweep_table,
 )
 from latentarm_research.studies.series import Series
 from latentarm_research.studies.statistics import LEVEL

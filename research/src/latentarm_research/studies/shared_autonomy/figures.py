@@ -25,7 +25,6 @@ from latentarm_research.studies.drawing import draw_arm as draw_planar_arm
 from latentarm_research.studies.shared_autonomy.cell import METHODS, AutonomyResult, Outcome
 from latentarm_research.studies.shared_autonomy.drive import STEP_S
 from latentarm_research.studies.shared_autonomy.hypotheses import MEASURE
-from latentarm_research.studies.shared_autonomy.intervals import Interval, band, interval
 from latentarm_research.studies.shared_autonomy.preset import (
     Ablation,
     Preset,
@@ -34,7 +33,14 @@ from latentarm_research.studies.shared_autonomy.preset import (
     of_fixed_expertise,
     weight_label,
 )
-from latentarm_research.studies.shared_autonomy.rows import MODEL, RECONSTRUCTION, Figure
+from latentarm_research.studies.shared_autonomy.rows import (
+    MODEL,
+    RECONSTRUCTION,
+    Figure,
+    Interval,
+    band,
+    interval,
+)
 from latentarm_research.tasks.two_cups import BEARING_RAD, Place, PlanarTwoCups, TwoCups
 
 if TYPE_CHECKING:

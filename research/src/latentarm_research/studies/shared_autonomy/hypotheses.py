@@ -28,9 +28,9 @@ from latentarm_research.studies.shared_autonomy.cell import (
     WITHOUT_HELP,
     AutonomyResult,
 )
-from latentarm_research.studies.shared_autonomy.intervals import interval
 from latentarm_research.studies.shared_autonomy.measures import ARRIVED
 from latentarm_research.studies.shared_autonomy.preset import Person, Preset, learner, of_fixed_expertise
+from latentarm_research.studies.shared_autonomy.rows import interval
 from latentarm_research.studies.statistics import paired
 
 MEASURE: Final = "final_state_error"

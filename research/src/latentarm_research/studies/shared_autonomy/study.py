@@ -27,10 +27,16 @@ from latentarm_research.studies.shared_autonomy.figures import (
     weights_figure,
 )
 from latentarm_research.studies.shared_autonomy.hypotheses import MEASURE, REACHED, TRAPPED, compare_methods
-from latentarm_research.studies.shared_autonomy.intervals import FEWEST_SEEDS, band
 from latentarm_research.studies.shared_autonomy.measures import ARRIVED
 from latentarm_research.studies.shared_autonomy.preset import PRESETS, Entropy, Preset, variants
-from latentarm_research.studies.shared_autonomy.rows import MODEL, Figure, figures, rows_of
+from latentarm_research.studies.shared_autonomy.rows import (
+    FEWEST_SEEDS,
+    MODEL,
+    Figure,
+    band,
+    figures,
+    rows_of,
+)
 from latentarm_research.studies.shared_autonomy.rows import STUDY as NAME
 from latentarm_research.studies.shared_autonomy.tables import Tables, summary_tables
 from latentarm_research.studies.shared_autonomy.targets import targets

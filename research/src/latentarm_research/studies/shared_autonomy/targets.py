@@ -6,9 +6,8 @@ from typing import Final
 from latentarm.evaluation.looks import look_of
 from latentarm_research.studies.shared_autonomy.cell import WITH_ENTROPY, WITH_HELP
 from latentarm_research.studies.shared_autonomy.hypotheses import MEASURE
-from latentarm_research.studies.shared_autonomy.intervals import Interval
 from latentarm_research.studies.shared_autonomy.preset import Preset, learner
-from latentarm_research.studies.shared_autonomy.rows import Figure
+from latentarm_research.studies.shared_autonomy.rows import Figure, Interval
 from latentarm_research.studies.targets import Target
 
 AT_LEAST: Final = 0.9

@@ -5,8 +5,6 @@ from dataclasses import dataclass
 from time import perf_counter
 from typing import final
 
-from threadpoolctl import threadpool_limits
-
 from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations, Episode
 from latentarm.demonstrations.validation import validate
@@ -17,9 +15,8 @@ from latentarm_research.people.catalogue import PEOPLE
 from latentarm_research.people.names import OperatorName
 from latentarm_research.studies.fitting import fit_model, validation_episodes
 from latentarm_research.studies.streams import generator, integer, sequence
-from latentarm_research.studies.tasks.condition import Condition
 from latentarm_research.studies.tasks.moved import task_of
-from latentarm_research.studies.tasks.preset import CONTEXTS, Preset, Stream
+from latentarm_research.studies.tasks.preset import CONTEXTS, Condition, Preset, Stream
 from latentarm_research.studies.tasks.runs import Driver, Run, choice_of, decoders_of, driven_run, shown_run
 
 
@@ -52,9 +49,8 @@ def show(cell: ShownCell) -> DemonstratedRun:
         UserError: the arm cannot be used.
     """
     task = task_of(cell.task, cell.stream)
-    with threadpool_limits(limits=1):
-        rng = generator(cell.seed, cell.task, cell.stream, cell.number)
-        shown = demonstrate_once(task, choice_of(task, cell.number), rng)
+    rng = generator(cell.seed, cell.task, cell.stream, cell.number)
+    shown = demonstrate_once(task, choice_of(task, cell.number), rng)
     run = shown_run(task, cell.number, shown)
     return DemonstratedRun(cell, run, shown.episode if run.success else None, shown.objects)
 
@@ -99,24 +95,23 @@ def train(cell: ModelCell) -> FittedModel:
         UserError: the preset's sizes make no sense.
     """
     preset, condition = cell.preset, cell.condition
-    with threadpool_limits(limits=1):
-        began = perf_counter()
-        model = fit_model(
-            condition.model or "",
-            cell.demonstrations,
-            validation=validation_episodes(cell.demonstrations),
-            fit={"chain": task_of(cell.task, Stream.DEMONSTRATIONS).robot.chain},
-            latent_dim=2,
-            context=CONTEXTS[condition.name],
-            seeds=preset.seeds,
-            seed=integer(sequence(cell.seed, cell.task, Stream.NETWORKS)),
-            epochs=preset.epochs,
-            batch_size=preset.batch_size,
-            hidden=preset.hidden,
-            state_noise_rad=preset.state_noise_rad,
-            way_back_m=preset.way_back_m if condition.way_back else 0.0,
-        )
-        return FittedModel(cell.task, condition, model.trained_, perf_counter() - began)
+    began = perf_counter()
+    model = fit_model(
+        condition.model or "",
+        cell.demonstrations,
+        validation=validation_episodes(cell.demonstrations),
+        fit={"chain": task_of(cell.task, Stream.DEMONSTRATIONS).robot.chain},
+        latent_dim=2,
+        context=CONTEXTS[condition.name],
+        seeds=preset.seeds,
+        seed=integer(sequence(cell.seed, cell.task, Stream.NETWORKS)),
+        epochs=preset.epochs,
+        batch_size=preset.batch_size,
+        hidden=preset.hidden,
+        state_noise_rad=preset.state_noise_rad,
+        way_back_m=preset.way_back_m if condition.way_back else 0.0,
+    )
+    return FittedModel(cell.task, condition, model.trained_, perf_counter() - began)
 
 
 @final
@@ -154,14 +149,13 @@ def drive(cell: TaskRunCell) -> TaskRunResult:
         UserError: the arm cannot be used, or the decoder is for another arm.
     """
     task = task_of(cell.task, Stream.RUNS)
-    with threadpool_limits(limits=1):
-        began = perf_counter()
-        setup = drives.Setup(task, cell.driver.controller(task.robot, cell.number), PEOPLE[cell.person])
-        # The same number gives the same scene and start to the demonstrator and in every condition.
-        rng = generator(cell.seed, cell.task, Stream.RUNS, cell.number)
-        trace = drives.drive(setup, choice_of(task, cell.number), rng)
-        run = driven_run(task, cell.number, trace)
-        return TaskRunResult(cell.task, cell.condition, run, perf_counter() - began)
+    began = perf_counter()
+    setup = drives.Setup(task, cell.driver.controller(task.robot, cell.number), PEOPLE[cell.person])
+    # The same number gives the same scene and start to the demonstrator and in every condition.
+    rng = generator(cell.seed, cell.task, Stream.RUNS, cell.number)
+    trace = drives.drive(setup, choice_of(task, cell.number), rng)
+    run = driven_run(task, cell.number, trace)
+    return TaskRunResult(cell.task, cell.condition, run, perf_counter() - began)
 
 
 def training_set(

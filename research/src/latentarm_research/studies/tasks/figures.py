@@ -5,10 +5,10 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from latentarm.core.style import FONT_SIZE, SMALL_FONT_SIZE, TWO_COLUMNS_MM, new_figure, tidy
+from latentarm.core.style import FONT_SIZE, SMALL_FONT_SIZE, tidy
 from latentarm.evaluation.looks import look_of
-from latentarm_research.studies.drawing import name_series, title
-from latentarm_research.studies.tasks.condition import Condition
+from latentarm_research.studies.drawing import first_panels, name_series, panel_grid, title
+from latentarm_research.studies.tasks.preset import Condition
 from latentarm_research.studies.tasks.runs import Run
 
 if TYPE_CHECKING:
@@ -34,11 +34,11 @@ def success_figure(by_task: Mapping[str, Mapping[Condition, Sequence[Run]]]) -> 
     moves = list(dict.fromkeys(one.by(None) for one in conditions))
     places = np.linspace(-SPREAD / 2, SPREAD / 2, len(moves))
     across = min(ACROSS, len(people))
-    down = -(-len(people) // across)
-    figure = new_figure(ROW_MM * down + FRAME_MM, TWO_COLUMNS_MM)
-    figure.suptitle("Share of the runs that succeeded; people and arm simulated", fontsize=FONT_SIZE)
-    panels = np.ravel(figure.subplots(down, across, sharey=True, squeeze=False))
-    for axes, person in zip(panels, people, strict=False):
+    size = -(-len(people) // across), across, ROW_MM, FRAME_MM
+    heading = "Share of the runs that succeeded; people and arm simulated"
+    figure, grid = panel_grid(heading, *size, sharey=True)
+    panels = first_panels(grid, len(people))
+    for index, (axes, person) in enumerate(zip(panels, people, strict=True)):
         for what, place in zip(moves, places, strict=True):
             shares = {
                 index + place: 100.0 * float(np.mean([run.success for run in runs[what.by(person)]]))
@@ -67,10 +67,8 @@ def success_figure(by_task: Mapping[str, Mapping[Condition, Sequence[Run]]]) -> 
         axes.set_xlim(-0.5, len(by_task) - 0.5)
         axes.set_ylim(-4.0, 104.0)
         title(axes, f"{person} person")
-        axes.set_ylabel("runs (%)" if axes.get_subplotspec().is_first_col() else "", fontsize=FONT_SIZE)
+        axes.set_ylabel("" if index % across else "runs (%)", fontsize=FONT_SIZE)
         tidy(axes)
         axes.tick_params(axis="x", labelsize=SMALL_FONT_SIZE)
-    for axes in panels[len(people) :]:
-        axes.set_visible(False)
-    name_series(figure, *panels[: len(people)])
+    name_series(figure, *panels)
     return figure

@@ -30,8 +30,8 @@ from latentarm_research.studies.tasks.cell import (
     TaskRunCell,
     TaskRunResult,
 )
-from latentarm_research.studies.tasks.condition import ORIENTED
 from latentarm_research.studies.tasks.orientation import OrientationCell, Oriented
+from latentarm_research.studies.tasks.preset import ORIENTED
 from latentarm_research.studies.tasks.runs import Run, kept_in
 
 RUNS: Final = "runs"

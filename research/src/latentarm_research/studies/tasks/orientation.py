@@ -9,7 +9,6 @@ from typing import Any, Final, final
 import numpy as np
 from sklearn.exceptions import ConvergenceWarning
 from sklearn.neural_network import MLPRegressor
-from threadpoolctl import threadpool_limits
 
 from latentarm.core.types import Demonstrations, FloatArray
 from latentarm.demonstrations.gripper import GRIPPER_WIDTH
@@ -18,9 +17,8 @@ from latentarm.robots.kinematics.chain import Chain
 from latentarm.robots.kinematics.pose_rows import STORED, seen_rows
 from latentarm_research.baselines.learned_orientation import OrientationMap, features
 from latentarm_research.studies.streams import generator, integer, sequence
-from latentarm_research.studies.tasks.condition import ORIENTED, Condition
 from latentarm_research.studies.tasks.moved import task_of
-from latentarm_research.studies.tasks.preset import Preset, Stream
+from latentarm_research.studies.tasks.preset import ORIENTED, Condition, Preset, Stream
 from latentarm_research.studies.tasks.runs import Driver
 
 NOISE_M: Final = 0.02
@@ -67,8 +65,7 @@ def orient(cell: OrientationCell) -> Oriented:
         "max_iter": cell.preset.epochs,
         "random_state": integer(sequence(*use)),
     }
-    with threadpool_limits(limits=1):
-        orientation = learned(cell.demonstrations, chain, how, generator(*use))
+    orientation = learned(cell.demonstrations, chain, how, generator(*use))
     return Oriented(cell.task, orientation, perf_counter() - began)
 
 

@@ -1,4 +1,4 @@
-"""How large the study is, what is driven with, and its streams of randomness."""
+"""How large the study is, what is driven with and by whom, and its streams of randomness."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -6,10 +6,51 @@ from enum import IntEnum
 from typing import Final, cast, final
 
 from latentarm.core.errors import UserError
+from latentarm.evaluation.looks import look_of
 from latentarm.models.catalogue import DEFAULT_MODEL
 from latentarm_research.people.catalogue import PEOPLE
 from latentarm_research.people.names import OperatorName
-from latentarm_research.studies.tasks.condition import Condition
+
+DEMONSTRATOR: Final = "demonstrator"
+SWITCHING: Final = "end_effector"
+ORIENTED: Final = "learned_orientation"
+
+
+@final
+@dataclass(frozen=True)
+class Condition:
+    """A controller and the person who steers."""
+
+    # `DEMONSTRATOR`, `SWITCHING`, `ORIENTED`, or for a model what its decoder sees, a name of `CONTEXTS`
+    name: str
+    model: str | None = None  # a name of `latentarm.models.catalogue.KINDS`, or None
+    way_back: bool = False  # whether the model has a way back
+    # a simulated person by name; None for the demonstrator, and for what all people steer with
+    person: str | None = None
+
+    def by(self, person: str | None) -> "Condition":
+        """The same with another person."""
+        return replace(self, person=person)
+
+    @property
+    def label(self) -> str:
+        """How tables and figures call what moves the arm."""
+        if self.model is None:
+            return look_of(self.name).label
+        return f"{look_of(self.model).label}{' + way back' if self.way_back else ''}, {self.name}"
+
+    @property
+    def row(self) -> str:
+        """The condition of a row, whose model stands beside it."""
+        return ", ".join(filter(None, (self.name, "way back" if self.way_back else "", self.person)))
+
+    @property
+    def folder(self) -> str:
+        """The name of its folder, among those of a task."""
+        return f"{self.model or ''}{'_way_back' if self.way_back else ''}_{self.name}".strip("_").replace(
+            " ", "_"
+        )
+
 
 CONTEXTS: Final[Mapping[str, tuple[str, ...]]] = {
     "joints": ("joints",),

@@ -8,8 +8,7 @@ from latentarm.core.types import Row
 from latentarm.evaluation.summary import Subject, summarise
 from latentarm_research.metrics.drives import drive_rows
 from latentarm_research.studies.tasks.cell import DemonstratedRun, FittedModel, TaskRunResult
-from latentarm_research.studies.tasks.condition import DEMONSTRATOR, Condition
-from latentarm_research.studies.tasks.preset import Stream
+from latentarm_research.studies.tasks.preset import DEMONSTRATOR, Condition, Stream
 from latentarm_research.studies.tasks.runs import Run
 
 STUDY: Final = "tasks"

@@ -9,7 +9,7 @@ from scipy.stats import fisher_exact
 
 from latentarm.tasks.catalogue import SCENE_TASKS
 from latentarm_research.studies.tables import listed, markdown_table
-from latentarm_research.studies.tasks.condition import SWITCHING, Condition
+from latentarm_research.studies.tasks.preset import SWITCHING, Condition
 from latentarm_research.studies.tasks.runs import Run, time_ratios
 
 PRACTISED: Final = ("planning", "greedy", "unsteady")

@@ -16,7 +16,7 @@ from latentarm_research.baselines.learned_orientation import LearnedOrientationC
 from latentarm_research.drives.demonstrate import Demonstration
 from latentarm_research.drives.trace import Trace
 from latentarm_research.metrics.drives import Drive
-from latentarm_research.studies.tasks.condition import Condition
+from latentarm_research.studies.tasks.preset import Condition
 
 
 @final

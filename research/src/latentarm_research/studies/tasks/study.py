@@ -28,7 +28,6 @@ from latentarm_research.studies.tasks.cell import (
     train,
     training_set,
 )
-from latentarm_research.studies.tasks.condition import DEMONSTRATOR, SWITCHING, Condition
 from latentarm_research.studies.tasks.figures import success_figure
 from latentarm_research.studies.tasks.kept import (
     KEEP_DRIVES,
@@ -40,7 +39,14 @@ from latentarm_research.studies.tasks.kept import (
 )
 from latentarm_research.studies.tasks.moved import MOVED, TASKS, task_of
 from latentarm_research.studies.tasks.orientation import OrientationCell, Oriented, orient
-from latentarm_research.studies.tasks.preset import PRESETS, Preset, Stream
+from latentarm_research.studies.tasks.preset import (
+    DEMONSTRATOR,
+    PRESETS,
+    SWITCHING,
+    Condition,
+    Preset,
+    Stream,
+)
 from latentarm_research.studies.tasks.rows import STUDY as NAME
 from latentarm_research.studies.tasks.rows import TasksResults, rows_of, runs_as_json
 from latentarm_research.studies.tasks.rule import DefaultVerdict, decide

@@ -3,18 +3,17 @@
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from statistics import median
-from typing import Final
-
-from rich.box import SIMPLE_HEAD
-from rich.table import Table
+from typing import TYPE_CHECKING, Final
 
 from latentarm.core.types import Row
 from latentarm.evaluation.looks import look_of
-from latentarm.evaluation.measures import label_of, unit_of
 from latentarm.evaluation.table import ABSENT, format_figure
-from latentarm_research.studies.tables import markdown_table
-from latentarm_research.studies.tasks.condition import SWITCHING, Condition
+from latentarm_research.studies.tables import heading, markdown_table, terminal_table
+from latentarm_research.studies.tasks.preset import SWITCHING, Condition
 from latentarm_research.studies.tasks.runs import Run, step_names, time_ratios
+
+if TYPE_CHECKING:
+    from rich.table import Table
 
 SUCCESS: Final = "success_rate"
 
@@ -69,13 +68,22 @@ def _by_person(runs: Mapping[Condition, Sequence[Run]], text: Callable[[Conditio
 
 def measure_table(rows: Sequence[Row], runs: Mapping[Condition, Sequence[Run]], task: str) -> str:
     """One task: conditions down, measures across; those that no condition has are left out."""
-    found = _found(rows, task)
-    measures = [name for name in SHOWN if any(name in of for of in found.values())]
+    found = {
+        (row.model, row.condition, row.measure): format_figure(row.mean, row.sd)
+        for row in rows
+        if row.task == task and row.mean is not None
+    }
+    measures = [name for name in SHOWN if any(name == measure for _, _, measure in found)]
     lines = [
-        [condition.label, condition.person, *_line(_of(found, condition), runs[condition], measures)]
-        for condition in runs
+        [
+            condition.label,
+            condition.person,
+            _succeeded(of),
+            *(found.get((condition.model, condition.row, name)) for name in measures),
+        ]
+        for condition, of in runs.items()
     ]
-    return markdown_table(["simulated", "person", "succeeded", *map(_name, measures)], lines)
+    return markdown_table(["simulated", "person", "succeeded", *map(heading, measures)], lines)
 
 
 def failure_table(runs: Mapping[Condition, Sequence[Run]]) -> str:
@@ -104,52 +112,17 @@ def failure_table(runs: Mapping[Condition, Sequence[Run]]) -> str:
     return markdown_table(["person", "ended in step", "why", *(what.label for what in moves)], lines)
 
 
-def summary_tables(by_task: Mapping[str, Mapping[Condition, Sequence[Run]]]) -> list[Table]:
+def summary_tables(by_task: Mapping[str, Mapping[Condition, Sequence[Run]]]) -> "list[Table]":
     """How many runs succeeded: a table per task, what moves the arm down, people across."""
     tables: list[Table] = []
     for task, runs in by_task.items():
-        (first, *people), *lines = _by_person(runs, lambda condition, runs=runs: _succeeded(runs[condition]))
-        title = f"{look_of(task).label}, runs that succeeded, simulated"
-        table = Table(first, title=title, title_justify="left", box=SIMPLE_HEAD)
-        for person in people:
-            table.add_column(person, justify="right")
-        for line in lines:
-            table.add_row(*line)
-        tables.append(table)
+        head, *lines = _by_person(runs, lambda condition, runs=runs: _succeeded(runs[condition]))
+        tables.append(terminal_table(f"{look_of(task).label}, runs that succeeded, simulated", head, lines))
     return tables
-
-
-Found = Mapping[tuple[str | None, str | None], Mapping[str, Row]]
-
-
-def _found(rows: Sequence[Row], task: str) -> Found:
-    """The rows of a task that have a figure, by condition and measure."""
-    found: dict[tuple[str | None, str | None], dict[str, Row]] = {}
-    for row in rows:
-        if row.task == task and row.mean is not None:
-            found.setdefault((row.model, row.condition), {})[row.measure] = row
-    return found
-
-
-def _of(found: Found, condition: Condition) -> Mapping[str, Row]:
-    return found[condition.model, condition.row]
-
-
-def _line(found: Mapping[str, Row], runs: Sequence[Run], measures: Sequence[str]) -> list[str]:
-    figures = (found.get(name) for name in measures)
-    return [
-        _succeeded(runs),
-        *(ABSENT if row is None else format_figure(row.mean, row.sd) for row in figures),
-    ]
 
 
 def _succeeded(runs: Sequence[Run]) -> str:
     return f"{sum(run.success for run in runs)} of {len(runs)}"
-
-
-def _name(measure: str) -> str:
-    unit = unit_of(measure)
-    return label_of(measure) if unit == "1" else f"{label_of(measure)} ({unit})"
 
 
 def _step(names: Sequence[str], done: int) -> str:
