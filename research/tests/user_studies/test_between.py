@@ -24,7 +24,7 @@ from latentarm_research.user_studies.designs import assigned
 from latentarm_research.user_studies.power import NUMBERS, power_of
 from latentarm_research.user_studies.record import Trial
 from latentarm_research.user_studies.recorded import PeopleAre, Recorded
-from latentarm_research.user_studies.report.report import report_of
+from latentarm_research.user_studies.report.page import report_of
 from latentarm_research.user_studies.sizes import PRESETS
 
 PIE = replace(load_definition("apple_pie"), name="pie_apart", design="between", printed=())

@@ -16,10 +16,9 @@ from latentarm_research.studies.study import ALWAYS_MADE, Request, run_study
 from latentarm_research.user_studies import session
 from latentarm_research.user_studies.catalogue import NAMES, load_definition
 from latentarm_research.user_studies.definition import Definition
-from latentarm_research.user_studies.kept import SESSIONS
 from latentarm_research.user_studies.record import read_trials
 from latentarm_research.user_studies.recorded import read_recorded
-from latentarm_research.user_studies.run import study_of
+from latentarm_research.user_studies.run import SESSIONS, study_of
 from latentarm_research.user_studies.session import choices_of, in_the_end, together
 from latentarm_research.user_studies.sizes import Sizes, sizes_of
 from latentarm_research.user_studies.trace import read_traces

@@ -126,10 +126,9 @@ def power_of_study(
     from latentarm.runs.results_folder import write_json
     from latentarm_research.studies.results_folder import ResultsFolder
     from latentarm_research.studies.study import Grid
-    from latentarm_research.user_studies.kept import SESSIONS
     from latentarm_research.user_studies.power import TARGETS, power_of
     from latentarm_research.user_studies.recorded import read_recorded
-    from latentarm_research.user_studies.run import study_of
+    from latentarm_research.user_studies.run import SESSIONS, study_of
 
     definition = find_definition(name)
     folder = Path("studies", f"{definition.name}-power") if out is None else out

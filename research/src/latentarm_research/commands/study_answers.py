@@ -69,7 +69,7 @@ def analyse_study(
     from latentarm_research.user_studies.answers.scales import rate
     from latentarm_research.user_studies.recorded import read_recorded
     from latentarm_research.user_studies.report.figures import figure_names
-    from latentarm_research.user_studies.report.report import ANALYSIS, RATINGS, report_of
+    from latentarm_research.user_studies.report.page import ANALYSIS, RATINGS, report_of
 
     recorded = read_recorded(folder)
     definition = recorded.definition

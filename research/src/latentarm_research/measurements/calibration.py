@@ -17,8 +17,8 @@ from latentarm.robots.catalogue import load_robot
 from latentarm.tasks.catalogue import SCENE_TASKS
 from latentarm_research.drives.drive import Setup, drive
 from latentarm_research.drives.pointing import FittsLaw, OneMode, Pointing, point
+from latentarm_research.measurements.catalogue import Calibrating
 from latentarm_research.measurements.measurement import Outcome, Work, line
-from latentarm_research.measurements.options import Calibrating
 from latentarm_research.metrics.stick import switching
 from latentarm_research.people.calibration import BEFORE, CALIBRATED, Calibration
 from latentarm_research.people.population import MIRRORED, TRAITS, draw_people

@@ -1,46 +1,168 @@
-"""The measurements by name: what `latentarm measure` offers. None is imported before it runs."""
+"""The measurements by name, with their options: what `latentarm measure` offers.
+
+Nothing heavy is imported, and no measurement before it runs, so that help is quick.
+"""
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from importlib import import_module
-from typing import Any, Final
+from pathlib import Path
+from typing import Annotated, Any, Final
 
-from latentarm_research.measurements import options
+from tyro.conf import arg
+
 from latentarm_research.measurements.measurement import Measurement, Outcome, Work
+
+Names = tuple[str, ...]
+Numbers = tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Clearance:
+    """Options of ``clearance``."""
+
+    drives: Annotated[int, arg(help="How many, over all arms.")] = 2000
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Options of ``limits``."""
+
+    ticks: Annotated[int, arg(help="Ticks of 10 ms, at least.")] = 100_000
+
+
+@dataclass(frozen=True)
+class Drives:
+    """Options of ``zones``."""
+
+    drives: Annotated[int, arg(help="With each arm.")] = 30
+
+
+@dataclass(frozen=True)
+class Force:
+    """Options of ``force``."""
+
+    drives: Annotated[int, arg(help="At each thing.")] = 8
+    zone: Annotated[float | None, arg(metavar="M_PER_S", help="Speed of a zone about the thing.")] = None
+    stiffness_n_mm: Annotated[Numbers, arg(help="Of springs, N/mm.")] = (150.0, 75.0, 25.0, 10.0)
+
+
+@dataclass(frozen=True)
+class Stops:
+    """Options of ``stops``."""
+
+    arms: Annotated[Names, arg(help="Simulated arms, of `latentarm arms list`.")] = ("kinematic", "mujoco")
+    tries: Annotated[int, arg(help="Of each fault.")] = 20
+
+
+@dataclass(frozen=True)
+class PageStops:
+    """Options of ``page-stops``."""
+
+    run: Annotated[Path, arg(help="A trained run, which `latentarm teleop` serves.")]
+    tries: Annotated[int, arg(help="Of each fault.")] = 20
+    faults: Annotated[Names, arg(help="Which, such as `page closed`; by default all.")] = ()
+
+
+@dataclass(frozen=True)
+class Help:
+    """Options of ``help``."""
+
+    drives: Annotated[int, arg(help="To each item.")] = 5
+    limit_s: Annotated[float, arg(help="Longest time of a drive, s.")] = 40.0
+    episodes: Annotated[int, arg(help="Demonstrations that the model learns from.")] = 60
+    epochs: Annotated[int | None, arg(help="Of training; by default the model's.")] = None
+
+
+@dataclass(frozen=True)
+class PublishedHelp:
+    """Options of ``published-help``."""
+
+    drives: Annotated[int, arg(help="To each marshmallow.")] = 10
+    beta: Annotated[Numbers, arg(help="Rationality of equation 24, 1/m².")] = (50.0, 200.0, 1000.0)
+    kinds: Annotated[
+        Names, arg(help="Kinds of help, of `latentarm drive --assistance`; by default all.")
+    ] = ()
+
+
+@dataclass(frozen=True)
+class WayBack:
+    """Options of ``way-back``."""
+
+    kinds: Annotated[Names, arg(help="Models; by default all.")] = ()
+    starts: Annotated[int, arg(help="Demonstrated states to start from.")] = 64
+    steps: Annotated[int, arg(help="Of 20 ms.")] = 1000
+
+
+@dataclass(frozen=True)
+class Calibrating:
+    """Options of ``calibration``."""
+
+    people: Annotated[int, arg(help="Simulated people.")] = 12
+    repeats: Annotated[int, arg(help="Of each movement by each person.")] = 1
+    tasks: Annotated[Names, arg(help="Driven for the share of mode switches.")] = ("marshmallows", "avoid")
+    distances_m: Annotated[Numbers, arg(help="Of movements, m.")] = (0.03, 0.06, 0.12)
+
+
+@dataclass(frozen=True)
+class NullChecks:
+    """Options of ``null-checks``."""
+
+    studies: Annotated[int, arg(help="Studies drawn for each check.")] = 500
+
+
+@dataclass(frozen=True)
+class Torque:
+    """Options of ``torque``."""
+
+    model: Annotated[Path, arg(help="MJCF file of the arm.")]
+    limits: Annotated[Path, arg(help="Limits file, TOML or YAML.")]
+    stall_n_m: Annotated[Numbers, arg(help="Torques of motors at standstill, N·m.")] = ()
+    poses: Annotated[int, arg(help="Random poses.")] = 20_000
+
+
+@dataclass(frozen=True)
+class People:
+    """Options of ``people``."""
+
+    clone: Annotated[Path, arg(help="A clone of mpan31415/AutonomyFitts.")]
+    people: Annotated[int, arg(help="Simulated in each try of the fit; four times as many predict.")] = 4
+
 
 MEASUREMENTS: Final[Mapping[str, Measurement]] = {
     "clearance": Measurement(
         "Push arms at things and at themselves; MuJoCo measures the distances that they keep.",
-        options.Clearance,
+        Clearance,
         {"drives": 2},
     ),
     "limits": Measurement(
         "Compare the true state of an imperfect arm in physics with the configured limits.",
-        options.Limits,
+        Limits,
         {"ticks": 240},
     ),
     "zones": Measurement(
         "Measure how fast parts of an arm are in a zone, exact and in physics.",
-        options.Drives,
+        Drives,
         {"drives": 1},
     ),
     "force": Measurement(
         "Measure how hard an arm in physics presses on what its filters do not know.",
-        options.Force,
+        Force,
         {"drives": 1, "stiffness_n_mm": (75.0,)},
     ),
     "stops": Measurement(
         "Measure how long simulated arms take to come to rest after a fault in motion.",
-        options.Stops,
+        Stops,
         {"tries": 1, "arms": ("kinematic",)},
     ),
     "page-stops": Measurement(
         "Measure how fast the page stops the arm when browser, network or server fail.",
-        options.PageStops,
+        PageStops,
         {"tries": 1, "faults": ("page closed",)},
     ),
     "help": Measurement(
         "Measure what each level of help on the page is worth to simulated people, and what it costs.",
-        options.Help,
+        Help,
         {"drives": 1, "episodes": 2, "epochs": 1, "limit_s": 1.0},
     ),
     "step-help": Measurement(
@@ -50,32 +172,32 @@ MEASUREMENTS: Final[Mapping[str, Measurement]] = {
     ),
     "published-help": Measurement(
         "Measure what published kinds of help are worth to simulated people at marshmallows, in physics.",
-        options.PublishedHelp,
+        PublishedHelp,
         {"drives": 1, "beta": (1000.0,), "kinds": ("hindsight",)},
     ),
     "way-back": Measurement(
         "Measure how far an adversary leads the tool off demonstrations, with a way back and without.",
-        options.WayBack,
+        WayBack,
         {"kinds": ("pca",), "starts": 2, "steps": 50},
     ),
     "calibration": Measurement(
         "Measure what is calibrated of the simulated people: pushes and mode switches.",
-        options.Calibrating,
+        Calibrating,
         {"people": 2, "tasks": ("avoid",), "distances_m": (0.03,)},
     ),
     "people": Measurement(
         "Fit the simulated people to half of a public study's persons, and predict the other half.",
-        options.People,
+        People,
         {"people": 1},
     ),
     "null-checks": Measurement(
         "Measure how often the analysis of user studies finds what is not there, and what is.",
-        options.NullChecks,
+        NullChecks,
         {"studies": 2},
     ),
     "torque": Measurement(
         "Measure what share of the motors' torque gravity and a stop take, by a model and a limits file.",
-        options.Torque,
+        Torque,
         {"poses": 20},
     ),
 }

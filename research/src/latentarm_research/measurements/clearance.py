@@ -18,8 +18,8 @@ from latentarm.core.types import GripperReading, Input, Reading
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.robot import Robot
 from latentarm.safety.config import SafetyConfig
+from latentarm_research.measurements.catalogue import Clearance
 from latentarm_research.measurements.measurement import Outcome, Work, line
-from latentarm_research.measurements.options import Clearance
 from latentarm_research.measurements.pushing import HARMS, Pusher, scene
 
 CLEARANCE_M: Final = SafetyConfig().clearance

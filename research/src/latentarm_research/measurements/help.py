@@ -23,8 +23,8 @@ from latentarm.tasks.task import REACHED_DISTANCE, Task
 from latentarm.web.arm_process.help import LEVELS
 from latentarm_research.drives.drive import Setup
 from latentarm_research.drives.drives import Planned, drive_all, plan_drives
+from latentarm_research.measurements.catalogue import Help
 from latentarm_research.measurements.measurement import Outcome, Work, line
-from latentarm_research.measurements.options import Help
 from latentarm_research.people.catalogue import PEOPLE
 
 TABLE: Final = TableTop()

@@ -13,8 +13,8 @@ from typing import Final
 import numpy as np
 from statsmodels.stats.power import TTestIndPower, TTestPower
 
+from latentarm_research.measurements.catalogue import NullChecks
 from latentarm_research.measurements.measurement import Outcome, Work, line
-from latentarm_research.measurements.options import NullChecks
 from latentarm_research.studies.statistics import LEVEL
 from latentarm_research.user_studies.analysis.claims import claims_tested, sides_of
 from latentarm_research.user_studies.catalogue import load_definition

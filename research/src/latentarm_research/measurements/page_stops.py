@@ -26,8 +26,8 @@ from latentarm.core.errors import UserError
 from latentarm.core.types import BoolArray, FloatArray
 from latentarm.robots.kinematics.stillness import STILL_RAD_S
 from latentarm_research.measurements.bare_chromium import Browser, Proxy, Tab, browser
+from latentarm_research.measurements.catalogue import PageStops
 from latentarm_research.measurements.measurement import Outcome, Work, line
-from latentarm_research.measurements.options import PageStops
 
 FAULTS: Final = (
     "pointer released outside the window",

@@ -14,8 +14,8 @@ import numpy as np
 from scipy.stats import norm
 
 from latentarm.core.types import FloatArray
+from latentarm_research.measurements.catalogue import People
 from latentarm_research.measurements.measurement import Outcome, Work, line
-from latentarm_research.measurements.options import People
 from latentarm_research.measurements.ring_movements import (
     CORRECTIONS,
     ERROR,

@@ -15,8 +15,8 @@ from latentarm.core.errors import UserError
 from latentarm_research.assistance.catalogue import AssistanceName, published_assistance, published_belief
 from latentarm_research.drives.drive import Setup
 from latentarm_research.drives.drives import drive_all, plan_drives
+from latentarm_research.measurements.catalogue import PublishedHelp
 from latentarm_research.measurements.measurement import Outcome, Work, line
-from latentarm_research.measurements.options import PublishedHelp
 from latentarm_research.people.catalogue import PEOPLE
 from latentarm_research.people.person import Person
 from latentarm_research.tasks.over_marshmallow import OverMarshmallow

@@ -14,9 +14,9 @@ import numpy as np
 from latentarm.arms.catalogue import ARMS
 from latentarm.core.errors import UserError
 from latentarm.robots.panda import panda
-from latentarm.testing.fault_trials import FAULTS, PERIOD_S, Fault, FaultTrial, try_fault
+from latentarm.testing.fault_trials import FAULTS, PERIOD_S, Fault, try_fault
+from latentarm_research.measurements.catalogue import Stops
 from latentarm_research.measurements.measurement import Outcome, Work, line
-from latentarm_research.measurements.options import Stops
 
 LIMITS_MS: Final = {"zero_command_worst_ms": 150.0, "rest_worst_ms": 400.0}
 MOVED_RAD: Final = 1e-11

@@ -11,8 +11,8 @@ import numpy as np
 
 from latentarm.robots.limits_file import read_limits
 from latentarm.safety.config import SafetyConfig
+from latentarm_research.measurements.catalogue import Torque
 from latentarm_research.measurements.measurement import Outcome, Work, line
-from latentarm_research.measurements.options import Torque
 
 
 def measure(options: Torque, work: Work) -> Outcome:

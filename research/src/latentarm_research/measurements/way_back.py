@@ -23,8 +23,8 @@ from latentarm.models.way_back.runtime import NETWORK
 from latentarm.safety.config import SafetyConfig
 from latentarm.safety.stack import SafetyStack
 from latentarm.tasks.table_top import TABLE_HEIGHT, TableTop
+from latentarm_research.measurements.catalogue import WayBack
 from latentarm_research.measurements.measurement import Outcome, Work, line
-from latentarm_research.measurements.options import WayBack
 
 STEP_S: Final = 0.02
 FILTERED: Final = 2

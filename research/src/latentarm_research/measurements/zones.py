@@ -23,9 +23,9 @@ from latentarm.robots.panda import panda
 from latentarm.robots.robot import Robot
 from latentarm.safety.config import SafetyConfig
 from latentarm.safety.zones import Zone
+from latentarm_research.measurements.catalogue import Drives
 from latentarm_research.measurements.imperfect_arm import PERIOD_S, enabled, imperfect
 from latentarm_research.measurements.measurement import Outcome, Work, line
-from latentarm_research.measurements.options import Drives
 from latentarm_research.measurements.pushing import Pusher
 
 CONDITIONS: Final = tuple(product((None, 0, 3), (0.03, 0.1)))

@@ -8,8 +8,7 @@ from typing import Final, Literal, final
 from latentarm.core.errors import UserError
 from latentarm.evaluation.measures import label_of
 from latentarm_research.user_studies.exclusion import Exclusion
-from latentarm_research.user_studies.hypothesis import Claim, Hypothesis
-from latentarm_research.user_studies.printed import Printed
+from latentarm_research.user_studies.hypothesis import Claim, Hypothesis, Printed
 from latentarm_research.user_studies.questionnaire import Scale
 
 Controls = Literal["modes", "two_sticks", "retargeting", "latent"]

@@ -1,7 +1,8 @@
-"""What a study claims: hypotheses as sets of comparisons between conditions, each with its test."""
+"""What a study claims, each claim with its test, and the statistics that the paper prints."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Literal, final
+from typing import Final, Literal, final
 
 from latentarm.core.errors import UserError
 
@@ -57,3 +58,41 @@ def below(measure: str, subject: str, *against: str, tasks: tuple[str, ...] = ()
 def above(measure: str, subject: str, *against: str, tasks: tuple[str, ...] = ()) -> tuple[Claim, ...]:
     """Claims that one condition has more of a measure than each of the others."""
     return tuple(Claim(measure, (subject,), (other,), "greater", tasks) for other in against)
+
+
+PrintedTest = Literal["trials t", "paired t", "between F", "paired p", "share", "stars", "seconds"]
+"""How a figure of the paper came about: t over trials as independent, t over people in pairs, F with the
+factor taken as between people, p of a paired comparison without its statistic, a share of trials, stars in a
+figure without any number, a bound on a time."""
+
+
+@final
+@dataclass(frozen=True)
+class Printed:
+    """One statistic of the paper."""
+
+    test: PrintedTest  # how it came about
+    measure: str  # a measure of the study, or a scale of its questionnaire
+    subject: tuple[str, ...]  # conditions compared, as in `latentarm_research.user_studies.hypothesis.Claim`
+    against: tuple[str, ...]  # with which; empty for figures of one condition
+    text: str  # as the paper prints it
+    # whether the subject has less than the others, in the paper; None where that is not said
+    less: bool | None
+    significant: bool | None  # whether the paper calls it significant; None where there is no test
+    tasks: tuple[str, ...] = ()  # whose trials it is about; all where empty
+
+
+WRONG: Final[Mapping[PrintedTest, str]] = {
+    "trials t": "It treats trials as independent, though each person gave several: the degrees of freedom"
+    " count trials instead of people, and p comes out too small.",
+    "between F": "It compares the two halves of the same people's figures as if they were different people:"
+    " F(1, 18) for ten people is not the within-subject F(1, 9).",
+    "paired t": "The test is right for a within-subject design; no correction for several tests, no interval"
+    " and no effect size is given.",
+    "paired p": "Only the bound on p is given: no statistic, no correction for several tests, no effect"
+    " size.",
+    "share": "A share of trials is given without an interval that allows for several trials of one person.",
+    "stars": "The figure has stars only: no statistic, no correction for several tests, no effect size.",
+    "seconds": "Times of two people are described; nothing was tested.",
+}
+"""What is wrong with each, or missing from it, in one sentence."""

@@ -1,28 +1,64 @@
-"""A user study with simulated people, as a study that the one runner runs."""
+"""A user study with simulated people, as a study that the one runner runs; finished sessions are kept."""
 
+import json
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from typing import Final
 
+from latentarm.core.errors import UserError
+from latentarm.core.files import write_text
+from latentarm.core.untrusted.documents import read_object
 from latentarm_research.people.population import draw_people
 from latentarm_research.people.traits import Traits
 from latentarm_research.studies import fitting, streams
 from latentarm_research.studies.results_folder import package_versions
 from latentarm_research.studies.source import source_digest
 from latentarm_research.studies.streams import generator
-from latentarm_research.studies.study import Grid, Report, Request, Study, again
+from latentarm_research.studies.study import Grid, Keep, Report, Request, Study, again
 from latentarm_research.user_studies import alignments, conditions, designs, scenes, session, training
 from latentarm_research.user_studies import scenes as limited_time
 from latentarm_research.user_studies.definition import Definition
 from latentarm_research.user_studies.designs import design_of
-from latentarm_research.user_studies.kept import KEEP_SESSIONS, SESSIONS
+from latentarm_research.user_studies.record import read_trials
 from latentarm_research.user_studies.recorded import DOCUMENTS, Recorded
 from latentarm_research.user_studies.report.figures import figure_names
-from latentarm_research.user_studies.report.report import ANALYSIS, report_of
-from latentarm_research.user_studies.session import SessionCell, go_through
+from latentarm_research.user_studies.report.page import ANALYSIS, report_of
+from latentarm_research.user_studies.session import Session, SessionCell, go_through
 from latentarm_research.user_studies.sizes import PRESETS, Sizes, Stream, sizes_of
+from latentarm_research.user_studies.trace import read_traces
 from latentarm_research.user_studies.training import Trained, TrainingCell, train
+
+SESSIONS: Final = "sessions"
+"""The folder of the sessions."""
+
+
+def _session_path(out: Path, cell: SessionCell) -> Path:
+    return out / SESSIONS / f"{cell.traits.number}_{cell.order}_{cell.task.name}.json"
+
+
+def _write_session(out: Path, cell: SessionCell, session: Session) -> None:
+    document = {
+        "trials": [trial.as_json() for trial in session.trials],
+        "traces": [trace.as_json() for trace in session.traces],
+    }
+    write_text(_session_path(out, cell), json.dumps(document, separators=(",", ":"), allow_nan=False) + "\n")
+
+
+def _read_session(out: Path, cell: SessionCell) -> Session | None:
+    path = _session_path(out, cell)
+    if not path.exists():
+        return None
+    document = read_object(path)
+    session = Session(read_trials(document, path), read_traces(document, path))
+    wanted = (cell.traits.number, cell.condition.name, cell.task.name)
+    if any((one.person, one.condition, one.task) != wanted for one in (*session.trials, *session.traces)):
+        raise UserError(f"{path} holds another session: remove it, and it is gone through again.")
+    return session
+
+
+KEEP_SESSIONS: Final = Keep(_read_session, _write_session)
 
 
 def study_of(

@@ -5,8 +5,13 @@ import pytest
 
 from latentarm.core.types import Row
 from latentarm_research.studies.compare.cell import FoldResult, Place
-from latentarm_research.studies.compare.rows import rows_of, rows_of_fewer, seeds_of
-from latentarm_research.studies.compare.tables import in_millimetres, page_table
+from latentarm_research.studies.compare.tables import (
+    in_millimetres,
+    page_table,
+    rows_of,
+    rows_of_fewer,
+    seeds_of,
+)
 
 
 def cell(fold: int, values: list[float], demonstrations: int = 4, measure: str = "reversal") -> FoldResult:

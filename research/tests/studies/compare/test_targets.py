@@ -1,6 +1,6 @@
 from latentarm.core.types import Row
-from latentarm_research.studies.compare.rows import condition
-from latentarm_research.studies.compare.targets import FIT_S, TARGETS, verdicts
+from latentarm_research.studies.compare.hypotheses import FIT_S, TARGETS, verdicts
+from latentarm_research.studies.compare.tables import condition
 
 GOOD = {
     "search_error_percent_of_pca": 20.0,

@@ -1,10 +1,9 @@
 import numpy as np
 
 from latentarm_research.studies.shared_autonomy.cell import WITH_ENTROPY, WITH_HELP
-from latentarm_research.studies.shared_autonomy.hypotheses import MEASURE
+from latentarm_research.studies.shared_autonomy.hypotheses import MEASURE, targets
 from latentarm_research.studies.shared_autonomy.preset import Preset
 from latentarm_research.studies.shared_autonomy.rows import Figure
-from latentarm_research.studies.shared_autonomy.targets import targets
 from latentarm_research.studies.targets import target_table
 
 PRESET = Preset("tiny", learners={"slow": 2.5}, slopes=(), changes_s=(8.0,))

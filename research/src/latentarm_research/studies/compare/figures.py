@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 from latentarm.core.style import FONT_SIZE, legend_below, literal, tidy
 from latentarm.core.types import Row
 from latentarm.evaluation.looks import look_of
-from latentarm_research.studies.compare.rows import condition, with_demonstrations
+from latentarm_research.studies.compare.tables import condition, with_demonstrations
 from latentarm_research.studies.drawing import panel_grid, title
 
 if TYPE_CHECKING:

@@ -27,7 +27,7 @@ from latentarm_research.studies.compare.drives import (
     rows_of_drives,
 )
 from latentarm_research.studies.compare.figures import FILLS, fewer_figure, pareto_figure, turning_figure
-from latentarm_research.studies.compare.hypotheses import compared, said
+from latentarm_research.studies.compare.hypotheses import compared, said, verdicts
 from latentarm_research.studies.compare.measures import TABLES, meaning_of, without_planning
 from latentarm_research.studies.compare.preset import (
     BASELINE,
@@ -38,22 +38,19 @@ from latentarm_research.studies.compare.preset import (
     REFERENCE,
     Preset,
 )
-from latentarm_research.studies.compare.rows import (
+from latentarm_research.studies.compare.tables import (
+    CORNER,
     STUDY,
     condition,
+    drive_table,
     fit_times,
+    page_table,
     rows_of,
     rows_of_fewer,
     seeds_of,
-)
-from latentarm_research.studies.compare.tables import (
-    CORNER,
-    drive_table,
-    page_table,
     target_table,
     terminal_tables,
 )
-from latentarm_research.studies.compare.targets import verdicts
 from latentarm_research.studies.hypotheses import Comparison, comparison_table
 from latentarm_research.studies.page import render_page
 from latentarm_research.studies.study import Grid, Report, Request, Study

@@ -26,7 +26,13 @@ from latentarm_research.studies.shared_autonomy.figures import (
     task_figure,
     weights_figure,
 )
-from latentarm_research.studies.shared_autonomy.hypotheses import MEASURE, REACHED, TRAPPED, compare_methods
+from latentarm_research.studies.shared_autonomy.hypotheses import (
+    MEASURE,
+    REACHED,
+    TRAPPED,
+    compare_methods,
+    targets,
+)
 from latentarm_research.studies.shared_autonomy.measures import ARRIVED
 from latentarm_research.studies.shared_autonomy.preset import PRESETS, Entropy, Preset, variants
 from latentarm_research.studies.shared_autonomy.rows import (
@@ -39,7 +45,6 @@ from latentarm_research.studies.shared_autonomy.rows import (
 )
 from latentarm_research.studies.shared_autonomy.rows import STUDY as NAME
 from latentarm_research.studies.shared_autonomy.tables import Tables, summary_tables
-from latentarm_research.studies.shared_autonomy.targets import targets
 from latentarm_research.studies.statistics import LEVEL
 from latentarm_research.studies.study import Grid, Report, Request, Study, again
 from latentarm_research.studies.targets import target_table

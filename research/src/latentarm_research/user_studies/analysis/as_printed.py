@@ -10,8 +10,7 @@ from latentarm.core.types import FloatArray
 from latentarm_research.studies.means_test import spreads
 from latentarm_research.studies.statistics import LEVEL, format_p
 from latentarm_research.user_studies.analysis.means import sides, tasks_of
-from latentarm_research.user_studies.hypothesis import Claim
-from latentarm_research.user_studies.printed import Printed, PrintedTest
+from latentarm_research.user_studies.hypothesis import Claim, Printed, PrintedTest
 from latentarm_research.user_studies.record import Trial
 
 NOT_MEASURED: Final = "not measured"

@@ -4,8 +4,7 @@ from typing import Final
 
 from latentarm_research.user_studies.definition import Condition, Definition, StudyTask
 from latentarm_research.user_studies.definitions.shared import AGAIN, NO_INPUT
-from latentarm_research.user_studies.hypothesis import Claim, Hypothesis, above, below
-from latentarm_research.user_studies.printed import Printed
+from latentarm_research.user_studies.hypothesis import Claim, Hypothesis, Printed, above, below
 from latentarm_research.user_studies.questionnaire import PREFER, scale
 
 DIRECT: Final = "End-Effector"

@@ -6,8 +6,7 @@ from typing import Final
 from latentarm_research.user_studies.definition import Condition, Definition
 from latentarm_research.user_studies.definitions.eating import DESSERT, ENTREE, LA_SA, LATENT_HELPED
 from latentarm_research.user_studies.definitions.shared import AGAIN, NO_INPUT
-from latentarm_research.user_studies.hypothesis import Hypothesis, below
-from latentarm_research.user_studies.printed import Printed
+from latentarm_research.user_studies.hypothesis import Hypothesis, Printed, below
 
 DIRECT: Final = "End-Effector"
 

@@ -4,8 +4,7 @@ from typing import Final
 
 from latentarm_research.user_studies.definition import Condition, Definition, StudyTask
 from latentarm_research.user_studies.definitions.shared import NO_INPUT
-from latentarm_research.user_studies.hypothesis import Hypothesis, above, below
-from latentarm_research.user_studies.printed import Printed
+from latentarm_research.user_studies.hypothesis import Hypothesis, Printed, above, below
 
 ASSISTED: Final = ("No Assist", "Low Assist", "High Assist", "Full Assist")
 LATENT: Final = "cVAE"
