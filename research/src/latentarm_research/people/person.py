@@ -9,21 +9,9 @@ from latentarm.assistance.controllers.contract import Controller
 from latentarm.core.errors import UserError
 from latentarm.core.types import BoolArray, Context, Input, Pose
 from latentarm.robots.robot import Robot
+from latentarm_research.people import contract
 from latentarm_research.people.anticipation import Anticipation
 from latentarm_research.people.boltzmann import BoltzmannConfig, OneStep
-from latentarm_research.people.contract import (
-    NOTHING_HELD,
-    UNLIMITED,
-    USUAL_WITHIN_M,
-    Decision,
-    Foresight,
-    Imagination,
-    KnowsTheArm,
-    LoopLimits,
-    Moment,
-    Operator,
-    Settled,
-)
 from latentarm_research.people.hand import Hand, HandConfig
 from latentarm_research.people.lapses import LapseConfig, Lapsing
 from latentarm_research.people.linear_guess import LinearGuess, LinearGuessConfig
@@ -46,7 +34,7 @@ class Person:
     decides: BoltzmannConfig = field(default_factory=BoltzmannConfig)
     # where they expect an input to lead: a foresight that never changes, how they learn a linear guess, or
     # how they read the page's ring; None knows the arm and its decoder exactly
-    imagines: Foresight | LinearGuessConfig | RingReadingConfig | None = None
+    imagines: contract.Foresight | LinearGuessConfig | RingReadingConfig | None = None
     plans: PlanningConfig | None = None  # how far they plan where one step leads no nearer; None never plans
     hand: HandConfig = field(default_factory=HandConfig)  # how late and how unsteady their hand is
     speed: OwnSpeed = field(default_factory=OwnSpeed)  # how fast they like to go
@@ -63,7 +51,7 @@ class Person:
 
 
 @final
-class SimulatedPerson(Operator):
+class SimulatedPerson(contract.Operator):
     """The operator that a `Person` describes.
 
     Args:
@@ -78,7 +66,9 @@ class SimulatedPerson(Operator):
         UserError: the period is not positive and finite, or too long for the hand's tremor.
     """
 
-    def __init__(self, robot: Robot, person: Person, period_s: float, limits: LoopLimits = UNLIMITED) -> None:
+    def __init__(
+        self, robot: Robot, person: Person, period_s: float, limits: contract.LoopLimits = contract.UNLIMITED
+    ) -> None:
         self._imagination = _imagination(robot, person, period_s, limits)
         self._decision = _decision(robot, person, period_s, limits)
         self._hand = Hand(person.hand, period_s)
@@ -106,13 +96,13 @@ class SimulatedPerson(Operator):
         mode: int,
         target: Pose,
         rng: np.random.Generator,
-        within_m: float = USUAL_WITHIN_M,
+        within_m: float = contract.USUAL_WITHIN_M,
         speed: float = 1.0,
-        held: BoolArray = NOTHING_HELD,
+        held: BoolArray = contract.NOTHING_HELD,
     ) -> Input:
         """See, learn, decide and move the hand."""
         u = np.zeros(controller.input_dim) if self._given is None else self._given.u
-        moment = Moment(context, mode, target, u, within_m, speed, held)
+        moment = contract.Moment(context, mode, target, u, within_m, speed, held)
         seen = self._hand.sees(moment if self._screen is None else self._screen.shown(moment))
         self._imagination.saw(seen)
         if self._anticipation is not None and not self._decision.holding:
@@ -125,17 +115,23 @@ class SimulatedPerson(Operator):
         return self._given if self._wire is None else self._wire.carried(self._given)
 
 
-def _imagination(robot: Robot, person: Person, period_s: float, limits: LoopLimits) -> Imagination:
+def _imagination(
+    robot: Robot, person: Person, period_s: float, limits: contract.LoopLimits
+) -> contract.Imagination:
     if isinstance(person.imagines, LinearGuessConfig):
         return LinearGuess(robot.chain, person.imagines, period_s)
     if isinstance(person.imagines, RingReadingConfig):
         return RingReading(robot.chain, person.imagines, limits)
-    return Settled(person.imagines or KnowsTheArm(robot.chain, limits))
+    return contract.Settled(person.imagines or contract.KnowsTheArm(robot.chain, limits))
 
 
-def _decision(robot: Robot, person: Person, period_s: float, limits: LoopLimits) -> Decision:
+def _decision(
+    robot: Robot, person: Person, period_s: float, limits: contract.LoopLimits
+) -> contract.Decision:
     if isinstance(person.imagines, RingReadingConfig):
-        decision: Decision = RingDecision(person.decides, person.imagines, period_s, limits.dead_zone)
+        decision: contract.Decision = RingDecision(
+            person.decides, person.imagines, period_s, limits.dead_zone
+        )
     elif person.plans is None:
         decision = OneStep(person.decides, period_s, limits.dead_zone)
     else:

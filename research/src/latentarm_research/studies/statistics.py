@@ -7,14 +7,7 @@ from typing import Final
 import numpy as np
 
 from latentarm.core.types import FloatArray
-from latentarm_research.studies.means_test import (
-    TAIL,
-    Direction,
-    MeansTest,
-    one_sample_test,
-    spreads,
-    welch_test,
-)
+from latentarm_research.studies import means_test
 
 LEVEL: Final = 0.05
 """A test holds where p, after Holm's correction, is below this."""
@@ -37,36 +30,36 @@ class Statistic:
     hedges_g: float | None = None
 
 
-def compare_means(values: FloatArray, reference: FloatArray, direction: Direction) -> Statistic:
+def compare_means(values: FloatArray, reference: FloatArray, direction: means_test.Direction) -> Statistic:
     """Test whether figures (n,) are less, or greater, than those of a reference (m,), on average.
 
     Welch's test where both sides have spread; where one has none, it is a fixed figure to the other.
     """
-    if not spreads(values) and not spreads(reference):
+    if not means_test.spreads(values) and not means_test.spreads(reference):
         return Statistic("none: no spread on either side")
-    if not spreads(values):
+    if not means_test.spreads(values):
         # The reference is the sample then, and the direction is reversed.
-        asked: Direction = "greater" if direction == "less" else "less"
+        asked: means_test.Direction = "greater" if direction == "less" else "less"
         turned = one_sample(reference, float(values.mean()), asked)
         return replace(turned, t=None if turned.t is None else -turned.t)
-    if not spreads(reference):
+    if not means_test.spreads(reference):
         return one_sample(values, float(reference.mean()), direction)
-    return _one_sided("Welch", welch_test(values, reference), direction)
+    return _one_sided("Welch", means_test.welch_test(values, reference), direction)
 
 
-def one_sample(values: FloatArray, fixed: float, direction: Direction) -> Statistic:
+def one_sample(values: FloatArray, fixed: float, direction: means_test.Direction) -> Statistic:
     """Test whether figures (n,) are less, or greater, than a fixed one, on average."""
-    return _one_sided("one-sample", one_sample_test(values, fixed), direction)
+    return _one_sided("one-sample", means_test.one_sample_test(values, fixed), direction)
 
 
-def paired(values: FloatArray, reference: FloatArray, direction: Direction) -> Statistic:
+def paired(values: FloatArray, reference: FloatArray, direction: means_test.Direction) -> Statistic:
     """Test whether figures (n,) are less, or greater, than others of the same seeds (n,), on average."""
     if len(values) < 2:
         return Statistic("none: too few seeds")
-    return _one_sided("paired t", one_sample_test(values - reference), direction)
+    return _one_sided("paired t", means_test.one_sample_test(values - reference), direction)
 
 
-def _one_sided(test: str, found: MeansTest | None, direction: Direction) -> Statistic:
+def _one_sided(test: str, found: means_test.MeansTest | None, direction: means_test.Direction) -> Statistic:
     if found is None:
         return Statistic("none: no spread")
     signed = found.g if found.g is None or direction == "greater" else -found.g
@@ -104,7 +97,7 @@ def bootstrap_interval(
         / units
     )
     means = np.tensordot(draws, values, axes=1)
-    low, high = np.quantile(means, (TAIL, 1.0 - TAIL), axis=0)
+    low, high = np.quantile(means, (means_test.TAIL, 1.0 - means_test.TAIL), axis=0)
     # A mean of equal values differs from them by rounding.
     lowest, highest = values.min(axis=0), values.max(axis=0)
     return np.clip(low, lowest, highest), np.clip(high, lowest, highest)

@@ -14,16 +14,7 @@ from latentarm.core.types import FloatArray
 from latentarm.models.encoder import Encoder
 from latentarm_research.alignment.priors import NO_PRIORS
 from latentarm_research.alignment.training import FitConfig
-from latentarm_research.studies.alignment.preset import (
-    CHOSEN,
-    IDEAL,
-    LEARNED,
-    MANUAL,
-    NO_ALIGN,
-    TOOL_SPACE,
-    Preset,
-    Stream,
-)
+from latentarm_research.studies.alignment import preset as ways
 from latentarm_research.studies.alignment.scene import AlignmentCell, scene_of
 
 
@@ -50,41 +41,41 @@ def measure_cell(cell: AlignmentCell) -> AlignmentErrors:
     runs = range(preset.runs)
 
     def ask(count: int) -> list[Answers]:
-        return [scene.ask(count, cell.noise, Stream.QUESTIONS, Stream.ANSWERS, run) for run in runs]
+        return [scene.ask(count, cell.noise, ways.Stream.QUESTIONS, ways.Stream.ANSWERS, run) for run in runs]
 
     few, encoder = ask(preset.answers), Encoder(scene.model.trained_)
     errors = {
-        NO_ALIGN: scene.errors([identity]),
-        MANUAL: scene.errors([fit_affine(encoder, answers) for answers in few]),
+        ways.NO_ALIGN: scene.errors([identity]),
+        ways.MANUAL: scene.errors([fit_affine(encoder, answers) for answers in few]),
     }
     learn_s: dict[str, float] = {}
-    for name, priors in LEARNED.items():
+    for name, priors in ways.LEARNED.items():
         began = perf_counter()
         fitted = scene.learn(few, FitConfig(priors, steps=preset.steps), runs)
         learn_s[name] = perf_counter() - began
         errors[name] = scene.errors(fitted.alignments)
     began = perf_counter()
     alignments = [scene.in_tool_space(answers) for answers in few]
-    learn_s[TOOL_SPACE] = perf_counter() - began
-    errors[TOOL_SPACE] = scene.errors(alignments)
+    learn_s[ways.TOOL_SPACE] = perf_counter() - began
+    errors[ways.TOOL_SPACE] = scene.errors(alignments)
     began = perf_counter()
     asked = [
         said[np.array(order_of_questions(scene.chain, said.motions, min(preset.answers, len(said))))]
         for said in scene.candidates(cell.noise)
     ]
     alignments = [scene.in_tool_space(answers) for answers in asked]
-    learn_s[CHOSEN] = perf_counter() - began
-    errors[CHOSEN] = scene.errors(alignments)
+    learn_s[ways.CHOSEN] = perf_counter() - began
+    errors[ways.CHOSEN] = scene.errors(alignments)
     began = perf_counter()
     ideal = scene.learn(
         ask(preset.ideal_answers)[: preset.ideal_runs], ideal_config(preset), runs[: preset.ideal_runs]
     )
-    learn_s[IDEAL] = perf_counter() - began
-    errors[IDEAL] = scene.errors(ideal.alignments)
+    learn_s[ways.IDEAL] = perf_counter() - began
+    errors[ways.IDEAL] = scene.errors(ideal.alignments)
     return AlignmentErrors(cell, errors, scene.encoded(), learn_s)
 
 
-def ideal_config(preset: Preset) -> FitConfig:
+def ideal_config(preset: ways.Preset) -> FitConfig:
     """How Ideal Align is learned: to its end, which answers decide that train nothing."""
     return FitConfig(
         NO_PRIORS,

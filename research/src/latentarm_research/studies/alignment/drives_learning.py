@@ -27,17 +27,8 @@ from latentarm.runs.questions import AlignmentProblem, ask
 from latentarm.tasks.table_top import TableTop
 from latentarm_research.alignment.training import FitConfig, fit_alignments
 from latentarm_research.people.expectation import Expectation, displacements, main_directions
+from latentarm_research.studies.alignment import preset as ways
 from latentarm_research.studies.alignment.cell import ideal_config
-from latentarm_research.studies.alignment.preset import (
-    ALL_PRIORS,
-    IDEAL,
-    LEARNED,
-    NO_ALIGN,
-    TOOL_SPACE,
-    WITHOUT_PRIORS,
-    Preset,
-    Stream,
-)
 from latentarm_research.studies.fitting import STATE_NOISE_RAD, fit_model
 from latentarm_research.studies.streams import generator, integer, sequence
 
@@ -58,7 +49,7 @@ class AlignedDriveCell:
     """What is to be measured."""
 
     model: str  # a name of `MODELS`
-    preset: Preset  # sizes of the study
+    preset: ways.Preset  # sizes of the study
     seed: int  # of the study
 
 
@@ -83,10 +74,10 @@ def learn(cell: AlignedDriveCell) -> Learned:
     """
     preset, task = cell.preset, TableTop()
     chain = task.robot.chain
-    demonstrations = task.demonstrate(preset.drives.episodes, _generator(cell, Stream.TRAINING))
-    rows = split_episodes(demonstrations, HELD_OUT, _generator(cell, Stream.TEST))
+    demonstrations = task.demonstrate(preset.drives.episodes, _generator(cell, ways.Stream.TRAINING))
+    rows = split_episodes(demonstrations, HELD_OUT, _generator(cell, ways.Stream.TEST))
     training, held_out = (select_episodes(demonstrations, part) for part in rows)
-    motions = demonstrated_motions(training, EVERY, _generator(cell, Stream.SHOWN))
+    motions = demonstrated_motions(training, EVERY, _generator(cell, ways.Stream.SHOWN))
     person = turned_person(motions, chain)
     many = motions[np.arange(min(preset.ideal_answers, len(motions)))]
     began = perf_counter()
@@ -97,7 +88,7 @@ def learn(cell: AlignedDriveCell) -> Learned:
         _alignments(cell, model, seed, training, person, ideal) for seed in range(preset.drives.seeds)
     )
     align_s = perf_counter() - fitted
-    tested = demonstrated_motions(held_out, preset.test_motions, _generator(cell, Stream.TEST_MOTIONS))
+    tested = demonstrated_motions(held_out, preset.test_motions, _generator(cell, ways.Stream.TEST_MOTIONS))
     errors = _errors(model, alignments, chain, Answers(tested, person.inputs(tested)))
     return Learned(model, alignments, person, errors, fitted - began, align_s)
 
@@ -123,8 +114,8 @@ def _fit(cell: AlignedDriveCell, training: Demonstrations, chain: Chain) -> Late
         state_noise_rad=STATE_NOISE_RAD,
         seeds=cell.preset.drives.seeds,
         epochs=cell.preset.drives.epochs,
-        seed=integer(sequence(cell.seed, TASK, Stream.NETWORKS)),
-        data_seed=integer(sequence(cell.seed, TASK, Stream.STATE_NOISE)),
+        seed=integer(sequence(cell.seed, TASK, ways.Stream.NETWORKS)),
+        data_seed=integer(sequence(cell.seed, TASK, ways.Stream.STATE_NOISE)),
         fit={"chain": chain},
     )
 
@@ -138,7 +129,7 @@ def _alignments(
     ideal: Answers,
 ) -> dict[str, Alignment]:
     """Every alignment of one model: with priors and without, from the same answers."""
-    drawing = _generator(cell, Stream.CANDIDATES, seed_index)
+    drawing = _generator(cell, ways.Stream.CANDIDATES, seed_index)
     motions = shown(training, "state", person.chain, drawing)
     unlabelled = demonstrated_motions(training, cell.preset.unlabelled, drawing).context
     scene = AlignmentProblem(model.decoder(seed_index), person.chain, motions)
@@ -151,13 +142,13 @@ def _alignments(
         return fit_alignments(model, person.chain, [answers], unlabelled, config, seed_index=seed_index).best
 
     return {
-        NO_ALIGN: identity,
+        ways.NO_ALIGN: identity,
         **{
-            name: learn(answers, FitConfig(LEARNED[name], steps=cell.preset.steps))
-            for name in (WITHOUT_PRIORS, ALL_PRIORS)
+            name: learn(answers, FitConfig(ways.LEARNED[name], steps=cell.preset.steps))
+            for name in (ways.WITHOUT_PRIORS, ways.ALL_PRIORS)
         },
-        TOOL_SPACE: scene.learn(answers).with_arm(model.decoder(seed_index), person.chain),
-        IDEAL: learn(ideal, ideal_config(cell.preset)),
+        ways.TOOL_SPACE: scene.learn(answers).with_arm(model.decoder(seed_index), person.chain),
+        ways.IDEAL: learn(ideal, ideal_config(cell.preset)),
     }
 
 

@@ -14,15 +14,9 @@ import numpy as np
 from latentarm.core.types import FloatArray, Row
 from latentarm.evaluation.table import ABSENT
 from latentarm.tasks.table_top import TableTop
+from latentarm_research.studies.alignment import preset as ways
 from latentarm_research.studies.alignment.drives import DRIVEN, HELPED, KNOWS, DrivesResult
 from latentarm_research.studies.alignment.drives_learning import TASK
-from latentarm_research.studies.alignment.preset import (
-    ALL_PRIORS,
-    IDEAL,
-    NO_ALIGN,
-    TOOL_SPACE,
-    WITHOUT_PRIORS,
-)
 from latentarm_research.studies.hypotheses import Comparison, comparison_table, corrected
 from latentarm_research.studies.series import Series
 from latentarm_research.studies.statistics import Statistic, format_p, paired
@@ -33,7 +27,7 @@ TIME: Final = "time_s"
 DONE: Final = "success_rate"
 ERROR: Final = "relative_alignment_error"
 
-AGAINST: Final = (NO_ALIGN, WITHOUT_PRIORS, ALL_PRIORS)
+AGAINST: Final = (ways.NO_ALIGN, ways.WITHOUT_PRIORS, ways.ALL_PRIORS)
 """What Tool Space is compared with."""
 
 
@@ -82,9 +76,9 @@ def compare_drives(results: Sequence[DrivesResult]) -> list[Comparison]:
     """Every test, model by model."""
     comparisons: list[Comparison] = []
     for result in results:
-        figures = {name: drive_figures(result, name) for name in (TOOL_SPACE, *AGAINST)}
+        figures = {name: drive_figures(result, name) for name in (ways.TOOL_SPACE, *AGAINST)}
         for measure, against in product((REACHED, TIME), AGAINST):
-            own, other = figures[TOOL_SPACE][measure], figures[against][measure]
+            own, other = figures[ways.TOOL_SPACE][measure], figures[against][measure]
             more = measure == REACHED
             one = Comparison(
                 hypothesis="drives",
@@ -92,7 +86,7 @@ def compare_drives(results: Sequence[DrivesResult]) -> list[Comparison]:
                 task=TASK,
                 model=result.cell.model,
                 measure=measure,
-                subject=TOOL_SPACE,
+                subject=ways.TOOL_SPACE,
                 against=against,
                 direction="greater" if more else "less",
             )
@@ -113,12 +107,12 @@ def _mcnemar(own: FloatArray, other: FloatArray) -> Statistic:
 
 
 WORDS: Final = {
-    NO_ALIGN: "z = u",
-    WITHOUT_PRIORS: "learned from the answers alone",
-    ALL_PRIORS: "learned from the same answers and all priors",
-    TOOL_SPACE: "learned from the same answers as `latentarm align` does",
+    ways.NO_ALIGN: "z = u",
+    ways.WITHOUT_PRIORS: "learned from the answers alone",
+    ways.ALL_PRIORS: "learned from the same answers and all priors",
+    ways.TOOL_SPACE: "learned from the same answers as `latentarm align` does",
     HELPED: "the same, with help towards the likely goals, as in the demo",
-    IDEAL: "learned from many more answers",
+    ways.IDEAL: "learned from many more answers",
     KNOWS: "z = u and a person of equation 24 who knows exactly what each input does: the demo's operator",
 }
 """What each condition is."""
@@ -142,7 +136,7 @@ def drive_parts(
     return parts
 
 
-def ways(result: DrivesResult) -> list[str]:
+def axes_in_words(result: DrivesResult) -> list[str]:
     """What each axis of the stick means to the person."""
     return [
         f"axis {axis} means ({', '.join(f'{part:+.2f}' for part in direction)})"
@@ -183,7 +177,7 @@ def _said(tests: Sequence[Comparison]) -> list[str]:
     """The results of one model's tests, one sentence each."""
     words = {REACHED: "reaches more goals than", TIME: "is faster than"}
     return [
-        f"{TOOL_SPACE} {words[one.measure]} {one.against}: "
+        f"{ways.TOOL_SPACE} {words[one.measure]} {one.against}: "
         + ("supported" if one.holds else f"**not supported**{_why(one)}")
         for one in tests
     ]

@@ -10,20 +10,13 @@ from latentarm.core.types import Goal
 from latentarm.evaluation.looks import look_of
 from latentarm.tasks.table_top import TableTop
 from latentarm_research.drives.drive_figures import GOAL_COLOURS, GOAL_MARKERS, OUTCOMES, outcome_lines
+from latentarm_research.studies import drawing
 from latentarm_research.studies.alignment.cell import AlignmentErrors
 from latentarm_research.studies.alignment.curves import CHOICES, PRIORS_AT_RANDOM, CurveResult
 from latentarm_research.studies.alignment.drives import DRIVEN, AlignedDrive, DrivesResult
 from latentarm_research.studies.alignment.hypotheses import RANDOM_ANSWERS
 from latentarm_research.studies.alignment.preset import CHOSEN, CONDITIONS
 from latentarm_research.studies.alignment.rows import ENCODED
-from latentarm_research.studies.drawing import (
-    draw_series,
-    label_axes,
-    name_series,
-    panel_grid,
-    plain_ticks,
-    title,
-)
 from latentarm_research.studies.statistics import bootstrap_interval, reach_of_interval
 
 if TYPE_CHECKING:
@@ -50,18 +43,18 @@ def conditions_figure(
 ) -> "Figure":
     """Means with 95 % intervals, a panel per task, a row per model, grouped by noise."""
     size = len(models), len(tasks), CONDITIONS_ROW_MM, CONDITIONS_FRAME_MM
-    figure, panels = panel_grid(HEADING, *size, sharex=True, sharey="row")
+    figure, panels = drawing.panel_grid(HEADING, *size, sharex=True, sharey="row")
     for line, model in zip(panels, models, strict=True):
         for axes, task in zip(line, tasks, strict=True):
             here = [result for result in results if (result.cell.model, result.cell.task) == (model, task)]
             _draw_conditions(axes, here)
             beside = "" if len(models) == 1 else f", {look_of(model).label}"
-            title(axes, look_of(task).label + beside)
+            drawing.title(axes, look_of(task).label + beside)
         _log_axis(line[0], [result for result in results if result.cell.model == model])
     for axes in panels[-1]:
         axes.set_xticks(range(len(noises)), [f"{noise:g}" for noise in noises])
-    label_axes(panels[:, 0], y="relative error")
-    label_axes(panels[-1], x="coefficient of variation of answers")
+    drawing.label_axes(panels[:, 0], y="relative error")
+    drawing.label_axes(panels[-1], x="coefficient of variation of answers")
     (line, *points), (encoded, *names) = panels[0, 0].get_legend_handles_labels()
     legend_below(figure, [*points, line], [*names, encoded])
     return figure
@@ -98,7 +91,7 @@ def _log_axis(axes: "Axes", results: Sequence[AlignmentErrors]) -> None:
     low, high = min(float(low) for low, _ in ends), max(float(high) for _, high in ends)
     axes.set_yscale("log")
     axes.set_ylim(min(low, *encoded) / ROOM, max(high, *encoded) * ROOM)
-    plain_ticks(axes)
+    drawing.plain_ticks(axes)
 
 
 CURVES_ROW_MM: Final = 46.0
@@ -112,14 +105,14 @@ def curves_figure(curves: Sequence[CurveResult], tasks: Sequence[str]) -> "Figur
     known = {(one.cell.model, one.cell.noise, one.cell.task): one for one in curves}
     places = list(dict.fromkeys((model, noise) for model, noise, _ in known))
     size = len(places), len(tasks), CURVES_ROW_MM, CURVES_FRAME_MM
-    figure, panels = panel_grid(HEADING, *size, sharex=True)
+    figure, panels = drawing.panel_grid(HEADING, *size, sharex=True)
     for line, (model, noise) in zip(panels, places, strict=True):
         for axes, task in zip(line, tasks, strict=True):
             _draw_curves(axes, known[model, noise, task])
-            title(axes, f"{look_of(task).label}, {look_of(model).label}, noise {noise:g}")
-    label_axes(panels[:, 0], y="relative error")
-    label_axes(panels[-1], x="answers")
-    name_series(figure, panels[0, 0], handle_length=2.6)
+            drawing.title(axes, f"{look_of(task).label}, {look_of(model).label}, noise {noise:g}")
+    drawing.label_axes(panels[:, 0], y="relative error")
+    drawing.label_axes(panels[-1], x="answers")
+    drawing.name_series(figure, panels[0, 0], handle_length=2.6)
     return figure
 
 
@@ -127,7 +120,7 @@ def _draw_curves(axes: "Axes", curve: CurveResult) -> None:
     for index, choice in enumerate(CHOICES):
         errors = curve.errors[choice]
         means = [float(values.mean()) for values in errors.values()]
-        draw_series(
+        drawing.draw_series(
             axes,
             choice,
             [count + (index - 1) * NUDGE for count in errors],
@@ -159,7 +152,7 @@ def _draw_curves(axes: "Axes", curve: CurveResult) -> None:
         zorder=8,
     )
     axes.set_yscale("log")
-    plain_ticks(axes)
+    drawing.plain_ticks(axes)
     axes.set_xlim(left=0.0)
     tidy(axes)
 
@@ -176,14 +169,16 @@ def drives_figure(results: Sequence[DrivesResult]) -> "Figure":
     goals, rows_each = TableTop().goals, -(-len(DRIVEN) // DRIVES_ACROSS)
     name = "Simulated drives from above, and how many reach their goal"
     size = rows_each * len(results), DRIVES_ACROSS, DRIVES_ROW_MM, DRIVES_LEGEND_MM
-    figure, panels = panel_grid(name, *size, sharex=True, sharey=True)
+    figure, panels = drawing.panel_grid(name, *size, sharex=True, sharey=True)
     figure.set_layout_engine("compressed")  # panels keep their shape; without it the rest of a row is blank
     for result, own in zip(results, panels.reshape(len(results), -1), strict=True):
         for axes, condition in zip(own, DRIVEN, strict=False):
             drives = result.drives[condition]
             _draw_drives(axes, drives, goals)
             name = condition.replace(", ", ",\n")
-            title(axes, f"{name}\n{sum(one.reached_s is not None for one in drives)} of {len(drives)}")
+            drawing.title(
+                axes, f"{name}\n{sum(one.reached_s is not None for one in drives)} of {len(drives)}"
+            )
         for axes in own[len(DRIVEN) :]:
             axes.remove()
         for axes in own[len(DRIVEN) - DRIVES_ACROSS : len(DRIVEN)]:

@@ -12,19 +12,12 @@ from latentarm.evaluation.looks import look_of
 from latentarm.tasks.table_top import TableTop
 from latentarm.tasks.task import REACHED_ANGLE, REACHED_DISTANCE
 from latentarm_research.alignment.priors import Priors
-from latentarm_research.studies.alignment import curves, drives
+from latentarm_research.studies.alignment import curves, drives, drives_tables, tables
 from latentarm_research.studies.alignment import preset as conditions
 from latentarm_research.studies.alignment.cell import AlignmentErrors, measure_cell
 from latentarm_research.studies.alignment.curves import CurveResult, measure_curve
 from latentarm_research.studies.alignment.drives import DrivesResult, drive_cells, measure_drives
 from latentarm_research.studies.alignment.drives_learning import TASK, TURN_RAD, AlignedDriveCell
-from latentarm_research.studies.alignment.drives_tables import (
-    WORDS,
-    compare_drives,
-    drive_parts,
-    drives_rows,
-    ways,
-)
 from latentarm_research.studies.alignment.figures import conditions_figure, curves_figure, drives_figure
 from latentarm_research.studies.alignment.hypotheses import (
     NEAR,
@@ -45,13 +38,6 @@ from latentarm_research.studies.alignment.scene import (
     DecoderCell,
     LearnedDecoder,
     learn_decoder,
-)
-from latentarm_research.studies.alignment.tables import (
-    condition_table,
-    curve_table,
-    stopping_table,
-    summary_tables,
-    turning_table,
 )
 from latentarm_research.studies.alignment.turning import TASK as TURNING_TASK
 from latentarm_research.studies.alignment.turning import TurningResult, measure_turning
@@ -130,8 +116,8 @@ def _label(cell: AnyCell) -> str:
 
 def _report(request: Request[Preset], measured: AlignmentResults) -> Report:
     series = series_of(measured)
-    rows = [*(one.row(NAME) for one in series), *drives_rows(measured.drives)]
-    tests, drive_tests = compare_conditions(measured.results), compare_drives(measured.drives)
+    rows = [*(one.row(NAME) for one in series), *drives_tables.drives_rows(measured.drives)]
+    tests, drive_tests = compare_conditions(measured.results), drives_tables.compare_drives(measured.drives)
     reached = targets(measured.results, measured.curves, measured.turning)
     figures = _figures(measured)
     # While nothing else runs.
@@ -146,7 +132,7 @@ def _report(request: Request[Preset], measured: AlignmentResults) -> Report:
             "runs.json": [one.as_json() for one in series],
         },
         timings={"one_alignment": alone, **timings(measured)},
-        tables=summary_tables(rows, request.preset),
+        tables=tables.summary_tables(rows, request.preset),
     )
 
 
@@ -201,7 +187,7 @@ def _page(
         verdicts=verdicts(tests),
         target_table=target_table(reached),
         condition_tables={
-            task: {model: condition_table(cells) for model, cells in of_task.items()}
+            task: {model: tables.condition_table(cells) for model, cells in of_task.items()}
             for task, of_task in by_task.items()
         },
         settings=posterior,
@@ -209,14 +195,14 @@ def _page(
         tool_space=tool_space,
         turning=measured.turning,
         turning_deg=degrees(request.preset.turning.turn_rad),
-        turning_table=turning_table(measured.turning) if measured.turning else "",
-        stopping_table=stopping_table(measured.curves),
-        curve_tables={_curve_name(curve): curve_table(curve) for curve in measured.curves},
+        turning_table=tables.turning_table(measured.turning) if measured.turning else "",
+        stopping_table=tables.stopping_table(measured.curves),
+        curve_tables={_curve_name(curve): tables.curve_table(curve) for curve in measured.curves},
         drives=measured.drives,
         drive_conditions=drives,
-        drive_words=WORDS,
-        drive_parts=drive_parts(measured.drives, drive_tests),
-        ways=ways(measured.drives[0]) if measured.drives else [],
+        drive_words=drives_tables.WORDS,
+        drive_parts=drives_tables.drive_parts(measured.drives, drive_tests),
+        ways=drives_tables.axes_in_words(measured.drives[0]) if measured.drives else [],
         goals=[goal.name for goal in TableTop().goals] if measured.drives else [],
         reached_m=REACHED_DISTANCE,
         reached_deg=degrees(REACHED_ANGLE),

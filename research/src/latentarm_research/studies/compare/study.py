@@ -16,6 +16,7 @@ from latentarm.models.estimators import MODELS
 from latentarm.runs.checks import check_seed
 from latentarm.runs.folder import fingerprint
 from latentarm_research.metrics.undone import NEAR_M
+from latentarm_research.studies.compare import tables
 from latentarm_research.studies.compare.cell import FoldCell, FoldResult, measure_cell
 from latentarm_research.studies.compare.datasets import Dataset, read_datasets
 from latentarm_research.studies.compare.drives import (
@@ -37,19 +38,6 @@ from latentarm_research.studies.compare.preset import (
     RAISED,
     REFERENCE,
     Preset,
-)
-from latentarm_research.studies.compare.tables import (
-    CORNER,
-    STUDY,
-    condition,
-    drive_table,
-    fit_times,
-    page_table,
-    rows_of,
-    rows_of_fewer,
-    seeds_of,
-    target_table,
-    terminal_tables,
 )
 from latentarm_research.studies.hypotheses import Comparison, comparison_table
 from latentarm_research.studies.page import render_page
@@ -92,7 +80,7 @@ def compare_study(
     _check(asked)
     asked = replace(asked, datasets=tuple(read_datasets(demonstrations, preset.folds, seed)))
     return Study(
-        name=STUDY,
+        name=tables.STUDY,
         command="compare",
         presets=PRESETS,
         tasks=tuple(one.name for one in asked.datasets),
@@ -180,7 +168,7 @@ def _given_fewer(asked: Asked) -> list[str]:
 def _label(cell: FoldCell) -> str:
     place = cell.place
     return (
-        f"{place.dataset}, {place.model}, {condition(place.noise_rad)}, fold {place.fold},"
+        f"{place.dataset}, {place.model}, {tables.condition(place.noise_rad)}, fold {place.fold},"
         f" {place.demonstrations} demonstrations"
     )
 
@@ -189,10 +177,10 @@ def _report(asked: Asked, request: Request[Preset], measured: CompareResults) ->
     preset, names = asked.preset, [one.name for one in asked.datasets]
     results, drives, fewer_models = measured.results, measured.drives, _given_fewer(asked)
     all_of = {one.name: one.left for one in asked.datasets}
-    main = rows_of(measured.whole)
-    fewer = rows_of_fewer([one for one in results if one.place.model in fewer_models], all_of)
+    main = tables.rows_of(measured.whole)
+    fewer = tables.rows_of_fewer([one for one in results if one.place.model in fewer_models], all_of)
     counts = sorted({min(one.place.demonstrations, all_of[one.place.dataset]) for one in results})
-    driven = rows_of_drives(STUDY, condition(preset.noises_rad[0], "driven"), drives)
+    driven = rows_of_drives(tables.STUDY, tables.condition(preset.noises_rad[0], "driven"), drives)
     tests = compared(measured.whole)
     figures: dict[str, Figure] = {
         "pareto": pareto_figure(main, names, preset.noises_rad),
@@ -206,11 +194,11 @@ def _report(asked: Asked, request: Request[Preset], measured: CompareResults) ->
         figures=figures,
         tests=tests,
         documents={
-            "seeds.json": seeds_of(results),
+            "seeds.json": tables.seeds_of(results),
             "drives.json": [{**asdict(one), "figures": one.figures.as_json()} for one in drives],
         },
         timings=_timings(results, drives),
-        tables=terminal_tables(main, names, preset.noises_rad, VisibleConsole().width),
+        tables=tables.terminal_tables(main, names, preset.noises_rad, VisibleConsole().width),
     )
 
 
@@ -226,7 +214,7 @@ def _page(
     found = {
         model: judged
         for model in dict.fromkeys((asked.ours, *RAISED))
-        if (judged := verdicts(main, model, names, preset.noises_rad, fit_times(whole)))
+        if (judged := verdicts(main, model, names, preset.noises_rad, tables.fit_times(whole)))
     }
     return render_page(
         "compare/page.md",
@@ -235,21 +223,22 @@ def _page(
         sizes=[f"{one.name} ({len(one.demonstrations.episodes)} episodes)" for one in asked.datasets],
         many=MANY,
         few=FEW,
-        corner=CORNER,
+        corner=tables.CORNER,
         seed=asked.seed,
         ours=asked.ours,
         reference=REFERENCE,
         baseline=BASELINE,
         chosen_on=[name for name in names if name.endswith(CHOSEN_ON)],
         verdicts=found,
-        target_tables={model: target_table(judged) for model, judged in found.items()},
+        target_tables={model: tables.target_table(judged) for model, judged in found.items()},
         meanings={
             heading: {label_of(name): meaning_of(name) for name in measures}
             for heading, measures in TABLES.items()
         },
         sections={
-            f"{name}, {condition(noise_rad)}": {
-                heading: page_table(main, name, noise_rad, measures) for heading, measures in TABLES.items()
+            f"{name}, {tables.condition(noise_rad)}": {
+                heading: tables.page_table(main, name, noise_rad, measures)
+                for heading, measures in TABLES.items()
             }
             for name in names
             for noise_rad in preset.noises_rad
@@ -259,9 +248,9 @@ def _page(
         fewer=_given_fewer(asked),
         counts=counts,
         driven=list(dict.fromkeys(row.model or "" for row in driven)),
-        driven_noise=condition(preset.noises_rad[0]),
+        driven_noise=tables.condition(preset.noises_rad[0]),
         near_mm=1e3 * NEAR_M,
-        drive_tables={name: drive_table(driven, name) for name in names},
+        drive_tables={name: tables.drive_table(driven, name) for name in names},
     )
 
 

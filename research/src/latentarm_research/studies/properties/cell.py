@@ -14,14 +14,7 @@ from latentarm.demonstrations.split import select_episodes
 from latentarm.models.decoder import Decoder
 from latentarm.models.model import LatentActionModel
 from latentarm_research.studies.fitting import fit_each, validation_episodes
-from latentarm_research.studies.properties.measures import (
-    accuracy_figures,
-    control_figures,
-    latent_figures,
-    reach_figures,
-    recorded_pairs,
-    start_goal_pairs,
-)
+from latentarm_research.studies.properties import measures
 from latentarm_research.studies.properties.preset import AS_CHOSEN, Preset
 from latentarm_research.studies.streams import generator, integer, sequence
 from latentarm_research.tasks.planar.catalogue import MOTIONS
@@ -140,18 +133,18 @@ def _figures(
         return generator(cell.seed, cell.task, stream, index)
 
     preset = cell.preset
-    pairs = recorded_pairs(shown.test, cell.noise_rad, draws(Stream.TEST_NOISE))
+    pairs = measures.recorded_pairs(shown.test, cell.noise_rad, draws(Stream.TEST_NOISE))
     chosen = select_episodes(shown.training, range(validation_episodes(shown.training).start))
     # Only the actions of these are used, so no noise is drawn.
-    fitted = recorded_pairs(chosen, 0.0, draws(Stream.TRAINING_NOISE))
+    fitted = measures.recorded_pairs(chosen, 0.0, draws(Stream.TRAINING_NOISE))
     decoders = [model.decoder()]
-    figures = accuracy_figures(model, decoders, fitted, pairs)
-    figures |= latent_figures(motion, model, decoders, pairs, preset)
+    figures = measures.accuracy_figures(model, decoders, fitted, pairs)
+    figures |= measures.latent_figures(motion, model, decoders, pairs, preset)
     if cell.noise_rad == 0 and isinstance(motion, ReachRegion):
-        figures |= reach_figures(motion, decoders, preset.reach_goals, draws(Stream.GOALS))
+        figures |= measures.reach_figures(motion, decoders, preset.reach_goals, draws(Stream.GOALS))
     elif cell.noise_rad == 0:
-        goals = start_goal_pairs(motion, shown.test, preset.reach_pairs, draws(Stream.PAIRS))
-        figures |= control_figures(motion, decoders, baseline.decoder(), goals)
+        goals = measures.start_goal_pairs(motion, shown.test, preset.reach_pairs, draws(Stream.PAIRS))
+        figures |= measures.control_figures(motion, decoders, baseline.decoder(), goals)
     return figures
 
 

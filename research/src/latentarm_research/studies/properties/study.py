@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 from latentarm.core.types import Row
 from latentarm_research.studies.hypotheses import Comparison, comparison_table, verdicts
 from latentarm_research.studies.page import render_page
+from latentarm_research.studies.properties import tables
 from latentarm_research.studies.properties.cell import (
     PropertiesCell,
     PropertiesResult,
@@ -23,17 +24,6 @@ from latentarm_research.studies.properties.hypotheses import CLAIMS, LINEAR, com
 from latentarm_research.studies.properties.motion_figures.catalogue import TASK_FIGURES
 from latentarm_research.studies.properties.paper import with_paper
 from latentarm_research.studies.properties.preset import AS_CHOSEN, PRESETS, Preset, designs
-from latentarm_research.studies.properties.tables import (
-    OURS,
-    UNIT_NOT_STATED,
-    as_good_as_paper,
-    cells_table,
-    count,
-    noise_table,
-    paper_cells,
-    paper_table,
-    sweep_table,
-)
 from latentarm_research.studies.series import Series
 from latentarm_research.studies.statistics import LEVEL
 from latentarm_research.studies.study import Grid, Report, Request, Study, again
@@ -145,25 +135,25 @@ def _page(
     tests: Sequence[Comparison],
     figures: "dict[str, Figure]",
 ) -> str:
-    as_good = {task: as_good_as_paper(rows, task) for task in request.tasks}
-    cells = paper_cells(rows)
+    as_good = {task: tables.as_good_as_paper(rows, task) for task in request.tasks}
+    cells = tables.paper_cells(rows)
     return render_page(
         "properties/page.md",
         command=again(STUDY, request),
         preset=request.preset,
         tasks=request.tasks,
         step_s=STEP_S,
-        cells_found=count(cells),
-        cells_found_by_means=count(paper_cells(rows, means=True)),
-        cells_table=cells_table(cells),
-        sweep_table=sweep_table(swept, list(designs(request.preset))) if swept else "",
+        cells_found=tables.count(cells),
+        cells_found_by_means=tables.count(tables.paper_cells(rows, means=True)),
+        cells_table=tables.cells_table(cells),
+        sweep_table=tables.sweep_table(swept, list(designs(request.preset))) if swept else "",
         verdicts=verdicts(tests),
-        ours=OURS,
+        ours=tables.OURS,
         as_good={task: counts for task, counts in as_good.items() if counts[1]},
         figures=list(figures),
-        paper_tables={task: paper_table(rows, task) for task in request.tasks},
-        noise_tables={task: noise_table(rows, task) for task in request.tasks if "noise" in figures},
-        unit_not_stated=UNIT_NOT_STATED,
+        paper_tables={task: tables.paper_table(rows, task) for task in request.tasks},
+        noise_tables={task: tables.noise_table(rows, task) for task in request.tasks if "noise" in figures},
+        unit_not_stated=tables.UNIT_NOT_STATED,
         compared_measures=", ".join(dict.fromkeys(one.measure for one in CLAIMS if one.threshold is None)),
         linear=LINEAR,
         level=LEVEL,

@@ -12,16 +12,9 @@ from latentarm.evaluation.looks import look_of
 from latentarm_research.drives.arm_figure import draw_arm as draw_solid_arm
 from latentarm_research.drives.arm_figure import frame
 from latentarm_research.drives.drive_figures import GOAL_COLOURS, GOAL_MARKERS
-from latentarm_research.studies.drawing import (
-    arm_line,
-    draw_series,
-    label_axes,
-    name_series,
-    panel_grid,
-    plane,
-    title,
-)
+from latentarm_research.studies import drawing
 from latentarm_research.studies.drawing import draw_arm as draw_planar_arm
+from latentarm_research.studies.shared_autonomy import rows
 from latentarm_research.studies.shared_autonomy.cell import METHODS, AutonomyResult, Outcome
 from latentarm_research.studies.shared_autonomy.drive import STEP_S
 from latentarm_research.studies.shared_autonomy.hypotheses import MEASURE
@@ -32,14 +25,6 @@ from latentarm_research.studies.shared_autonomy.preset import (
     learner,
     of_fixed_expertise,
     weight_label,
-)
-from latentarm_research.studies.shared_autonomy.rows import (
-    MODEL,
-    RECONSTRUCTION,
-    Figure,
-    Interval,
-    band,
-    interval,
 )
 from latentarm_research.tasks.two_cups import BEARING_RAD, Place, PlanarTwoCups, TwoCups
 
@@ -85,22 +70,22 @@ def expertise_figure(results: Sequence[AutonomyResult], preset: Preset, tasks: S
     """Final error and time over rationality, a column per arm, as in the paper's figure 9."""
     heading = "Fixed expertise, mean with 95 % interval; simulated"
     size = len(EXPERTISE_MEASURES), len(tasks), 0.0, EXPERTISE_MM
-    figure, panels = panel_grid(heading, *size, width_mm=COLUMN_MM, sharex=True, sharey="row")
+    figure, panels = drawing.panel_grid(heading, *size, width_mm=COLUMN_MM, sharex=True, sharey="row")
     people = [of_fixed_expertise(beta).label for beta in preset.betas]
     named = np.arange(0, len(people), 1 if len(people) < 5 else 2)
     for column, task in zip(panels.T, tasks, strict=True):
-        outcomes = outcomes_of(results, task, MODEL)
-        title(column[0], look_of(task).label)
+        outcomes = outcomes_of(results, task, rows.MODEL)
+        drawing.title(column[0], look_of(task).label)
         for axes, measure in zip(column, EXPERTISE_MEASURES, strict=True):
             draw_over(axes, outcomes, people, measure)
             tidy(axes)
         names = [RATIONALITIES.get(preset.betas[place], f"{preset.betas[place]:g}") for place in named]
         column[-1].set_xticks(named, names)
     _from_zero(panels.flat)
-    label_axes(panels[-1], x="rationality β (1/m²)")
+    drawing.label_axes(panels[-1], x="rationality β (1/m²)")
     for axes, name in zip(panels[:, 0], EXPERTISE_MEASURES.values(), strict=True):
-        label_axes([axes], y=name)
-    name_series(figure, panels[0, 0])
+        drawing.label_axes([axes], y=name)
+    drawing.name_series(figure, panels[0, 0])
     return figure
 
 
@@ -108,23 +93,25 @@ def changes_figure(results: Sequence[AutonomyResult], preset: Preset, tasks: Seq
     """Final error over the time of a change; belief over time for two, as in the paper's figure 10."""
     heading = "People who change their mind about the cup, mean with 95 % interval; people and arms simulated"
     drawn = preset.drawn_changes_s
-    figure, panels = panel_grid(heading, len(tasks), 1 + len(drawn), CHANGES_ROW_MM, FRAME_MM, sharex="col")
+    figure, panels = drawing.panel_grid(
+        heading, len(tasks), 1 + len(drawn), CHANGES_ROW_MM, FRAME_MM, sharex="col"
+    )
     for (error, *beliefs), task in zip(panels, tasks, strict=True):
-        outcomes = outcomes_of(results, task, MODEL)
+        outcomes = outcomes_of(results, task, rows.MODEL)
         _draw_changes(error, outcomes, preset)
         _from_zero([error])
-        title(error, look_of(task).label)
-        label_axes([error], y="final state error")
+        drawing.title(error, look_of(task).label)
+        drawing.label_axes([error], y="final state error")
         for axes, after_s in zip(beliefs, drawn, strict=True):
             draw_course(axes, outcomes, changing(after_s).label, "belief")
             axes.axvline(after_s, color="black", linestyle=":", linewidth=1.0, label="change of mind")
-            title(axes, f"change after {after_s:g} s")
+            drawing.title(axes, f"change after {after_s:g} s")
             axes.set_ylim(-0.03, 1.03)
-            label_axes([axes], y="belief in the true goal")
+            drawing.label_axes([axes], y="belief in the true goal")
             tidy(axes)
-    label_axes(panels[-1, :1], x="change after (s)")
-    label_axes(panels[-1, 1:], x="time (s)")
-    name_series(figure, *panels[0])
+    drawing.label_axes(panels[-1, :1], x="change after (s)")
+    drawing.label_axes(panels[-1, 1:], x="time (s)")
+    drawing.name_series(figure, *panels[0])
     return figure
 
 
@@ -132,21 +119,21 @@ def learners_figure(results: Sequence[AutonomyResult], preset: Preset, tasks: Se
     """State error and belief of people who learn over time, a row per arm, as in the paper's figure 11."""
     heading = "People who learn while they drive, β = m t, mean with 95 % interval; people and arms simulated"
     columns = [(what, name) for what in COURSES for name in preset.learners]
-    figure, panels = panel_grid(heading, len(tasks), len(columns), ROW_MM, FRAME_MM, sharex=True)
+    figure, panels = drawing.panel_grid(heading, len(tasks), len(columns), ROW_MM, FRAME_MM, sharex=True)
     for line, task in zip(panels, tasks, strict=True):
-        outcomes = outcomes_of(results, task, MODEL)
+        outcomes = outcomes_of(results, task, rows.MODEL)
         for axes, (what, name) in zip(line, columns, strict=True):
             draw_course(axes, outcomes, learner(name, preset.learners[name]).label, what)
-            title(axes, f"{look_of(task).label}, {name}")
-            label_axes([axes], y=COURSES[what])
+            drawing.title(axes, f"{look_of(task).label}, {name}")
+            drawing.label_axes([axes], y=COURSES[what])
             tidy(axes)
     for what in COURSES:
         alike = list(panels[:, [place for place, column in enumerate(columns) if column[0] == what]].flat)
         top = max(axes.get_ylim()[1] for axes in alike) if what == "error" else 1.03
         for axes in alike:
             axes.set_ylim(0.0 if what == "error" else -0.03, top)
-    label_axes(panels[-1], x="time (s)")
-    name_series(figure, panels[0, 0])
+    drawing.label_axes(panels[-1], x="time (s)")
+    drawing.name_series(figure, panels[0, 0])
     return figure
 
 
@@ -181,39 +168,41 @@ def _by_model(
 ) -> "Drawing":
     """Final errors, a row per arm and a column per model."""
     models = list(dict.fromkeys(result.cell.model for result in results))
-    figure, panels = panel_grid(heading, len(tasks), len(models), ROW_MM, FRAME_MM, sharex=True, sharey=True)
+    figure, panels = drawing.panel_grid(
+        heading, len(tasks), len(models), ROW_MM, FRAME_MM, sharex=True, sharey=True
+    )
     for line, task in zip(panels, tasks, strict=True):
         for axes, model in zip(line, models, strict=True):
             draw(axes, outcomes_of(results, task, model))
-            title(axes, f"{look_of(model).label}, {look_of(task).label}")
+            drawing.title(axes, f"{look_of(model).label}, {look_of(task).label}")
     _from_zero(panels.flat)
-    label_axes(panels[:, 0], y="final state error")
-    label_axes(panels[-1], x=x)
-    name_series(figure, panels[0, 0])
+    drawing.label_axes(panels[:, 0], y="final state error")
+    drawing.label_axes(panels[-1], x=x)
+    drawing.name_series(figure, panels[0, 0])
     return figure
 
 
 def weights_figure(
-    found: Sequence[Figure], ablation: Ablation, person: str, tasks: Sequence[str]
+    found: Sequence[rows.Figure], ablation: Ablation, person: str, tasks: Sequence[str]
 ) -> "Drawing":
     """Reconstruction and a person's final error over lambda_2, a line per arm."""
     heading = "Weight of the entropy, mean with 95 % interval; simulated"
-    figure, ((one, other),) = panel_grid(heading, 1, 2, 0.0, WEIGHTS_MM, width_mm=COLUMN_MM)
+    figure, ((one, other),) = drawing.panel_grid(heading, 1, 2, 0.0, WEIGHTS_MM, width_mm=COLUMN_MM)
     labels = [weight_label(weight) for weight in ablation.weights]
     known = {(each.task, each.condition, each.measure): each.interval for each in found}
     for axes, name, measure, label, conditions in (
-        (one, "reconstruction", RECONSTRUCTION, "test error (% of PCA)", labels),
+        (one, "reconstruction", rows.RECONSTRUCTION, "test error (% of PCA)", labels),
         (other, person, "final_state_error", "final state error", [f"{label}, {person}" for label in labels]),
     ):
         for index, task in enumerate(tasks):
             places = np.arange(len(labels), dtype=np.float64) + WEIGHT_NUDGE * (index - (len(tasks) - 1) / 2)
             _draw_series(axes, task, places, [known[task, condition, measure] for condition in conditions])
-        title(axes, name)
+        drawing.title(axes, name)
         axes.set_ylim(bottom=0.0)
         axes.set_xticks(range(len(labels)), [f"{weight:g}" for weight in ablation.weights])
-        label_axes([axes], "weight $\\lambda_2$", label)
+        drawing.label_axes([axes], "weight $\\lambda_2$", label)
         tidy(axes)
-    name_series(figure, one)
+    drawing.name_series(figure, one)
     return figure
 
 
@@ -230,15 +219,15 @@ def task_figure(task: TwoCups) -> "Drawing":
         axes: Axes = figure.add_subplot()
         draw_planar_arm(axes, task.robot, task.start)
         _draw_paths(axes, task, [path[:, :2] for path in paths], nearest)
-        places = np.concatenate([*(path[:, :2] for path in paths), arm_line(task.robot, task.start)])
+        places = np.concatenate([*(path[:, :2] for path in paths), drawing.arm_line(task.robot, task.start)])
         low, high = places.min(axis=0) - MARGIN_M, places.max(axis=0) + MARGIN_M
-        plane(axes, ((low[0], high[0]), (low[1], high[1])))
+        drawing.plane(axes, ((low[0], high[0]), (low[1], high[1])))
     else:
         solid: Axes3D = figure.add_subplot(projection="3d", computed_zorder=False)
         places = draw_solid_arm(solid, task.robot, task.start)
         _draw_paths(solid, task, paths, nearest)
         frame(solid, np.concatenate([places, *paths]))
-    name_series(figure, figure.axes[0], handle_length=1.0)
+    drawing.name_series(figure, figure.axes[0], handle_length=1.0)
     return figure
 
 
@@ -293,7 +282,7 @@ def draw_over(
     shift = NUDGE * float(np.ptp(places))
     for index, method in enumerate(METHODS):
         if (method, people[0]) in outcomes:
-            found = [interval(outcomes[method, person].figures[measure]) for person in people]
+            found = [rows.interval(outcomes[method, person].figures[measure]) for person in people]
             _draw_series(axes, method, places + (index - 1) * shift, found, zorder=3 + index)
 
 
@@ -302,7 +291,7 @@ def draw_course(axes: "Axes", outcomes: Outcomes, person: str, what: str) -> Non
     for index, method in enumerate(METHODS):
         if (method, person) not in outcomes:
             continue
-        mean, low, high = band(getattr(outcomes[method, person], what))
+        mean, low, high = rows.band(getattr(outcomes[method, person], what))
         time_s = STEP_S * np.arange(len(mean))
         look = look_of(method)
         axes.fill_between(time_s, low, high, color=look.colour, alpha=0.2, linewidth=0.0)
@@ -330,11 +319,11 @@ def _draw_changes(axes: "Axes", outcomes: Outcomes, preset: Preset) -> None:
 
 
 def _draw_series(
-    axes: "Axes", name: str, places: FloatArray, found: Sequence[Interval], zorder: float = 2.0
+    axes: "Axes", name: str, places: FloatArray, found: Sequence[rows.Interval], zorder: float = 2.0
 ) -> None:
     """Means with their intervals."""
     means, widths = [one.mean for one in found], [one.half_width for one in found]
-    draw_series(axes, name, places, means, widths, zorder=zorder)
+    drawing.draw_series(axes, name, places, means, widths, zorder=zorder)
 
 
 def _from_zero(panels: "Iterable[Axes]") -> None:

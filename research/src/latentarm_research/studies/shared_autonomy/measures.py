@@ -12,14 +12,7 @@ from latentarm.core.types import BoolArray, FloatArray
 from latentarm.models.decoder import Decoder
 from latentarm.models.tool_contexts import ROTATION_WEIGHT_M, TWIST
 from latentarm.robots.kinematics.torch_chain import TorchChain
-from latentarm_research.assistance.bound import (
-    Others,
-    certified,
-    certified_along,
-    furthest,
-    known_help,
-    weighted,
-)
+from latentarm_research.assistance import bound
 from latentarm_research.studies.shared_autonomy.choice import KNOWN
 from latentarm_research.studies.shared_autonomy.drive import GAIN_PER_S, STEP_S, Drives, Scene
 
@@ -43,10 +36,10 @@ found by sampling."""
 DAMPING_M2: Final = 1e-2
 """Weight of a joint's motion by 1 rad in the metric of the tools, relative to a tool's motion by 1 m."""
 
-BALLS: Final[dict[str, Others]] = {
-    "certified_share_eq_14": furthest,
-    "certified_share_eq_13": weighted,
-    "certified_share_known_help": known_help,
+BALLS: Final[dict[str, bound.Others]] = {
+    "certified_share_eq_14": bound.furthest,
+    "certified_share_eq_13": bound.weighted,
+    "certified_share_known_help": bound.known_help,
 }
 """Forms of the bound in which the person may do anything up to sigma_h, from the loosest to the tightest."""
 
@@ -150,10 +143,10 @@ def certify(drives: Drives, scene: Scene, decoder: Decoder) -> tuple[FloatArray,
         "certified_share_tools": np.matvec(tool_metric(scene)[wanted], error),
     }
     shares = {
-        name: certified(sigma_h, state, belief, scene.goals, wanted, alpha, GAIN_PER_S, others=others)
+        name: bound.certified(sigma_h, state, belief, scene.goals, wanted, alpha, GAIN_PER_S, others=others)
         for name, others in BALLS.items()
     }
-    along = partial(certified_along, state=state, belief=belief, goals=scene.goals, alpha=alpha)
+    along = partial(bound.certified_along, state=state, belief=belief, goals=scene.goals, alpha=alpha)
     return sigma_h, shares | {
         name: along(enclosure.furthest(-w), w, gain_per_s=GAIN_PER_S) for name, w in towards.items()
     }

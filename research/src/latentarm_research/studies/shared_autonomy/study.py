@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from latentarm_research.studies.hypotheses import Comparison, comparison_table, verdicts
 from latentarm_research.studies.page import render_page
-from latentarm_research.studies.shared_autonomy import choice, drive
+from latentarm_research.studies.shared_autonomy import choice, drive, hypotheses
 from latentarm_research.studies.shared_autonomy import measures as measures_of
 from latentarm_research.studies.shared_autonomy import preset as people
 from latentarm_research.studies.shared_autonomy.cell import (
@@ -25,13 +25,6 @@ from latentarm_research.studies.shared_autonomy.figures import (
     slopes_figure,
     task_figure,
     weights_figure,
-)
-from latentarm_research.studies.shared_autonomy.hypotheses import (
-    MEASURE,
-    REACHED,
-    TRAPPED,
-    compare_methods,
-    targets,
 )
 from latentarm_research.studies.shared_autonomy.measures import ARRIVED
 from latentarm_research.studies.shared_autonomy.preset import PRESETS, Entropy, Preset, variants
@@ -55,7 +48,7 @@ if TYPE_CHECKING:
 MODELS: Final = (MODEL, "cvae")
 """The paper's model, and that of its equation 16 in full."""
 
-MAIN: Final = (MEASURE, "time_s")
+MAIN: Final = (hypotheses.MEASURE, "time_s")
 """Measures that are shown of the paper's model at once; the others are to be unfolded."""
 
 
@@ -115,7 +108,7 @@ def _label(cell: AutonomyCell) -> str:
 
 def _report(request: Request[Preset], results: list[AutonomyResult]) -> Report:
     found = figures(results)
-    rows, tests = rows_of(found), compare_methods(results, request.preset)
+    rows, tests = rows_of(found), hypotheses.compare_methods(results, request.preset)
     drawings = _drawings(request, results, found)
     return Report(
         rows=rows,
@@ -176,10 +169,10 @@ def _page(
         measures=list(measures),
         few_seeds=preset.seeds < FEWEST_SEEDS,
         arrived=ARRIVED,
-        reached=REACHED,
-        trapped=TRAPPED,
+        reached=hypotheses.REACHED,
+        trapped=hypotheses.TRAPPED,
         level=LEVEL,
-        target_table=target_table(targets(found, preset), ("arm", "model")),
+        target_table=target_table(hypotheses.targets(found, preset), ("arm", "model")),
         choice=choice,
         measures_of=measures_of,
         belief=drive.RULE.keywords,

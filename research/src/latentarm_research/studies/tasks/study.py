@@ -15,7 +15,7 @@ from latentarm_research.studies.results_folder import package_versions
 from latentarm_research.studies.source import source_digest
 from latentarm_research.studies.study import Grid, Report, Request, Study, again
 from latentarm_research.studies.tasks import cell as measuring
-from latentarm_research.studies.tasks import moved, orientation, runs
+from latentarm_research.studies.tasks import kept, moved, orientation, runs, tables
 from latentarm_research.studies.tasks import preset as presets
 from latentarm_research.studies.tasks.cell import (
     DemonstratedRun,
@@ -29,14 +29,6 @@ from latentarm_research.studies.tasks.cell import (
     training_set,
 )
 from latentarm_research.studies.tasks.figures import success_figure
-from latentarm_research.studies.tasks.kept import (
-    KEEP_DRIVES,
-    KEEP_MODELS,
-    KEEP_ORIENTATIONS,
-    KEEP_SHOWN,
-    MODELS,
-    RUNS,
-)
 from latentarm_research.studies.tasks.moved import MOVED, TASKS, task_of
 from latentarm_research.studies.tasks.orientation import OrientationCell, Oriented, orient
 from latentarm_research.studies.tasks.preset import (
@@ -51,13 +43,6 @@ from latentarm_research.studies.tasks.rows import STUDY as NAME
 from latentarm_research.studies.tasks.rows import TasksResults, rows_of, runs_as_json
 from latentarm_research.studies.tasks.rule import DefaultVerdict, decide
 from latentarm_research.studies.tasks.runs import Driver, Run
-from latentarm_research.studies.tasks.tables import (
-    failure_table,
-    measure_table,
-    success_table,
-    summary_tables,
-    time_table,
-)
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -65,7 +50,7 @@ if TYPE_CHECKING:
 
 def _measure(request: Request[Preset], grid: Grid) -> TasksResults:
     preset, seed = request.preset, request.seed
-    shown = grid.run("Demonstrations", show, _shown_cells(request), _shown_label, KEEP_SHOWN)
+    shown = grid.run("Demonstrations", show, _shown_cells(request), _shown_label, kept.KEEP_SHOWN)
     sets = {task: training_set(task, _trains(shown, task)) for task in request.tasks}
     training = [
         ModelCell(task, Condition(context, model, way_back), demonstrations, preset, seed)
@@ -75,12 +60,12 @@ def _measure(request: Request[Preset], grid: Grid) -> TasksResults:
         for way_back in (False, True)
     ]
     trained = grid.run(
-        "Models", train, training, lambda cell: f"{cell.task}, {cell.condition.label}", KEEP_MODELS
+        "Models", train, training, lambda cell: f"{cell.task}, {cell.condition.label}", kept.KEEP_MODELS
     )
     orienting = [OrientationCell(task, demonstrations, preset, seed) for task, demonstrations in sets.items()]
-    oriented = grid.run("Orientations", orient, orienting, lambda cell: cell.task, KEEP_ORIENTATIONS)
+    oriented = grid.run("Orientations", orient, orienting, lambda cell: cell.task, kept.KEEP_ORIENTATIONS)
     cells = _drive_cells(request, (*oriented, *trained))
-    driven = grid.run("Drives", drive, cells, _drive_label, KEEP_DRIVES)
+    driven = grid.run("Drives", drive, cells, _drive_label, kept.KEEP_DRIVES)
     return TasksResults(shown, trained, driven)
 
 
@@ -136,7 +121,7 @@ def _report(request: Request[Preset], measured: TasksResults) -> Report:
         figures=figures,
         documents={"runs.json": runs_as_json(by_task), "verdict.json": verdict.as_json()},
         timings=_timings(measured),
-        tables=[*summary_tables(by_task), f"Default by the rule: {verdict.sentence}."],
+        tables=[*tables.summary_tables(by_task), f"Default by the rule: {verdict.sentence}."],
     )
 
 
@@ -164,10 +149,10 @@ def _page(
         refused=[
             f"{look_of(one.task).label} ({one.condition.label})" for one in measured.trained if one.refused
         ],
-        success_tables={name: success_table(runs) for name, runs in by_task.items()},
-        time_tables={name: time_table(runs) for name, runs in by_task.items()},
-        measure_tables={name: measure_table(rows, runs, name) for name, runs in by_task.items()},
-        failure_tables={name: failure_table(runs) for name, runs in by_task.items()},
+        success_tables={name: tables.success_table(runs) for name, runs in by_task.items()},
+        time_tables={name: tables.time_table(runs) for name, runs in by_task.items()},
+        measure_tables={name: tables.measure_table(rows, runs, name) for name, runs in by_task.items()},
+        failure_tables={name: tables.failure_table(runs) for name, runs in by_task.items()},
     )
 
 
@@ -209,7 +194,7 @@ STUDY: Final = Study(
     figures=("success",),
     documents=("runs.json", "verdict.json"),
     depends_on=_depends_on,
-    kept=(RUNS, MODELS),
+    kept=(kept.RUNS, kept.MODELS),
     options=("people", "runs"),
     grows=("people", "runs"),
 )

@@ -7,13 +7,7 @@ from typing import TYPE_CHECKING, final
 from latentarm_research.user_studies.answers.scales import Ratings
 from latentarm_research.user_studies.definition import Definition
 from latentarm_research.user_studies.record import Trial
-from latentarm_research.user_studies.report.boxes import (
-    MOST_PEOPLE,
-    box_figure,
-    idle_figure,
-    people_figure,
-    people_measures,
-)
+from latentarm_research.user_studies.report import boxes
 from latentarm_research.user_studies.report.likert import likert_figure, step_figure
 from latentarm_research.user_studies.report.ways import plate_figure, stick_figure, way_figure
 from latentarm_research.user_studies.trace import Trace
@@ -61,7 +55,7 @@ def draw(
         caption = (
             f"Every measure, {who}. Boxes hold the middle half, whiskers end at the 10 and 90 percentiles."
         )
-        found.append(Drawn("measures", box_figure(definition, trials, shown, who), caption))
+        found.append(Drawn("measures", boxes.box_figure(definition, trials, shown, who), caption))
     if ratings is not None:
         caption = (
             f"Answers to the questionnaire's scales, {who}: shares of all answers; agreement to the right."
@@ -69,7 +63,7 @@ def draw(
         found.append(Drawn("ratings", likert_figure(definition, ratings.rated, who), caption))
     if {"time_s", "idle_s"} <= measured:
         caption = f"Time taken, and in the lighter shade the part of it without input, {who}."
-        found.append(Drawn("idle", idle_figure(definition, trials, who), caption))
+        found.append(Drawn("idle", boxes.idle_figure(definition, trials, who), caption))
     if any(trace.plate_m for trace in traces):
         caption = f"Goal error: distance of the tool from the closest plate in the course of a trial, {who}."
         found.append(Drawn("plates", plate_figure(definition, traces, who), caption))
@@ -79,10 +73,10 @@ def draw(
             " it. Dots are people's means, lines the mean of those who came so far."
         )
         found.append(Drawn("steps", step_figure(definition, traces, who), caption))
-    each = people_measures(measured)
-    if each and len({trial.person for trial in trials}) <= MOST_PEOPLE:
+    each = boxes.people_measures(measured)
+    if each and len({trial.person for trial in trials}) <= boxes.MOST_PEOPLE:
         caption = f"Each of the {who} separately; in the lighter shade the time without input."
-        found.append(Drawn("people", people_figure(definition, trials, each, who), caption))
+        found.append(Drawn("people", boxes.people_figure(definition, trials, each, who), caption))
     for task in definition.tasks:
         if any(trace.task == task.name for trace in traces):
             caption = f"Ways of the tool in {task.label}, {who}. The scene differs from person to person."

@@ -8,15 +8,7 @@ import numpy as np
 
 from latentarm.core.style import FONT_SIZE, TWO_COLUMNS_MM, new_figure, shade
 from latentarm.core.types import FloatArray, Row
-from latentarm_research.studies.drawing import (
-    draw_arm,
-    draw_pose,
-    note,
-    plane,
-    row_of_panels,
-    stacked_parts,
-    title,
-)
+from latentarm_research.studies import drawing
 from latentarm_research.studies.properties.motion_figures.shown import (
     CONDITIONED,
     CONTRASTED,
@@ -64,7 +56,7 @@ def rotate_figure(decoders: Decoders, rows: Sequence[Row]) -> "Figure":
 
     figure = new_figure(sum(PARTS_MM), TWO_COLUMNS_MM)
     figure.suptitle("Rotate: two simulated planar arms of 5 joints, 1-D latent action", fontsize=FONT_SIZE)
-    parts = stacked_parts(figure, PARTS_MM)
+    parts = drawing.stacked_parts(figure, PARTS_MM)
     draw_losses_and_effects(
         parts[0],
         rows,
@@ -76,10 +68,10 @@ def rotate_figure(decoders: Decoders, rows: Sequence[Row]) -> "Figure":
     )
     draw_states(parts[1], near, three, partial(_draw_turns, motion), BOX_VIEW)
     start = spread_states(states, turn, 12)[0]
-    for axes, model in zip(row_of_panels(parts[2], len(shown)), shown, strict=True):
+    for axes, model in zip(drawing.row_of_panels(parts[2], len(shown)), shown, strict=True):
         _draw_rotate_rollout(axes, motion, model, start)
-        title(axes, f"{model.look.label}, z = +1", "C" if model is shown[0] else "")
-        plane(axes, ROLLOUT_VIEW)
+        drawing.title(axes, f"{model.look.label}, z = +1", "C" if model is shown[0] else "")
+        drawing.plane(axes, ROLLOUT_VIEW)
     return figure
 
 
@@ -112,9 +104,9 @@ def _draw_turns(motion: Rotate, axes: "Axes", model: DrawnModel, state: FloatArr
     """The box in one state, and where z = -1 (pale) and z = +1 (dark) turn it."""
     ends = model.hold(state[None], np.array(POSES)[:, None], HOLD_S)[:, 0, -1]
     _draw_box(axes, motion, state, BOX_EDGE, BOX_COLOUR)
-    draw_arm(axes, motion.robot, state)
+    drawing.draw_arm(axes, motion.robot, state)
     for z, pose in zip(POSES, ends, strict=True):
-        draw_pose(axes, motion.robot, pose, shade(model.look.colour, z))
+        drawing.draw_pose(axes, motion.robot, pose, shade(model.look.colour, z))
         _draw_box(axes, motion, pose, shade(model.look.colour, z))
     axes.plot(*_middle(motion, state), "+", color="black", markersize=6, zorder=7)
 
@@ -123,12 +115,12 @@ def _draw_rotate_rollout(axes: "Axes", motion: Rotate, model: DrawnModel, start:
     """Both arms and the box while z = +1 is held: pale at first, then darker."""
     passed = model.hold(start[None], np.ones((1, 1)), ROLLOUT_S)[0, 0]
     _draw_box(axes, motion, start, BOX_EDGE, BOX_COLOUR)
-    draw_arm(axes, motion.robot, start)
+    drawing.draw_arm(axes, motion.robot, start)
     every = round(BETWEEN_POSES_S / STEP_S)
     for moment in range(every, len(passed), every):
         colour = shade(model.look.colour, 2 * moment / (len(passed) - 1) - 1)
-        draw_pose(axes, motion.robot, passed[moment], colour)
+        drawing.draw_pose(axes, motion.robot, passed[moment], colour)
         _draw_box(axes, motion, passed[moment], colour)
     left, right = np.moveaxis(_grips(motion, passed), -2, 0)
     off = np.abs(np.linalg.norm(left - right, axis=-1) - BOX_WIDTH_M).max()
-    note(axes, f"grip on the box off by up to {1000 * off:.0f} mm")
+    drawing.note(axes, f"grip on the box off by up to {1000 * off:.0f} mm")
