@@ -34,11 +34,7 @@ CHECK_EVERY: Final = 250
 @final
 @dataclass(frozen=True)
 class FitConfig:
-    """How an alignment is learned.
-
-    Raises:
-        UserError: a figure is out of its range.
-    """
+    """How an alignment is learned. Raises a `UserError` where a figure is out of its range."""
 
     priors: Priors = field(default_factory=Priors)  # what counts beside the answers
     hidden: tuple[int, ...] = (64, 64)  # units of each hidden layer of f

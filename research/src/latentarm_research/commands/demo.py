@@ -16,11 +16,7 @@ from latentarm.runs.options import Json, Seed
 
 @dataclass(frozen=True)
 class DemoOptions:
-    """Options of `latentarm demo`.
-
-    Raises:
-        UserError: a figure is out of its range.
-    """
+    """Options of `latentarm demo`. Raises a `UserError` where a figure is out of its range."""
 
     out: Annotated[Path, arg(metavar="DIR", help="Folder for datasets, runs, table and figures.")] = Path(
         "demo"

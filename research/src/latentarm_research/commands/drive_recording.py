@@ -34,11 +34,7 @@ class DriveRecording:
     def begin(
         self, task: str, goals: Sequence[Goal], things: Sequence[str] = (), objects: Sequence[str] = ()
     ) -> None:
-        """Begin a drive.
-
-        Raises:
-            UserError: the journal cannot be written.
-        """
+        """Begin a drive. Raises a `UserError` where the journal cannot be written."""
         config, robot = self._config, self._robot
         self._recorder.begin_episode(
             EpisodeHeader(
@@ -64,19 +60,11 @@ class DriveRecording:
         )
 
     def step(self, record: StepRecord) -> None:
-        """Add a step of the drive.
-
-        Raises:
-            UserError: the journal cannot be written.
-        """
+        """Add a step of the drive. Raises a `UserError` where the journal cannot be written."""
         self._recorder.record(record)
 
     def end(self) -> None:
-        """Complete the drive.
-
-        Raises:
-            UserError: the journal cannot be written.
-        """
+        """Complete the drive. Raises a `UserError` where the journal cannot be written."""
         self._recorder.end_episode()
 
 

@@ -167,11 +167,7 @@ def power_of_study(
 def _request(
     definition: Definition, options: StudyOptions, simulated: int | None, preset: str, out: Path
 ) -> "Request[Sizes]":
-    """What was asked for.
-
-    Raises:
-        UserError: something is out of its range.
-    """
+    """What was asked for. Raises a `UserError` where something is out of its range."""
     from latentarm_research.studies.study import Request
     from latentarm_research.user_studies.sizes import sizes_of
 

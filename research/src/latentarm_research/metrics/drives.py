@@ -107,11 +107,7 @@ def measure_drive(
     tool: Pose,  # (T,), where the tool was at each
     outcome: Outcome,
 ) -> Drive:
-    """Figures of a drive from its record.
-
-    Raises:
-        ValueError: there are no records.
-    """
+    """Figures of a drive from its record. Raises a `ValueError` where there are no records."""
     if not records:
         raise ValueError("A drive without a single step has no figures.")
     time_s = np.array([record.time_s for record in records])

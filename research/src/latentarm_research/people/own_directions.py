@@ -16,11 +16,7 @@ from latentarm_research.people.contract import LoopLimits
 @final
 @dataclass(frozen=True)
 class OwnSpeed:
-    """How fast a simulated person likes to go.
-
-    Raises:
-        UserError: the share is out of its range.
-    """
+    """How fast a simulated person likes to go. Raises a `UserError` where the share is out of its range."""
 
     share: float = 1.0  # of the speed of somebody who pushes as far as it takes, in (0, 1]
 

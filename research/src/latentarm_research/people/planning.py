@@ -33,11 +33,7 @@ that did not."""
 @final
 @dataclass(frozen=True)
 class PlanningConfig:
-    """How far ahead the simulated person plans.
-
-    Raises:
-        UserError: there would be no plan.
-    """
+    """How far ahead the simulated person plans. Raises a `UserError` where there would be no plan."""
 
     pieces: int = 8  # maximum number in a plan; the input is constant in each
     piece_s: float = 0.5  # length of a piece, s

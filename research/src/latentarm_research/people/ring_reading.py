@@ -22,11 +22,7 @@ from latentarm_research.people.motion import shifted
 @final
 @dataclass(frozen=True)
 class RingReadingConfig:
-    """How a simulated person reads the ring.
-
-    Raises:
-        UserError: a figure is out of its range.
-    """
+    """How a simulated person reads the ring. Raises a `UserError` where a figure is out of its range."""
 
     # how far a direction in space is misread from two views, RMS of the angle, rad. An assumption
     error_rad: float = math.radians(15.0)

@@ -61,11 +61,7 @@ Measured = TypeVar("Measured")
 
 @dataclass(frozen=True)
 class Request(Generic[Preset]):
-    """What a study was asked for.
-
-    Raises:
-        UserError: seed, jobs or backend are out of range.
-    """
+    """What a study was asked for. Raises a `UserError` where seed, jobs or backend are out of range."""
 
     out: Path  # a new folder, or that of an earlier run of this study, which is replaced
     preset: Preset  # sizes of the study

@@ -11,11 +11,7 @@ NAMES: Final = ("harmonic", "apple_pie", "eating", "alignment", "case_study")
 
 
 def load_definition(name: str) -> Definition:
-    """The definition of that name.
-
-    Raises:
-        UserError: there is no such study.
-    """
+    """The definition of that name. Raises a `UserError` where there is no such study."""
     if name not in NAMES:
         raise UserError(f"There is no study {name!r}: choose from {', '.join(NAMES)}.")
     return import_module(f"latentarm_research.user_studies.definitions.{name}").DEFINITION

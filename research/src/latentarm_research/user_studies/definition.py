@@ -32,11 +32,7 @@ PREFIX: Final = "user study "
 @final
 @dataclass(frozen=True)
 class Condition:
-    """What people drive with.
-
-    Raises:
-        UserError: the parts do not go together.
-    """
+    """What people drive with. Raises a `UserError` where the parts do not go together."""
 
     name: str  # as tables call it
     about: str  # in words

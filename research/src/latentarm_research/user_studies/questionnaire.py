@@ -42,11 +42,7 @@ class Scale:
 
 
 def scale(name: str, label: str, agree: tuple[str, ...], disagree: tuple[str, ...]) -> Scale:
-    """A scale of statements for and against.
-
-    Raises:
-        UserError: there are too few items.
-    """
+    """A scale of statements for and against. Raises a `UserError` where there are too few items."""
     return Scale(name, label, (*map(Item, agree), *(Item(text, True) for text in disagree)))
 
 

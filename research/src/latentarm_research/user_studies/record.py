@@ -42,11 +42,7 @@ class UnlabelledTrial:
 
 
 def read_trial(entry: object, where: str) -> Trial:
-    """A trial from JSON.
-
-    Raises:
-        UserError: a field is missing or is not what it should be.
-    """
+    """A trial from JSON. Raises a `UserError` where a field is missing or is not what it should be."""
     if not isinstance(entry, dict):
         raise UserError(f"{where} is no trial: it must be an object.")
     fields = cast(dict[str, Any], entry)

@@ -16,11 +16,7 @@ OVER_MARSHMALLOW: Final = "over_marshmallow"
 def scene_of(
     name: str,  # `OVER_MARSHMALLOW`, or a name of `latentarm.tasks.catalogue.SCENE_TASKS`
 ) -> SceneTask:
-    """A task.
-
-    Raises:
-        UserError: there is no such task, or it does not load.
-    """
+    """A task. Raises a `UserError` where there is no such task, or it does not load."""
     if name != OVER_MARSHMALLOW:
         return make_scene_task(name)
     from latentarm_research.tasks.over_marshmallow import OverMarshmallow

@@ -74,11 +74,7 @@ def drive_cells(preset: Preset, seed: int) -> list[AlignedDriveCell]:
 
 
 def measure_drives(cell: AlignedDriveCell) -> DrivesResult:
-    """Learn, and drive in every condition.
-
-    Raises:
-        UserError: the preset's sizes make no sense.
-    """
+    """Learn, and drive in every condition. Raises a `UserError` where the preset's sizes make no sense."""
     learned = learn(cell)
     began = perf_counter()
     drives = {condition: drive_all(cell, learned, condition) for condition in DRIVEN}

@@ -81,11 +81,7 @@ def _measure(request: Request[Preset], grid: Grid) -> AlignmentResults:
 
 
 def measure(cell: AnyCell) -> AnyResult:
-    """Measure one cell of the second grid.
-
-    Raises:
-        UserError: it cannot be measured as asked.
-    """
+    """Measure one cell of the second grid. Raises a `UserError` where it cannot be measured as asked."""
     return measure_drives(cell) if isinstance(cell, AlignedDriveCell) else MEASURES[cell.kind](cell)
 
 

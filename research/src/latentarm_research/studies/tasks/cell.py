@@ -43,11 +43,7 @@ class DemonstratedRun:
 
 
 def show(cell: ShownCell) -> DemonstratedRun:
-    """Let the scripted demonstrator do the task.
-
-    Raises:
-        UserError: the arm cannot be used.
-    """
+    """Let the scripted demonstrator do the task. Raises a `UserError` where the arm cannot be used."""
     task = task_of(cell.task, cell.stream)
     rng = generator(cell.seed, cell.task, cell.stream, cell.number)
     shown = demonstrate_once(task, choice_of(task, cell.number), rng)
@@ -89,11 +85,7 @@ class FittedModel:
 
 
 def train(cell: ModelCell) -> FittedModel:
-    """Fit the models.
-
-    Raises:
-        UserError: the preset's sizes make no sense.
-    """
+    """Fit the models. Raises a `UserError` where the preset's sizes make no sense."""
     preset, condition = cell.preset, cell.condition
     began = perf_counter()
     model = fit_model(

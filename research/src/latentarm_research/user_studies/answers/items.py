@@ -74,11 +74,7 @@ def write_sheet(
     definition: Definition,
     asked: Sequence[Asked],
 ) -> None:
-    """Write a sheet.
-
-    Raises:
-        UserError: the file has another ending, exists, or cannot be written.
-    """
+    """Write a sheet. Raises a `UserError` where the file has another ending, exists, or cannot be written."""
     kinds = {".csv": _csv, ".md": _markdown}
     if path.suffix not in kinds:
         raise UserError(f"{path} must end in {' or '.join(kinds)}.")
