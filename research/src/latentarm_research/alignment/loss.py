@@ -26,8 +26,7 @@ from latentarm_research.alignment.priors import (
 )
 from latentarm_research.alignment.transition import Place, Push, Transition, joined, parted
 
-ANSWERS_AT_ONCE: Final = 128
-"""Maximum number of answers in one step; from more, each step draws this many."""
+ANSWERS_AT_ONCE: Final = 128  # maximum number of answers in one step; from more, each step draws this many
 
 DRAWS: Final = 1
 """The stream of a run's random numbers that its draws come from; its weights come from stream 0."""

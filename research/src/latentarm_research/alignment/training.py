@@ -21,14 +21,9 @@ from latentarm.robots.kinematics.chain import Chain
 from latentarm_research.alignment.loss import ANSWERS_AT_ONCE, AlignmentLoss, Draw
 from latentarm_research.alignment.priors import NO_PRIORS, Priors
 
-JUDGED: Final = 512
-"""Contexts in which all runs are judged at the end."""
-
-JUDGE: Final = 0
-"""The seed that they are drawn from."""
-
-CHECK_EVERY: Final = 250
-"""Steps between two looks at the answers that are held out."""
+JUDGED: Final = 512  # contexts in which all runs are judged at the end
+JUDGE: Final = 0  # the seed that they are drawn from
+CHECK_EVERY: Final = 250  # steps between two looks at the answers that are held out
 
 
 @final

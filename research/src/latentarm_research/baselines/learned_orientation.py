@@ -23,8 +23,7 @@ from latentarm.robots.robot import Robot
 POSITION: Final = AxisModes(("x-y", "z"), ((0, 1), (2, 3)))
 """The second axis of the mode z would turn the tool, and does nothing here."""
 
-GAIN_PER_S: Final = 4.0
-"""How fast an error in orientation shrinks while the stick is pushed fully, 1/s."""
+GAIN_PER_S: Final = 4.0  # how fast an error in orientation shrinks while the stick is pushed fully, 1/s
 
 
 def features(

@@ -32,25 +32,19 @@ from latentarm_research.commands.bench_training import time_training
 PAIRS = 10_000
 SEEDS = 10
 EPOCHS = 10
-PLAIN_PAIRS = 26_000
-"""Pairs for the comparison with a plain loop: 65 of its batches."""
-
+PLAIN_PAIRS = 26_000  # pairs for the comparison with a plain loop: 65 of its batches
 PLAIN_RUNS = 3
 RATE_HZ = 1000.0
 WARM_UP = 500
-TORCH_EVERY = 10
-"""The torch decoder is timed between two steps, once in this many steps."""
-
-INPUT_TICKS = 100
-"""An input is held for this many steps."""
+TORCH_EVERY = 10  # the torch decoder is timed between two steps, once in this many steps
+INPUT_TICKS = 100  # an input is held for this many steps
 
 TURN_TICKS = 1000
 """Steps before switching to the other number of goals: enough for each to run with a warm cache."""
 
 MANY_GOALS = 50
 WAY_BACK = "way back"
-SPREAD_RAD = 0.1
-"""Further goals surround the task's own, so that the arm moves through the same region."""
+SPREAD_RAD = 0.1  # further goals surround the task's own, so that the arm moves through the same region
 
 
 def run_bench(repeats: int, seed: int, progress: bool, pairs: int = PAIRS) -> list[Row]:

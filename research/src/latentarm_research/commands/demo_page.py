@@ -18,8 +18,7 @@ from latentarm_research.people.names import OperatorName
 
 FILM: Final = "film.png"
 
-CAMERA: Final = Camera(look_at=(0.5, 0.0, 0.12), distance_m=0.48)
-"""Near enough to see what is on the fork."""
+CAMERA: Final = Camera(look_at=(0.5, 0.0, 0.12), distance_m=0.48)  # near enough to see what is on the fork
 
 
 @final

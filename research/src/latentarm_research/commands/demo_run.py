@@ -52,21 +52,16 @@ from latentarm_research.studies.results_folder import ResultsFolder
 if TYPE_CHECKING:
     from latentarm_research.commands.demo import DemoOptions
 
-MODELS: Final = tuple(dict.fromkeys((DEFAULT_MODEL, "cvae")))
-"""The default model and the paper's."""
-
+MODELS: Final = tuple(dict.fromkeys((DEFAULT_MODEL, "cvae")))  # the default model and the paper's
 CONTEXT: Final[Mapping[str, tuple[str, ...]]] = {DEFAULT_MODEL: (JOINTS, OBJECTS_IN_TOOL), "cvae": (JOINTS,)}
 WAY_BACK_M: Final[Mapping[str, float]] = {DEFAULT_MODEL: 0.06, "cvae": 0.0}
 """Length of each model's way back, m; the cVAE has none, as in the paper."""
 
 HIDDEN: Final = (64, 64)
-BATCH_SIZE: Final = 256
-"""Units of each hidden layer and pairs per step, as in the study of the tasks."""
-
+BATCH_SIZE: Final = 256  # units of each hidden layer and pairs per step, as in the study of the tasks
 TASK: Final = Marshmallows()
 
-ARM: Final = "mujoco"
-"""What moves: only in physics is food held."""
+ARM: Final = "mujoco"  # what moves: only in physics is food held
 
 SHOWN: Final[OperatorName] = "greedy"
 """Whose drives the figures show, and who is helped as well: the paper's simulated person (equation 24)."""

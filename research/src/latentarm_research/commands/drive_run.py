@@ -33,11 +33,8 @@ from latentarm_research.studies.results_folder import ResultsFolder
 MADE: Final = ("drives.json", "drives.csv", "paths.png")
 """Every file of the folder except its options and a recording's journal."""
 
-TIME_LIMIT_S: Final = 60.0
-"""How long a drive to a goal may last."""
-
-HELD_OUT_LIMIT_S: Final = 300.0
-"""The same along held-out episodes, which are several metres long."""
+TIME_LIMIT_S: Final = 60.0  # how long a drive to a goal may last
+HELD_OUT_LIMIT_S: Final = 300.0  # the same along held-out episodes, which are several metres long
 
 OF_THE_TASK: Final = {
     "robot": "a robot of its own",

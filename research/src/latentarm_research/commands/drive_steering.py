@@ -23,8 +23,7 @@ from latentarm_research.people.catalogue import PEOPLE, usual_operator
 from latentarm_research.people.names import OperatorName
 from latentarm_research.people.person import Person
 
-USUAL_BELIEF: Final = "boltzmann"
-"""The rule of the belief where none is named."""
+USUAL_BELIEF: Final = "boltzmann"  # the rule of the belief where none is named
 
 
 @dataclass(frozen=True, eq=False)

@@ -24,8 +24,7 @@ from latentarm_research.people.calibration import BEFORE, CALIBRATED, Calibratio
 from latentarm_research.people.population import MIRRORED, TRAITS, draw_people
 from latentarm_research.studies.tables import markdown_table
 
-PRACTICE_S: Final = 300.0
-"""Five minutes, the most that the paper's people had, s."""
+PRACTICE_S: Final = 300.0  # five minutes, the most that the paper's people had, s
 
 SHARE: Final = 0.174
 """Of execution time that goes into mode switches: able-bodied people with a JACO (Herlant, Holladay and
@@ -39,11 +38,8 @@ VARIATIONS: Final = (0.1, 0.15, 0.25, 0.35)
 WIDTHS_M: Final = (0.0075, 0.015, 0.03)
 """Over distances longer than the usual ones the arm's top speed decides, whatever the width."""
 
-PUSHED: Final = 0.05
-"""Deflection from which the stick counts as pushed."""
-
-MOVES, DRIVES = 1, 2
-"""Streams of randomness of movements and drives."""
+PUSHED: Final = 0.05  # deflection from which the stick counts as pushed
+MOVES, DRIVES = 1, 2  # streams of randomness of movements and drives
 
 
 def measure(options: Calibrating, work: Work) -> Outcome:

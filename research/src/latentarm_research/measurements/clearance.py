@@ -23,9 +23,7 @@ from latentarm_research.measurements.measurement import Outcome, Work, line
 from latentarm_research.measurements.pushing import HARMS, Pusher, scene
 
 CLEARANCE_M: Final = SafetyConfig().clearance
-ROUNDING_M: Final = 1e-5
-"""`mj_geomDistance` stops improving a distance between meshes at about a micrometre."""
-
+ROUNDING_M: Final = 1e-5  # `mj_geomDistance` stops improving a distance between meshes at about a micrometre
 PERIODS_S: Final = (0.001, 0.01, 0.02)
 PUSH_S: Final = 2.0
 LOOK_S: Final = 0.02

@@ -32,23 +32,13 @@ from latentarm_research.measurements.measurement import Outcome, Work, line
 
 PRESSED_TICKS: Final = 400
 
-UNTOUCHED_TICKS: Final = 600
-"""A drive that has touched nothing by then is over."""
-
-UP_AND_DOWN: Final = 1
-"""The controller's mode whose first axis moves the tool up and down."""
-
+UNTOUCHED_TICKS: Final = 600  # a drive that has touched nothing by then is over
+UP_AND_DOWN: Final = 1  # the controller's mode whose first axis moves the tool up and down
 BOTH: Final = (min(TOOL, TABLE), max(TOOL, TABLE))
 
-AT_M: Final = ((0.35, 0.6), (-0.3, 0.3), (0.06, 0.12))
-"""Where the tool starts, x, y and z, m."""
-
-SPRING_M: Final = 0.05
-"""Where springs begin, above the table, m."""
-
-AFTER_S: Final = (0.0, 0.2, 1.0, 3.0)
-"""Times after the stop at which the force is read, s."""
-
+AT_M: Final = ((0.35, 0.6), (-0.3, 0.3), (0.06, 0.12))  # where the tool starts, x, y and z, m
+SPRING_M: Final = 0.05  # where springs begin, above the table, m
+AFTER_S: Final = (0.0, 0.2, 1.0, 3.0)  # times after the stop at which the force is read, s
 WATCHED_TICKS: Final = round(AFTER_S[-1] / PERIOD_S)
 
 

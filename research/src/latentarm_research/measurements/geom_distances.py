@@ -11,8 +11,7 @@ from latentarm.robots.kinematics.obstacles import Box, Capsule, HalfSpace, Obsta
 from latentarm.robots.kinematics.reader import read
 from latentarm.robots.robot import Robot
 
-NEAR_M: Final = 0.06
-"""Distances beyond this are not worked out."""
+NEAR_M: Final = 0.06  # distances beyond this are not worked out
 
 
 @final

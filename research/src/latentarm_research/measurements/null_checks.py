@@ -24,15 +24,13 @@ from latentarm_research.user_studies.hypothesis import Claim, Hypothesis
 from latentarm_research.user_studies.record import Trial
 
 PEOPLE: Final = {"within": 12, "between": 40}
-EFFECT: Final = 0.8
-"""In SDs of people's differences within them, of people between."""
+EFFECT: Final = 0.8  # in SDs of people's differences within them, of people between
 
 PERSON_SD, ORDER_EFFECT, TRIAL_SD, CONDITION_SD = 4.0, -0.1, 1.0, 1.0
 """Of the drawn trials, in units of the chance from trial to trial: how people differ, what each place in the
 order adds, and how much the difference between two conditions varies from person to person."""
 
-TOLERANCE: Final = 0.02
-"""How far the share of false findings may be from 5 %, with enough studies."""
+TOLERANCE: Final = 0.02  # how far the share of false findings may be from 5 %, with enough studies
 
 
 Check = tuple[str, float, float]

@@ -33,8 +33,7 @@ from latentarm_research.measurements.ring_movements import (
 NAMES: Final = ("push_variation", "decision_s", "full_m_s", "learning", "own_speed_width")
 """What is fitted, in turn; then the first three once more."""
 
-FACTORS: Final = (0.7, 1.4)
-"""Steps of the fit."""
+FACTORS: Final = (0.7, 1.4)  # steps of the fit
 
 
 class Prediction:

@@ -22,9 +22,7 @@ from latentarm_research.people.person import Person
 from latentarm_research.tasks.over_marshmallow import OverMarshmallow
 
 SPEED_M_S: Final = 0.2
-TURN_RAD_S: Final = 0.4
-"""The person's gains in Javdani et al. (2018)."""
-
+TURN_RAD_S: Final = 0.4  # the person's gains in Javdani et al. (2018)
 NONE: Final = "none"
 WAYS: Final = (NONE, "hindsight", "low_assist", "high_assist", "full_assist", "policy_blending")
 """No help, hindsight optimisation, HARMONIC with 1/3, 2/3 and all of it, and policy blending."""

@@ -27,8 +27,7 @@ from latentarm_research.people.person import SimulatedPerson
 from latentarm_research.people.population import TRAITS, draw_people
 from latentarm_research.people.traits import Traits
 
-SEED: Final = 39
-"""Of the simulated people, and of the halves of the study's persons."""
+SEED: Final = 39  # of the simulated people, and of the halves of the study's persons
 
 RINGS: Final = np.array([(0.06, 0.02), (0.12, 0.02), (0.06, 0.01), (0.12, 0.01)])
 """Radius and width of targets, m. A cell is a ring, and 4 more in the second half of the trials."""
@@ -36,11 +35,8 @@ RINGS: Final = np.array([(0.06, 0.02), (0.12, 0.02), (0.06, 0.01), (0.12, 0.01)]
 ORDER: Final = np.array([0, 5, 1, 6, 2, 7, 3, 8, 4])
 """Of the nine targets of a ring. The way to the first of them does not count."""
 
-MOST_BYTES: Final = 1 << 27
-"""Length of a log."""
-
-LOG_S: Final = 0.025
-"""Time between samples, in which a target is also seen to be reached, s."""
+MOST_BYTES: Final = 1 << 27  # length of a log
+LOG_S: Final = 0.025  # time between samples, in which a target is also seen to be reached, s
 
 PLANE: Final = """<mujoco><worldbody><body name="x"><joint name="x" type="slide" axis="1 0 0" range="-1 1"/>
 <geom size=".01"/><body name="y"><joint name="y" type="slide" axis="0 1 0" range="-1 1"/><geom size=".01"/>

@@ -27,9 +27,7 @@ from latentarm_research.measurements.catalogue import WayBack
 from latentarm_research.measurements.measurement import Outcome, Work, line
 
 STEP_S: Final = 0.02
-FILTERED: Final = 2
-"""Starts of the drives through the safety filters."""
-
+FILTERED: Final = 2  # starts of the drives through the safety filters
 MARKS_S: Final = (1.0, 5.0, 20.0)
 CLEARANCE_M: Final = SafetyConfig().clearance
 TASK: Final = TableTop()

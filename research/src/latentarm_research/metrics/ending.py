@@ -13,16 +13,11 @@ from latentarm.robots.kinematics.rotations import angle_between
 
 Reason = Literal["done", "mishap", "time_limit", "operator_stuck", "held_back", "safety_stop"]
 
-STUCK_S: Final = 20.0
-"""No progress for this long counts as stuck, s; a shorter drive never counts as stuck."""
-
+STUCK_S: Final = 20.0  # no progress for this long counts as stuck, s; a shorter drive never counts as stuck
 NOT_NEARER: Final = f"no nearer for {STUCK_S:g} s"
 
-PROGRESS_M: Final = 0.005
-"""Coming this much nearer to the next waypoint than ever before is progress, m."""
-
-RADIAN_M: Final = 0.2
-"""What a radian of wrong orientation counts, m, as for the simulated operator."""
+PROGRESS_M: Final = 0.005  # coming this much nearer to the next waypoint than ever before is progress, m
+RADIAN_M: Final = 0.2  # what a radian of wrong orientation counts, m, as for the simulated operator
 
 HELD_BACK_SHARE: Final = 0.1
 """Less motion than this share of what the inputs asked for means that the safety filters hold the arm."""

@@ -36,8 +36,7 @@ GROWTH: Final = 10.0
 """The damping is relative to the largest curvature; it grows by this after a step that did not help, and
 shrinks after one that did."""
 
-CLOSE_M: Final = 1e-4
-"""Planning ends when every goal is reached to within this, m."""
+CLOSE_M: Final = 1e-4  # planning ends when every goal is reached to within this, m
 
 
 class DecodesInTorch(Protocol):

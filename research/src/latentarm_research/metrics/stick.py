@@ -6,8 +6,7 @@ import numpy as np
 
 from latentarm.core.types import BoolArray, FloatArray
 
-TURNED_ROUND_S: Final = 0.5
-"""A change of direction counts as one where it takes no longer than this, s."""
+TURNED_ROUND_S: Final = 0.5  # a change of direction counts as one where it takes no longer than this, s
 
 
 def idle_time(

@@ -6,14 +6,9 @@ import numpy as np
 
 from latentarm.core.types import FloatArray
 
-SPACING_M: Final = 0.005
-"""Way between two samples of the path, m."""
-
-NEAR_M: Final = 0.015
-"""How near a later motion must pass to undo an earlier one, m."""
-
-AGAINST: Final = -0.5
-"""Cosine of the angle between the two, at most: from 120° on one undoes the other."""
+SPACING_M: Final = 0.005  # way between two samples of the path, m
+NEAR_M: Final = 0.015  # how near a later motion must pass to undo an earlier one, m
+AGAINST: Final = -0.5  # cosine of the angle between the two, at most: from 120° on one undoes the other
 
 
 def undone_share(

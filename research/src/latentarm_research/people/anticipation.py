@@ -14,8 +14,7 @@ from latentarm.robots.kinematics.chain import Chain
 from latentarm_research.people.contract import LoopLimits, Moment
 from latentarm_research.people.motion import carried
 
-LONGEST_S: Final = 2.0
-"""Nobody makes up for more than this, s: far longer than any reaction."""
+LONGEST_S: Final = 2.0  # nobody makes up for more than this, s: far longer than any reaction
 
 
 @final

@@ -11,8 +11,7 @@ from latentarm.assistance.controllers.contract import Controller
 from latentarm.core.types import BoolArray, Context, FloatArray, Input, Pose
 from latentarm.robots.kinematics.chain import Chain
 
-USUAL_WITHIN_M: Final = 0.02
-"""How near a simulated person has to come for which their figures are stated, m."""
+USUAL_WITHIN_M: Final = 0.02  # how near a simulated person has to come for which their figures are stated, m
 
 
 NOTHING_HELD: Final[BoolArray] = np.zeros(0, dtype=np.bool_)
@@ -53,8 +52,7 @@ class LoopLimits:
         return action / np.maximum(excess.max(axis=-1, keepdims=True), 1.0)
 
 
-UNLIMITED: Final = LoopLimits()
-"""No loop between the person and the arm."""
+UNLIMITED: Final = LoopLimits()  # no loop between the person and the arm
 
 
 Foresight = Callable[[FloatArray, Context, Controller, Sequence[int], float], Pose]

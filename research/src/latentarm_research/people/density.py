@@ -24,20 +24,11 @@ STRETCHES: Final[FloatArray] = np.array([0.01, 0.3, 0.65, 1.0])
 """Where along a direction it is known what an input leaves: 0 at the edge of the dead zone, 1 at full
 deflection. None is at the edge, where the arm still rests: a decoder that drifts jumps there."""
 
-DIRECTIONS: Final = 64
-"""Directions of a disc in which it is known, ..."""
-
-REFINED: Final = 2
-"""... and how many times as many are modelled."""
-
-MANY_DIRECTIONS: Final = 256
-"""Directions of more than two axes; between these nothing is modelled."""
-
-RINGS: Final = 32
-"""Cells along a direction; in each, the logarithm of the density is modelled as linear."""
-
-PROPOSALS: Final = 64
-"""Inputs that are proposed for each one that is drawn."""
+DIRECTIONS: Final = 64  # directions of a disc in which it is known, ...
+REFINED: Final = 2  # ... and how many times as many are modelled
+MANY_DIRECTIONS: Final = 256  # directions of more than two axes; between these nothing is modelled
+RINGS: Final = 32  # cells along a direction; in each, the logarithm of the density is modelled as linear
+PROPOSALS: Final = 64  # inputs that are proposed for each one that is drawn
 
 SHARPEST: Final = 5e4
 """Largest beta times range of the costs of the model that proposes: its cells are no finer. Beyond, the true

@@ -10,8 +10,7 @@ from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray, Input
 from latentarm_research.people.contract import Moment
 
-SINUSOIDS: Final = 24
-"""Of which a tremor is the sum."""
+SINUSOIDS: Final = 24  # of which a tremor is the sum
 
 
 @final

@@ -36,8 +36,7 @@ class PageRates:
             raise UserError(f"The page's network_s must be zero or more, and finite, not {self.network_s}.")
 
 
-PAGE: Final = PageRates()
-"""The page on the machine that drives the arm."""
+PAGE: Final = PageRates()  # the page on the machine that drives the arm
 
 _EARLY: Final = 1e-6
 """Periods by which something may come early, so that sums of rounded times do not make it late."""

@@ -18,12 +18,8 @@ BEYOND: Final = 0.01
 """Initial inputs of a plan lie this far beyond the dead zone: within it nothing they do changes anything, and
 exactly at rest decoders that use the input's length have no gradient."""
 
-SOMEWHERE: Final = 0.7
-"""Inputs of another plan to begin with are drawn from ± this."""
-
-DIFFERENCE: Final = 1e-3
-"""Of an input, for slopes."""
-
+SOMEWHERE: Final = 0.7  # inputs of another plan to begin with are drawn from ± this
+DIFFERENCE: Final = 1e-3  # of an input, for slopes
 FIRST_DAMPING: Final = 1e-2
 CHANGE: Final = 5.0
 """The damping is relative to the curvature; it shrinks by this after a step that helped, and grows after one

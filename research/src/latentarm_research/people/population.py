@@ -13,8 +13,7 @@ from latentarm_research.people.calibration import CALIBRATED, Calibration
 from latentarm_research.people.spread import LogNormal, Normal, Spread
 from latentarm_research.people.traits import Traits
 
-STREAM: Final = 17
-"""Separates what people are like from everything else that is drawn from the same seed."""
+STREAM: Final = 17  # separates what people are like from everything else that is drawn from the same seed
 
 MIRRORED: Final = 0.2
 """Share of people for whom the second axis is upside down. A minority of players inverts it (Corbett and
@@ -155,8 +154,7 @@ def trait_sources(calibration: Calibration) -> tuple[TraitSource, ...]:
     )
 
 
-TRAITS: Final = trait_sources(CALIBRATED)
-"""Those of the people that studies are done with."""
+TRAITS: Final = trait_sources(CALIBRATED)  # those of the people that studies are done with
 
 
 def draw_people(number: int, seed: int, calibration: Calibration = CALIBRATED) -> tuple[Traits, ...]:

@@ -15,8 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure, FigureBase, SubFigure
 
-DECADES: Final = 100.0
-"""Ratio of a logarithmic axis' ends above which powers of ten are enough as labels."""
+DECADES: Final = 100.0  # ratio of a logarithmic axis' ends above which powers of ten are enough as labels
 ARM_COLOUR: Final = "#9aa3ad"
 JOINT_COLOUR: Final = "#3c434b"
 

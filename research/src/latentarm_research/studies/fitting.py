@@ -11,8 +11,7 @@ from latentarm.models.model import LatentActionModel
 from latentarm.models.neural import NeuralModel
 from latentarm.models.scaling import CollapseWarning
 
-VALIDATION_SHARE: Final = 0.2
-"""Share of the training demonstrations that is for validation."""
+VALIDATION_SHARE: Final = 0.2  # share of the training demonstrations that is for validation
 
 STATE_NOISE_RAD: Final = 0.05
 """SD of the noise on training states, rad: a driven arm leaves the demonstrated states."""

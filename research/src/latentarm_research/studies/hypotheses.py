@@ -19,8 +19,7 @@ from latentarm_research.studies.tables import listed, markdown_table
 SIDES: Final[Mapping[Direction, str]] = {"less": "below", "greater": "above"}
 SIGNS: Final[Mapping[Direction, str]] = {"less": "<", "greater": ">"}
 
-LONGEST: Final = 200
-"""Longest list of failures in a task's verdict; a longer one is replaced by a count."""
+LONGEST: Final = 200  # longest list of failures in a task's verdict; a longer one is replaced by a count
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -65,8 +65,7 @@ def _image(name: str) -> str:
     return f"![{name.replace('_', ' ')}, simulated]({name}.png)"
 
 
-WIDE: Final = 7
-"""Columns of a table from which on its text is small."""
+WIDE: Final = 7  # columns of a table from which on its text is small
 
 
 def html_page(

@@ -9,12 +9,9 @@ import numpy as np
 from latentarm.core.types import FloatArray
 from latentarm_research.studies import means_test
 
-LEVEL: Final = 0.05
-"""A test holds where p, after Holm's correction, is below this."""
-
+LEVEL: Final = 0.05  # a test holds where p, after Holm's correction, is below this
 RESAMPLES: Final = 4000
-BOOTSTRAP_SEED: Final = 95
-"""Always the same, so that a figure is the same whenever it is drawn."""
+BOOTSTRAP_SEED: Final = 95  # always the same, so that a figure is the same whenever it is drawn
 
 
 @dataclass(frozen=True)

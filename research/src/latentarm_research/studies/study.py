@@ -31,9 +31,7 @@ if TYPE_CHECKING:
 REPORTED: Final = ("results.json", "hypotheses.json", "results.md", HTML, PDF)
 """Files that every report is written to; `PDF` only where a browser prints it."""
 
-ALWAYS_MADE: Final = (*REPORTED, "timings.json")
-"""Files that every study writes."""
-
+ALWAYS_MADE: Final = (*REPORTED, "timings.json")  # files that every study writes
 Cell = TypeVar("Cell")
 Result = TypeVar("Result")
 

@@ -26,8 +26,7 @@ from latentarm_research.user_studies.definition import Aligns
 PRIORS: Final[Mapping[Aligns, Priors]] = {"no_priors": NO_PRIORS, "all_priors": Priors()}
 """What counts beside the answers, by how an alignment is learned."""
 
-UNLABELLED: Final = 1000
-"""Contexts without an answer, in which the priors apply."""
+UNLABELLED: Final = 1000  # contexts without an answer, in which the priors apply
 
 
 @final

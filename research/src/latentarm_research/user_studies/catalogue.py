@@ -6,8 +6,7 @@ from typing import Final
 from latentarm.core.errors import UserError
 from latentarm_research.user_studies.definition import Definition
 
-NAMES: Final = ("harmonic", "apple_pie", "eating", "alignment", "case_study")
-"""In the order of the paper."""
+NAMES: Final = ("harmonic", "apple_pie", "eating", "alignment", "case_study")  # in the order of the paper
 
 
 def load_definition(name: str) -> Definition:

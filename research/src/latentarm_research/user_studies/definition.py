@@ -25,8 +25,7 @@ Aligns = Literal["none", "no_priors", "all_priors"]
 """z = u; the paper's network f learned from answers alone; and with its three priors."""
 
 
-PREFIX: Final = "user study "
-"""Before a study's name, in what a folder of its results says that it is."""
+PREFIX: Final = "user study "  # before a study's name, in what a folder of its results says that it is
 
 
 @final

@@ -17,8 +17,7 @@ from latentarm_research.user_studies.definition import Definition, Design, Facto
 from latentarm_research.user_studies.hypothesis import Claim
 from latentarm_research.user_studies.record import Trial
 
-People = Mapping[int, set[str]]
-"""The conditions that each person met."""
+People = Mapping[int, set[str]]  # the conditions that each person met
 
 
 @final

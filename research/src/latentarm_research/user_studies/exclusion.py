@@ -8,8 +8,7 @@ from typing import Final, Literal, final
 from latentarm.core.errors import UserError
 from latentarm_research.user_studies.record import Trial, UnlabelledTrial
 
-MOST_TRIALS: Final = 0.5
-"""A person of whom a larger share of trials is excluded is excluded."""
+MOST_TRIALS: Final = 0.5  # a person of whom a larger share of trials is excluded is excluded
 
 
 @final

@@ -14,14 +14,9 @@ from latentarm_research.user_studies.designs import design_of
 from latentarm_research.user_studies.exclusion import counted
 from latentarm_research.user_studies.record import Trial
 
-NUMBERS: Final = (4, 6, 8, 10, 12, 16, 20, 24, 32, 40)
-"""Of people who meet a condition, that are tried."""
-
-TARGETS: Final = (0.8, 0.9)
-"""Shares of the studies in which a claim should be found."""
-
-FEWEST: Final = 3
-"""People to draw from, at least."""
+NUMBERS: Final = (4, 6, 8, 10, 12, 16, 20, 24, 32, 40)  # of people who meet a condition, that are tried
+TARGETS: Final = (0.8, 0.9)  # shares of the studies in which a claim should be found
+FEWEST: Final = 3  # people to draw from, at least
 
 
 @final

@@ -5,8 +5,7 @@ from typing import Final, final
 
 from latentarm.core.errors import UserError
 
-FEWEST_ITEMS: Final = 4
-"""Items of a scale, at least (Schrum et al., ACM THRI 12:1, 2023)."""
+FEWEST_ITEMS: Final = 4  # items of a scale, at least (Schrum et al., ACM THRI 12:1, 2023)
 
 
 @final

@@ -30,8 +30,7 @@ from latentarm_research.user_studies.sizes import PRESETS, Sizes, Stream, sizes_
 from latentarm_research.user_studies.trace import read_traces
 from latentarm_research.user_studies.training import Trained, TrainingCell, train
 
-SESSIONS: Final = "sessions"
-"""The folder of the sessions."""
+SESSIONS: Final = "sessions"  # the folder of the sessions
 
 
 def _session_path(out: Path, cell: SessionCell) -> Path:

@@ -9,8 +9,7 @@ from latentarm.robots.robot import Robot
 from latentarm.tasks.catalogue import make_scene_task
 from latentarm.tasks.scene_task import Beginning, SceneTask
 
-OVER_MARSHMALLOW: Final = "over_marshmallow"
-"""HARMONIC's: done once the fork is over the chosen marshmallow."""
+OVER_MARSHMALLOW: Final = "over_marshmallow"  # HARMONIC's: done once the fork is over the chosen marshmallow
 
 
 def scene_of(

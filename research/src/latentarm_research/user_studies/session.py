@@ -22,8 +22,7 @@ from latentarm_research.user_studies.sizes import Sizes, Stream
 from latentarm_research.user_studies.trace import Trace, trace_of
 from latentarm_research.user_studies.training import Trained
 
-LEAST_S: Final = 1.0
-"""People begin no attempt for which less time than this is left, s."""
+LEAST_S: Final = 1.0  # people begin no attempt for which less time than this is left, s
 
 SUMMED: Final = (
     "attempts",

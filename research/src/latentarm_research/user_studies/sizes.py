@@ -79,8 +79,7 @@ def sizes_of(preset: str, people: int) -> Sizes:
     return replace(PRESETS[preset], simulated=people)
 
 
-LEAST_DEMONSTRATIONS: Final = 2
-"""One to learn from and one for validation."""
+LEAST_DEMONSTRATIONS: Final = 2  # one to learn from and one for validation
 
 
 class Stream(IntEnum):

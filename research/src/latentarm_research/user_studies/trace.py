@@ -16,12 +16,8 @@ from latentarm_research.user_studies.own.records import read_record
 if TYPE_CHECKING:
     from latentarm_research.drives import trace as drives
 
-POINTS: Final = 60
-"""Of a way and of a course over time, at most."""
-
-BINS: Final = 17
-"""Of a heat map along each axis."""
-
+POINTS: Final = 60  # of a way and of a course over time, at most
+BINS: Final = 17  # of a heat map along each axis
 DECIMALS: Final = 4
 
 

@@ -38,8 +38,7 @@ KNOWS: Final = "knows the arm"
 DRIVEN: Final = (NO_ALIGN, WITHOUT_PRIORS, ALL_PRIORS, TOOL_SPACE, HELPED, IDEAL, KNOWS)
 """All conditions, as tables and figures order them."""
 
-PATH_HZ: Final = 10.0
-"""Rate at which paths are kept."""
+PATH_HZ: Final = 10.0  # rate at which paths are kept
 
 
 @dataclass(frozen=True, eq=False)

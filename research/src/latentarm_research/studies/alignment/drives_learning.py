@@ -37,11 +37,8 @@ TASK: Final = "table_top"
 TURN_RAD: Final = pi / 3
 """How far the stick is turned before it is mirrored: far enough that no axis does what the person expects."""
 
-HELD_OUT: Final = 0.2
-"""Share of the demonstrations that are held out, as in the demo."""
-
-EVERY: Final = 10**9
-"""More than the number of motions."""
+HELD_OUT: Final = 0.2  # share of the demonstrations that are held out, as in the demo
+EVERY: Final = 10**9  # more than the number of motions
 
 
 @dataclass(frozen=True)

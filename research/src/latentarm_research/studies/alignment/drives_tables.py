@@ -27,8 +27,7 @@ TIME: Final = "time_s"
 DONE: Final = "success_rate"
 ERROR: Final = "relative_alignment_error"
 
-AGAINST: Final = (ways.NO_ALIGN, ways.WITHOUT_PRIORS, ways.ALL_PRIORS)
-"""What Tool Space is compared with."""
+AGAINST: Final = (ways.NO_ALIGN, ways.WITHOUT_PRIORS, ways.ALL_PRIORS)  # what Tool Space is compared with
 
 
 def drive_figures(result: DrivesResult, condition: str) -> dict[str, FloatArray]:

@@ -28,11 +28,8 @@ HEADING: Final = "Relative alignment error, mean over runs with 95 % interval; p
 
 CONDITIONS_ROW_MM: Final = 48.0
 CONDITIONS_FRAME_MM: Final = 20.0
-GROUP: Final = 0.86
-"""Width of a group of conditions; groups are 1 apart."""
-
-ROOM: Final = 1.6
-"""Free room below and above everything on the logarithmic axis, as a factor."""
+GROUP: Final = 0.86  # width of a group of conditions; groups are 1 apart
+ROOM: Final = 1.6  # free room below and above everything on the logarithmic axis, as a factor
 
 
 def conditions_figure(
@@ -96,8 +93,7 @@ def _log_axis(axes: "Axes", results: Sequence[AlignmentErrors]) -> None:
 
 CURVES_ROW_MM: Final = 46.0
 CURVES_FRAME_MM: Final = 18.0
-NUDGE: Final = 0.16
-"""How far choices stand from each other, in answers, so that no bar hides another."""
+NUDGE: Final = 0.16  # how far choices stand from each other, in answers, so that no bar hides another
 
 
 def curves_figure(curves: Sequence[CurveResult], tasks: Sequence[str]) -> "Figure":
@@ -160,8 +156,7 @@ def _draw_curves(axes: "Axes", curve: CurveResult) -> None:
 DRIVES_ACROSS: Final = 4
 DRIVES_ROW_MM: Final = 54.0
 DRIVES_LEGEND_MM: Final = 18.0
-VIEW: Final = ((-0.6, 0.6), (-0.2, 0.85))
-"""What is shown, y from and to, x from and to, m."""
+VIEW: Final = ((-0.6, 0.6), (-0.2, 0.85))  # what is shown, y from and to, x from and to, m
 
 
 def drives_figure(results: Sequence[DrivesResult]) -> "Figure":

@@ -39,8 +39,7 @@ from latentarm_research.studies.statistics import compare_means
 from latentarm_research.studies.tables import listed
 from latentarm_research.studies.targets import Target
 
-NEAR: Final = 1.25
-"""Up to this many times the error of Ideal Align counts as close to it."""
+NEAR: Final = 1.25  # up to this many times the error of Ideal Align counts as close to it
 
 
 @dataclass(frozen=True)
@@ -84,14 +83,9 @@ def _test(claim: ConditionClaim, result: AlignmentErrors) -> Comparison:
 SINGLE_SHARE: Final = 0.6
 """A single prior should stay below this share of the error of No Priors; the paper says "twice as well"."""
 
-PAPER_MODEL: Final = "cae"
-"""The model of the paper's study."""
-
-RANDOM_ANSWERS: Final = 10
-"""Answers at random, whose error with All Priors ..."""
-
-CHOSEN_ANSWERS: Final = 4
-"""... so many chosen ones in tool space should reach."""
+PAPER_MODEL: Final = "cae"  # the model of the paper's study
+RANDOM_ANSWERS: Final = 10  # answers at random, whose error with All Priors ...
+CHOSEN_ANSWERS: Final = 4  # ... so many chosen ones in tool space should reach
 
 
 def targets(

@@ -125,10 +125,8 @@ MANUAL: Final = "Manual Align"
 WITHOUT_PRIORS: Final = "No Priors"
 ALL_PRIORS: Final = "All Priors"
 IDEAL: Final = "Ideal Align"
-TOOL_SPACE: Final = "Tool Space"
-"""What `latentarm align` learns, from motions drawn at random."""
-CHOSEN: Final = f"{TOOL_SPACE}, chosen"
-"""The same from motions that it chooses: what `latentarm align` does."""
+TOOL_SPACE: Final = "Tool Space"  # what `latentarm align` learns, from motions drawn at random
+CHOSEN: Final = f"{TOOL_SPACE}, chosen"  # the same from motions that it chooses: what `latentarm align` does
 
 SINGLE_PRIORS: Final[Mapping[str, Priors]] = {
     "Proportional": replace(NO_PRIORS, proportional=Priors().proportional),
@@ -140,8 +138,7 @@ SINGLE_PRIORS: Final[Mapping[str, Priors]] = {
 LEARNED: Final[Mapping[str, Priors]] = {WITHOUT_PRIORS: NO_PRIORS, **SINGLE_PRIORS, ALL_PRIORS: Priors()}
 """Networks that are learned from a few answers, and the priors of each."""
 
-FEW_ANSWERS: Final = (MANUAL, *LEARNED, TOOL_SPACE)
-"""The conditions that get the same few answers."""
+FEW_ANSWERS: Final = (MANUAL, *LEARNED, TOOL_SPACE)  # the conditions that get the same few answers
 
 CONDITIONS: Final = (NO_ALIGN, *FEW_ANSWERS, CHOSEN, IDEAL)
 """All conditions, in the order of tables and figures."""

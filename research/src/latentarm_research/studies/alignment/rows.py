@@ -22,14 +22,12 @@ STUDY: Final = "alignment"
 
 ERROR: Final = "relative_alignment_error"
 
-ANSWERS: Final = "answers"
-"""How many were asked for before asking stopped."""
+ANSWERS: Final = "answers"  # how many were asked for before asking stopped
 
 ENCODED: Final = "the encoder's own choice"
 """Condition of the rows that say what the encoder's own latent actions come to."""
 
-CALLS: Final = 200
-"""Calls of an alignment that are timed; the fastest counts."""
+CALLS: Final = 200  # calls of an alignment that are timed; the fastest counts
 
 
 @dataclass(frozen=True, eq=False)

@@ -130,8 +130,7 @@ def _fit(cell: DecoderCell, demonstrations: Demonstrations) -> LatentActionModel
     )
 
 
-ALL: Final = 10**9
-"""More motions than there are."""
+ALL: Final = 10**9  # more motions than there are
 
 
 @final

@@ -52,9 +52,7 @@ from latentarm_research.tasks.pouring.tool_path import RATE_HZ, SPEED_M_S, TURN_
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-TASKS: Final = (*POURING_TASKS, TASK)
-"""The paper's tasks, and the demo's table, where goals are driven to."""
-
+TASKS: Final = (*POURING_TASKS, TASK)  # the paper's tasks, and the demo's table, where goals are driven to
 AnyCell = AlignmentCell | AlignedDriveCell
 AnyResult = AlignmentErrors | CurveResult | TurningResult | DrivesResult
 

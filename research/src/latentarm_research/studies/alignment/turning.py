@@ -21,12 +21,8 @@ from latentarm_research.studies.alignment.scene import AlignmentCell, Scene, sce
 from latentarm_research.studies.streams import generator
 from latentarm_research.tasks.pouring.tasks import FAR_LEFT_M, NEAR_RIGHT_M
 
-TASK: Final = "plane"
-"""The task over the table."""
-
-FEW_CHOSEN: Final = 4
-"""Chosen answers that should do as well as all random ones do with All Priors."""
-
+TASK: Final = "plane"  # the task over the table
+FEW_CHOSEN: Final = 4  # chosen answers that should do as well as all random ones do with All Priors
 FEW: Final = f"{CHOSEN}, {FEW_CHOSEN} answers"
 TURNING: Final = (PRIORS_AT_RANDOM, AT_RANDOM, CHOSEN, FEW, IDEAL)
 """What is compared; with as many answers as in the paper where the name does not say otherwise."""

@@ -19,8 +19,7 @@ from latentarm_research.studies.compare.preset import Preset, Stream
 from latentarm_research.studies.fitting import fit_model
 from latentarm_research.studies.streams import integer, sequence
 
-SEEDLESS: Final = "pca"
-"""Nothing in it is random, so it is fitted once, not once per seed."""
+SEEDLESS: Final = "pca"  # nothing in it is random, so it is fitted once, not once per seed
 
 
 @dataclass(frozen=True)

@@ -32,11 +32,8 @@ from latentarm_research.studies.compare.datasets import Dataset
 from latentarm_research.studies.compare.preset import Stream
 from latentarm_research.studies.streams import sequence
 
-BESIDE: Final = "cvae"
-"""The model of the paper's user studies, which is driven as well as ours."""
-
-MODES: Final = "end_effector"
-"""Mode switching, as rows name it."""
+BESIDE: Final = "cvae"  # the model of the paper's user studies, which is driven as well as ours
+MODES: Final = "end_effector"  # mode switching, as rows name it
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,8 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-LINEAR_BELOW: Final = 1.0
-"""Where the axis is linear, in its own unit."""
+LINEAR_BELOW: Final = 1.0  # where the axis is linear, in its own unit
 
 NUMBERS: Final = [0.0, *(digit * 10.0**power for power in range(4) for digit in (1, 2, 5))]
 """Those that may stand at the axis."""
@@ -34,8 +33,7 @@ def logarithmic_with_zero(axes: "Axes") -> None:
 
 
 HEIGHT_MM: Final = 120.0
-FILLS: Final = ("full", "none", "bottom", "top", "left", "right")
-"""Of the markers, by noise."""
+FILLS: Final = ("full", "none", "bottom", "top", "left", "right")  # of the markers, by noise
 
 
 @dataclass(frozen=True)
@@ -123,8 +121,7 @@ def _draw_pareto(
 
 
 LINE_MM: Final = 38.0
-SPREAD: Final = 0.6
-"""Width that the models share around a number of demonstrations; 1 reaches to the next."""
+SPREAD: Final = 0.6  # width that the models share around a number of demonstrations; 1 reaches to the next
 MEASURES: Final = {
     "search_error_percent_of_pca": ("error\n(% of PCA's)", 1.0),
     "search_noise_free_error_percent_of_pca": ("noise-free error\n(% of PCA's)", 1.0),

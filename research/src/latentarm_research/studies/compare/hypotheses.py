@@ -25,8 +25,7 @@ from latentarm_research.studies.hypotheses import Comparison, corrected
 from latentarm_research.studies.statistics import paired
 from latentarm_research.studies.targets import Target
 
-PAIRS: Final = (("cae", "ae"), ("cvae", "vae"))
-"""A model that sees the context, and the same without."""
+PAIRS: Final = (("cae", "ae"), ("cvae", "vae"))  # a model that sees the context, and the same without
 
 ENCODINGS: Final = {
     "error_percent_of_pca": "encoder network",
@@ -87,14 +86,12 @@ def said(tests: Sequence[Comparison]) -> list[str]:
     return sentences
 
 
-Means = Mapping[str, float]
-"""Measure, or `FIT_S`, -> mean of one model, on one dataset under one noise."""
+Means = Mapping[str, float]  # measure, or `FIT_S`, -> mean of one model, on one dataset under one noise
 
 FIT_S: Final = "fit_s"
 """Processor time of a fit among the means, s. It is no measure: it depends on the machine."""
 
-FitTimes = Mapping[tuple[str, float, str], float]
-"""Dataset, noise and model -> processor time of a fit, s."""
+FitTimes = Mapping[tuple[str, float, str], float]  # dataset, noise and model -> processor time of a fit, s
 
 
 @dataclass(frozen=True)

@@ -19,8 +19,7 @@ from latentarm_research.metrics.nonlinearity import nonlinearity
 from latentarm_research.metrics.shooting import ShootingConfig, planned_reach
 from latentarm_research.studies.compare.preset import Preset
 
-JUMPY: Final = 95.0
-"""The percentile of turning that is reported with the mean."""
+JUMPY: Final = 95.0  # the percentile of turning that is reported with the mean
 
 EXPRESSED: Final = ("search_error_percent_of_pca", "search_noise_free_error_percent_of_pca")
 """What the decoder can express: the nearest input, of every model."""
@@ -57,8 +56,7 @@ TABLES: Final = {
 }
 """Heading -> measures of a table. The two ways of encoding are never in one."""
 
-MEASURED: Final = (*EXPRESSED, *ENCODED, *BEHAVIOUR)
-"""Every measure in the order of the tables."""
+MEASURED: Final = (*EXPRESSED, *ENCODED, *BEHAVIOUR)  # every measure in the order of the tables
 
 
 def meaning_of(name: str) -> str:

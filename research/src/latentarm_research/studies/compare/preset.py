@@ -8,11 +8,8 @@ from latentarm.core.errors import UserError
 from latentarm.models.catalogue import KINDS
 from latentarm.runs.checks import check_count
 
-OURS: Final = "homogeneous"
-"""The model that is judged against the targets by default."""
-
-REFERENCE: Final = "cae"
-"""The paper's model, to which reach and error are compared."""
+OURS: Final = "homogeneous"  # the model that is judged against the targets by default
+REFERENCE: Final = "cae"  # the paper's model, to which reach and error are compared
 
 BASELINE: Final = "homogeneous"
 """The best model so far, which a new one has to match in error and to undercut in time."""

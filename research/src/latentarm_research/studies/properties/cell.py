@@ -21,8 +21,7 @@ from latentarm_research.tasks.planar.catalogue import MOTIONS
 from latentarm_research.tasks.planar.motion import Design, PlanarMotion
 from latentarm_research.tasks.planar.reach import ReachRegion
 
-BASELINE: Final = "pca"
-"""The baseline of controllability."""
+BASELINE: Final = "pca"  # the baseline of controllability
 
 
 class Stream(IntEnum):

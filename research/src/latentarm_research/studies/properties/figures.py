@@ -41,10 +41,8 @@ def in_mm(lengths: Mapping[str, Point]) -> dict[str, Point]:
     return {model: Point(1000 * point.mean, 1000 * point.sd, None, 0.0) for model, point in lengths.items()}
 
 
-BELOW: Final = 0.25
-"""How far the paper's figure stands below ours, so that no SD is taken for the other."""
-DECADES: Final = 50.0
-"""Ratio of a logarithmic axis' ends above which powers of ten are enough as labels."""
+BELOW: Final = 0.25  # how far the paper's figure stands below ours, so that no SD is taken for the other
+DECADES: Final = 50.0  # ratio of a logarithmic axis' ends above which powers of ten are enough as labels
 PAPER_SIGN: Final = "($\\diamond$: the paper)"
 
 
@@ -156,8 +154,7 @@ COMPARED: Final = (
 
 ACROSS: Final = 3
 LINE_MM: Final = 5.0
-APART: Final = 0.2
-"""Of ours and the paper's from the line of their model."""
+APART: Final = 0.2  # of ours and the paper's from the line of their model
 FRAME_MM: Final = 17.0
 
 

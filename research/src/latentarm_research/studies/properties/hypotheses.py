@@ -30,8 +30,7 @@ from latentarm_research.studies.properties.paper import MODELS_OF_THE_PAPER
 from latentarm_research.studies.statistics import Statistic, compare_means
 
 PAPERS_MODELS: Final = "the paper's models"
-FURTHER_MODELS: Final = "conditioned models that the paper does not have"
-"""The families of tests."""
+FURTHER_MODELS: Final = "conditioned models that the paper does not have"  # the families of tests
 
 LINEAR: Final = 0.9
 """R^2 above which effects count as consistent and scalable. The paper calls 0.94 ± 0.04 "roughly linear", the

@@ -11,14 +11,9 @@ from typing import Final
 
 from latentarm.core.types import Row
 
-Key = tuple[str, str, str]
-"""Task, model and measure, named as in our rows."""
-
-Printed = tuple[float, float | None]
-"""Mean and SD over 10 models; no SD where the paper prints none."""
-
-RATIO_OF: Final = "vae"
-"""The model that the paper's lengths on the reach task are compared with."""
+Key = tuple[str, str, str]  # task, model and measure, named as in our rows
+Printed = tuple[float, float | None]  # mean and SD over 10 models; no SD where the paper prints none
+RATIO_OF: Final = "vae"  # the model that the paper's lengths on the reach task are compared with
 
 LENGTHS: Final[Mapping[Key, Printed]] = {
     ("sine", "pca", "controllability_m"): (0.90, None),

@@ -77,14 +77,11 @@ PRESETS: Final[dict[str, Preset]] = {
 }
 
 
-AS_CHOSEN: Final = "as chosen"
-"""The design of the study."""
-
+AS_CHOSEN: Final = "as chosen"  # the design of the study
 SPREADS_RAD: Final = (0.3, 0.9)
 WIDE_UNITS: Final = 128
 WIDE_SPREADS_RAD: Final = (0.05, 0.4, 0.7, 0.9)
-LOWER_CONDITIONING: Final = (0.9, 0.3)
-"""Spread, rad, and least conditioning."""
+LOWER_CONDITIONING: Final = (0.9, 0.3)  # spread, rad, and least conditioning
 
 
 def designs(preset: Preset) -> dict[str, Preset]:

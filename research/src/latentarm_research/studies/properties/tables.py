@@ -25,11 +25,8 @@ from latentarm_research.studies.properties.paper import (
 )
 from latentarm_research.studies.tables import markdown_table
 
-OURS: Final = "isometric"
-"""The model that is compared with the best of the paper's."""
-
-UNIT_NOT_STATED: Final = "†"
-"""Marks a length of the paper, whose unit it does not state."""
+OURS: Final = "isometric"  # the model that is compared with the best of the paper's
+UNIT_NOT_STATED: Final = "†"  # marks a length of the paper, whose unit it does not state
 
 EQUAL: Final = 1e-9
 """Difference of two means, in the larger of them, below which they are equal but for rounding."""
@@ -49,8 +46,7 @@ DISTANCES: Final = frozenset({"controllability_m", "final_distance"})
 NOT_JUDGED: Final = frozenset({"path_length", ratio_name("path_length"), ratio_name("final_distance")})
 """Measures that are redundant or mean nothing alone: an arm that stops early has a short path."""
 
-Cells = dict[tuple[str, str], Row]
-"""Rows by measure and model."""
+Cells = dict[tuple[str, str], Row]  # rows by measure and model
 
 
 def paper_table(rows: Iterable[Row], task: str) -> str:
@@ -142,8 +138,7 @@ def _as_good(cells: Cells, measure: str) -> str:
     return f"no ({look_of(best).label} {format_figure(others[best], None)})"
 
 
-HALF_A_DIGIT: Final = 0.005
-"""What a figure that is printed with two decimals and without SD may be off."""
+HALF_A_DIGIT: Final = 0.005  # what a figure that is printed with two decimals and without SD may be off
 
 
 class PaperVerdict(StrEnum):

@@ -12,15 +12,9 @@ import numpy as np
 
 from latentarm.core.types import BoolArray, FloatArray
 
-DEAD_ZONE: Final = 0.05
-"""Inputs that are shorter let go of the stick: 5 % of all."""
-
-KNOWN: Final = np.linspace(-1.0, 1.0, 11)
-"""(K,), the inputs whose cost is known; the middle one is 0."""
-
-MOST_RATIONAL: Final = 1e12
-"""1/m²; above this rationality the choice no longer changes."""
-
+DEAD_ZONE: Final = 0.05  # inputs that are shorter let go of the stick: 5 % of all
+KNOWN: Final = np.linspace(-1.0, 1.0, 11)  # (K,), the inputs whose cost is known; the middle one is 0
+MOST_RATIONAL: Final = 1e12  # 1/m²; above this rationality the choice no longer changes
 _MIDDLE: Final = len(KNOWN) // 2
 _STARTS: Final = np.concatenate(
     [KNOWN[: _MIDDLE - 1], [KNOWN[_MIDDLE - 1], -DEAD_ZONE, DEAD_ZONE], KNOWN[_MIDDLE + 1 : -1]]

@@ -40,30 +40,19 @@ FRAME_MM: Final = 14.0
 WEIGHTS_MM: Final = 58.0
 TASK_MM: Final = 74.0
 
-NUDGE: Final = 0.015
-"""Offset between methods as a share of the axis' width, so that no bar hides another."""
-
-WEIGHT_NUDGE: Final = 0.08
-"""The same for arms, as a share of the distance between two weights."""
-
+NUDGE: Final = 0.015  # offset between methods as a share of the axis' width, so that no bar hides another
+WEIGHT_NUDGE: Final = 0.08  # the same for arms, as a share of the distance between two weights
 EXPERTISE_MEASURES: Final = {"final_state_error": "final state error", "time_s": "time to the goal (s)"}
 COURSES: Final = {"error": "state error", "belief": "belief in the true goal"}
-RATIONALITIES: Final = {1000.0: "$10^3$", 10000.0: "$10^4$"}
-"""Numbers that would be too long for an axis."""
-
-DRAWN: Final = 12
-"""Demonstrations that are drawn."""
-
-STREAM: Final = 82
-"""Keeps them apart from those of the study; they are always the same."""
-
+RATIONALITIES: Final = {1000.0: "$10^3$", 10000.0: "$10^4$"}  # numbers that would be too long for an axis
+DRAWN: Final = 12  # demonstrations that are drawn
+STREAM: Final = 82  # keeps them apart from those of the study; they are always the same
 MARGIN_M: Final = 0.06
 
 AT_THE_CUP: Final = Place(back=0.0, left=0.0, up=0.0, turn=0.0)
 
 
-Outcomes = dict[tuple[str, str], Outcome]
-"""Outcomes by method and person."""
+Outcomes = dict[tuple[str, str], Outcome]  # outcomes by method and person
 
 
 def expertise_figure(results: Sequence[AutonomyResult], preset: Preset, tasks: Sequence[str]) -> "Drawing":

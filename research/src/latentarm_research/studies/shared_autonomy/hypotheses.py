@@ -39,8 +39,7 @@ from latentarm_research.studies.targets import Target
 
 MEASURE: Final = "final_state_error"
 
-REACHED: Final = ARRIVED
-"""Error below which people are at their goal."""
+REACHED: Final = ARRIVED  # error below which people are at their goal
 
 TRAPPED: Final = 1.0 - REACHED
 """Error above which people are at the other goal, which is 1 away: as near to it as `REACHED` means."""
@@ -123,8 +122,7 @@ def _test(
 AT_LEAST: Final = 0.9
 """Final state error without entropy after the latest change of mind: people are trapped at the other cup."""
 
-AT_MOST: Final = 0.1
-"""The same with entropy: they are at theirs."""
+AT_MOST: Final = 0.1  # the same with entropy: they are at theirs
 
 
 def targets(found: Sequence[Figure], preset: Preset) -> list[Target]:

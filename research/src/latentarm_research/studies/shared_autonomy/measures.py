@@ -16,8 +16,7 @@ from latentarm_research.assistance import bound
 from latentarm_research.studies.shared_autonomy.choice import KNOWN
 from latentarm_research.studies.shared_autonomy.drive import GAIN_PER_S, STEP_S, Drives, Scene
 
-ARRIVED: Final = 0.2
-"""State error, in the distance between the goals, below which a drive has arrived."""
+ARRIVED: Final = 0.2  # state error, in the distance between the goals, below which a drive has arrived
 
 HALF_WAY: Final = 0.5
 """Distance of the tool from its goal, in that between the goals, within which a drive ended there: the other
@@ -26,8 +25,7 @@ goal is then no nearer."""
 OPEN: Final = 0.5
 """Progress towards a goal, of the demonstrated speed, from which it is open: some input leads there."""
 
-EVERY: Final = 10
-"""What decoders could do is looked at in every tenth step: once a second."""
+EVERY: Final = 10  # what decoders could do is looked at in every tenth step: once a second
 
 FINENESS: Final = 4
 """Of the decoder's enclosure: for the study's decoders sigma_h is then 7 to 28 % above the largest action

@@ -10,8 +10,7 @@ from latentarm.assistance.entropy import GoalEntropy, Where
 NEAR_OPTIMAL: Final = 1000.0
 """Rationality of people who change their mind, 1/m²: the paper calls them near-optimal."""
 
-DRIVE_S: Final = 12.0
-"""How long a drive lasts, s: two to three times as long as a demonstration."""
+DRIVE_S: Final = 12.0  # how long a drive lasts, s: two to three times as long as a demonstration
 
 CHANGING_DRIVE_S: Final = 16.0
 """How long a drive with a change of mind lasts, s: the latest change leaves as much time as it took."""
@@ -159,11 +158,8 @@ PRESETS: Final[dict[str, Preset]] = {
 }
 
 
-LETTER = "equation 15 to the letter"
-"""The variant without an outcome that no goal is conveyed."""
-
-JOINTS_ALONE = "progress of the joints alone"
-"""The variant that does not look at the tool."""
+LETTER = "equation 15 to the letter"  # the variant without an outcome that no goal is conveyed
+JOINTS_ALONE = "progress of the joints alone"  # the variant that does not look at the tool
 
 
 def weight_label(weight: float) -> str:

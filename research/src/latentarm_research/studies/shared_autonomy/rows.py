@@ -87,8 +87,7 @@ def band(courses: FloatArray) -> Band:
 EXTRA_TIME: Final = "extra_time_percent"
 """The measure: how much more time LA takes to reach the goal than LA+SA."""
 
-MODEL: Final = "cae"
-"""The model of the paper's study; equation 16, with lambda_1 above 0, is the cVAE's."""
+MODEL: Final = "cae"  # the model of the paper's study; equation 16, with lambda_1 above 0, is the cVAE's
 
 PAPER: Final = {
     ("panda_two_cups", MODEL, EXTRA_TIME, "beta 75"): 45.0,

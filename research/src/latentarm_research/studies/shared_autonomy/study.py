@@ -45,8 +45,7 @@ from latentarm_research.studies.targets import target_table
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Drawing
 
-MODELS: Final = (MODEL, "cvae")
-"""The paper's model, and that of its equation 16 in full."""
+MODELS: Final = (MODEL, "cvae")  # the paper's model, and that of its equation 16 in full
 
 MAIN: Final = (hypotheses.MEASURE, "time_s")
 """Measures that are shown of the paper's model at once; the others are to be unfolded."""

@@ -14,17 +14,12 @@ from latentarm_research.studies.tasks.runs import Run
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-ACROSS: Final = 2
-"""Panels in a row, at most."""
-
+ACROSS: Final = 2  # panels in a row, at most
 ROW_MM: Final = 62.0
 FRAME_MM: Final = 24.0
 
-UNAWARE: Final = "joints"
-"""The context that knows nothing of things: its markers are small."""
-
-SPREAD: Final = 0.7
-"""The width in which the conditions of a task stand side by side, in tasks."""
+UNAWARE: Final = "joints"  # the context that knows nothing of things: its markers are small
+SPREAD: Final = 0.7  # the width in which the conditions of a task stand side by side, in tasks
 
 
 def success_figure(by_task: Mapping[str, Mapping[Condition, Sequence[Run]]]) -> "Figure":

@@ -34,15 +34,9 @@ from latentarm_research.studies.tasks.orientation import OrientationCell, Orient
 from latentarm_research.studies.tasks.preset import ORIENTED
 from latentarm_research.studies.tasks.runs import Run, kept_in
 
-RUNS: Final = "runs"
-"""The folder of demonstrations and drives."""
-
-MODELS: Final = "models"
-"""The folder of the models."""
-
-LIMIT: Final = 1 << 16
-"""Bytes of a run's file."""
-
+RUNS: Final = "runs"  # the folder of demonstrations and drives
+MODELS: Final = "models"  # the folder of the models
+LIMIT: Final = 1 << 16  # bytes of a run's file
 _NONE: Final = np.zeros(0)
 
 

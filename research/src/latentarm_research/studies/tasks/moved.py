@@ -52,8 +52,7 @@ MOVED: Final[Mapping[str, Moved]] = {
     ),
 }
 
-TASKS: Final = (*SCENE_TASKS, *MOVED)
-"""Names of all tasks of the study."""
+TASKS: Final = (*SCENE_TASKS, *MOVED)  # names of all tasks of the study
 
 
 def task_of(name: str, stream: Stream) -> SceneTask:

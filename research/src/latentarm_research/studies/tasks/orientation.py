@@ -24,8 +24,7 @@ from latentarm_research.studies.tasks.runs import Driver
 NOISE_M: Final = 0.02
 """SD of how far the tool is moved from where it was shown, along each axis, m: its orientation stays."""
 
-DRAWS: Final = 3
-"""Times that each sample is moved so."""
+DRAWS: Final = 3  # times that each sample is moved so
 
 
 @final

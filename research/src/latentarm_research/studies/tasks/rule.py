@@ -15,14 +15,9 @@ from latentarm_research.studies.tasks.runs import Run, time_ratios
 PRACTISED: Final = ("planning", "greedy", "unsteady")
 """People who know what the stick does: a decoder may make no task worse for them than mode switching is."""
 
-PEOPLE: Final = (*PRACTISED, "learning", "reading")
-"""People whose runs count."""
-
-LEAST: Final = 4
-"""Runs that each person needs at each task with each candidate and by mode switching."""
-
-TIED: Final = 0.02
-"""Candidates that have this share fewer successes than the best have as many."""
+PEOPLE: Final = (*PRACTISED, "learning", "reading")  # people whose runs count
+LEAST: Final = 4  # runs that each person needs at each task with each candidate and by mode switching
+TIED: Final = 0.02  # candidates that have this share fewer successes than the best have as many
 
 CHANCE: Final = 0.05
 """Fewer successes than by mode switching are no chance where Fisher's exact p is below this."""

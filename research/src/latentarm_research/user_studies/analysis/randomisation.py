@@ -20,17 +20,10 @@ from latentarm.core.types import BoolArray, FloatArray
 from latentarm_research.studies.means_test import spreads
 from latentarm_research.user_studies.analysis.means import LongTable
 
-MOST_EXACT: Final = 13
-"""People up to whom every swap is tried."""
-
-DRAWS: Final = 9999
-"""Swaps at random for more people."""
-
-SEED: Final = 17
-"""Of these; always the same, so that a figure is the same whenever it is computed."""
-
-ROUNDING: Final = 1e-9
-"""Two statistics closer than this, as a share, are the same."""
+MOST_EXACT: Final = 13  # people up to whom every swap is tried
+DRAWS: Final = 9999  # swaps at random for more people
+SEED: Final = 17  # of these; always the same, so that a figure is the same whenever it is computed
+ROUNDING: Final = 1e-9  # two statistics closer than this, as a share, are the same
 
 
 def randomisation_p(table: LongTable) -> float | None:

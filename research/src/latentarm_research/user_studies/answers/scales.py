@@ -15,8 +15,7 @@ from latentarm_research.user_studies.definition import Definition
 from latentarm_research.user_studies.questionnaire import Scale
 from latentarm_research.user_studies.record import Trial
 
-QUESTIONNAIRE: Final = "questionnaire"
-"""What stands for a task in records of ratings."""
+QUESTIONNAIRE: Final = "questionnaire"  # what stands for a task in records of ratings
 
 
 @final

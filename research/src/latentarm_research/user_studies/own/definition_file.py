@@ -80,21 +80,13 @@ MEASURED: Final = (
 )
 """Figures of every trial that has a value for them."""
 
-MEASURED_AT_PLATES: Final = ("goal_error_m_s", "goal_error_m")
-"""Figures of drives at tasks with plates."""
+MEASURED_AT_PLATES: Final = ("goal_error_m_s", "goal_error_m")  # figures of drives at tasks with plates
 
 
-NAME: Final = re.compile(r"[a-z][a-z0-9_]{0,39}")
-"""Names that files are called by."""
-
-LONGEST_LABEL: Final = 40
-"""Characters of a label in tables and figures."""
-
-LONGEST_S: Final = 3600.0
-"""Of a trial, s."""
-
-MOST: Final = 1000
-"""People, trials and queries, each."""
+NAME: Final = re.compile(r"[a-z][a-z0-9_]{0,39}")  # names that files are called by
+LONGEST_LABEL: Final = 40  # characters of a label in tables and figures
+LONGEST_S: Final = 3600.0  # of a trial, s
+MOST: Final = 1000  # people, trials and queries, each
 
 
 def check_definition(definition: Definition) -> None:

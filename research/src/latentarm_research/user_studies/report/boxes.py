@@ -22,8 +22,7 @@ ABOUT: Final = "#0072B2"
 OTHERS: Final = ("#7f7f7f", "#E69F00", "#56B4E9", "#CC79A7", "#009E73", "#D55E00", "#F0E442")
 """Of the other ones in order; grey, and the Okabe-Ito palette."""
 
-MOST_CONDITIONS: Final = len(OTHERS) + 1
-"""That colours tell apart."""
+MOST_CONDITIONS: Final = len(OTHERS) + 1  # that colours tell apart
 
 
 def colours(definition: Definition) -> dict[str, str]:
@@ -34,12 +33,8 @@ def colours(definition: Definition) -> dict[str, str]:
     return {name: ABOUT if name == subject else next(others) for name in names}
 
 
-WHISKERS: Final = (10.0, 90.0)
-"""Percentiles at the ends of a box's whiskers, as in the paper."""
-
-ACROSS: Final = 3
-"""Panels in a row."""
-
+WHISKERS: Final = (10.0, 90.0)  # percentiles at the ends of a box's whiskers, as in the paper
+ACROSS: Final = 3  # panels in a row
 ROW_MM: Final = 52.0
 LEGEND_MM: Final = 9.0
 
@@ -141,17 +136,12 @@ def _name_conditions(axes: "Axes", definition: Definition) -> None:
     axes.set_xticks(range(len(names)), names, fontsize=SMALL_FONT_SIZE - 1.0)
 
 
-SHOWN: Final = ("time_s", "goal_error_m_s")
-"""What the paper shows of each person (section 10)."""
-
-MOST_PEOPLE: Final = 24
-"""Of whom bars can be told apart."""
-
+SHOWN: Final = ("time_s", "goal_error_m_s")  # what the paper shows of each person (section 10)
+MOST_PEOPLE: Final = 24  # of whom bars can be told apart
 PERSON_ROW_MM: Final = 38.0
 PERSON_LEGEND_MM: Final = 9.0
 
-ROOM: Final = 0.8
-"""Of a person's bars together, of the distance to the next person's."""
+ROOM: Final = 0.8  # of a person's bars together, of the distance to the next person's
 
 
 def people_measures(measured: Collection[str]) -> list[str]:

@@ -16,9 +16,7 @@ from latentarm_research.user_studies.trace import Trace
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-ACROSS: Final = 2
-"""Panels in a row."""
-
+ACROSS: Final = 2  # panels in a row
 BAR_MM: Final = 5.5
 PANEL_MM: Final = 17.0
 LEGEND_MM: Final = 12.0
@@ -76,11 +74,8 @@ def likert_figure(
 STEPS_ROW_MM: Final = 58.0
 STEPS_LEGEND_MM: Final = 9.0
 
-SPREAD: Final = 0.6
-"""How much of the room of a step its conditions take."""
-
-NAME_LETTERS: Final = 12
-"""Of a step's name in one line."""
+SPREAD: Final = 0.6  # how much of the room of a step its conditions take
+NAME_LETTERS: Final = 12  # of a step's name in one line
 
 
 def step_figure(definition: Definition, traces: Sequence[Trace], who: str) -> "Figure":

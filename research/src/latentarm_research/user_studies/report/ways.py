@@ -31,8 +31,7 @@ NARROWEST: Final = 0.75
 """Of a view's shorter side, as a share of the longer one, so that its numbers have room."""
 
 LEGEND_MM: Final = 9.0
-SHARES: Final = 50
-"""Points of a drive along which distances are compared."""
+SHARES: Final = 50  # points of a drive along which distances are compared
 
 
 def way_figure(definition: Definition, task: StudyTask, traces: Sequence[Trace], who: str) -> "Figure":

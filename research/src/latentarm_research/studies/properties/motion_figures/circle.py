@@ -27,8 +27,7 @@ if TYPE_CHECKING:
 
 PARTS_MM: Final = (52.0, 72.0)
 HOLD_S: Final = 0.25
-AROUND: Final = 8
-"""Places on each circle from which arrows are drawn."""
+AROUND: Final = 8  # places on each circle from which arrows are drawn
 HALF_VIEW_M: Final = 0.21
 SECOND_COLOUR: Final = "#8a8f96"
 """Of z_2, in all models; z_1 has the model's colour."""

@@ -30,11 +30,8 @@ CONTRASTED: Final = ("vae", *CONDITIONED)
 """The models whose motions are shown side by side; the paper contrasts the first two."""
 
 EPISODES: Final = 60
-STREAM: Final = 81
-"""Separates the drawn states from those of the study: no model was trained on them."""
-
-Decoders = Mapping[str, DecodesActions]
-"""One decoder per model, of the first seed, trained without noise."""
+STREAM: Final = 81  # separates the drawn states from those of the study: no model was trained on them
+Decoders = Mapping[str, DecodesActions]  # one decoder per model, of the first seed, trained without noise
 
 
 @dataclass(frozen=True)
