@@ -47,12 +47,13 @@ def test_verdicts_come_family_by_family_and_task_by_task():
     ]
     tests[-1] = a_test("cae", "ae", 0.2, hypothesis="H2", task="reach", family="b")
     found = verdicts(tests)
-    assert [(one.family, one.hypothesis, one.supported) for one in found] == [
-        ("a", "H1", True),
-        ("a", "H2", True),
-        ("b", "H1", True),
-        ("b", "H2", False),
+    assert [(one.family, one.hypothesis) for one in found] == [
+        ("a", "H1"),
+        ("a", "H2"),
+        ("b", "H1"),
+        ("b", "H2"),
     ]
+    assert all(one.by_task == {"sine": "supported", "reach": "supported"} for one in found[:3])
     assert found[-1].by_task == {"sine": "supported", "reach": "not supported: cAE not clearly above AE"}
 
 

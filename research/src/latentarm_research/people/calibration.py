@@ -1,7 +1,6 @@
 """What was fitted of the simulated people, to mode switching and to movements along one axis alone."""
 
 import json
-from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib.resources import files
 from typing import Any, Final, final
@@ -33,8 +32,7 @@ _FROZEN: Final[dict[str, Any]] = json.loads(
     (files("latentarm_research.people") / "calibration.json").read_text(encoding="utf-8")
 )
 
-PROVENANCE: Final[Mapping[str, Any]] = _FROZEN.pop("provenance")
-"""How `CALIBRATED` was fitted: the command, the seed, what was aimed at, and all figures before and after."""
+del _FROZEN["provenance"]  # how it was fitted: command, seed, aim, and all figures before and after
 
 CALIBRATED: Final = Calibration(**_FROZEN)
 """Frozen before these people drove any latent action; `latentarm measure calibration` measures it."""

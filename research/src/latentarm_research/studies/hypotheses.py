@@ -86,7 +86,6 @@ class Verdict:
 
     hypothesis: str  # `H1`, `H2`, ...
     family: str  # of tests
-    supported: bool  # whether every comparison holds
     by_task: Mapping[str, str]  # task -> `supported` or `not supported: why`, in the tasks' order
 
 
@@ -114,7 +113,7 @@ def verdicts(comparisons: Sequence[Comparison]) -> list[Verdict]:
                 task: _said([one for one in tests if one.task == task], several_measures)
                 for task in dict.fromkeys(one.task for one in tests)
             }
-            found.append(Verdict(hypothesis, family, all(one.holds for one in tests), by_task))
+            found.append(Verdict(hypothesis, family, by_task))
     return found
 
 

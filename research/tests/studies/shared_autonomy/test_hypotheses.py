@@ -86,7 +86,9 @@ def test_marks_of_the_change_of_mind():
     expected = stats.ttest_1samp(errors["LA+SA", late], TRAPPED, alternative="greater")
     assert (trapped.t, trapped.p) == pytest.approx((expected.statistic, expected.pvalue))
     assert trapped.hedges_g > 0
-    assert [verdict.supported for verdict in verdicts(tests) if verdict.hypothesis == "H2"] == [True]
+    assert [verdict.by_task for verdict in verdicts(tests) if verdict.hypothesis == "H2"] == [
+        {TASK: "supported"}
+    ]
 
 
 def test_what_fails_is_named():
