@@ -12,6 +12,7 @@ from typing import Annotated, Any, Final
 from tyro.conf import arg
 
 from latentarm_research.measurements.measurement import Measurement, Outcome, Work
+from latentarm_research.people.names import OperatorName
 
 Names = tuple[str, ...]
 Numbers = tuple[float, ...]
@@ -71,6 +72,17 @@ class Help:
     drives: Annotated[int, arg(help="To each item.")] = 5
     limit_s: Annotated[float, arg(help="Longest time of a drive, s.")] = 40.0
     episodes: Annotated[int, arg(help="Demonstrations that the model learns from.")] = 60
+    epochs: Annotated[int | None, arg(help="Of training; by default the model's.")] = None
+
+
+@dataclass(frozen=True)
+class StepHelp:
+    """Options of ``step-help``."""
+
+    tasks: Annotated[Names, arg(help="With things that are goals.")] = ("dessert", "entree")
+    people: Annotated[tuple[OperatorName, ...], arg(help="Simulated people.")] = ("greedy", "unsteady")
+    drives: Annotated[int, arg(help="By each person in each condition.")] = 3
+    episodes: Annotated[int, arg(help="Demonstrations that the models learn from.")] = 40
     epochs: Annotated[int | None, arg(help="Of training; by default the model's.")] = None
 
 
@@ -167,7 +179,7 @@ MEASUREMENTS: Final[Mapping[str, Measurement]] = {
     ),
     "step-help": Measurement(
         "Measure what help is worth at the steps of a task, with a way back and without, in physics.",
-        options.StepHelp,
+        StepHelp,
         {"tasks": ("entree",), "people": ("greedy",), "drives": 1, "episodes": 2, "epochs": 1},
     ),
     "published-help": Measurement(

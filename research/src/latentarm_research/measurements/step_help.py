@@ -26,8 +26,8 @@ from latentarm.tasks.scene_task import Beginning, SceneTask
 from latentarm_research.drives.demonstrate import demonstrate
 from latentarm_research.drives.drive import Setup
 from latentarm_research.drives.drives import Planned, drive_all, plan_drives
+from latentarm_research.measurements.catalogue import StepHelp
 from latentarm_research.measurements.measurement import Outcome, Work, line
-from latentarm_research.measurements.options import StepHelp
 from latentarm_research.people.catalogue import PEOPLE
 from latentarm_research.people.names import OperatorName
 from latentarm_research.studies.fitting import fit_model, validation_episodes

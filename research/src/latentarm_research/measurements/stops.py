@@ -14,7 +14,7 @@ import numpy as np
 from latentarm.arms.catalogue import ARMS
 from latentarm.core.errors import UserError
 from latentarm.robots.panda import panda
-from latentarm.testing.fault_trials import FAULTS, PERIOD_S, Fault, try_fault
+from latentarm.testing.fault_trials import FAULTS, PERIOD_S, Fault, FaultTrial, try_fault
 from latentarm_research.measurements.catalogue import Stops
 from latentarm_research.measurements.measurement import Outcome, Work, line
 
