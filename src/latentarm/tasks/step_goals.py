@@ -2,16 +2,21 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import final
+from typing import Final, final
 
 import numpy as np
 
 from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray, Goal, Pose
+from latentarm.robots.kinematics.rotations import angle_between
 from latentarm.robots.robot import Robot
 from latentarm.robots.scene.scene import SceneState
 from latentarm.tasks.inverse_kinematics import solve
 from latentarm.tasks.steps import TaskStep, Waypoint
+
+MOVED_M: Final = 0.002
+MOVED_RAD: Final = 0.02
+"""A goal is solved for again once its pose has moved farther than this."""
 
 
 @final
@@ -31,9 +36,6 @@ class StepGoals:
     of the present step's thing is the person's present waypoint; that of another thing is where its next
     step ends. What has no step left, and a goal that is no thing of the scene, stay.
 
-    Configurations are those nearest to where the arm is: from far away a redundant arm would be pulled to
-    another posture of the same pose, and its inputs would be judged by that.
-
     Args:
         robot: its first tool is meant.
         goals: at the start.
@@ -45,10 +47,10 @@ class StepGoals:
         self, robot: Robot, goals: Sequence[Goal], steps: Sequence[TaskStep], things: Sequence[str]
     ) -> None:
         self._robot = robot
-        self._names = [goal.name if goal.name in things else "" for goal in goals]
+        self._names = [goal.name if goal.name in things else None for goal in goals]
+        self._poses = [goal.pose for goal in goals]
         self._steps = tuple(steps)
         self._thing = steps[0].thing if steps else ""
-        self._looks = -1
         self._configurations = np.array([goal.configuration for goal in goals])
 
     def look(
@@ -56,35 +58,32 @@ class StepGoals:
     ) -> GoalMove | None:
         """The change since the last look, or None.
 
-        One goal is solved for, which takes some 2 ms: the present one in every other look, and the others in
-        turn. One that the arm cannot reach stays.
+        At most one goal is solved for, which takes some 2 ms: near ``q`` (n,), rad, where the arm is. One
+        that the arm cannot reach stays.
 
         Args:
             done: number of steps done.
             step: the present one; None where nothing is left.
             waypoint: the present one.
             state: of the scene.
-            q: (n,), joint positions, rad.
+            q: joint positions.
         """
-        if step is None:
+        if not self._poses or step is None:
             return None
         anew, self._thing = step.thing != self._thing, step.thing
-        self._looks = 0 if anew else self._looks + 1
-        present = {i: waypoint for i, name in enumerate(self._names) if name == step.thing and waypoint}
-        others = {
-            i: way
-            for i, name in enumerate(self._names)
-            if name != step.thing and (way := self._next(done, name)) is not None
-        }
-        turn, odd = divmod(self._looks, 2)
-        asked = list((others if others and (odd or not present) else present).items())
-        if not asked:
-            return None
-        index, at = asked[turn % len(asked)]
-        self._move(index, at.pose(state), q)
-        return GoalMove(self._configurations, anew)
+        before = self._configurations
+        # The person's present goal first: others can wait.
+        for index, name in sorted(enumerate(self._names), key=lambda one: one[1] != step.thing):
+            at = waypoint if name == step.thing else self._next(done, name)
+            if name is not None and at is not None and _apart(self._poses[index], pose := at.pose(state)):
+                self._move(index, pose, q)
+                break
+        if anew or self._configurations is not before:
+            return GoalMove(self._configurations, anew)
+        return None
 
     def _move(self, index: int, pose: Pose, q: FloatArray) -> None:
+        self._poses[index] = pose
         try:
             configuration = solve(self._robot, pose, q)
         except UserError:
@@ -92,5 +91,12 @@ class StepGoals:
         self._configurations = self._configurations.copy()
         self._configurations[index] = configuration
 
-    def _next(self, done: int, name: str) -> Waypoint | None:
+    def _next(self, done: int, name: str | None) -> Waypoint | None:
         return next((step.waypoints[-1] for step in self._steps[done:] if step.thing == name), None)
+
+
+def _apart(one: Pose, other: Pose) -> bool:
+    return bool(
+        np.linalg.norm(one.position - other.position) > MOVED_M
+        or angle_between(one.rotation, other.rotation) > MOVED_RAD
+    )

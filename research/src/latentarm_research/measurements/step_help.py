@@ -43,7 +43,6 @@ CONFIDENT: Final = blending(ConfidenceAlpha(0.3))
 WAYS: Final[Mapping[str, tuple[AssistanceRule | None, bool, Rule]]] = {
     "no help": (None, True, BoltzmannBelief),
     "goals stay, alpha 0.15": (blending(FixedAlpha()), False, BoltzmannBelief),
-    "goals stay, confidence": (CONFIDENT, False, BoltzmannBelief),
     "goals move on, alpha 0.15": (blending(FixedAlpha()), True, BoltzmannBelief),
     "goals move on, confidence": (CONFIDENT, True, BoltzmannBelief),
     "goals move on, confidence, memory 2 s": (CONFIDENT, True, partial(BoltzmannBelief, memory_s=2.0)),
