@@ -9,10 +9,11 @@ import pytest
 from latentarm.arms.contract import Arm, SceneArm
 from latentarm.arms.kinematic import KinematicArm
 from latentarm.core.errors import UserError
-from latentarm.core.types import Pose
+from latentarm.core.types import Goal, Pose
 from latentarm.robots.scene.scene import SceneState
 from latentarm.tasks.catalogue import SCENE_TASKS, TASKS, make_scene_task
 from latentarm.tasks.mishap import Mishap, MishapKind
+from latentarm.tasks.step_goals import StepGoals
 from latentarm.tasks.steps import StepKind, TaskStep, Waypoint
 from latentarm.tasks.table_top import ITEM_HEIGHT, ITEMS, TableTop
 from latentarm.tasks.task import REACHED_DISTANCE
@@ -75,6 +76,25 @@ def test_a_run_begins_with_the_first_enable_and_its_time_ends_with_its_outcome()
     assert seen(run, 14.5, enabled=False) == (2, "success", 3.5)
     arm.height_m = -1.0
     assert seen(run, 20.0) == (2, "success", 3.5)
+
+
+def test_help_leads_to_the_waypoint_of_the_step_until_the_run_is_over():
+    robot = TableTop().robot
+    ahead = robot.chain.forward(robot.home + 0.1)
+    step = TaskStep("holding", "cup", "lifted", lifted(0.2).done, (Waypoint(lambda state: ahead),))
+    arm, goal = Table(), Goal("cup", robot.home, robot.chain.forward(robot.home))
+    run = TaskRun(Todo("lift", ("cup",), 0, (step,)), arm, robot.chain)
+    goals = StepGoals(robot, (goal,), (step,), ("cup",))
+    assert run.move_goals(goals, robot.home) is None  # nothing has been seen yet
+    seen(run, 1.0)
+    move = run.move_goals(goals, robot.home)
+    assert move is not None
+    assert robot.chain.forward(move.goals[0]).position == pytest.approx(ahead.position, abs=1e-3)
+    assert run.move_goals(goals, robot.home) is None  # it stays there
+    arm.height_m = 0.3
+    seen(run, 2.0)
+    assert run.state.outcome == "success"
+    assert run.move_goals(goals, robot.home) is None
 
 
 def test_progress_with_things_counts_on_the_way_back_too():
