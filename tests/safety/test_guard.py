@@ -73,7 +73,8 @@ def test_what_passes_is_safe_all_the_way(arm, two_arms, gantry, oracle, seed, na
     # Near limits too, and outside them.
     q = np.where(rng.uniform(size=robot.dof) < 0.2, rng.choice([lower + 0.1, upper - 0.1]), q)
     q += rng.normal(size=robot.dof) * 0.005
-    obstacles = beside(robot, q, rng, oracle)
+    # Without things half of the time: they are so near that they leave little for the other limits to do.
+    obstacles = beside(robot, q, rng, oracle) if rng.uniform() < 0.5 else ()
     workspace = None
     if rng.uniform() < 0.5:
         measure = oracle(robot)

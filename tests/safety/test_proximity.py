@@ -98,7 +98,7 @@ def test_what_is_held_covers_all_that_matters(arm, oracle):
         proximity.measured(Placement(body, q), speed)
         for _ in range(20):
             q = q + rng.normal(size=7) * 0.002
-            now_speed = speed * rng.uniform(0.5, 1.1)
+            now_speed = speed * rng.uniform(0.5, 1.6)
             held = proximity.held(q, now_speed)
             if held is None:
                 break
