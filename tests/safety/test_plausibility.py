@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from latentarm.control.step import STEADY_S, Step
@@ -87,16 +87,18 @@ def test_readings_that_come_rarely_or_in_steps_are_healthy_too(arm, seed, every,
     assert first_doubt(made, readings, velocity, 0.01, every) is None
 
 
-@given(SEEDS, st.integers(0, 9))
+@given(SEEDS, st.floats(0.0, 10.0))
+@example(0, 10.0)
 @settings(deadline=None, max_examples=40)
 def test_exact_readings_of_an_arm_that_lags_are_healthy_too(arm, seed, late):
     """As a simulated arm without noise gives them; commands may stop and go on within the lag."""
     rng = np.random.default_rng(seed)
     made, bounds = make(arm)
-    assert late * bounds.dt_s < bounds.lag_s
+    assert late * bounds.dt_s <= bounds.lag_s
     velocity = commands(rng, 0.5, 300)
     true = positions(velocity, 0.01, 0.0)
-    readings = true[np.maximum(np.arange(300) - late, 0)]
+    taken, ticks = np.maximum(np.arange(300) - late, 0.0), np.arange(301)
+    readings = np.array([np.interp(taken, ticks, joint) for joint in true.T]).T
     assert first_doubt(made, readings, velocity, 0.01) is None
 
 
@@ -166,6 +168,19 @@ def test_a_jump_is_noticed_at_once(arm, seed, size):
     assert "jumped" in said
 
 
+def test_each_joint_may_move_as_far_as_it_can_in_the_time_and_no_farther(arm):
+    """After a second in which nothing was read, the joint that moved most need not be the one that jumped."""
+    slow, fast = int(arm.limits.velocity.argmin()), int(arm.limits.velocity.argmax())
+    assert arm.limits.velocity[fast] > arm.limits.velocity[slow] + 0.3
+    made, _ = make(arm)
+    made.follow(np.zeros(7), np.zeros(7), 0.0, new=True, driven=False)
+    q = np.zeros(7)
+    q[fast] = arm.limits.velocity[fast]
+    assert made.jump(q, 1.0) is None
+    q[slow] = arm.limits.velocity[slow] + 0.2
+    assert made.jump(q, 1.0).parameters["joint"] == arm.joint_names[slow]
+
+
 def test_slow_drift_is_no_error_and_what_pushes_the_arm_away_is(arm):
     for drift, doubted in ((0.02, False), (0.3, True)):
         made, _ = make(arm)
@@ -182,6 +197,18 @@ def test_an_arm_that_is_not_driven_may_be_moved_by_hand(arm):
         assert made.follow(q, np.zeros(7), 0.01 * tick, new=True, driven=False) is None
     # From where it is now, it is expected to follow.
     assert made.follow(q, np.zeros(7), 2.0, new=True, driven=True) is None
+
+
+def test_after_a_reset_nothing_of_before_is_held_against_the_arm(arm):
+    """Readings of an arm that lags repeat at first, which is no fault unless it has moved this way for long."""
+    made, bounds = make(arm)
+    velocity = np.full((30, 7), 0.5)
+    true = positions(velocity, 0.01, 0.0)
+    assert first_doubt(made, true[:-1], velocity, 0.01) is None
+    made.reset()
+    readings = true[np.maximum(np.arange(30) - round(bounds.lag_s / 0.01) + 1, 0)]
+    for tick in range(30):
+        assert made.follow(readings[tick], velocity[0], 0.01 * tick, new=True, driven=True) is None
 
 
 def test_metres_where_a_joint_slides(gantry):
