@@ -200,7 +200,7 @@ def test_an_arm_that_is_not_driven_may_be_moved_by_hand(arm):
 
 
 def test_after_a_reset_nothing_of_before_is_held_against_the_arm(arm):
-    """Readings of an arm that lags repeat at first, which is no fault unless it has moved this way for long."""
+    """Readings of an arm that lags repeat at first, which is a fault only once it has moved for longer."""
     made, bounds = make(arm)
     velocity = np.full((30, 7), 0.5)
     true = positions(velocity, 0.01, 0.0)
