@@ -390,6 +390,12 @@ class TestGoalsThatMove:
         assert (before.action_assist < 0.0).all()  # towards the likelier one, at -0.2
         assert after.action_assist == pytest.approx(believed @ [0.3, 0.4])
 
+    def test_the_belief_learns_of_the_goals_where_they_are_now(self, make, arm):
+        step = make(prior=(0.5, 0.5))
+        step.move_goals(np.stack([arm.home - 0.3, arm.home + 0.2]))  # each to the other's side
+        run(step, PUSH, arm.home, 100)  # towards the second
+        assert step.belief[1] > 0.9
+
     @pytest.mark.parametrize("wrong", [np.zeros((1, 7)), np.zeros((2, 6)), np.full((2, 7), np.nan)])
     def test_others_are_refused(self, make, arm, wrong):
         step = make(FixedAlpha(0.5))

@@ -153,6 +153,12 @@ class TestZeroInput:
         record, _ = run(step, Input(np.array([0.01, -0.01])), arm.home, 50)
         assert not record.command.velocity.any()
 
+    @pytest.mark.parametrize("push", [(1, 0), (0, 1), (0, -1), (-0.6, 0.6), (0.015, -0.015), (0, 0.021)])
+    def test_a_push_along_any_axis_longer_than_the_dead_zone_moves_the_arm(self, step, arm, push):
+        engaged(step, arm.home)
+        record, _ = run(step, Input(np.array(push, dtype=float)), arm.home, 5)
+        assert record.command.velocity.any()
+
     def test_letting_go_ramps_down_within_half_a_second(self, step, arm):
         engaged(step, arm.home)
         record, state = run(step, PUSH, arm.home, 100)

@@ -5,14 +5,14 @@ from dataclasses import replace
 import hypothesis
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from latentarm.arms.mujoco import Imperfections, MujocoArm
 from latentarm.assistance.controllers.end_effector import EndEffectorController
 from latentarm.control.clock import SimulatedClock
 from latentarm.control.step import Step
-from latentarm.core.types import Input, Pose, Reading
+from latentarm.core.types import Input, Pose, Reading, Stop
 from latentarm.robots.scene.scene import Scene
 from latentarm.safety.config import SafetyConfig
 from latentarm.safety.yielding import FARTHEST_M, LONGEST_S, LOOK_S, PACE, YIELDING
@@ -206,26 +206,30 @@ def test_other_stops_do_not_draw_back_though_something_holds_the_arm(bare, scrip
 
 
 @settings(deadline=None, max_examples=8)
-@given(seed=SEEDS, after=st.integers(0, 60))
-def test_stop_ends_it_at_any_time(bare, scripted, seed, after):
+@given(seed=SEEDS, after=st.integers(0, 60), refused=st.booleans())
+@example(seed=0, after=20, refused=True)
+def test_stop_ends_it_at_any_time(bare, scripted, seed, after, refused):
     plant = pressed(bare, scripted, seed)
     plant.run(0.0, after)
-    plant.step.stop("Stop was pressed.")
+    if refused:
+        plant.step.refuse(Stop("The arm has not become ready."))
+    else:
+        plant.step.stop("Stop was pressed.")
     since = len(plant.records)
     plant.run(1.0, 200)
     assert not any(yields(plant)[since:])
     assert not any(one.command.velocity.any() for one in plant.records[since + 15 :])
 
 
-@pytest.mark.parametrize("fault", ["jump", "lost"])
-def test_readings_that_fail_meanwhile_end_it(bare, scripted, fault):
+@pytest.mark.parametrize(("fault", "ticks"), [("jump", 3), ("jump", 1), ("lost", 3), ("lost", 1)])
+def test_readings_that_fail_meanwhile_end_it(bare, scripted, fault, ticks):
     plant = pressed(bare, scripted)
     while not yields(plant)[-1]:
         plant.run(0.0)
     plant.run(0.0, 5)
     since = len(plant.records)
     plant.read = (lambda q, tick: q + 0.5) if fault == "jump" else (lambda q, tick: np.full(len(q), np.nan))
-    plant.run(0.0, 3)
+    plant.run(0.0, ticks)
     plant.read = lambda q, tick: q
     plant.run(0.0, 200)
     assert not any(yields(plant)[since:])
