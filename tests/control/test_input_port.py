@@ -2,6 +2,7 @@ import math
 import threading
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -35,6 +36,33 @@ def test_the_latest_input_wins_and_ages():
     given, age = port.latest(clock.now_s())
     assert given.u[0] == 0.2
     assert abs(age - 0.03) < 1e-12
+
+
+def test_age_counts_from_when_an_input_came_not_from_its_nonce():
+    port, clock = port_and_clock()
+    nonce = port.issue_nonce()
+    clock.wait_until(0.05)
+    assert port.offer(push(0.1), nonce, 1)
+    clock.wait_until(0.06)
+    assert port.latest(clock.now_s())[1] == pytest.approx(0.01)
+    assert port.nonce_age_s(nonce) == pytest.approx(0.06)
+
+
+def test_the_opening_button_is_seen_as_long_as_it_is_held():
+    port, _ = port_and_clock()
+    nonce = port.issue_nonce()
+    seen = []
+    for number, opens in enumerate([False, True, True, False]):
+        port.offer(Input(np.zeros(2), opens=opens), nonce, number)
+        seen += [port.latest(0.0)[0].opens for _ in range(2)]
+    assert seen == [False, False, True, True, True, True, False, False]
+
+
+def test_among_many_nonces_the_newest_counts():
+    port, _ = port_and_clock()
+    nonces = [port.issue_nonce() for _ in range(3000)]
+    assert port.offer(push(0.1), nonces[-1], 1)
+    assert not port.offer(push(0.1), nonces[0], 2)
 
 
 def test_nothing_from_before_the_clock_went_back_counts():

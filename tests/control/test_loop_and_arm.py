@@ -12,7 +12,7 @@ from latentarm.control.input_port import InputSource
 from latentarm.control.loop import ENABLING_S, ControlLoop
 from latentarm.control.step import Step
 from latentarm.core.errors import UserError
-from latentarm.core.types import Input
+from latentarm.core.types import GripperCommand, Input
 from latentarm.safety.config import SafetyConfig
 from latentarm.testing.faults import FaultyArm
 
@@ -118,6 +118,35 @@ def test_an_arm_may_take_its_time_to_become_ready(rig, monkeypatch, takes_s, rea
     assert (said(rig.records[-2]) is None) == ready
     if not ready:
         assert asked_s[-1] - asked_s[0] <= ENABLING_S + 0.01
+
+
+def test_each_time_the_arm_has_as_long_to_become_ready(rig, monkeypatch):
+    asked_s = []
+
+    def enable():
+        asked_s.append(rig.clock.now_s())
+        if asked_s[-1] > ENABLING_S + 1.5:
+            rig.plant.enable()
+
+    monkeypatch.setattr(rig.arm, "enable", enable)
+    rig.at = {2: rig.loop.enable, round(100 * ENABLING_S) + 50: rig.loop.enable}
+    rig.loop.run(round(100 * (ENABLING_S + 2.0)))
+    assert np.diff(asked_s).max() > 0.3, "the first wait has ended"
+    assert said(rig.records[-2]) is None
+
+
+class OpeningButton(InputSource):
+    def latest(self, now_s):
+        return Input(np.zeros(1), opens=True), 0.0
+
+
+def test_the_fingers_of_an_arm_that_is_not_enabled_are_opened(rig):
+    rig.plant.move_gripper(GripperCommand(0.0, 0.1, 20.0))
+    rig.clock.wait_until(1.0)
+    assert rig.plant.read().gripper.width_m == 0.0
+    ControlLoop(rig.step, rig.arm, OpeningButton(), rig.clock).run(300)
+    assert rig.plant.read().gripper.width_m == rig.step.robot.gripper.width_m
+    assert rig.step.stopped is not None
 
 
 def test_a_stop_ends_the_wait_for_the_arm(rig, monkeypatch):

@@ -167,6 +167,19 @@ def test_what_was_held_before_the_first_ask_is_opened_by_a_toggle() -> None:
     assert opened.width_m == WIDE
 
 
+def test_a_toggle_closes_fingers_that_were_spread_by_hand_since_they_held_something() -> None:
+    driven = Driven()
+    driven.tick("close")
+    driven.tick(hand=GripperReading(0.06, holding=True))
+    driven.step.stop("Stop.")
+    driven.tick(hand=GripperReading(0.06, holding=True))
+    driven.step.enable()
+    driven.tick()
+    closing = driven.tick("toggle").command.gripper
+    assert closing is not None
+    assert closing.width_m == 0.0
+
+
 @pytest.mark.parametrize("hand", [None, GripperReading(math.nan), GripperReading(0.2), GripperReading(-1.0)])
 def test_an_arm_whose_gripper_cannot_be_read_stops(hand: GripperReading | None) -> None:
     driven = Driven()
@@ -256,6 +269,14 @@ def test_fingers_stop_where_guiding_ends() -> None:
     ended = driven.tick(hand=GripperReading(0.05)).command.gripper
     assert ended is not None
     assert (ended.width_m, ended.speed_m_s) == (0.05, 0.0)
+
+
+@pytest.mark.parametrize("asked", ["open", "close", "toggle"])
+def test_a_guide_moves_no_fingers_that_cannot_be_read(asked: GripperAsk) -> None:
+    driven = Driven()
+    driven.step.stop("Stop.")
+    driven.step.guided(asked)
+    assert driven.tick(hand=None).command.gripper is None
 
 
 def test_held_for_a_second_it_opens_a_disengaged_gripper_as_long_as_it_is_held() -> None:
