@@ -53,3 +53,23 @@ def test_its_gripper_closes_at_its_speed_and_holds_nothing(the_panda):
     assert bare.spec.gripper is None
     with pytest.raises(ValueError, match="no gripper"):
         bare.send(Command(np.zeros(5), 0.01, gripper=GripperCommand(0.0, 1.0, 1.0)))
+
+
+def test_its_gripper_moves_without_the_arm_only_while_that_is_connected_and_disabled(the_panda):
+    clock = SimulatedClock()
+    arm = KinematicArm(the_panda, the_panda.home, clock.now_s)
+    closing = GripperCommand(0.0, 0.1, 20.0)
+
+    def width_after_asking():
+        arm.move_gripper(closing)
+        clock.wait_until(clock.now_s() + 0.2)
+        arm.connect()
+        return arm.read().gripper.width_m
+
+    assert width_after_asking() == pytest.approx(0.08)  # it was off
+    arm.enable()
+    assert width_after_asking() == pytest.approx(0.08)
+    arm.disable()
+    assert width_after_asking() == pytest.approx(0.06)
+    arm.close()
+    assert width_after_asking() == pytest.approx(0.06)

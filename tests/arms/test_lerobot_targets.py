@@ -77,7 +77,11 @@ def test_a_jaw_opens_at_its_speed_and_says_when_it_holds_something() -> None:
     for _ in range(200):
         at = max(jaw.advance(0.01, at), 40.0)  # something is between
     assert jaw.measured() == (pytest.approx(0.04), True)
-    assert jaw.advance(0.01, at) >= 20.0
+    pressing = jaw.advance(0.01, at)
+    assert 20.0 <= pressing < 40.0
+    jaw.halt()
+    assert jaw.advance(0.01, at) == pressing
+    assert jaw.measured()[1]
 
 
 @pytest.mark.parametrize(

@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Any
+from unittest.mock import Mock, call
 
 import numpy as np
 import pytest
@@ -17,6 +18,7 @@ from latentarm.arms.address import parse_address
 from latentarm.arms.catalogue import make_real_arm
 from latentarm.arms.real import RealArm
 from latentarm.arms.ros2 import link
+from latentarm.arms.ros2.gripper import Ros2Gripper
 from latentarm.arms.ros2.joint_states import ClockJumpedError, JointStates, StampClock, UnusableStatesError
 from latentarm.arms.ros2.options import read_options
 from latentarm.arms.ros2.watchdog_state import parse_state
@@ -243,6 +245,18 @@ def test_the_gripper_holds_what_it_closes_on_and_says_when_it_failed(
         assert arm.status().takes_commands
         odd_server.gripper_fails = False
         wait_for(lambda: reason_after(0.07) == "")
+
+
+def test_a_gripper_that_was_halted_on_its_way_goes_on_when_it_is_asked_again(the_panda: Robot) -> None:
+    to_ros = Mock()
+    to_ros.send_goal.side_effect = ["first", "second"]
+    assert the_panda.gripper is not None
+    gripper = Ros2Gripper(to_ros, read_options(parse_address(WHOLE), the_panda), the_panda.gripper)
+    closing = GripperCommand(0.0, 0.1, 20.0)
+    for command in (closing, closing, GripperCommand(0.0, 0.0, 20.0), closing, closing):
+        gripper.command(command)
+    assert to_ros.send_goal.call_count == 2
+    assert to_ros.cancel_goal.call_args_list == [call("/gripper_controller/gripper_cmd", "first")]
 
 
 def test_what_is_not_rosbridge_is_named(the_panda: Robot, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -17,7 +17,7 @@ from latentarm.arms.catalogue import make_real_arm
 from latentarm.arms.real import RealArm
 from latentarm.control.clock import MonotonicClock
 from latentarm.core.errors import UserError
-from latentarm.core.types import Command
+from latentarm.core.types import Command, GripperCommand
 
 pytestmark = pytest.mark.clock
 
@@ -199,6 +199,22 @@ def test_a_command_lasts_no_longer_than_what_is_left_of_it(arm: RealArm, server:
     arm.send(Command(np.full(7, 0.5), duration_s=0.001))
     time.sleep(0.1)
     assert server.do("state")["commands"] == commands
+
+
+def test_a_stop_keeps_what_the_gripper_holds(arm: RealArm, server: XArmServer) -> None:
+    def holds() -> bool:
+        gripper = arm.read().gripper
+        return gripper is not None and gripper.holding
+
+    server.do("set", grips_at=400.0)
+    try:
+        arm.send(Command(np.zeros(7), 0.05, gripper=GripperCommand(0.0, 0.1, 20.0)))
+        wait_for(holds)
+        arm.send(Command(np.zeros(7), 0.05, gripper=GripperCommand(0.0, 0.0, 20.0)))
+        time.sleep(0.5)
+        assert holds()
+    finally:
+        server.do("set", grips_at=None)
 
 
 def test_firmware_without_times_in_its_reports_is_driven_too() -> None:
