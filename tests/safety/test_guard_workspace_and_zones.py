@@ -7,8 +7,8 @@ from latentarm.robots.kinematics.obstacles import HalfSpace
 from latentarm.safety.body import Body, Placement
 from latentarm.safety.bounds import Bounds
 from latentarm.safety.config import SafetyConfig, Workspace
-from latentarm.safety.filter import Situation, Surroundings
-from latentarm.safety.guard import Guard, Path
+from latentarm.safety.filter import GuardedArm, Situation
+from latentarm.safety.guard import Guard, StoppingPath
 from latentarm.safety.zones import Zone
 
 REST = np.zeros(7)
@@ -16,7 +16,7 @@ REST = np.zeros(7)
 
 def objection(arm, config, q, velocity, acceleration=REST):
     bounds = Bounds(config, arm, 0.01)
-    situation = Situation(Surroundings(bounds, Body(arm)), q, velocity, acceleration)
+    situation = Situation(GuardedArm(bounds, Body(arm)), q, velocity, acceleration)
     return Guard().objection(velocity, bounds.brake(velocity, acceleration), situation)
 
 
@@ -61,7 +61,7 @@ def test_a_part_that_comes_near_a_zone_only_while_it_brakes_is_too_fast_for_it(a
     bounds = Bounds(SafetyConfig(), arm, 0.01)
     for _ in range(5):
         q, reach, velocity = outwards(arm, rng, axis, 1.0, Body(arm).radius)
-        path = Path(velocity, bounds.brake(velocity, REST), bounds.hold_s)
+        path = StoppingPath(velocity, bounds.brake(velocity, REST), bounds.hold_s)
         goes = 0.1 * (path.before_s + path.after_s)
         assert 0.1 * path.before_s < 0.9 * goes
         for gap, named in ((0.9 * goes, "zone wall"), (3.0 * goes, None)):
@@ -76,13 +76,13 @@ def test_no_part_is_faster_on_its_path_than_zones_are_told(request, name):
     robot = request.getfixturevalue(name)
     rng = np.random.default_rng(2)
     bounds = Bounds(SafetyConfig(), robot, 0.01)
-    surroundings = Surroundings(bounds, Body(robot))
+    surroundings = GuardedArm(bounds, Body(robot))
     sped_up = 0
     for _ in range(100):
         q = rng.uniform(robot.limits.lower, robot.limits.upper)
         velocity = rng.normal(size=robot.dof) * rng.choice([0.0, 0.02, 0.2])
         brake = bounds.brake(velocity, rng.uniform(-4.0, 4.0, robot.dof) * bounds.acceleration)
-        path = Path(velocity, brake, bounds.hold_s)
+        path = StoppingPath(velocity, brake, bounds.hold_s)
         here = Placement(surroundings.body, q)
         told = Guard._fastest(velocity, path, here, np.zeros(robot.dof), surroundings.zones)
         times = np.linspace(0.0, brake.duration_s, 40)
@@ -103,7 +103,7 @@ def test_a_command_that_turns_back_is_judged_where_it_turns(gantry):
     brake = bounds.brake(velocity, acceleration)
     times = np.linspace(0.0, brake.duration_s, 400)
     rail = velocity[0] * bounds.hold_s + np.cumsum([brake.at(time)[0][0] for time in times]) * times[1]
-    ends = Path(velocity, brake, bounds.hold_s).way[0]
+    ends = StoppingPath(velocity, brake, bounds.hold_s).way[0]
     assert rail.max() > ends + 1e-4
     body = Body(gantry)
     reach = (Placement(body, q).points[:, 0] + body.radius).max() + bounds.config.clearance

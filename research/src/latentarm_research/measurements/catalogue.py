@@ -82,6 +82,7 @@ class StepHelp:
     tasks: Annotated[Names, arg(help="With things that are goals.")] = ("dessert", "entree")
     people: Annotated[tuple[OperatorName, ...], arg(help="Simulated people.")] = ("greedy", "unsteady")
     drives: Annotated[int, arg(help="By each person in each condition.")] = 3
+    limit_s: Annotated[float, arg(help="Longest time of a drive, s.")] = 180.0
     episodes: Annotated[int, arg(help="Demonstrations that the models learn from.")] = 40
     epochs: Annotated[int | None, arg(help="Of training; by default the model's.")] = None
 
@@ -180,7 +181,14 @@ MEASUREMENTS: Final[Mapping[str, Measurement]] = {
     "step-help": Measurement(
         "Measure what help is worth at the steps of a task, with a way back and without, in physics.",
         StepHelp,
-        {"tasks": ("entree",), "people": ("greedy",), "drives": 1, "episodes": 2, "epochs": 1},
+        {
+            "tasks": ("entree",),
+            "people": ("greedy",),
+            "drives": 1,
+            "limit_s": 0.5,
+            "episodes": 2,
+            "epochs": 1,
+        },
     ),
     "published-help": Measurement(
         "Measure what published kinds of help are worth to simulated people at marshmallows, in physics.",

@@ -1,5 +1,6 @@
 """Measure what help at the steps of a task is worth: goals that stay or move, a way back or none."""
 
+import warnings
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
@@ -19,6 +20,7 @@ from latentarm.core.types import Demonstrations
 from latentarm.models.catalogue import DEFAULT_MODEL
 from latentarm.models.decoder import Decoder
 from latentarm.models.kind import TrainedModel
+from latentarm.models.way_back.training import NoWayBackWarning
 from latentarm.robots.kinematics.obstacles import Obstacle
 from latentarm.robots.robot import Robot
 from latentarm.tasks.catalogue import make_scene_task
@@ -31,6 +33,7 @@ from latentarm_research.measurements.measurement import Outcome, Work, line
 from latentarm_research.people.catalogue import PEOPLE
 from latentarm_research.people.names import OperatorName
 from latentarm_research.studies.fitting import fit_model, validation_episodes
+from latentarm_research.user_studies.scenes import LimitedTime
 
 WAY_BACK_M: Final = 0.06
 MODELS: Final[Mapping[str, tuple[str, tuple[str, ...]]]] = {
@@ -114,8 +117,14 @@ def measure(options: StepHelp, work: Work) -> Outcome:
             for model in MODELS
             for way_back in (False, True)
         ]
-        models = dict(zip(map(str, fits), work.each(_fitted, fits), strict=True))
-        planned = dict(_planned(options, task, models, work.seed))
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", NoWayBackWarning)  # the condition says so
+            fitted = work.each(_fitted, fits)
+        models = {
+            f"{fit}{' (refused)' if fit.way_back and not model.dimensions.way_back else ''}": model
+            for fit, model in zip(fits, fitted, strict=True)
+        }
+        planned = dict(_planned(options, LimitedTime(task, options.limit_s), models, work.seed))
         traces = drive_all(list(planned.values()), work.jobs, bars=work.bars)
         for (condition, person), drives in zip(planned, traces, strict=True):
             figures = {
