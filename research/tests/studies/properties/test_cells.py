@@ -5,9 +5,7 @@ from dataclasses import replace
 import pytest
 
 from latentarm.core.types import Row
-from latentarm_research.studies.properties.paper import OF_MEANS, PAPER
-from latentarm_research.studies.properties.preset import AS_CHOSEN, PRESETS, designs
-from latentarm_research.studies.properties.tables import (
+from latentarm_research.studies.properties.cells import (
     PaperVerdict,
     cells_table,
     count,
@@ -15,6 +13,8 @@ from latentarm_research.studies.properties.tables import (
     paper_cells,
     sweep_table,
 )
+from latentarm_research.studies.properties.paper import OF_MEANS, PAPER
+from latentarm_research.studies.properties.preset import AS_CHOSEN, PRESETS, designs
 
 FAVOUR, WITHIN, MISSED = PaperVerdict.IN_FAVOUR, PaperVerdict.WITHIN, PaperVerdict.MISSED
 

@@ -15,6 +15,7 @@ from latentarm_research.studies.properties.cell import (
     condition,
     measure_cell,
 )
+from latentarm_research.studies.properties.cells import cells_table, count, paper_cells, sweep_table
 from latentarm_research.studies.properties.figures import (
     beside_paper_figure,
     controllability_figure,
@@ -136,17 +137,17 @@ def _page(
     figures: "dict[str, Figure]",
 ) -> str:
     as_good = {task: tables.as_good_as_paper(rows, task) for task in request.tasks}
-    cells = tables.paper_cells(rows)
+    cells = paper_cells(rows)
     return render_page(
         "properties/page.md",
         command=again(STUDY, request),
         preset=request.preset,
         tasks=request.tasks,
         step_s=STEP_S,
-        cells_found=tables.count(cells),
-        cells_found_by_means=tables.count(tables.paper_cells(rows, means=True)),
-        cells_table=tables.cells_table(cells),
-        sweep_table=tables.sweep_table(swept, list(designs(request.preset))) if swept else "",
+        cells_found=count(cells),
+        cells_found_by_means=count(paper_cells(rows, means=True)),
+        cells_table=cells_table(cells),
+        sweep_table=sweep_table(swept, list(designs(request.preset))) if swept else "",
         verdicts=verdicts(tests),
         ours=tables.OURS,
         as_good={task: counts for task, counts in as_good.items() if counts[1]},

@@ -1,26 +1,16 @@
-"""The study's tables: ours next to the paper's, the noise sweep, and which of the paper's cells hold.
+"""The study's tables: ours next to the paper's, and the noise sweep."""
 
-A cell holds within one SD of the paper's, or beyond it in the method's favour. The paper's claim is that
-models that see the context do better than models that do not. So its favour is a better figure where the
-decoder sees the context, and a worse one where it does not.
-"""
-
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
-from enum import StrEnum
+from collections.abc import Iterable
 from typing import Final
 
 from latentarm.core.types import Row
 from latentarm.evaluation.looks import look_of
 from latentarm.evaluation.measures import measure_of
 from latentarm.evaluation.table import ABSENT, format_figure, measure_name
-from latentarm.models.catalogue import KINDS
 from latentarm_research.studies.properties.measures import RESOLUTION_M
 from latentarm_research.studies.properties.paper import (
     LENGTHS,
     MODELS_OF_THE_PAPER,
-    OF_MEANS,
-    PAPER,
     ratio_name,
 )
 from latentarm_research.studies.tables import markdown_table
@@ -136,117 +126,3 @@ def _as_good(cells: Cells, measure: str) -> str:
     if behind <= EQUAL * max(abs(others[best]), abs(ours.mean)):
         return "yes"
     return f"no ({look_of(best).label} {format_figure(others[best], None)})"
-
-
-HALF_A_DIGIT: Final = 0.005  # what a figure that is printed with two decimals and without SD may be off
-
-
-class PaperVerdict(StrEnum):
-    """How a cell compares with the paper's."""
-
-    IN_FAVOUR = "in the method's favour"
-    WITHIN = "within one SD"
-    MISSED = "missed"
-
-    @property
-    def holds(self) -> bool:
-        """Whether the cell holds."""
-        return self is not PaperVerdict.MISSED
-
-
-@dataclass(frozen=True)
-class PaperCell:
-    """One cell of the paper's table."""
-
-    row: Row  # ours, with the paper's mean and SD
-    verdict: PaperVerdict  # how they compare
-
-
-def judge(
-    mean: float,
-    paper: float,
-    sd: float,  # the paper's SD, or how exactly it is printed where it has none
-    better: str,
-    sees_context: bool,
-) -> PaperVerdict:
-    """Compare one figure with the paper's.
-
-    Returns:
-        `PaperVerdict.IN_FAVOUR` where ours is the paper's mean or beyond it in the method's favour.
-    """
-    upward = (better == "higher") == sees_context
-    ahead = mean - paper if upward else paper - mean
-    if ahead >= 0:
-        return PaperVerdict.IN_FAVOUR
-    return PaperVerdict.WITHIN if -ahead <= sd else PaperVerdict.MISSED
-
-
-def paper_cells(rows: Iterable[Row], *, means: bool = False) -> list[PaperCell]:
-    """The paper's cells among the rows of the paper's setting.
-
-    What is a figure of the paper's by definition (PCA's loss in percent of its own, the VAE's length in
-    percent of its own) is no cell.
-
-    Args:
-        rows: of the study; those under noise or of a further design are passed over.
-        means: judge means over pairs where the study has medians over episodes.
-    """
-    ours = {(row.task, row.model, row.measure): row for row in rows if row.condition is None}
-    cells: list[PaperCell] = []
-    for (task, model, measure), (paper, sd) in PAPER.items():
-        row = ours.get((task, model, OF_MEANS.get(measure, measure) if means else measure))
-        known = measure_of(measure)
-        if row is None or row.mean is None or known is None or known.better is None:
-            continue
-        if measure.endswith(f"_of_{model}"):
-            continue
-        tolerance = HALF_A_DIGIT if sd is None else sd
-        verdict = judge(row.mean, paper, tolerance, known.better, KINDS[model].sees_context)
-        cells.append(PaperCell(replace(row, paper_mean=paper, paper_sd=sd), verdict))
-    return cells
-
-
-def count(cells: Sequence[PaperCell]) -> tuple[int, int]:
-    """How many cells hold, and of how many."""
-    return sum(cell.verdict.holds for cell in cells), len(cells)
-
-
-def cells_table(cells: Sequence[PaperCell]) -> str:
-    """Every cell: the paper's, ours, and how they compare."""
-    return markdown_table(
-        ["task", "measure", "model", "the paper's", "ours", "verdict"],
-        [
-            [
-                cell.row.task or ABSENT,
-                measure_name(cell.row),
-                look_of(cell.row.model or "").label,
-                _printed(cell.row),
-                format_figure(cell.row.mean, cell.row.sd),
-                str(cell.verdict),
-            ]
-            for cell in cells
-        ],
-    )
-
-
-def _printed(row: Row) -> str:
-    """What the paper prints, with its SD where it has one."""
-    return f"{row.paper_mean:.3g}" + ("" if row.paper_sd is None else f" ± {row.paper_sd:.2g}")
-
-
-def sweep_table(rows: Sequence[Row], designs: Sequence[str]) -> str:
-    """How many cells hold in each design, and which do not."""
-    lines: list[list[str]] = []
-    for design in designs:
-        here = [replace(row, condition=None) for row in rows if row.condition == design]
-        cells = paper_cells(here)
-        held, of = count(cells)
-        by_mean, _ = count(paper_cells(here, means=True))
-        missed = [
-            f"{cell.row.task} {measure_name(cell.row)} {look_of(cell.row.model or '').label}"
-            f" {format_figure(cell.row.mean, None)} ({cell.row.paper_mean:.3g})"
-            for cell in cells
-            if not cell.verdict.holds
-        ]
-        lines.append([design, f"{held} of {of}", str(by_mean), "; ".join(missed) or ABSENT])
-    return markdown_table(["design", "cells that hold", "by means", "missed: ours (the paper's)"], lines)
