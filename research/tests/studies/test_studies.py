@@ -98,17 +98,17 @@ def test_parts_of_a_page():
 def test_welch_by_hand():
     found = compare_means(np.array([1.0, 2.0, 3.0]), np.array([4.0, 6.0, 8.0, 10.0]), "less")
     # Variances 1 and 20/3: t = -5 / sqrt(1/3 + 5/3); Welch-Satterthwaite; pooled SD sqrt((2 + 20) / 5).
-    assert found.test == "Welch"
-    assert found.t == pytest.approx(-5.0 / np.sqrt(2.0))
-    assert found.dof == pytest.approx(2.0**2 / ((1 / 3) ** 2 / 2 + (5 / 3) ** 2 / 3))
-    assert found.hedges_g == pytest.approx(5.0 / np.sqrt(22 / 5) * 0.8408, rel=1e-4)
+    assert found.method == "Welch's t"
+    assert found.test.t == pytest.approx(-5.0 / np.sqrt(2.0))
+    assert found.test.dof == pytest.approx(2.0**2 / ((1 / 3) ** 2 / 2 + (5 / 3) ** 2 / 3))
+    assert found.test.g == pytest.approx(-5.0 / np.sqrt(22 / 5) * 0.8408, rel=1e-4)
     assert 0.005 < found.p < 0.02  # t(3.8) = -3.54, one-sided
 
 
 def test_pairs_by_hand():
     found = one_sample(np.array([1.0, 2.0, 3.0]), 0.0, "greater")
-    assert found.t == pytest.approx(2.0 * np.sqrt(3.0))
-    assert found.dof == 2
+    assert found.test.t == pytest.approx(2.0 * np.sqrt(3.0))
+    assert found.test.dof == 2
     # The distribution of t with two degrees of freedom has a closed form.
-    assert found.p == pytest.approx(0.5 - found.t / (2 * np.sqrt(2 + found.t**2)))
-    assert found.hedges_g == pytest.approx(2.0 * 0.5642, rel=1e-4)
+    assert found.p == pytest.approx(0.5 - found.test.t / (2 * np.sqrt(2 + found.test.t**2)))
+    assert found.test.g == pytest.approx(2.0 * 0.5642, rel=1e-4)

@@ -10,6 +10,7 @@ from scipy.stats import t as student
 
 from drawn_trials import drawn_trials
 from latentarm.core.types import FloatArray
+from latentarm_research.studies.claims import Claim
 from latentarm_research.studies.means_test import MeansTest, one_sample_test, small_sample_correction
 from latentarm_research.user_studies.analysis.analysis import analyse, mixed_model
 from latentarm_research.user_studies.analysis.anova import repeated_measures
@@ -18,7 +19,7 @@ from latentarm_research.user_studies.analysis.claims import claims_tested, sides
 from latentarm_research.user_studies.analysis.means import long_table, sides
 from latentarm_research.user_studies.analysis.randomisation import randomisation_p
 from latentarm_research.user_studies.catalogue import load_definition
-from latentarm_research.user_studies.hypothesis import Claim, Printed
+from latentarm_research.user_studies.hypothesis import Printed
 from latentarm_research.user_studies.record import Trial
 
 SLEEP = np.array([1.2, 2.4, 1.3, 1.3, 0.0, 1.0, 1.8, 0.8, 4.6, 1.4])

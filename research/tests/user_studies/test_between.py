@@ -103,7 +103,7 @@ def test_each_person_counts_on_one_side() -> None:
     json.dumps(analysis.as_json(), allow_nan=False)
     json.dumps([one.as_json() for one in analysis.claims], allow_nan=False)
     timed = next(one.tested for one in analysis.claims if one.tested.claim.measure == "time_s")
-    assert (timed.n, timed.says) == (12, "held")
+    assert (timed.n, timed.n_against, timed.says) == (6, 6, "held")
     assert timed.test is not None
     assert (timed.test.n, timed.test.n_against) == (6, 6)
     assert timed.test.g == pytest.approx(timed.test.d * 0.9228, rel=1e-3)

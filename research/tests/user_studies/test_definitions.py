@@ -8,10 +8,10 @@ import pytest
 from latentarm.core.errors import UserError
 from latentarm.evaluation.measures import MEASURES
 from latentarm.models.catalogue import KINDS
+from latentarm_research.studies.claims import Claim
 from latentarm_research.user_studies.catalogue import NAMES, load_definition
 from latentarm_research.user_studies.definition import Condition, Definition
 from latentarm_research.user_studies.exclusion import Exclusion
-from latentarm_research.user_studies.hypothesis import Claim
 from latentarm_research.user_studies.questionnaire import Item, Scale
 from latentarm_research.user_studies.scenes import scene_of
 

@@ -15,12 +15,12 @@ from statsmodels.stats.power import TTestIndPower, TTestPower
 
 from latentarm_research.measurements.catalogue import NullChecks
 from latentarm_research.measurements.measurement import Outcome, Work, line
+from latentarm_research.studies.claims import Claim, Hypothesis
 from latentarm_research.studies.statistics import LEVEL
 from latentarm_research.user_studies.analysis.claims import claims_tested, sides_of
 from latentarm_research.user_studies.catalogue import load_definition
 from latentarm_research.user_studies.definition import Definition, Factor
 from latentarm_research.user_studies.designs import design_of
-from latentarm_research.user_studies.hypothesis import Claim, Hypothesis
 from latentarm_research.user_studies.record import Trial
 
 PEOPLE: Final = {"within": 12, "between": 40}

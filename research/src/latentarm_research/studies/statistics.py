@@ -16,15 +16,12 @@ BOOTSTRAP_SEED: Final = 95  # always the same, so that a figure is the same when
 
 @dataclass(frozen=True)
 class Statistic:
-    """A one-sided test of two means."""
+    """A test of two means."""
 
-    test: str  # `Welch`, `one-sample`, or the reason no test was run
-    t: float | None = None  # its statistic, or None; below 0 where there is less than of the reference
-    dof: float | None = None  # degrees of freedom, or None
-    p: float | None = None  # one-sided, or None
-    # effect size, above 0 where the difference has the direction that was asked for; None where there is no
-    # test, or no unbiased estimate (a one-sample test of two figures)
-    hedges_g: float | None = None
+    method: str  # `Welch's t`, `one-sample t`, `paired t`, ...; empty where no test was made
+    test: means_test.MeansTest | None = None  # of the difference; None where it was not made
+    p: float | None = None  # None where it was not tested
+    why_not: str = ""  # why no test was made; empty where one was
 
 
 def compare_means(values: FloatArray, reference: FloatArray, direction: means_test.Direction) -> Statistic:
@@ -33,34 +30,35 @@ def compare_means(values: FloatArray, reference: FloatArray, direction: means_te
     Welch's test where both sides have spread; where one has none, it is a fixed figure to the other.
     """
     if not means_test.spreads(values) and not means_test.spreads(reference):
-        return Statistic("none: no spread on either side")
+        return Statistic("", why_not="no spread on either side")
     if not means_test.spreads(values):
-        # The reference is the sample then, and the direction is reversed.
-        asked: means_test.Direction = "greater" if direction == "less" else "less"
-        turned = one_sample(reference, float(values.mean()), asked)
-        return replace(turned, t=None if turned.t is None else -turned.t)
+        found = means_test.one_sample_test(reference, float(values.mean()))
+        if found is not None:
+            # The reference is the sample; the difference is that of the values.
+            found = replace(found, difference=-found.difference, d=-found.d)
+        return _one_sided("one-sample t", found, direction)
     if not means_test.spreads(reference):
         return one_sample(values, float(reference.mean()), direction)
-    return _one_sided("Welch", means_test.welch_test(values, reference), direction)
+    return _one_sided("Welch's t", means_test.welch_test(values, reference), direction)
 
 
 def one_sample(values: FloatArray, fixed: float, direction: means_test.Direction) -> Statistic:
     """Test whether figures (n,) are less, or greater, than a fixed one, on average."""
-    return _one_sided("one-sample", means_test.one_sample_test(values, fixed), direction)
+    return _one_sided("one-sample t", means_test.one_sample_test(values, fixed), direction)
 
 
 def paired(values: FloatArray, reference: FloatArray, direction: means_test.Direction) -> Statistic:
     """Test whether figures (n,) are less, or greater, than others of the same seeds (n,), on average."""
     if len(values) < 2:
-        return Statistic("none: too few seeds")
+        return Statistic("", why_not="too few seeds")
     return _one_sided("paired t", means_test.one_sample_test(values - reference), direction)
 
 
-def _one_sided(test: str, found: means_test.MeansTest | None, direction: means_test.Direction) -> Statistic:
-    if found is None:
-        return Statistic("none: no spread")
-    signed = found.g if found.g is None or direction == "greater" else -found.g
-    return Statistic(test, found.t, found.dof, found.p_of(direction), signed)
+def _one_sided(method: str, test: means_test.MeansTest | None, direction: means_test.Direction) -> Statistic:
+    """The result of a test of one direction; None is figures without spread."""
+    if test is None:
+        return Statistic("", why_not="no spread")
+    return Statistic(method, test, test.p_of(direction))
 
 
 def holm(p: Sequence[float | None]) -> list[float | None]:

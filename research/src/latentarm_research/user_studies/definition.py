@@ -7,8 +7,9 @@ from typing import Final, Literal, final
 
 from latentarm.core.errors import UserError
 from latentarm.evaluation.measures import label_of
+from latentarm_research.studies.claims import Claim, Hypothesis
 from latentarm_research.user_studies.exclusion import Exclusion
-from latentarm_research.user_studies.hypothesis import Claim, Hypothesis, Printed
+from latentarm_research.user_studies.hypothesis import Printed
 from latentarm_research.user_studies.questionnaire import Scale
 
 Controls = Literal["modes", "two_sticks", "retargeting", "latent"]
@@ -171,6 +172,10 @@ class Definition:
     def label(self, measure: str) -> str:
         """What tables call a scale of the questionnaire, or the measure's own label."""
         return next((scale.label for scale in self.questionnaire if scale.name == measure), label_of(measure))
+
+    def task_label(self, name: str) -> str:
+        """What tables call a task; any other name as it is."""
+        return next((task.label for task in self.tasks if task.name == name), name)
 
     def as_json(self) -> dict[str, object]:
         """Plain mapping of every field."""

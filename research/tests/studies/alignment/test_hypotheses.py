@@ -9,15 +9,22 @@ from scipy import stats
 
 from latentarm_research.studies.alignment.curves import PRIORS_AT_RANDOM
 from latentarm_research.studies.alignment.hypotheses import (
-    CLAIMS,
+    HYPOTHESES,
     answers_needed,
     compare_conditions,
     targets,
 )
-from latentarm_research.studies.alignment.preset import ALL_PRIORS, CHOSEN, IDEAL, NO_ALIGN, WITHOUT_PRIORS
+from latentarm_research.studies.alignment.preset import (
+    ALL_PRIORS,
+    CHOSEN,
+    IDEAL,
+    NO_ALIGN,
+    SINGLE_PRIORS,
+    WITHOUT_PRIORS,
+)
 from latentarm_research.studies.alignment.scene import AlignmentCell
 from latentarm_research.studies.alignment.turning import FEW, TurningResult
-from latentarm_research.studies.hypotheses import verdicts
+from latentarm_research.studies.claim_tables import verdicts_by_task
 
 AS_IN_THE_PAPER = (3.0, 2.0, 1.0, 0.4, 0.35, 0.4, 0.11, 0.1, 0.1, 0.1)
 """Means of the conditions, in their order."""
@@ -27,7 +34,7 @@ def only(tests, hypothesis, condition, against):
     (one,) = [
         test
         for test in tests
-        if (test.hypothesis, test.subject, test.against) == (hypothesis, condition, against)
+        if (test.hypothesis, test.claim.subject, test.claim.against) == (hypothesis, (condition,), (against,))
     ]
     return one
 
@@ -35,13 +42,14 @@ def only(tests, hypothesis, condition, against):
 def test_what_the_paper_concludes_is_supported_where_it_is_so(result):
     results = [result(noise=noise, task=task) for task in ("plane", "pour") for noise in (0.0, 0.1)]
     tests = compare_conditions(results)
-    assert len(tests) == len(CLAIMS) * len(results)
-    assert all(test.holds for test in tests)
-    found = verdicts(tests)
-    assert [verdict.hypothesis for verdict in found] == ["H1", "H2", "H3"]
-    assert all(set(verdict.by_task.values()) == {"supported"} for verdict in found)
-    assert all(verdict.by_task == {"plane": "supported", "pour": "supported"} for verdict in found)
-    assert json.loads(json.dumps(tests[0].as_json()))["holds"] is True
+    assert len(tests) == sum(len(one.claims) for one in HYPOTHESES) * len(results)
+    assert all(test.says == "held" for test in tests)
+    found = verdicts_by_task(HYPOTHESES, tests)
+    assert [(verdict.hypothesis.name, verdict.task) for verdict in found] == [
+        (name, task) for name in ("H1", "H2", "H3") for task in ("plane", "pour")
+    ]
+    assert {verdict.says for verdict in found} == {"held"}
+    assert json.loads(json.dumps(tests[0].as_json()))["says"] == "held"
 
 
 def test_the_statistic_is_welchs(result):
@@ -50,15 +58,15 @@ def test_the_statistic_is_welchs(result):
     expected = stats.ttest_ind(
         measured.errors[ALL_PRIORS], measured.errors[WITHOUT_PRIORS], equal_var=False, alternative="less"
     )
-    assert (one.test, one.n, one.n_against) == ("Welch", 6, 6)
-    assert one.t == pytest.approx(expected.statistic)
+    assert (one.method, one.n, one.n_against) == ("Welch's t", 6, 6)
+    assert one.test.t == pytest.approx(expected.statistic)
     assert one.p == pytest.approx(expected.pvalue)
-    assert one.hedges_g > 0
+    assert one.test.g < 0
 
 
 def test_no_align_is_a_fixed_figure(result):
     one = only(compare_conditions([result()]), "H1", IDEAL, NO_ALIGN)
-    assert one.test == "one-sample"
+    assert one.method == "one-sample t"
     expected = stats.ttest_1samp(result().errors[IDEAL], 3.0, alternative="less")
     assert one.p == pytest.approx(expected.pvalue)
 
@@ -67,37 +75,39 @@ def test_near_to_ideal_is_tested_against_a_quarter_more(result):
     one = only(compare_conditions([result()]), "H2", ALL_PRIORS, f"1.25 times {IDEAL}")
     assert one.mean == pytest.approx(0.11)
     assert one.mean_against == pytest.approx(1.25 * 0.1)
-    assert one.holds
+    assert one.says == "held"
     far = only(
         compare_conditions([result((*AS_IN_THE_PAPER[:-1], 0.05))]), "H2", ALL_PRIORS, f"1.25 times {IDEAL}"
     )
-    assert not far.holds
-    assert far.hedges_g < 0
+    assert far.says == "not held"
+    assert far.test.g > 0
 
 
 def test_each_decoder_is_a_family_of_its_own(result):
     """With another decoder beside it that shows nothing, the p-values stay as they are."""
     alone = compare_conditions([result()])
     beside = compare_conditions([result(), result((1.0,) * 10, model="isometric", spread=0.1)])
-    assert [one.p_holm for one in beside if one.model == "cae"] == [one.p_holm for one in alone]
+    assert [one.p_holm for one in beside if one.family == "cae"] == [one.p_holm for one in alone]
     # Where all are alike, nothing is below another, and everything near to Ideal Align.
-    assert all(one.holds == ("times" in one.against) for one in beside if one.model == "isometric")
+    assert all(
+        (one.says == "held") == ("times" in one.claim.against[0])
+        for one in beside
+        if one.family == "isometric"
+    )
 
 
 def test_one_run_cannot_be_tested_and_does_not_hold(result):
     tests = compare_conditions([result(runs=1)])
-    assert not any(test.holds for test in tests)
     assert {test.p for test in tests} == {None}
-    assert "could not be tested against" in verdicts(tests)[0].by_task["plane"]
+    assert {one.says for one in verdicts_by_task(HYPOTHESES, tests)} == {"could not be tested"}
 
 
-def test_what_fails_alike_is_said_once(result):
+def test_what_fails_is_named_with_its_noise(result):
     means = (*AS_IN_THE_PAPER[:6], 0.5, 0.1, 0.1, 0.1)  # All Priors is worse than each alone
-    said = verdicts(compare_conditions([result(means, noise=noise) for noise in (0.0, 0.5)]))[2].by_task
-    assert said == {
-        "plane": "not supported: All Priors not clearly below Proportional, Reversible and Consistent"
-        " (noise 0 and noise 0.5)"
-    }
+    tests = compare_conditions([result(means, noise=noise) for noise in (0.0, 0.5)])
+    third = verdicts_by_task(HYPOTHESES, tests)[2]
+    assert third.why.startswith("6 of 6 claims do not hold: ")
+    assert all(f"{name} (noise {noise})" in third.why for name in SINGLE_PRIORS for noise in ("0", "0.5"))
 
 
 def by_name(found):
@@ -161,5 +171,5 @@ def test_people_whose_axes_turn_are_compared_with_the_ideal_of_the_same_people(c
 
 def test_figures_that_are_all_the_same_have_no_spread(result):
     tests = compare_conditions([result(spread=0.0)])
-    assert {test.test for test in tests} == {"none: no spread on either side"}
+    assert {test.why_not for test in tests} == {"no spread on either side"}
     assert np.isfinite([test.mean for test in tests]).all()

@@ -27,14 +27,14 @@ def test_each_way_of_encoding_is_tested_paired_over_folds() -> None:
     tests = compared([*BLIND, *reversed(cells("cae", (30.0, 29.0, 35.0, 28.0)))])
     assert [one.family for one in tests] == ["encoder network", "nearest input"]
     assert [(one.mean, one.mean_against, one.n) for one in tests] == [(30.5, 42.0, 4)] * 2
-    assert all(one.holds and one.test == "paired t" for one in tests)
+    assert all((one.says, one.method) == ("held", "paired t") for one in tests)
     assert all("lower mean error in 1 of 1 comparisons, significantly in 1" in one for one in said(tests))
     assert all(one.endswith("H1 is supported.") for one in said(tests))
 
 
 def test_a_context_that_does_not_help_is_said_plainly() -> None:
     tests = compared([*BLIND, *cells("cae", (50.0, 47.0, 52.0, 49.0))])
-    assert not any(one.holds for one in tests)
+    assert {one.says for one in tests} == {"not held"}
     assert all("in 0 of 1 comparisons" in one and "not supported" in one for one in said(tests))
 
 

@@ -1,5 +1,6 @@
 """The whole suite turns warnings into errors, so every case here is one without warnings too."""
 
+import json
 from dataclasses import replace
 
 import numpy as np
@@ -7,11 +8,13 @@ import pytest
 from scipy import stats
 
 from latentarm.models.estimators import MODELS
-from latentarm_research.studies.hypotheses import verdicts
+from latentarm_research.studies.claim_tables import verdicts_by_task
 from latentarm_research.studies.properties.cell import PropertiesCell, PropertiesResult
 from latentarm_research.studies.properties.hypotheses import (
     FURTHER_MODELS,
+    HYPOTHESES,
     LINEAR,
+    MARK,
     PAPERS_MODELS,
     compare_models,
     conditioned,
@@ -39,13 +42,14 @@ def test_two_models_are_compared_by_welch():
     cae, ae = [1.0, 2.0, 2.5, 1.5], [5.0, 9.0, 6.0]
     one = only([result("cae", ERROR, cae), result("ae", ERROR, ae)])
     expected = stats.ttest_ind(cae, ae, equal_var=False, alternative="less")
-    assert (one.hypothesis, one.model, one.against, one.test) == ("H1", "cae", "ae", "Welch")
+    assert (one.hypothesis, one.claim.subject, one.claim.against) == ("H1", ("cae",), ("ae",))
+    assert one.method == "Welch's t"
     assert (one.n, one.n_against) == (4, 3)
-    assert one.t == pytest.approx(expected.statistic)
-    assert one.dof == pytest.approx(expected.df)
+    assert one.test.t == pytest.approx(expected.statistic)
+    assert one.test.dof == pytest.approx(expected.df)
     assert one.p == one.p_holm == pytest.approx(expected.pvalue)
-    assert one.hedges_g > 0
-    assert one.holds
+    assert one.test.g < 0
+    assert one.says == "held"
 
 
 @pytest.mark.parametrize("pca", [[100.0], [100.0, 100.0, 100.0], [100.0, 100.0, 100.0 + 1e-11]])
@@ -53,10 +57,10 @@ def test_a_model_without_spread_is_a_fixed_figure(pca):
     cae = [40.0, 50.0, 45.0]
     one = only([result("cae", ERROR, cae), result("pca", ERROR, pca)])
     expected = stats.ttest_1samp(cae, 100.0, alternative="less")
-    assert one.test == "one-sample"
+    assert one.method == "one-sample t"
     assert one.p == pytest.approx(expected.pvalue)
-    assert one.t == pytest.approx(expected.statistic)
-    assert one.holds
+    assert one.test.t == pytest.approx(expected.statistic)
+    assert one.says == "held"
 
 
 def test_the_conditioned_model_may_be_the_fixed_figure():
@@ -64,25 +68,27 @@ def test_the_conditioned_model_may_be_the_fixed_figure():
     better = only([result("scl", ERROR, [3.0, 3.0]), result("ae", ERROR, ae)])
     worse = only([result("scl", ERROR, [99.0, 99.0]), result("ae", ERROR, ae)])
     assert better.p == pytest.approx(stats.ttest_1samp(ae, 3.0, alternative="greater").pvalue)
-    assert better.holds
-    assert better.t < 0 < better.hedges_g
+    assert better.says == "held"
+    assert better.test.t < 0
+    assert better.test.g < 0
     assert worse.p > 0.5
-    assert worse.hedges_g < 0 < worse.t
+    assert worse.test.g > 0
+    assert worse.test.t > 0
 
 
 def test_what_is_worse_is_not_held_to_be_better():
     one = only([result("cae", ERROR, [90.0, 91.0, 92.0]), result("ae", ERROR, [50.0, 51.0, 52.0])])
     assert one.p > 0.99
-    assert not one.holds
-    assert one.hedges_g < 0
+    assert one.says == "not held"
+    assert one.test.g > 0
 
 
 def test_r2_is_compared_with_the_threshold():
     high = only([result("cvae", "r2", [0.97, 0.98, 0.99, 0.98]), result("ae", "r2", [0.1, 0.2, 0.3, 0.1])])
     low = only([result("cvae", "r2", [0.85, 0.95, 0.89, 0.92])])
-    assert (high.against, high.mean_against, high.n_against) == (None, LINEAR, 1)
-    assert high.holds
-    assert not low.holds
+    assert (high.claim.against, high.mean_against, high.n_against) == (MARK, LINEAR, 1)
+    assert high.says == "held"
+    assert low.says == "not held"
 
 
 def test_r2_on_other_tasks_and_figures_under_noise_are_no_part_of_the_hypotheses():
@@ -94,10 +100,9 @@ def test_r2_on_other_tasks_and_figures_under_noise_are_no_part_of_the_hypotheses
 def test_two_seeds_are_enough_for_a_test_but_not_for_every_effect_size():
     welch = only([result("cae", ERROR, [1.0, 1.1]), result("ae", ERROR, [90.0, 91.0])])
     fixed = only([result("cae", ERROR, [1.0, 1.1]), result("pca", ERROR, [100.0])])
-    assert welch.holds
-    assert welch.hedges_g > 0
-    assert fixed.holds
-    assert fixed.hedges_g is None
+    assert welch.says == fixed.says == "held"
+    assert welch.test.g < 0
+    assert fixed.test.g is None
 
 
 @pytest.mark.parametrize(
@@ -114,18 +119,17 @@ def test_two_seeds_are_enough_for_a_test_but_not_for_every_effect_size():
 )
 def test_what_cannot_be_tested_supports_nothing_and_says_why(cae, ae):
     one = only([result("cae", ERROR, cae), result("ae", ERROR, ae)])
-    assert one.p is one.p_holm is one.t is one.hedges_g is None
-    assert one.test.startswith("none: ")
-    assert not one.holds
-    (verdict,) = verdicts([one])
-    assert "supported" not in verdict.by_task.values()
-    assert "cAE could not be tested against AE" in verdict.by_task[one.task]
+    assert one.p is one.p_holm is one.test is None
+    assert one.why_not
+    (verdict,) = verdicts_by_task(HYPOTHESES, [one])
+    assert one.says == verdict.says == "could not be tested"
+    assert f"cAE < AE ({one.why_not})" in verdict.why
 
 
 def test_a_reference_is_not_excused_by_seeds_that_failed():
     one = only([result("cae", ERROR, [1.0, 1.1, 0.9]), result("ae", ERROR, [90.0, np.nan, 91.0])])
     assert one.n_against == 2
-    assert one.holds
+    assert one.says == "held"
 
 
 def study(rng, seeds=10, reach_mean=30.0):
@@ -144,7 +148,7 @@ def test_p_is_corrected_over_the_papers_models_and_over_the_others_apart():
     paper = [one for one in comparisons if one.family == PAPERS_MODELS]
     further = [one for one in comparisons if one.family == FURTHER_MODELS]
     assert len(paper) == 2 * 2 * 3
-    assert {one.model for one in further} == {"scl"}
+    assert {one.claim.subject for one in further} == {("scl",)}
     for family in (paper, further):
         ordered = sorted(family, key=lambda one: one.p)
         by_hand = np.maximum.accumulate([one.p * (len(family) - k) for k, one in enumerate(ordered)])
@@ -153,19 +157,18 @@ def test_p_is_corrected_over_the_papers_models_and_over_the_others_apart():
 
 def test_verdicts_name_the_task_and_what_failed_there():
     rng = np.random.default_rng(0)
-    good = verdicts(compare_models(study(rng)))
-    assert [one.family for one in good] == [PAPERS_MODELS, FURTHER_MODELS]
-    assert good[0].by_task == {"sine": "supported", "reach": "supported"}
-    bad, further = verdicts(compare_models(study(rng, reach_mean=65.0)))
-    assert set(further.by_task.values()) == {"supported"}
-    assert bad.by_task == {
-        "sine": "supported",
-        "reach": "not supported: cVAE not clearly below AE",
-    }
+    good = verdicts_by_task(HYPOTHESES, compare_models(study(rng)))
+    assert [(one.family, one.task) for one in good] == [
+        (family, task) for family in (PAPERS_MODELS, FURTHER_MODELS) for task in ("sine", "reach")
+    ]
+    assert {one.says for one in good} == {"held"}
+    bad = verdicts_by_task(HYPOTHESES, compare_models(study(rng, reach_mean=65.0)))
+    assert [one.says for one in bad] == ["held", "not held", "held", "held"]
+    assert bad[1].why.endswith(": cVAE < AE")
+    assert ";" not in bad[1].why
 
 
 def test_comparisons_are_plain_figures():
     first = compare_models(study(np.random.default_rng(0), seeds=2))[0]
-    assert first.as_json()["holds"] is first.holds
-    assert replace(first, p_holm=None).holds is False
-    assert {type(value) for value in first.as_json().values()} <= {str, bool, int, float, type(None)}
+    assert json.loads(json.dumps(first.as_json(), allow_nan=False))["says"] == first.says
+    assert replace(first, p_holm=None).says == "could not be tested"

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from latentarm.core.types import Row
-from latentarm_research.studies.hypotheses import comparison_table
+from latentarm_research.studies.claim_tables import claim_table
 from latentarm_research.studies.properties.cell import PropertiesCell, PropertiesResult
 from latentarm_research.studies.properties.paper import with_paper
 from latentarm_research.studies.properties.preset import PRESETS
@@ -137,13 +137,14 @@ def test_the_page_has_every_part(report):
         "Noise on the states",
         "Tests of the hypotheses",
     ]
-    assert "**H1**" in page
-    assert "**H2**" in page
-    assert "\n- sine: supported\n" in page
+    assert re.search(
+        r"^\| H1 \| only latent action models .* \| sine \| held \| all \d+ claims hold \|$", page, re.M
+    )
+    assert re.search(r"^\| H2 \| conditioned models ", page, re.M)
     assert page.index("(noise.png)") < page.index("## Sine") < page.index("(sine.png)")
     assert page.count("(sine.png)") == 1
-    assert comparison_table(report.tests) in page
-    assert len(lines(comparison_table(report.tests))) == 2 + len(report.tests)
+    assert claim_table(report.tests) in page
+    assert len(lines(claim_table(report.tests))) == 2 + len(report.tests)
     assert set(report.figures) == set(STUDY.figures)
 
 
@@ -164,6 +165,6 @@ def test_one_seed_of_one_task_leaves_out_what_was_not_done():
 def test_a_smoke_run_says_so_and_judges_nothing(report):
     page = page_of(results_of(tasks=("circle",)), ("circle",), PRESETS["smoke"]).page
     assert page.splitlines()[0] == f"{report.page.splitlines()[0]} (preset smoke)"
-    verdict = re.compile(r"\*\*H\d|supported|Holm")
+    verdict = re.compile(r"\| H\d|claims|Holm")
     assert verdict.search(report.page)
     assert not verdict.search(page)

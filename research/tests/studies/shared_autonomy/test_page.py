@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from latentarm_research.studies.shared_autonomy.cell import METHODS, TASKS
+from latentarm_research.studies.shared_autonomy.hypotheses import HYPOTHESES
 from latentarm_research.studies.shared_autonomy.preset import LETTER, PRESETS
 from latentarm_research.studies.shared_autonomy.rows import EXTRA_TIME, Figure, figures, rows_of
 from latentarm_research.studies.shared_autonomy.study import STUDY
@@ -52,7 +53,8 @@ def test_the_page_has_every_part(tasks):
         "Tests of the hypotheses",
     ]
     for hypothesis in ("H1", "H2", "H3"):
-        assert page.count(f"**{hypothesis}**") == 2  # once for each model
+        text = next(one.text for one in HYPOTHESES if one.name == hypothesis)
+        assert page.count(f"\n| {hypothesis} | {text} |") == 2 * len(tasks)  # once for each model
     assert f"All {len(report.tests)} tests" in page
     assert page.count("<details>") == page.count("</details>") == 2 * len(tasks) + 1
     assert page.index(f"({tasks[0]}.png)") < page.index("## In short") < page.index("(models.png)")
@@ -126,6 +128,6 @@ def test_a_smoke_run_says_so_and_judges_nothing():
     judged = report_of("paper", tuple(TASKS)).page
     page = report_of("smoke", tuple(TASKS)).page
     assert page.splitlines()[0] == "# Shared autonomy with latent actions (preset smoke)"
-    verdict = re.compile(r"\*\*H\d|supported|Holm")
+    verdict = re.compile(r"\| H\d|claims|Holm")
     assert verdict.search(judged)
     assert not verdict.search(page)

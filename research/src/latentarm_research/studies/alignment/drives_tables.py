@@ -17,7 +17,8 @@ from latentarm.tasks.table_top import TableTop
 from latentarm_research.studies.alignment import preset as ways
 from latentarm_research.studies.alignment.drives import DRIVEN, HELPED, KNOWS, DrivesResult
 from latentarm_research.studies.alignment.drives_learning import TASK
-from latentarm_research.studies.hypotheses import Comparison, comparison_table, corrected
+from latentarm_research.studies.claim_tables import claim_table
+from latentarm_research.studies.claims import Claim, Tested, corrected_by_family
 from latentarm_research.studies.series import Series
 from latentarm_research.studies.statistics import Statistic, format_p, paired
 from latentarm_research.studies.tables import heading, markdown_table, mean_and_sd
@@ -71,28 +72,18 @@ def drives_rows(results: Sequence[DrivesResult]) -> list[Row]:
     return rows
 
 
-def compare_drives(results: Sequence[DrivesResult]) -> list[Comparison]:
-    """Every test, model by model."""
-    comparisons: list[Comparison] = []
+def compare_drives(results: Sequence[DrivesResult]) -> list[Tested]:
+    """Every claim, model by model."""
+    tested: list[Tested] = []
     for result in results:
         figures = {name: drive_figures(result, name) for name in (ways.TOOL_SPACE, *AGAINST)}
         for measure, against in product((REACHED, TIME), AGAINST):
             own, other = figures[ways.TOOL_SPACE][measure], figures[against][measure]
             more = measure == REACHED
-            one = Comparison(
-                hypothesis="drives",
-                family=result.cell.model,
-                task=TASK,
-                model=result.cell.model,
-                measure=measure,
-                subject=ways.TOOL_SPACE,
-                against=against,
-                direction="greater" if more else "less",
-            )
-            comparisons.append(
-                one.of(own, other, _mcnemar(own, other) if more else paired(own, other, "less"))
-            )
-    return corrected(comparisons)
+            claim = Claim(measure, (ways.TOOL_SPACE,), (against,), "greater" if more else "less", (TASK,))
+            one = Tested(hypothesis="drives", claim=claim, family=result.cell.model)
+            tested.append(one.of(own, other, _mcnemar(own, other) if more else paired(own, other, "less")))
+    return corrected_by_family(tested)
 
 
 def _mcnemar(own: FloatArray, other: FloatArray) -> Statistic:
@@ -101,7 +92,7 @@ def _mcnemar(own: FloatArray, other: FloatArray) -> Statistic:
 
     better, worse = int((own > other).sum()), int((own < other).sum())
     if better + worse == 0:
-        return Statistic("none: no drive differs")
+        return Statistic("", why_not="no drive differs")
     return Statistic("McNemar", p=float(binomtest(better, better + worse, alternative="greater").pvalue))
 
 
@@ -121,16 +112,16 @@ MISSED: Final = "the others end off, along and across (mm)"
 
 
 def drive_parts(
-    results: Sequence[DrivesResult], tests: Sequence[Comparison]
+    results: Sequence[DrivesResult], tests: Sequence[Tested]
 ) -> dict[str, dict[str, str | list[str]]]:
     """For each kind of model: the table, one sentence per test result, and the tests."""
     parts: dict[str, dict[str, str | list[str]]] = {}
     for result in results:
-        of_model = [one for one in tests if one.model == result.cell.model]
+        of_model = [one for one in tests if one.family == result.cell.model]
         parts[result.cell.model] = {
             "table": _table(result),
             "said": _said(of_model),
-            "tests": comparison_table(of_model),
+            "tests": claim_table(of_model),
         }
     return parts
 
@@ -172,15 +163,15 @@ def _misses(off_m: FloatArray) -> str:
     return ABSENT if along is None else f"{along:.0f}, {across:.0f}"
 
 
-def _said(tests: Sequence[Comparison]) -> list[str]:
+def _said(tests: Sequence[Tested]) -> list[str]:
     """The results of one model's tests, one sentence each."""
     words = {REACHED: "reaches more goals than", TIME: "is faster than"}
     return [
-        f"{ways.TOOL_SPACE} {words[one.measure]} {one.against}: "
-        + ("supported" if one.holds else f"**not supported**{_why(one)}")
+        f"{ways.TOOL_SPACE} {words[one.claim.measure]} {one.claim.against[0]}: "
+        + ("supported" if one.says == "held" else f"**not supported**{_why(one)}")
         for one in tests
     ]
 
 
-def _why(test: Comparison) -> str:
-    return f" ({test.test.removeprefix('none: ')})" if test.p is None else f" (p = {format_p(test.p_holm)})"
+def _why(test: Tested) -> str:
+    return f" ({test.why_not})" if test.p is None else f" (p = {format_p(test.p_holm)})"

@@ -15,7 +15,7 @@ tests of one hypothesis with one model. Targets compare means and test nothing.
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 from typing import Final
 
 from latentarm.core.types import FloatArray
@@ -34,7 +34,7 @@ from latentarm_research.studies.alignment.preset import (
     WITHOUT_PRIORS,
 )
 from latentarm_research.studies.alignment.turning import FEW, TurningResult
-from latentarm_research.studies.hypotheses import Comparison, corrected
+from latentarm_research.studies.claims import Claim, Hypothesis, Tested, corrected_by_family
 from latentarm_research.studies.statistics import compare_means
 from latentarm_research.studies.tables import listed
 from latentarm_research.studies.targets import Target
@@ -42,41 +42,57 @@ from latentarm_research.studies.targets import Target
 NEAR: Final = 1.25  # up to this many times the error of Ideal Align counts as close to it
 
 
-@dataclass(frozen=True)
-class ConditionClaim:
-    """One part of a hypothesis: a condition's error is lower than another's."""
-
-    hypothesis: str  # `H1`, `H2` or `H3`
-    condition: str  # the one that should have the lower error
-    against: str  # the one it is compared with
-    times: float = 1.0  # factor on the other's error
+NEAR_IDEAL: Final = f"{NEAR:g} times {IDEAL}"
 
 
-CLAIMS: Final = (
-    *(ConditionClaim("H1", one, other) for one in (IDEAL, ALL_PRIORS) for other in (NO_ALIGN, MANUAL)),
-    *(ConditionClaim("H2", one, WITHOUT_PRIORS) for one in (*SINGLE_PRIORS, ALL_PRIORS)),
-    *(ConditionClaim("H2", one, IDEAL, NEAR) for one in (ALL_PRIORS, TOOL_SPACE)),
-    *(ConditionClaim("H3", ALL_PRIORS, one) for one in SINGLE_PRIORS),
+def _below(against: str, *conditions: str) -> tuple[Claim, ...]:
+    """That each condition has a lower error than another one."""
+    return tuple(Claim("relative_alignment_error", (one,), (against,), "less") for one in conditions)
+
+
+HYPOTHESES: Final = (
+    Hypothesis(
+        "H1",
+        "with abundant answers the alignment learns what is meant",
+        (*_below(NO_ALIGN, IDEAL, ALL_PRIORS), *_below(MANUAL, IDEAL, ALL_PRIORS)),
+    ),
+    Hypothesis(
+        "H2",
+        "with priors, far fewer answers do",
+        (
+            *_below(WITHOUT_PRIORS, *SINGLE_PRIORS, ALL_PRIORS),
+            *_below(NEAR_IDEAL, ALL_PRIORS, TOOL_SPACE),
+        ),
+    ),
+    Hypothesis(
+        "H3",
+        "all priors together are better than one of them",
+        tuple(claim for one in SINGLE_PRIORS for claim in _below(one, ALL_PRIORS)),
+    ),
 )
 
 
-def compare_conditions(results: Sequence[AlignmentErrors]) -> list[Comparison]:
-    """Every test, by hypothesis, then by model, then in the order of the results."""
-    return corrected([_test(claim, result) for result in results for claim in CLAIMS])
+def compare_conditions(results: Sequence[AlignmentErrors]) -> list[Tested]:
+    """Every claim, by hypothesis, then by model, then in the order of the results."""
+    return corrected_by_family(
+        [
+            _test(hypothesis.name, claim, result)
+            for result in results
+            for hypothesis in HYPOTHESES
+            for claim in hypothesis.claims
+        ]
+    )
 
 
-def _test(claim: ConditionClaim, result: AlignmentErrors) -> Comparison:
+def _test(hypothesis: str, claim: Claim, result: AlignmentErrors) -> Tested:
     """One test, without correction."""
-    values, reference = result.errors[claim.condition], claim.times * result.errors[claim.against]
-    return Comparison(
-        hypothesis=claim.hypothesis,
+    errors = {**result.errors, NEAR_IDEAL: NEAR * result.errors[IDEAL]}
+    values, reference = errors[claim.subject[0]], errors[claim.against[0]]
+    return Tested(
+        hypothesis=hypothesis,
+        claim=replace(claim, tasks=(result.cell.task,)),
         family=result.cell.model,
-        task=result.cell.task,
-        model=result.cell.model,
-        measure="relative_alignment_error",
         where=f"noise {result.cell.noise:g}",
-        subject=claim.condition,
-        against=claim.against if claim.times == 1 else f"{claim.times:g} times {claim.against}",
     ).of(values, reference, compare_means(values, reference, "less"))
 
 

@@ -20,6 +20,7 @@ from latentarm_research.studies.alignment.drives import DrivesResult, drive_cell
 from latentarm_research.studies.alignment.drives_learning import TASK, TURN_RAD, AlignedDriveCell
 from latentarm_research.studies.alignment.figures import conditions_figure, curves_figure, drives_figure
 from latentarm_research.studies.alignment.hypotheses import (
+    HYPOTHESES,
     NEAR,
     PAPER_MODEL,
     compare_conditions,
@@ -41,7 +42,13 @@ from latentarm_research.studies.alignment.scene import (
 )
 from latentarm_research.studies.alignment.turning import TASK as TURNING_TASK
 from latentarm_research.studies.alignment.turning import TurningResult, measure_turning
-from latentarm_research.studies.hypotheses import Comparison, comparison_table, verdicts
+from latentarm_research.studies.claim_tables import (
+    claim_table,
+    columns_table,
+    verdict_columns,
+    verdicts_by_task,
+)
+from latentarm_research.studies.claims import Tested
 from latentarm_research.studies.page import render_page
 from latentarm_research.studies.statistics import LEVEL
 from latentarm_research.studies.study import Grid, Report, Request, Study, again
@@ -152,8 +159,8 @@ def _figures(measured: AlignmentResults) -> "dict[str, Figure]":
 def _page(
     request: Request[Preset],
     measured: AlignmentResults,
-    tests: Sequence[Comparison],
-    drive_tests: Sequence[Comparison],
+    tests: Sequence[Tested],
+    drive_tests: Sequence[Tested],
     reached: Sequence[Target],
     figures: "dict[str, Figure]",
 ) -> str:
@@ -178,7 +185,7 @@ def _page(
         fading=exp(-Priors().gamma),
         conditions=conditions,
         choices=curves,
-        verdicts=verdicts(tests),
+        verdicts=columns_table(verdict_columns(verdicts_by_task(HYPOTHESES, tests))),
         target_table=target_table(reached),
         condition_tables={
             task: {model: tables.condition_table(cells) for model, cells in of_task.items()}
@@ -204,7 +211,7 @@ def _page(
         near=NEAR,
         level=LEVEL,
         tests=tests,
-        test_table=comparison_table(tests),
+        test_table=claim_table(tests),
     )
 
 

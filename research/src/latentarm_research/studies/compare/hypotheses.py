@@ -17,11 +17,10 @@ import numpy as np
 
 from latentarm.core.types import FloatArray, Row
 from latentarm.evaluation.looks import look_of
-from latentarm.evaluation.measures import label_of
+from latentarm_research.studies.claims import Claim, Tested, corrected_by_family
 from latentarm_research.studies.compare.cell import FoldResult
 from latentarm_research.studies.compare.preset import BASELINE, REFERENCE
 from latentarm_research.studies.compare.tables import condition
-from latentarm_research.studies.hypotheses import Comparison, corrected
 from latentarm_research.studies.statistics import paired
 from latentarm_research.studies.targets import Target
 
@@ -36,25 +35,17 @@ ENCODINGS: Final = {
 HYPOTHESIS: Final = "H1"
 
 
-def compared(results: Sequence[FoldResult]) -> list[Comparison]:
+def compared(results: Sequence[FoldResult]) -> list[Tested]:
     """Every test, after Holm's correction within its family."""
     places = dict.fromkeys((one.place.dataset, one.place.noise_rad) for one in results)
-    found: list[Comparison] = []
+    found: list[Tested] = []
     for (measure, family), (sees, does_not), place in product(ENCODINGS.items(), PAIRS, places):
         values, reference = (_over_folds(results, *place, model, measure) for model in (sees, does_not))
         if len(values) == len(reference) > 0:
-            one = Comparison(
-                hypothesis=HYPOTHESIS,
-                family=family,
-                task=place[0],
-                model=sees,
-                measure=label_of(measure),
-                where=condition(place[1]),
-                subject=sees,
-                against=does_not,
-            )
+            claim = Claim(measure, (sees,), (does_not,), "less", (place[0],))
+            one = Tested(hypothesis=HYPOTHESIS, claim=claim, family=family, where=condition(place[1]))
             found.append(one.of(values, reference, paired(values, reference, "less")))
-    return corrected(found)
+    return corrected_by_family(found)
 
 
 def _over_folds(
@@ -71,13 +62,13 @@ def _over_folds(
     )
 
 
-def said(tests: Sequence[Comparison]) -> list[str]:
+def said(tests: Sequence[Tested]) -> list[str]:
     """Which way it goes, one sentence per way of encoding."""
     sentences: list[str] = []
     for family in dict.fromkeys(one.family for one in tests):
         here = [one for one in tests if one.family == family]
         lower = sum((one.mean or 0.0) < (one.mean_against or 0.0) for one in here)
-        holds = sum(one.holds for one in here)
+        holds = sum(one.says == "held" for one in here)
         sentences.append(
             f"With the {family}, the model that sees the context has the lower mean error in {lower} of"
             f" {len(here)} comparisons, significantly in {holds}, and the other in {len(here) - lower}; H1 is"

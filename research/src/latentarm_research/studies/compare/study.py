@@ -16,6 +16,8 @@ from latentarm.models.estimators import MODELS
 from latentarm.runs.checks import check_seed
 from latentarm.runs.folder import fingerprint
 from latentarm_research.metrics.undone import NEAR_M
+from latentarm_research.studies.claim_tables import claim_table
+from latentarm_research.studies.claims import Tested
 from latentarm_research.studies.compare import tables
 from latentarm_research.studies.compare.cell import FoldCell, FoldResult, measure_cell
 from latentarm_research.studies.compare.datasets import Dataset, read_datasets
@@ -39,7 +41,6 @@ from latentarm_research.studies.compare.preset import (
     REFERENCE,
     Preset,
 )
-from latentarm_research.studies.hypotheses import Comparison, comparison_table
 from latentarm_research.studies.page import render_page
 from latentarm_research.studies.study import Grid, Report, Request, Study
 
@@ -206,7 +207,7 @@ def _page(
     asked: Asked,
     whole: Sequence[FoldResult],
     main: Sequence[Row],
-    tests: Sequence[Comparison],
+    tests: Sequence[Tested],
     driven: Sequence[Row],
     counts: Sequence[int],
 ) -> str:
@@ -244,7 +245,7 @@ def _page(
             for noise_rad in preset.noises_rad
         },
         h1=said(tests),
-        h1_table=comparison_table(tests) if tests else "",
+        h1_table=claim_table(tests) if tests else "",
         fewer=_given_fewer(asked),
         counts=counts,
         driven=list(dict.fromkeys(row.model or "" for row in driven)),

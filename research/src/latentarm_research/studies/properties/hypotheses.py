@@ -16,15 +16,14 @@ percent of its own) is a fixed figure, which the other's seeds are tested agains
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
 
 from latentarm.core.types import FloatArray
 from latentarm.models.catalogue import KINDS
-from latentarm_research.studies.hypotheses import Comparison, corrected
-from latentarm_research.studies.means_test import Direction
+from latentarm_research.studies.claims import Claim, Hypothesis, Tested, corrected_by_family
 from latentarm_research.studies.properties.cell import PropertiesResult
 from latentarm_research.studies.properties.paper import MODELS_OF_THE_PAPER
 from latentarm_research.studies.statistics import Statistic, compare_means
@@ -37,24 +36,28 @@ LINEAR: Final = 0.9
 lowest that it prints; this is one SD below, where a line still explains nine tenths of the variance."""
 
 
-@dataclass(frozen=True)
-class PropertyClaim:
-    """One part of a hypothesis."""
-
-    hypothesis: str  # `H1` or `H2`
-    measure: str  # what is compared
-    direction: Direction  # whether a conditioned model should have less of it or more
-    threshold: float | None = None  # what it is compared with; every unconditioned model where None
-    tasks: tuple[str, ...] | None = None  # where; on every task that has the measure where None
+CONDITIONED: Final = ("each conditioned model",)
+UNCONDITIONED: Final = ("each unconditioned one",)
+MARK: Final = (f"{LINEAR:g}",)
 
 
 # Path length is no part of this: an arm that stops far from its goal has a short path.
-CLAIMS: Final = (
-    PropertyClaim("H1", "median_error_percent_of_pca", "less"),
-    PropertyClaim("H2", "controllability_m", "less", tasks=("sine", "rotate")),
-    PropertyClaim("H2", "final_distance", "less"),
-    PropertyClaim("H2", "r2", "greater", threshold=LINEAR, tasks=("sine", "rotate")),
-    PropertyClaim("H2", "disentanglement_deg", "greater"),
+HYPOTHESES: Final = (
+    Hypothesis(
+        "H1",
+        "only latent action models conditioned on the context reconstruct actions accurately",
+        (Claim("median_error_percent_of_pca", CONDITIONED, UNCONDITIONED, "less"),),
+    ),
+    Hypothesis(
+        "H2",
+        "conditioned models learn a latent space that is controllable, consistent and scalable",
+        (
+            Claim("controllability_m", CONDITIONED, UNCONDITIONED, "less", ("sine", "rotate")),
+            Claim("final_distance", CONDITIONED, UNCONDITIONED, "less"),
+            Claim("r2", CONDITIONED, MARK, "greater", ("sine", "rotate")),
+            Claim("disentanglement_deg", CONDITIONED, UNCONDITIONED, "greater"),
+        ),
+    ),
 )
 
 
@@ -65,69 +68,53 @@ def conditioned(model: str) -> bool:
 
 def compare_models(
     results: Sequence[PropertiesResult],  # any cells; those with noise are not part of the hypotheses
-) -> list[Comparison]:
-    """Every test of H1 and H2 that the results allow.
+) -> list[Tested]:
+    """Every claim of H1 and H2 that the results allow.
 
     Returns:
-        Tests by hypothesis, the paper's models first, then by task and measure.
+        Claims by hypothesis, the paper's models first, then by task and measure.
     """
     figures: dict[str, dict[str, Mapping[str, FloatArray]]] = {}
     for result in results:
         if result.cell.noise_rad == 0.0:
             figures.setdefault(result.cell.task, {})[result.cell.model] = result.figures
-    comparisons = [
+    tested = [
         one
         for task, models in figures.items()
-        for claim in CLAIMS
-        for one in _test_claim(claim, task, models)
+        for hypothesis in HYPOTHESES
+        for claim in hypothesis.claims
+        if not claim.tasks or task in claim.tasks
+        for one in _test_claim(hypothesis.name, claim, task, models)
     ]
-    return corrected(sorted(comparisons, key=lambda one: one.family != PAPERS_MODELS))
+    return corrected_by_family(sorted(tested, key=lambda one: one.family != PAPERS_MODELS))
 
 
 def _test_claim(
-    claim: PropertyClaim, task: str, models: Mapping[str, Mapping[str, FloatArray]]
-) -> list[Comparison]:
-    """A claim on one task: each conditioned model against the threshold or each unconditioned model."""
-    if claim.tasks is not None and task not in claim.tasks:
-        return []
+    hypothesis: str, claim: Claim, task: str, models: Mapping[str, Mapping[str, FloatArray]]
+) -> list[Tested]:
+    """A claim on one task: each conditioned model against the mark or each unconditioned model."""
     measured = {name: figures[claim.measure] for name, figures in models.items() if claim.measure in figures}
-    against: dict[str | None, FloatArray] = {
-        name: values for name, values in measured.items() if not conditioned(name)
-    }
-    if claim.threshold is not None:
-        against = {None: np.array([claim.threshold])}
+    against = {name: values for name, values in measured.items() if not conditioned(name)}
+    if claim.against == MARK:
+        against = {MARK[0]: np.array([LINEAR])}
     return [
-        _test(claim, task, name, values, other, reference)
+        _test(hypothesis, replace(claim, subject=(name,), against=(other,), tasks=(task,)), values, reference)
         for name, values in measured.items()
         if conditioned(name)
         for other, reference in against.items()
     ]
 
 
-def _test(
-    claim: PropertyClaim,
-    task: str,
-    model: str,
-    values: FloatArray,
-    against: str | None,
-    reference: FloatArray,
-) -> Comparison:
+def _test(hypothesis: str, claim: Claim, values: FloatArray, reference: FloatArray) -> Tested:
     """One test, without correction."""
     known, known_reference = values[np.isfinite(values)], reference[np.isfinite(reference)]
     if len(known) < len(values):
         # Leaving such seeds out would let a model pass by the seeds that did not fail.
-        statistic = Statistic("none: a seed has no figure")
+        statistic = Statistic("", why_not="a seed has no figure")
     elif not len(known) or not len(known_reference):
-        statistic = Statistic("none: no figures to compare with")
+        statistic = Statistic("", why_not="no figures to compare with")
     else:
-        statistic = compare_means(known, known_reference, claim.direction)
-    return Comparison(
-        hypothesis=claim.hypothesis,
-        family=PAPERS_MODELS if model in MODELS_OF_THE_PAPER else FURTHER_MODELS,
-        task=task,
-        model=model,
-        measure=claim.measure,
-        subject=model,
-        against=against,
-        direction=claim.direction,
-    ).of(known, known_reference, statistic)
+        statistic = compare_means(known, known_reference, "less" if claim.direction == "less" else "greater")
+    family = PAPERS_MODELS if claim.subject[0] in MODELS_OF_THE_PAPER else FURTHER_MODELS
+    one = Tested(hypothesis=hypothesis, claim=claim, family=family)
+    return one.of(known, known_reference, statistic)

@@ -6,7 +6,13 @@ from itertools import product
 from typing import TYPE_CHECKING, Final
 
 from latentarm.core.types import Row
-from latentarm_research.studies.hypotheses import Comparison, comparison_table, verdicts
+from latentarm_research.studies.claim_tables import (
+    claim_table,
+    columns_table,
+    verdict_columns,
+    verdicts_by_task,
+)
+from latentarm_research.studies.claims import Tested
 from latentarm_research.studies.page import render_page
 from latentarm_research.studies.properties import tables
 from latentarm_research.studies.properties.cell import (
@@ -21,7 +27,7 @@ from latentarm_research.studies.properties.figures import (
     controllability_figure,
     noise_figure,
 )
-from latentarm_research.studies.properties.hypotheses import CLAIMS, LINEAR, compare_models
+from latentarm_research.studies.properties.hypotheses import HYPOTHESES, LINEAR, MARK, compare_models
 from latentarm_research.studies.properties.motion_figures.catalogue import TASK_FIGURES
 from latentarm_research.studies.properties.paper import with_paper
 from latentarm_research.studies.properties.preset import AS_CHOSEN, PRESETS, Preset, designs
@@ -133,7 +139,7 @@ def _page(
     request: Request[Preset],
     rows: Sequence[Row],
     swept: Sequence[Row],
-    tests: Sequence[Comparison],
+    tests: Sequence[Tested],
     figures: "dict[str, Figure]",
 ) -> str:
     as_good = {task: tables.as_good_as_paper(rows, task) for task in request.tasks}
@@ -148,18 +154,20 @@ def _page(
         cells_found_by_means=count(paper_cells(rows, means=True)),
         cells_table=cells_table(cells),
         sweep_table=sweep_table(swept, list(designs(request.preset))) if swept else "",
-        verdicts=verdicts(tests),
+        verdicts=columns_table(verdict_columns(verdicts_by_task(HYPOTHESES, tests))),
         ours=tables.OURS,
         as_good={task: counts for task, counts in as_good.items() if counts[1]},
         figures=list(figures),
         paper_tables={task: tables.paper_table(rows, task) for task in request.tasks},
         noise_tables={task: tables.noise_table(rows, task) for task in request.tasks if "noise" in figures},
         unit_not_stated=tables.UNIT_NOT_STATED,
-        compared_measures=", ".join(dict.fromkeys(one.measure for one in CLAIMS if one.threshold is None)),
+        compared_measures=", ".join(
+            claim.measure for one in HYPOTHESES for claim in one.claims if claim.against != MARK
+        ),
         linear=LINEAR,
         level=LEVEL,
         tests=tests,
-        test_table=comparison_table(tests),
+        test_table=claim_table(tests),
     )
 
 

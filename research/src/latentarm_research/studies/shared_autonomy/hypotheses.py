@@ -16,15 +16,14 @@ Targets compare means and intervals of the same errors.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
 
 from latentarm.core.types import FloatArray
 from latentarm.evaluation.looks import look_of
-from latentarm_research.studies.hypotheses import Comparison, corrected
-from latentarm_research.studies.means_test import Direction
+from latentarm_research.studies.claims import Claim, Direction, Hypothesis, Tested, corrected_by_family
 from latentarm_research.studies.shared_autonomy.cell import (
     WITH_ENTROPY,
     WITH_HELP,
@@ -34,7 +33,7 @@ from latentarm_research.studies.shared_autonomy.cell import (
 from latentarm_research.studies.shared_autonomy.measures import ARRIVED
 from latentarm_research.studies.shared_autonomy.preset import Person, Preset, learner, of_fixed_expertise
 from latentarm_research.studies.shared_autonomy.rows import Figure, Interval, interval
-from latentarm_research.studies.statistics import paired
+from latentarm_research.studies.statistics import one_sample, paired
 from latentarm_research.studies.targets import Target
 
 MEASURE: Final = "final_state_error"
@@ -45,38 +44,44 @@ TRAPPED: Final = 1.0 - REACHED
 """Error above which people are at the other goal, which is 1 away: as near to it as `REACHED` means."""
 
 
-@dataclass(frozen=True)
-class MethodClaim:
-    """One part of a hypothesis: a method's error against another's or against a mark, for one person."""
-
-    hypothesis: str
-    person: Person
-    method: str
-    against: str | float
-    direction: Direction = "less"
+MARKS: Final = {f"{mark:g}": mark for mark in (REACHED, TRAPPED)}
+_REACHED, _TRAPPED = MARKS
 
 
-def claims(preset: Preset) -> list[MethodClaim]:
-    """All parts of H1, H2 and H3."""
-    latest = preset.latest_change
-    return [
-        *(
-            MethodClaim("H1", of_fixed_expertise(beta), method, WITHOUT_HELP)
-            for beta in preset.betas[1:-1]
-            for method in (WITH_HELP, WITH_ENTROPY)
+def _claim(method: str, against: str, direction: Direction = "less") -> Claim:
+    return Claim(MEASURE, (method,), (against,), direction)
+
+
+HYPOTHESES: Final = (
+    Hypothesis(
+        "H1",
+        "with shared autonomy people end nearer to their goal, at every rationality between the extremes",
+        tuple(_claim(method, WITHOUT_HELP) for method in (WITH_HELP, WITH_ENTROPY)),
+    ),
+    Hypothesis(
+        "H2",
+        "people who change their mind late are trapped without the entropy and not with it",
+        (
+            _claim(WITH_ENTROPY, WITH_HELP),
+            _claim(WITH_ENTROPY, _REACHED),
+            _claim(WITH_HELP, _TRAPPED, "greater"),
         ),
-        MethodClaim("H2", latest, WITH_ENTROPY, WITH_HELP),
-        MethodClaim("H2", latest, WITH_ENTROPY, REACHED),
-        MethodClaim("H2", latest, WITH_HELP, TRAPPED, "greater"),
-        *(
-            MethodClaim("H3", learner(name, slope), WITH_ENTROPY, WITH_HELP)
-            for name, slope in preset.learners.items()
-        ),
-    ]
+    ),
+    Hypothesis("H3", "people who learn end nearer with the entropy", (_claim(WITH_ENTROPY, WITH_HELP),)),
+)
 
 
-def compare_methods(results: Sequence[AutonomyResult], preset: Preset) -> list[Comparison]:
-    """Every test that the results of the study proper allow, by hypothesis, then by model, then by task."""
+def people_of(preset: Preset) -> dict[str, list[Person]]:
+    """Of whom each hypothesis is claimed."""
+    return {
+        "H1": [of_fixed_expertise(beta) for beta in preset.betas[1:-1]],
+        "H2": [preset.latest_change],
+        "H3": [learner(name, slope) for name, slope in preset.learners.items()],
+    }
+
+
+def compare_methods(results: Sequence[AutonomyResult], preset: Preset) -> list[Tested]:
+    """Every claim that the results of the study proper allow, by hypothesis, then by model, then by task."""
     found: dict[tuple[str, str], dict[tuple[str, str], FloatArray]] = {}
     for result in results:
         if result.cell.variant is None:
@@ -84,39 +89,31 @@ def compare_methods(results: Sequence[AutonomyResult], preset: Preset) -> list[C
             here |= {(one.method, one.person.label): one.figures[MEASURE] for one in result.outcomes}
     models = list(dict.fromkeys(model for model, _ in found))
     ordered = sorted(found, key=lambda place: models.index(place[0]))
-    tests = [_test(claim, *place, found[place]) for place in ordered for claim in claims(preset)]
-    return corrected(tests)
+    people = people_of(preset)
+    tested = [
+        _test(hypothesis.name, replace(claim, tasks=(task,)), person, model, found[model, task])
+        for model, task in ordered
+        for hypothesis in HYPOTHESES
+        for person in people[hypothesis.name]
+        for claim in hypothesis.claims
+    ]
+    return corrected_by_family(tested)
 
 
 def _test(
-    claim: MethodClaim, model: str, task: str, errors: Mapping[tuple[str, str], FloatArray]
-) -> Comparison:
+    hypothesis: str, claim: Claim, person: Person, model: str, errors: Mapping[tuple[str, str], FloatArray]
+) -> Tested:
     """One test of errors (S, P) by method and person, without correction."""
-    values = errors[claim.method, claim.person.label]
-    mark = None if isinstance(claim.against, str) else np.full_like(values, claim.against)
-    against = errors[str(claim.against), claim.person.label] if mark is None else mark
-    own, other = interval(values), interval(against)
-    statistic = paired(values.mean(axis=1), against.mean(axis=1), claim.direction)
-    if mark is not None:
-        statistic = replace(statistic, test=statistic.test.replace("paired", "one-sample"))
-    return Comparison(
-        hypothesis=claim.hypothesis,
-        family=model,
-        task=task,
-        model=model,
-        measure=MEASURE,
-        where=claim.person.label,
-        subject=claim.method,
-        against=str(claim.against) if mark is None else None,
-        direction=claim.direction,
-        mean=own.mean,
-        half_width=own.half_width,
-        mean_against=other.mean,
-        half_width_against=other.half_width,
-        n=len(values),
-        n_against=len(values) if mark is None else 1,
-        must_be_apart=claim.hypothesis == "H1",
-    ).tested(statistic)
+    direction = "less" if claim.direction == "less" else "greater"
+    own, name = errors[claim.subject[0], person.label], claim.against[0]
+    one = Tested(hypothesis=hypothesis, claim=claim, family=model, where=person.label)
+    values = own.mean(axis=1)
+    if name in MARKS:
+        return one.of(values, np.array([MARKS[name]]), one_sample(values, MARKS[name], direction))
+    other = errors[name, person.label]
+    tested = one.of(values, other.mean(axis=1), paired(values, other.mean(axis=1), direction))
+    apart = interval(own).high < interval(other).low
+    return replace(tested, apart=apart) if hypothesis == "H1" else tested
 
 
 AT_LEAST: Final = 0.9

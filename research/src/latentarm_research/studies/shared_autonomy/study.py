@@ -3,7 +3,13 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Final
 
-from latentarm_research.studies.hypotheses import Comparison, comparison_table, verdicts
+from latentarm_research.studies.claim_tables import (
+    claim_table,
+    columns_table,
+    verdict_columns,
+    verdicts_by_task,
+)
+from latentarm_research.studies.claims import Tested
 from latentarm_research.studies.page import render_page
 from latentarm_research.studies.shared_autonomy import choice, drive, hypotheses
 from latentarm_research.studies.shared_autonomy import measures as measures_of
@@ -146,7 +152,7 @@ def _drawings(
 def _page(
     request: Request[Preset],
     found: Sequence[Figure],
-    tests: Sequence[Comparison],
+    tests: Sequence[Tested],
     drawings: "dict[str, Drawing]",
 ) -> str:
     preset = request.preset
@@ -160,7 +166,7 @@ def _page(
         models=MODELS,
         drive=drive,
         people=people,
-        verdicts=verdicts(tests),
+        verdicts=columns_table(verdict_columns(verdicts_by_task(hypotheses.HYPOTHESES, tests))),
         figures=sorted(drawings),
         tables=Tables(found, preset),
         main=MAIN,
@@ -176,7 +182,7 @@ def _page(
         measures_of=measures_of,
         belief=drive.RULE.keywords,
         tests=tests,
-        test_table=comparison_table(tests),
+        test_table=claim_table(tests),
     )
 
 

@@ -7,10 +7,11 @@ from typing import Any, final
 
 import numpy as np
 
+from latentarm_research.studies.claims import Tested, Verdict
 from latentarm_research.studies.means_test import spreads
 from latentarm_research.user_studies.analysis.anova import Effect
 from latentarm_research.user_studies.analysis.as_printed import AsPrinted, as_printed
-from latentarm_research.user_studies.analysis.claims import Tested, Verdict, claims_tested, sides_of, verdicts
+from latentarm_research.user_studies.analysis.claims import claims_tested, sides_of, verdicts
 from latentarm_research.user_studies.analysis.means import LongTable, Sides, tasks_of
 from latentarm_research.user_studies.definition import Definition
 from latentarm_research.user_studies.designs import StudyDesign, design_of

@@ -7,7 +7,7 @@ from typing import final
 import numpy as np
 
 from latentarm.core.types import FloatArray
-from latentarm_research.user_studies.hypothesis import Claim
+from latentarm_research.studies.claims import Claim
 from latentarm_research.user_studies.record import Trial
 
 

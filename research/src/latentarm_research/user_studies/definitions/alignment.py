@@ -2,9 +2,10 @@
 
 from typing import Final
 
+from latentarm_research.studies.claims import Hypothesis
 from latentarm_research.user_studies.definition import Aligns, Condition, Definition, StudyTask
 from latentarm_research.user_studies.definitions.shared import AGAIN, NO_INPUT
-from latentarm_research.user_studies.hypothesis import Hypothesis, Printed, below
+from latentarm_research.user_studies.hypothesis import Printed, below
 from latentarm_research.user_studies.questionnaire import Scale, scale
 
 ALL_PRIORS: Final = "All Priors"

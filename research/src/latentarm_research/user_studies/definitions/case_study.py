@@ -3,10 +3,11 @@
 from dataclasses import replace
 from typing import Final
 
+from latentarm_research.studies.claims import Hypothesis
 from latentarm_research.user_studies.definition import Condition, Definition
 from latentarm_research.user_studies.definitions.eating import DESSERT, ENTREE, LA_SA, LATENT_HELPED
 from latentarm_research.user_studies.definitions.shared import AGAIN, NO_INPUT
-from latentarm_research.user_studies.hypothesis import Hypothesis, Printed, below
+from latentarm_research.user_studies.hypothesis import Printed, below
 
 DIRECT: Final = "End-Effector"
 

@@ -2,9 +2,10 @@
 
 from typing import Final
 
+from latentarm_research.studies.claims import Claim, Hypothesis
 from latentarm_research.user_studies.definition import Condition, Definition, Factor, StudyTask
 from latentarm_research.user_studies.definitions.shared import AGAIN, NO_INPUT
-from latentarm_research.user_studies.hypothesis import Claim, Hypothesis, Printed, above, below
+from latentarm_research.user_studies.hypothesis import Printed, above, below
 from latentarm_research.user_studies.questionnaire import PREFER, scale
 
 R, R_SA, LA, LA_SA = "R", "R+SA", "LA", "LA+SA"

@@ -2,9 +2,10 @@
 
 from typing import Final
 
+from latentarm_research.studies.claims import Hypothesis
 from latentarm_research.user_studies.definition import Condition, Definition, StudyTask
 from latentarm_research.user_studies.definitions.shared import NO_INPUT
-from latentarm_research.user_studies.hypothesis import Hypothesis, Printed, above, below
+from latentarm_research.user_studies.hypothesis import Printed, above, below
 
 ASSISTED: Final = ("No Assist", "Low Assist", "High Assist", "Full Assist")
 LATENT: Final = "cVAE"

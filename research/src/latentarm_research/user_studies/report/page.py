@@ -9,6 +9,7 @@ from rich.table import Table
 from latentarm.core.types import Row
 from latentarm.evaluation.summary import Subject, summarise
 from latentarm.evaluation.table import ABSENT, format_figure
+from latentarm_research.studies.claim_tables import columns_table, verdict_columns
 from latentarm_research.studies.page import render_page
 from latentarm_research.studies.statistics import format_p
 from latentarm_research.studies.study import Report
@@ -28,8 +29,7 @@ from latentarm_research.user_studies.report.words import (
     REAL,
     SIMULATED,
     PeopleWords,
-    claim_head,
-    claim_line,
+    claim_table,
     condition_parts,
     exclusion_words,
     order_words,
@@ -77,9 +77,7 @@ def report_page(content: Content) -> str:
         design=DESIGN_WORDS[definition.design],
         practice=_practice(definition),
         order_words=order_words(definition),
-        verdict_lines=[
-            (one.hypothesis.name, one.hypothesis.text, one.says, one.why) for one in analysis.verdicts
-        ],
+        verdict_table=columns_table(verdict_columns(analysis.verdicts)),
         condition_lines=[(one.name, one.about, *condition_parts(one)) for one in definition.conditions],
         task_lines=[task_words(recorded.sizes.as_run(task)) for task in definition.tasks],
         exclusion_lines=exclusion_words(definition),
@@ -89,8 +87,7 @@ def report_page(content: Content) -> str:
         result_head=["task", "measure", *(one.name for one in definition.conditions)],
         result_lines=_result_lines(definition, content.rows),
         figures=content.figures,
-        claim_head=claim_head(definition),
-        claim_lines=[claim_line(definition, one.tested, one.modelled) for one in analysis.claims],
+        claim_table=claim_table(definition, analysis.claims),
         anova_lines=_anova_lines(definition, analysis),
         printed_lines=_printed_lines(definition, analysis),
         wrong_lines=_wrong_lines(analysis),

@@ -4,14 +4,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final, final
 
-from latentarm.evaluation.table import ABSENT, format_figure
+from latentarm.evaluation.table import ABSENT
 from latentarm_research.people.population import MIRRORED, TRAITS
 from latentarm_research.people.traits import Traits
+from latentarm_research.studies.claim_tables import claim_columns, columns_table
 from latentarm_research.studies.means_test import CONFIDENCE, MeansTest
 from latentarm_research.studies.statistics import format_p
 from latentarm_research.studies.tables import listed
-from latentarm_research.user_studies.analysis.analysis import Modelled
-from latentarm_research.user_studies.analysis.claims import Tested, worded
+from latentarm_research.user_studies.analysis.analysis import TestedClaim
 from latentarm_research.user_studies.definition import Condition, Definition, Design, StudyTask
 
 PEOPLE_HEAD: Final = ("trait", "mean (range)", "where it comes from")
@@ -125,24 +125,6 @@ def order_words(definition: Definition) -> str:
     return DESIGN_WORDS[definition.design].order
 
 
-def claim_head(definition: Definition) -> tuple[str, ...]:
-    """Headings of the table of claims."""
-    return (
-        "",
-        "claim",
-        "n",
-        "subject, mean ± SD",
-        "other, mean ± SD",
-        f"difference [{CONFIDENCE:.0%}]",
-        "test",
-        "p / p, Holm",
-        DESIGN_WORDS[definition.design].effect_head,
-        "mixed model ± SE",
-        "p, randomisation",
-        "says",
-    )
-
-
 CONTROLS: Final = {
     "modes": "two axes of the end-effector at a time; a button switches which",
     "two_sticks": "two sticks for the end-effector; a button toggles linear and angular motion",
@@ -200,27 +182,24 @@ def exclusion_words(definition: Definition) -> list[str]:
     ]
 
 
-def claim_line(definition: Definition, tested: Tested, modelled: Modelled) -> list[str]:
-    """One claim as a line of a table."""
-    test, mixed = tested.test, modelled.mixed
-    people = f"{test.n} + {test.n_against}" if test is not None and test.n_against else str(tested.n)
-    head = [tested.hypothesis, worded(definition, tested.claim), people]
-    means = [format_figure(tested.mean, tested.sd), format_figure(tested.mean_against, tested.sd_against)]
-    if test is None:
-        return [*head, *means, *[ABSENT] * 6, f"{tested.says} ({tested.why_not})"]
-    low, high = test.interval
-    p = f"{format_p(tested.p)} / {format_p(tested.p_holm)}"
-    return [
-        *head,
-        *means,
-        f"{test.difference:.3g} [{low:.3g}, {high:.3g}]",
-        f"{'TOST' if tested.claim.margin else f't({test.dof:.3g}) = {test.t:.2f}'}",
-        p,
-        _effect_words(test),
-        ABSENT if mixed is None else f"{mixed.estimate:.3g} ± {mixed.se:.2g}",
-        format_p(modelled.p),
-        tested.says,
-    ]
+def claim_table(definition: Definition, claims: Sequence[TestedClaim]) -> str:
+    """Every claim, tested on people's means and in a model of all trials, in Markdown."""
+    further: dict[str, list[str]] = {
+        DESIGN_WORDS[definition.design].effect_head: [],
+        "mixed model ± SE": [],
+        "p, randomisation": [],
+    }
+    for one in claims:
+        test, mixed = one.tested.test, one.modelled.mixed
+        cells = (
+            _effect_words(test) if test is not None else ABSENT,
+            ABSENT if test is None or mixed is None else f"{mixed.estimate:.3g} ± {mixed.se:.2g}",
+            ABSENT if test is None else format_p(one.modelled.p),
+        )
+        for column, cell in zip(further.values(), cells, strict=True):
+            column.append(cell)
+    tested = [one.tested for one in claims]
+    return columns_table(claim_columns(tested, definition.label, definition.task_label, further))
 
 
 def _effect_words(test: MeansTest) -> str:
