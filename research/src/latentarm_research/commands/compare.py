@@ -1,21 +1,19 @@
 """`latentarm compare`: all models on recorded demonstrations."""
 
-import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Literal
 
 from tyro.conf import arg
 
-from latentarm.commands.configuration import write_options
-from latentarm.commands.output import say, show
-from latentarm.runs.options import Jobs, Json, Seed
-from latentarm_research.commands.study_options import Backend
+from latentarm_research.commands.study_options import StudyOptions, run_and_show
 
 
 def compare(
     demonstrations: Annotated[
         tuple[Path, ...], arg(metavar="DST ...", help="Folders of native datasets, all of one robot.")
     ],
+    options: StudyOptions,
     models: Annotated[
         tuple[str, ...] | None, arg(metavar="MODEL ...", help="Names of models; all by default.")
     ] = None,
@@ -37,34 +35,22 @@ def compare(
     out: Annotated[Path, arg(metavar="DIR", help="Folder for page, figures and results.json.")] = Path(
         "compared"
     ),
-    seed: Seed = 0,
-    jobs: Jobs = -1,
-    backend: Backend = "joblib",
-    json: Json = False,
 ) -> int:
     """Compare all models on recorded demonstrations, with every episode held out once.
 
     For example: latentarm compare --demonstrations pour pick --noise 0.01 0.1
     """
-    from dataclasses import replace
-
     from latentarm_research.studies.compare.preset import OURS, PRESETS
     from latentarm_research.studies.compare.study import compare_study
-    from latentarm_research.studies.study import Request, run_study
 
-    usual = PRESETS[preset]
-    sizes = replace(
-        usual,
-        models=usual.models if models is None else models,
-        noises_rad=usual.noises_rad if noise is None else noise,
-        seeds=usual.seeds if seeds is None else seeds,
-        folds=usual.folds if folds is None else folds,
-        reach_pairs=usual.reach_pairs if reach_pairs is None else reach_pairs,
-    )
-    bars = not json and sys.stderr.isatty()
-    request = Request(out, sizes, seed=seed, jobs=jobs, backend=backend, quiet=json, bars=bars)
-    report = run_study(compare_study(demonstrations, sizes, ours or OURS, seed), request)
-    write_options(out, "compare")
-    show(report.rows, json, *report.tables)
-    say(f"Page, figures and results.json are in {out}/ (begin with {out}/results.md).", json)
+    asked = {
+        "models": models,
+        "noises_rad": noise,
+        "seeds": seeds,
+        "folds": folds,
+        "reach_pairs": reach_pairs,
+    }
+    sizes = replace(PRESETS[preset], **{name: value for name, value in asked.items() if value is not None})
+    study = compare_study(demonstrations, sizes, ours or OURS, options.seed)
+    run_and_show(study, options.request(out, sizes), "compare")
     return 0

@@ -1,23 +1,21 @@
 """`latentarm reproduce`: the paper's simulations, a command for each study of the catalogue."""
 
 import inspect
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 from tyro.conf import UseAppendAction, arg
 
-from latentarm.commands.configuration import Command, write_options
-from latentarm.commands.output import say, show
+from latentarm.commands.configuration import Command
 from latentarm.core.errors import UserError
-from latentarm_research.commands.study_options import StudyOptions
+from latentarm_research.commands.study_options import StudyOptions, run_and_show
 from latentarm_research.studies.catalogue import STUDIES, load_study
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-    from latentarm.core.types import Row
+    from latentarm_research.studies.study import Report
 
 ALL = "all"
 
@@ -48,7 +46,15 @@ def command_of(
             int | None, arg(metavar="N", help="Runs in each condition; by default the preset's.")
         ] = None,
     ) -> int:
-        return _reproduce(name, preset, task, out, options, people, runs)
+        study = load_study(name)
+        if preset not in study.presets:
+            raise UserError(f"There is no preset {preset!r}: choose from {', '.join(study.presets)}.")
+        sizes = study.presets[preset]
+        if people or runs is not None:
+            sizes = sizes.asked(people, runs)
+        request = options.request(out, sizes, () if ALL in task else task)
+        run_and_show(study, request, study.command, tables=_tables)
+        return 0
 
     if not entry.people:
         signature = inspect.signature(reproduce)
@@ -60,42 +66,6 @@ def command_of(
     return reproduce
 
 
-def _reproduce(
-    name: str,
-    preset: str,
-    task: tuple[str, ...],
-    out: Path,
-    options: StudyOptions,
-    people: tuple[str, ...],
-    runs: int | None,
-) -> int:
-    """Run a study and print it at a glance."""
-    from latentarm_research.studies.page import SMOKE
-    from latentarm_research.studies.study import Request, run_study
-
-    study = load_study(name)
-    if preset not in study.presets:
-        raise UserError(f"There is no preset {preset!r}: choose from {', '.join(study.presets)}.")
-    sizes = study.presets[preset]
-    request = Request(
-        out=out,
-        preset=sizes.asked(people, runs) if people or runs is not None else sizes,
-        tasks=() if ALL in task else task,
-        seed=options.seed,
-        jobs=options.jobs,
-        backend=options.backend,
-        quiet=options.json,
-        bars=not options.json and sys.stderr.isatty(),
-    )
-    report = run_study(study, request)
-    write_options(out, study.command)
-    show(report.rows, options.json, *(report.tables or _tables_by_task(report.rows)))
-    if preset == SMOKE:
-        say(f"The preset {preset} only shows that the study runs: nothing is judged.", options.json)
-    say(f"Page, figures and results.json are in {out}/ (begin with {out}/results.md).", options.json)
-    return 0
-
-
 def __getattr__(name: str) -> Command:
     """The command of a study, by its name with underscores."""
     words = name.replace("_", "-")
@@ -104,13 +74,15 @@ def __getattr__(name: str) -> Command:
     return command_of(words)
 
 
-def _tables_by_task(rows: "Sequence[Row]") -> "list[RenderableType]":
-    """One table per task, of the rows without a condition."""
+def _tables(report: "Report") -> "Sequence[RenderableType]":
+    """Those of the report, or one per task, of the rows without a condition."""
     from latentarm.core.untrusted.console import VisibleConsole
     from latentarm.evaluation.table import rich_tables
 
+    if report.tables:
+        return report.tables
     width = VisibleConsole().width
-    main_rows = [row for row in rows if row.condition is None]
+    main_rows = [row for row in report.rows if row.condition is None]
     return [
         rich_tables([row for row in main_rows if row.task == task], title=f"{task}, simulated", width=width)
         for task in dict.fromkeys(row.task for row in main_rows)

@@ -1,19 +1,16 @@
 """`latentarm study`: the paper's user studies, gone through by simulated people."""
 
 import json as json_format
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 from rich.table import Table
 from tyro.conf import Positional, arg
 
-from latentarm.commands.configuration import write_options
-from latentarm.commands.output import print_renderables, say, show
+from latentarm.commands.output import print_renderables, say
 from latentarm.core.errors import UserError
 from latentarm.runs.options import Json
-from latentarm_research.commands.study_name import StudyName
-from latentarm_research.commands.study_options import StudyOptions
+from latentarm_research.commands.study_options import StudyName, StudyOptions, run_and_show
 from latentarm_research.user_studies.catalogue import NAMES, load_definition
 from latentarm_research.user_studies.definition import Definition
 from latentarm_research.user_studies.own.definition_file import find_definition
@@ -90,16 +87,12 @@ def run_study(
 
     For example: latentarm study run harmonic --simulated 2 --preset smoke
     """
-    from latentarm_research.studies.study import run_study as measure_study
     from latentarm_research.user_studies.run import study_of
 
     definition = find_definition(name)
     folder = Path("studies", definition.name) if out is None else out
     request = _request(definition, options, simulated, preset, folder)
-    report = measure_study(study_of(definition, name), request)
-    write_options(folder, "study run")
-    show(report.rows, options.json, *report.tables)
-    say(f"Report, figures and results.json are in {folder}/ (begin with {folder}/report.html).", options.json)
+    run_and_show(study_of(definition, name), request, "study run", page="report.html")
     return 0
 
 
@@ -168,19 +161,10 @@ def _request(
     definition: Definition, options: StudyOptions, simulated: int | None, preset: str, out: Path
 ) -> "Request[Sizes]":
     """What was asked for. Raises a `UserError` where something is out of its range."""
-    from latentarm_research.studies.study import Request
     from latentarm_research.user_studies.sizes import sizes_of
 
-    return Request(
-        out,
-        sizes_of(preset, definition.people if simulated is None else simulated),
-        tuple(task.name for task in definition.tasks),
-        seed=options.seed,
-        jobs=options.jobs,
-        backend=options.backend,
-        quiet=options.json,
-        bars=not options.json and sys.stderr.isatty(),
-    )
+    sizes = sizes_of(preset, definition.people if simulated is None else simulated)
+    return options.request(out, sizes, tuple(task.name for task in definition.tasks))
 
 
 def _titled(definition: Definition) -> str:

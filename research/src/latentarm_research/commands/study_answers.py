@@ -13,7 +13,7 @@ from latentarm.core.errors import UserError
 from latentarm.core.untrusted.opening import read_bytes
 from latentarm.demonstrations.bounds import MAX_TEXT_BYTES
 from latentarm.runs.options import Json, Seed
-from latentarm_research.commands.study_name import StudyName
+from latentarm_research.commands.study_options import StudyName
 from latentarm_research.user_studies.own.definition_file import find_definition
 
 
