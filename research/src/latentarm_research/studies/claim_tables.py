@@ -2,13 +2,14 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 from latentarm.evaluation.looks import look_of
 from latentarm.evaluation.measures import label_of
 from latentarm.evaluation.table import ABSENT, format_figure
 from latentarm_research.studies.claims import Hypothesis, Label, Tested, Verdict, verdict_on
 from latentarm_research.studies.means_test import CONFIDENCE
-from latentarm_research.studies.statistics import format_p
+from latentarm_research.studies.statistics import LEVEL, format_p
 from latentarm_research.studies.tables import plain_table
 
 Columns = Mapping[str, Sequence[str]]  # heading -> cells, of a line each
@@ -60,6 +61,16 @@ def claim_table(tested: Sequence[Tested]) -> str:
         "apart": [{True: "yes", False: "no", None: ""}[one.apart] for one in tested],
     }
     return columns_table(claim_columns(tested, label_of, name_of, further))
+
+
+def judged_parts(hypotheses: Iterable[Hypothesis], tested: Sequence[Tested]) -> dict[str, Any]:
+    """What the page of a simulation shows of its hypotheses, by the names in its template."""
+    return {
+        "verdicts": columns_table(verdict_columns(verdicts_by_task(hypotheses, tested))),
+        "tests": tested,
+        "test_table": claim_table(tested),
+        "level": LEVEL,
+    }
 
 
 def verdicts_by_task(hypotheses: Iterable[Hypothesis], tested: Sequence[Tested]) -> list[Verdict]:

@@ -42,15 +42,9 @@ from latentarm_research.studies.alignment.scene import (
 )
 from latentarm_research.studies.alignment.turning import TASK as TURNING_TASK
 from latentarm_research.studies.alignment.turning import TurningResult, measure_turning
-from latentarm_research.studies.claim_tables import (
-    claim_table,
-    columns_table,
-    verdict_columns,
-    verdicts_by_task,
-)
+from latentarm_research.studies.claim_tables import judged_parts
 from latentarm_research.studies.claims import Tested
 from latentarm_research.studies.page import render_page
-from latentarm_research.studies.statistics import LEVEL
 from latentarm_research.studies.study import Grid, Report, Request, Study, again
 from latentarm_research.studies.targets import Target, target_table
 from latentarm_research.tasks.pouring.tasks import AT_BOWL_M, BOWL_M, POURING_TASKS
@@ -185,7 +179,7 @@ def _page(
         fading=exp(-Priors().gamma),
         conditions=conditions,
         choices=curves,
-        verdicts=columns_table(verdict_columns(verdicts_by_task(HYPOTHESES, tests))),
+        **judged_parts(HYPOTHESES, tests),
         target_table=target_table(reached),
         condition_tables={
             task: {model: tables.condition_table(cells) for model, cells in of_task.items()}
@@ -209,9 +203,6 @@ def _page(
         reached_deg=degrees(REACHED_ANGLE),
         turn_deg=degrees(TURN_RAD),
         near=NEAR,
-        level=LEVEL,
-        tests=tests,
-        test_table=claim_table(tests),
     )
 
 

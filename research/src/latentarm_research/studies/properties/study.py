@@ -6,12 +6,7 @@ from itertools import product
 from typing import TYPE_CHECKING, Final
 
 from latentarm.core.types import Row
-from latentarm_research.studies.claim_tables import (
-    claim_table,
-    columns_table,
-    verdict_columns,
-    verdicts_by_task,
-)
+from latentarm_research.studies.claim_tables import judged_parts
 from latentarm_research.studies.claims import Tested
 from latentarm_research.studies.page import render_page
 from latentarm_research.studies.properties import tables
@@ -32,7 +27,6 @@ from latentarm_research.studies.properties.motion_figures.catalogue import TASK_
 from latentarm_research.studies.properties.paper import with_paper
 from latentarm_research.studies.properties.preset import AS_CHOSEN, PRESETS, Preset, designs
 from latentarm_research.studies.series import Series
-from latentarm_research.studies.statistics import LEVEL
 from latentarm_research.studies.study import Grid, Report, Request, Study, again
 from latentarm_research.tasks.planar.catalogue import MOTIONS
 from latentarm_research.tasks.planar.paths import STEP_S
@@ -154,7 +148,7 @@ def _page(
         cells_found_by_means=count(paper_cells(rows, means=True)),
         cells_table=cells_table(cells),
         sweep_table=sweep_table(swept, list(designs(request.preset))) if swept else "",
-        verdicts=columns_table(verdict_columns(verdicts_by_task(HYPOTHESES, tests))),
+        **judged_parts(HYPOTHESES, tests),
         ours=tables.OURS,
         as_good={task: counts for task, counts in as_good.items() if counts[1]},
         figures=list(figures),
@@ -165,9 +159,6 @@ def _page(
             claim.measure for one in HYPOTHESES for claim in one.claims if claim.against != MARK
         ),
         linear=LINEAR,
-        level=LEVEL,
-        tests=tests,
-        test_table=claim_table(tests),
     )
 
 

@@ -3,12 +3,7 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Final
 
-from latentarm_research.studies.claim_tables import (
-    claim_table,
-    columns_table,
-    verdict_columns,
-    verdicts_by_task,
-)
+from latentarm_research.studies.claim_tables import judged_parts
 from latentarm_research.studies.claims import Tested
 from latentarm_research.studies.page import render_page
 from latentarm_research.studies.shared_autonomy import choice, drive, hypotheses
@@ -44,7 +39,6 @@ from latentarm_research.studies.shared_autonomy.rows import (
 )
 from latentarm_research.studies.shared_autonomy.rows import STUDY as NAME
 from latentarm_research.studies.shared_autonomy.tables import Tables, summary_tables
-from latentarm_research.studies.statistics import LEVEL
 from latentarm_research.studies.study import Grid, Report, Request, Study, again
 from latentarm_research.studies.targets import target_table
 
@@ -166,7 +160,7 @@ def _page(
         models=MODELS,
         drive=drive,
         people=people,
-        verdicts=columns_table(verdict_columns(verdicts_by_task(hypotheses.HYPOTHESES, tests))),
+        **judged_parts(hypotheses.HYPOTHESES, tests),
         figures=sorted(drawings),
         tables=Tables(found, preset),
         main=MAIN,
@@ -176,13 +170,10 @@ def _page(
         arrived=ARRIVED,
         reached=hypotheses.REACHED,
         trapped=hypotheses.TRAPPED,
-        level=LEVEL,
         target_table=target_table(hypotheses.targets(found, preset), ("arm", "model")),
         choice=choice,
         measures_of=measures_of,
         belief=drive.RULE.keywords,
-        tests=tests,
-        test_table=claim_table(tests),
     )
 
 
