@@ -4,7 +4,7 @@ A claim is that some conditions have less, more or as much of a measure as other
 corrected together by Holm's method. A hypothesis is held where all its claims hold.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Final, Literal, final
 
@@ -150,28 +150,27 @@ def corrected_by_family(tested: Sequence[Tested]) -> list[Tested]:
     ]
 
 
+_FAILED: Final[Mapping[Said, str]] = {
+    "not held": "do not hold",
+    "could not be tested": "could not be tested",
+}
+
+
 def verdict_on(hypothesis: Hypothesis, tested: Sequence[Tested], measure: Label, name: Label) -> Verdict:
     """What its claims say of a hypothesis; see `Claim.worded` for the labels."""
     if not tested:
         return Verdict(hypothesis, "could not be tested", "no measure of the study is about it")
-
-    def of(says: Said) -> list[str]:
-        named = [
+    for says, words in _FAILED.items():
+        failed = [
             one.claim.worded(measure, name)
             + "".join(f" ({part})" for part in (one.where, one.why_not) if part)
             for one in tested
             if one.says == says
         ]
-        return named if len(named) <= NAMED else [*named[:NAMED], f"{len(named) - NAMED} more"]
-
-    def counted(says: Said) -> str:
-        return f"{sum(one.says == says for one in tested)} of {len(tested)} claims"
-
-    if failed := of("not held"):
-        return Verdict(hypothesis, "not held", f"{counted('not held')} do not hold: {'; '.join(failed)}")
-    says: Said = "could not be tested"
-    if untested := of(says):
-        return Verdict(hypothesis, says, f"{counted(says)} {says}: {'; '.join(untested)}")
+        if failed:
+            more = [f"{len(failed) - NAMED} more"] if len(failed) > NAMED else []
+            why = f"{len(failed)} of {len(tested)} claims {words}: {'; '.join([*failed[:NAMED], *more])}"
+            return Verdict(hypothesis, says, why)
     return Verdict(hypothesis, "held", f"all {len(tested)} claims hold")
 
 
