@@ -64,40 +64,31 @@ class SearchingRuntime(Runtime, ABC):
 @final
 @dataclass(frozen=True, kw_only=True)
 class ModelKind:
-    """Everything that the project knows about a kind of model, except how it is trained.
+    """Everything that the project knows about a kind of model, except how it is trained."""
 
-    Attributes:
-        name: on disk, on the command line and in results.
-        label: its name in figures and tables.
-        estimator: the class that trains it, a `LatentActionModel`, as ``package.module:Class``. It is
-            imported when a model is trained, so that running one needs no torch.
-        runtime: the decoder in NumPy.
-        decoder: layer widths, input first, by network, of the networks that decode.
-        encoder: ``projection`` onto the columns of the decoder or the ``nearest`` action that it can
-            decode (neither has weights; the latter needs a `SearchingRuntime`), or a network of (c, a)
-            whose output is z (``deterministic``) or (mu, log sigma^2) (``gaussian``).
-        rests_at_zero: whether z = 0 means rest, phi(0, c) = 0, by the model's definition, so that it must
-            stay u = 0. Where it does not, u = 0 is the mean latent action of the demonstrations.
-        reverses: whether it rests, and the opposite input goes back, by construction.
-        damping_m2: for models that look at the arm's tools, weight of a joint's motion by 1 rad in the metric
-            of the tools, relative to the square of a tool's motion by 1 m: enough that motions that no tool
-            shows have a cost. None for models that do not look.
-        advice: one sentence on which model to try next and why; "" if nothing was measured.
-        description: shown on the page to people who choose a model. For our own models the page's texts say
-            it.
-    """
-
-    name: str
-    label: str
+    name: str  # on disk, on the command line and in results
+    label: str  # its name in figures and tables
+    # The class that trains it, a `LatentActionModel`, as ``package.module:Class``. It is imported when a
+    # model is trained, so that running one needs no torch.
     estimator: str
-    runtime: type[Runtime]
+    runtime: type[Runtime]  # the decoder in NumPy
+    # Layer widths, input first, by network, of the networks that decode
     decoder: Callable[[Dimensions], Mapping[str, Shape]]
+    # ``projection`` onto the columns of the decoder or the ``nearest`` action that it can decode (neither has
+    # weights; the latter needs a `SearchingRuntime`), or a network of (c, a) whose output is z
+    # (``deterministic``) or (mu, log sigma^2) (``gaussian``)
     encoder: Encoder
     sees_context: bool = True
+    # Whether z = 0 means rest, phi(0, c) = 0, by the model's definition, so that it must stay u = 0. Where it
+    # does not, u = 0 is the mean latent action of the demonstrations.
     rests_at_zero: bool = False
-    reverses: bool = False
+    reverses: bool = False  # whether it rests, and the opposite input goes back, by construction
+    # For models that look at the arm's tools, weight of a joint's motion by 1 rad in the metric of the tools,
+    # relative to the square of a tool's motion by 1 m: enough that motions that no tool shows have a cost.
+    # None for models that do not look.
     damping_m2: float | None = None
-    advice: str = ""
+    advice: str = ""  # one sentence on which model to try next and why; "" if nothing was measured
+    # Shown on the page to people who choose a model. For our own models the page's texts say it.
     description: str = ""
 
     @property

@@ -77,27 +77,6 @@ class LatentActionModel(BaseEstimator, ABC):
 
     All models take the same parameters, so that they can be compared with one set of them; PCA ignores those
     of the networks and their training.
-
-    Attributes:
-        latent_dim: d, size of z.
-        context: the features that the decoder may see, in order, the joints first (`latentarm.core.context`).
-        actions: where actions come from: ``displacement`` between states, or ``recorded``.
-        window: samples that a displacement may reach ahead and back.
-        state_noise_rad: standard deviation of the noise on training states, rad.
-        validation_fraction: share of the episodes that decide when training stops, if `fit` gets no list.
-        data_seed: draws the validation episodes and the state noise, the same for every seed.
-        seeds: S, models trained side by side.
-        seed: the first of S consecutive seeds.
-        hidden: units of each hidden layer, of encoder and decoder.
-        learning_rate: of Adam, at the start.
-        epochs: passes over the training pairs, at most.
-        batch_size: pairs per step, at most.
-        patience: epochs without improvement on the validation episodes after which a seed stops.
-        device: ``cpu``, ``cuda``, or ``auto`` for CUDA where there is one.
-        checkpoint_interval_s: shortest time between two checkpoints of a training, s.
-        way_back_m: L, the distance from the demonstrations at which a full push is led back at their speed,
-            m; 0 for no way back (`latentarm.models.way_back`).
-        trained_: the result of `fit`.
     """
 
     kind: ClassVar[ModelKind]
@@ -106,24 +85,30 @@ class LatentActionModel(BaseEstimator, ABC):
     looks_ahead: ClassVar[bool] = False
     """Whether the loss looks at the context that an action leads to within `AHEAD_S`."""
 
-    latent_dim: Count = 2
+    latent_dim: Count = 2  # d, size of z
+    # The features that the decoder may see, in order, the joints first (`latentarm.core.context`)
     context: Features = (JOINTS,)
+    # Where actions come from: ``displacement`` between states, or ``recorded``
     actions: Literal["displacement", "recorded"] = "displacement"
-    window: Count = 5
-    state_noise_rad: NotNegative = 0.0
+    window: Count = 5  # samples that a displacement may reach ahead and back
+    state_noise_rad: NotNegative = 0.0  # standard deviation of the noise on training states, rad
+    # Share of the episodes that decide when training stops, if `fit` gets no list
     validation_fraction: Share = 0.2
-    data_seed: Seed = 0
-    seeds: Seeds = 1
-    seed: Seed = 0
-    hidden: Units = (32, 32)
-    learning_rate: Positive = 1e-2
-    epochs: Count = 30
-    batch_size: Count = 32
-    patience: Count = 10
+    data_seed: Seed = 0  # draws the validation episodes and the state noise, the same for every seed
+    seeds: Seeds = 1  # S, models trained side by side
+    seed: Seed = 0  # the first of S consecutive seeds
+    hidden: Units = (32, 32)  # units of each hidden layer, of encoder and decoder
+    learning_rate: Positive = 1e-2  # of Adam, at the start
+    epochs: Count = 30  # passes over the training pairs, at most
+    batch_size: Count = 32  # pairs per step, at most
+    patience: Count = 10  # epochs without improvement on the validation episodes after which a seed stops
+    # ``cpu``, ``cuda``, or ``auto`` for CUDA where there is one
     device: Literal["cpu", "cuda", "auto"] = "cpu"
-    checkpoint_interval_s: NotNegative = 5.0
+    checkpoint_interval_s: NotNegative = 5.0  # shortest time between two checkpoints of a training, s
+    # L, the distance from the demonstrations at which a full push is led back at their speed, m; 0 for no way
+    # back (`latentarm.models.way_back`)
     way_back_m: NotNegative = 0.0
-    trained_: TrainedModel = field(init=False)
+    trained_: TrainedModel = field(init=False)  # the result of `fit`
 
     @abstractmethod
     def _learn(

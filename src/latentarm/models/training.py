@@ -100,7 +100,6 @@ def train(
         adam.steps = state.steps
     else:
         networks.initialise([seed_generator(seed, 0) for seed in seeds], start or {})
-
     batches = Batches(data, seeds, config.batch_size, noise_dim, device)
     written = monotonic()
     report = report or (lambda epoch, epochs, loss: None)

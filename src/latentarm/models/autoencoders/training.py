@@ -87,13 +87,10 @@ class CAEZero(_Deterministic):
 
     The cAE alone may keep moving when the stick is released; the penalty discourages that in every
     demonstrated context.
-
-    Attributes:
-        zero_weight: lambda_0.
     """
 
     kind: ClassVar[ModelKind] = runtime.CAE_ZERO
-    zero_weight: NotNegative = 1.0
+    zero_weight: NotNegative = 1.0  # lambda_0
 
     def _loss(self, networks: Networks, batch: Batch) -> Tensor:
         latent = batch.action.new_zeros(*batch.action.shape[:2], self.latent_dim)
@@ -141,13 +138,10 @@ class CAEReversal(_Deterministic):
     the two ways to an odd decoder in Przystupa et al. (2024, arXiv 2410.21406) this is the soft one, a
     regulariser on an end-to-end decoder. Our source for the paper is its abstract and reviews of it, so
     the form of the penalty is ours.
-
-    Attributes:
-        reversal_weight: lambda_r.
     """
 
     kind: ClassVar[ModelKind] = runtime.CAE_REVERSAL
-    reversal_weight: NotNegative = 1.0
+    reversal_weight: NotNegative = 1.0  # lambda_r
 
     def _loss(self, networks: Networks, batch: Batch) -> Tensor:
         latent = self._latent(networks, batch.context, batch.action)
@@ -186,13 +180,10 @@ class CAEJacobian(_Deterministic):
     comes from phi being uneven in z remains. A penalty on d phi / d z would say nothing: the encoder
     can make z larger and the derivative smaller at no cost. The contractive autoencoder (Rifai et al.,
     ICML 2011) penalises the encoder's Jacobian instead, which a person never uses.
-
-    Attributes:
-        jacobian_weight: lambda_J.
     """
 
     kind: ClassVar[ModelKind] = runtime.CAE_JACOBIAN
-    jacobian_weight: NotNegative = 0.1
+    jacobian_weight: NotNegative = 0.1  # lambda_J
 
     def _loss(self, networks: Networks, batch: Batch) -> Tensor:
         latent = self._latent(networks, batch.context, batch.action)

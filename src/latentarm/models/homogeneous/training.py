@@ -62,16 +62,13 @@ class Homogeneous(NeuralModel):
     A network of the context gives the matrices. The encoder searches for the latent action whose action is
     nearest; it has no weights. What SCL (Przystupa et al., arXiv 2410.21441) does with d fixed directions is
     the special case without bends and with the metric of the joints.
-
-    Attributes:
-        smoothness_weight: price of ``‖phi(z, c') - phi(z, c)‖^2`` between a demonstrated context and the one
-            that the demonstrated action leads to within a tenth of a second: this is what the opposite push
-            would not undo.
     """
 
     kind: ClassVar[ModelKind] = HOMOGENEOUS
     looks_ahead: ClassVar[bool] = True
     start = staticmethod(principal_start)
+    # Price of ``‖phi(z, c') - phi(z, c)‖^2`` between a demonstrated context and the one that the demonstrated
+    # action leads to within a tenth of a second: this is what the opposite push would not undo
     smoothness_weight: NotNegative = 2.0
 
     def _loss(self, networks: Networks, batch: Batch) -> Tensor:

@@ -77,13 +77,11 @@ class Isometric(NeuralModel):
     speeds, which also cover motion that no tool shows. The encoder searches for the latent
     action whose action is nearest; it has no weights. All of this builds on the state-conditioned linear
     decoder (Przystupa et al., arXiv 2410.21441).
-
-    Attributes:
-        bend_weight: price of the bend, as the tools show it, and of kappa, per unit of their squares.
     """
 
     kind: ClassVar[ModelKind] = ISOMETRIC
     start = staticmethod(principal_start)
+    # Price of the bend, as the tools show it, and of kappa, per unit of their squares
     bend_weight: NotNegative = 1e-3
 
     def _loss(self, networks: Networks, batch: Batch) -> Tensor:

@@ -56,12 +56,6 @@ class LowTurning(NeuralModel):
     - shows the network contexts with noise (``context_noise``), the demonstrated action unchanged, which
       makes it smooth between and around demonstrations (Bishop, 1995: noise on inputs is a penalty on
       slopes).
-
-    Attributes:
-        smoothness_weight: as in `latentarm.models.homogeneous`.
-        turning_weight: price of the mean turn of the joints' motion per turn of the stick.
-        spread_weight: price of ``-log det (W + epsilon 1)``, mean over tools.
-        context_noise: SD of the noise, in units of each context entry's spread over the demonstrations.
     """
 
     kind: ClassVar[ModelKind] = LOW_TURNING
@@ -69,9 +63,10 @@ class LowTurning(NeuralModel):
     jitters: ClassVar[bool] = True
     start = staticmethod(principal_start)
     epochs: Count = 15
-    smoothness_weight: NotNegative = 2.0
-    turning_weight: NotNegative = 0.05
-    spread_weight: NotNegative = 0.01
+    smoothness_weight: NotNegative = 2.0  # as in `latentarm.models.homogeneous`
+    turning_weight: NotNegative = 0.05  # price of the mean turn of the joints' motion per turn of the stick
+    spread_weight: NotNegative = 0.01  # price of ``-log det (W + epsilon 1)``, mean over tools
+    # SD of the noise, in units of each context entry's spread over the demonstrations
     context_noise: NotNegative = 0.4
 
     def _loss(self, networks: Networks, batch: Batch) -> Tensor:

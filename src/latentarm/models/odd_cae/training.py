@@ -34,14 +34,11 @@ class OddCAE(NeuralModel):
     with c' the context that the demonstrated action leads to within a tenth of a second, as for the
     homogeneous model. Przystupa et al. (arXiv 2410.21406) propose decoders that are odd in the action for the
     same reason; their construction is another one.
-
-    Attributes:
-        smoothness_weight: lambda_s.
     """
 
     kind: ClassVar[ModelKind] = ODD_CAE
     looks_ahead: ClassVar[bool] = True
-    smoothness_weight: NotNegative = 2.0
+    smoothness_weight: NotNegative = 2.0  # lambda_s
 
     def _loss(self, networks: Networks, batch: Batch) -> Tensor:
         latent = self._latent(networks, batch.context, batch.action)
