@@ -65,10 +65,7 @@ def _factory(name: str, thing: object) -> Any:
 ARMS: Final[Catalogue[ArmFactory]] = Catalogue(
     "latentarm.arms",
     "arm",
-    {
-        "kinematic": "latentarm.arms.kinematic:KinematicArm",
-        "mujoco": "latentarm.arms.mujoco:MujocoArm",
-    },
+    {"kinematic": "latentarm.arms.kinematic:KinematicArm", "mujoco": "latentarm.arms.mujoco:MujocoArm"},
     _factory,
 )
 

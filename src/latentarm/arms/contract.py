@@ -24,43 +24,31 @@ STOPS_AFTER_S: Final = 0.1  # an arm that takes longer to notice the end of its 
 @final
 @dataclass(frozen=True)
 class ArmSpec:
-    """An arm's fixed properties, by its driver.
+    """An arm's fixed properties, by its driver."""
 
-    Attributes:
-        joint_names: n names, in the order of readings and commands.
-        rate_hz: largest rate of commands, 1/s.
-        stops_after_s: when a command's ``duration_s`` has passed without another one, the arm begins to stop
-            by itself within this time, s. None if unknown: such an arm is refused.
-        simulated: `check_arm` is stricter with real arms.
-        gripper: None where it has none.
-    """
-
-    joint_names: tuple[str, ...]
-    rate_hz: float
+    joint_names: tuple[str, ...]  # n names, in the order of readings and commands
+    rate_hz: float  # largest rate of commands, 1/s
+    # When a command's ``duration_s`` has passed without another one, the arm begins to stop by itself within
+    # this time, s. None if unknown: such an arm is refused.
     stops_after_s: float | None
-    simulated: bool
-    gripper: Gripper | None = None
+    simulated: bool  # `check_arm` is stricter with real arms
+    gripper: Gripper | None = None  # None where it has none
 
 
 @final
 @dataclass(frozen=True)
 class ArmStatus:
-    """Whether an arm can move, and if not, why.
+    """Whether an arm can move, and if not, why."""
 
-    Attributes:
-        phase: *off*: not connected. *disabled*: connected, takes no commands. *guided*: disabled, and moved
-            by a person's hand (`latentarm.arms.real.GuidableArm`). *ready*: enabled, at rest. *moving*:
-            enabled, in motion. *fault*: stopped by itself, takes no commands. *emergency_stop*: somebody has
-            pressed the button on the arm.
-        reason: one short sentence for the person, or "".
-        recoverable: whether `Arm.recover` can end the fault.
-        lost: whether the connection is lost. Recovering a recoverable fault then makes a new one; otherwise
-            call `Arm.close` and `Arm.connect`.
-    """
-
+    # *off*: not connected. *disabled*: connected, takes no commands. *guided*: disabled, and moved by a
+    # person's hand (`latentarm.arms.real.GuidableArm`). *ready*: enabled, at rest. *moving*: enabled, in
+    # motion. *fault*: stopped by itself, takes no commands. *emergency_stop*: somebody has pressed the button
+    # on the arm.
     phase: ArmPhase
-    reason: str = ""
-    recoverable: bool = False
+    reason: str = ""  # one short sentence for the person, or ""
+    recoverable: bool = False  # whether `Arm.recover` can end the fault
+    # Whether the connection is lost. Recovering a recoverable fault then makes a new one; otherwise call
+    # `Arm.close` and `Arm.connect`.
     lost: bool = False
 
     @property

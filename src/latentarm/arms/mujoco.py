@@ -33,22 +33,15 @@ SCENE_SETTLED_S: Final = 10.0  # without a command, things about an arm are at r
 class Imperfections:
     """Imperfections of real arms, besides inertia, that a simulated arm can have.
 
-    Attributes:
-        position_noise_rad: SD of the noise on positions, rad.
-        velocity_noise_rad_s: SD of the noise on velocities, rad/s.
-        delay_s: age of every reading, s.
-        payload_kg: mass at the end-effector that gravity compensation ignores, kg.
-        seed: of the noise.
-
     Raises:
         UserError: a figure is negative or not finite.
     """
 
-    position_noise_rad: float = 0.0
-    velocity_noise_rad_s: float = 0.0
-    delay_s: float = 0.0
-    payload_kg: float = 0.0
-    seed: int = 0
+    position_noise_rad: float = 0.0  # SD of the noise on positions, rad
+    velocity_noise_rad_s: float = 0.0  # SD of the noise on velocities, rad/s
+    delay_s: float = 0.0  # age of every reading, s
+    payload_kg: float = 0.0  # mass at the end-effector that gravity compensation ignores, kg
+    seed: int = 0  # of the noise
 
     def __post_init__(self) -> None:
         for name in ("position_noise_rad", "velocity_noise_rad_s", "delay_s", "payload_kg"):
