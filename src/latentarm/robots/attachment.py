@@ -39,13 +39,8 @@ class Vessel:
 @final
 @dataclass(frozen=True, eq=False)
 class Attachment:
-    """An attachment that an arm carries in place of its bare hand.
-
-    Attributes:
-        tines: its tines, or None.
-        vessel: the container, or None.
-    """
+    """An attachment that an arm carries in place of its bare hand."""
 
     name: str
-    tines: Tines | None = None
-    vessel: Vessel | None = None
+    tines: Tines | None = None  # its tines, or None
+    vessel: Vessel | None = None  # the container, or None

@@ -21,17 +21,12 @@ _JOINT: Final = int(mujoco.mjtEq.mjEQ_JOINT)
 
 
 class AmbiguousEndEffectorError(UserError):
-    """A model leaves several end-effectors to choose from.
-
-    Attributes:
-        why: why none was chosen, without a full stop.
-        choices: in words.
-    """
+    """A model leaves several end-effectors to choose from."""
 
     def __init__(self, why: str, choices: str) -> None:
         super().__init__(f"{why}: name the end-effector with --end-effector, one of {choices}.")
-        self.why = why
-        self.choices = choices
+        self.why = why  # why none was chosen, without a full stop
+        self.choices = choices  # in words
 
 
 @final

@@ -7,22 +7,16 @@ from typing import final
 @final
 @dataclass(frozen=True)
 class Gripper:
-    """Parallel fingers that move by the same amount, or one jaw that turns.
+    """Parallel fingers that move by the same amount, or one jaw that turns."""
 
-    Attributes:
-        joints: of its fingers in the robot's model; empty where the model lacks it. Sliding fingers meet at
-            zero, and each moves by its share of the opening.
-        width_m: largest opening, m.
-        speed_m_s: largest rate of the opening, m/s.
-        force_n: largest force between the fingers, N.
-        travel: closed and open position of each turning joint, rad; the opening is assumed to grow evenly
-            between them. Empty where fingers slide.
-    """
-
+    # Of its fingers in the robot's model; empty where the model lacks it. Sliding fingers meet at zero, and
+    # each moves by its share of the opening.
     joints: tuple[str, ...]
-    width_m: float
-    speed_m_s: float
-    force_n: float
+    width_m: float  # largest opening, m
+    speed_m_s: float  # largest rate of the opening, m/s
+    force_n: float  # largest force between the fingers, N
+    # Closed and open position of each turning joint, rad; the opening is assumed to grow evenly between them.
+    # Empty where fingers slide.
     travel: tuple[tuple[float, float], ...] = ()
 
     @property

@@ -48,7 +48,6 @@ def read(model: mujoco.MjModel, end_effectors: Sequence[str]) -> ModelChain:
     zero = model.qpos0[addresses]
     data.qpos[addresses] = zero
     mujoco.mj_kinematics(model, data)
-
     placed = _homogeneous(data.xpos, data.xmat)
     body_link = np.full(model.nbody, -1, dtype=np.int64)
     for body in range(1, model.nbody):

@@ -20,19 +20,13 @@ TOOL: Final = "tool"  # everything beyond the arm's last joint, in `SceneState.f
 class Scene:
     """Things about the arm when a task begins.
 
-    Attributes:
-        things: rigid things; later ones may stand on earlier ones.
-        grains: loose grains.
-        bonds: things that are one until a cut parts them.
-        table_m: height of the table top in the arm's base frame, m.
-
     Raises UserError where two of its parts have one name, or a bond names a thing that is not there.
     """
 
-    things: tuple[Thing, ...] = ()
-    grains: tuple[Grains, ...] = ()
-    bonds: tuple[Bond, ...] = ()
-    table_m: float = 0.0
+    things: tuple[Thing, ...] = ()  # rigid things; later ones may stand on earlier ones
+    grains: tuple[Grains, ...] = ()  # loose grains
+    bonds: tuple[Bond, ...] = ()  # things that are one until a cut parts them
+    table_m: float = 0.0  # height of the table top in the arm's base frame, m
 
     def __post_init__(self) -> None:
         names = [one.name for one in (*self.things, *self.grains)]
@@ -66,30 +60,18 @@ class Scene:
 @final
 @dataclass(frozen=True, eq=False)
 class SceneState:
-    """State of a scene at one moment; truth, not a measurement.
+    """State of a scene at one moment; truth, not a measurement."""
 
-    Attributes:
-        time_s: since the scene began, s.
-        tool: pose of the arm's end-effector.
-        poses: of every thing, by name.
-        speed_m_s: of every thing's middle, by name, m/s.
-        stabbed: names of things on the tines of the arm's attachment.
-        gripped: names of things that both fingers touch.
-        bonds: pairs of names that nothing has cut apart.
-        grains: (K, 3), middles by the grains' name, m.
-        force_n: largest normal force between two of the tool (`TOOL`), the table (`TABLE`) and the things
-            since the state of an earlier moment, N; by pairs of names in alphabetical order, pairs without
-            contact left out.
-    """
-
-    time_s: float
-    tool: Pose
-    poses: Mapping[str, Pose]
-    speed_m_s: Mapping[str, float]
-    stabbed: frozenset[str]
-    gripped: frozenset[str]
-    bonds: frozenset[tuple[str, str]]
-    grains: Mapping[str, FloatArray]
+    time_s: float  # since the scene began, s
+    tool: Pose  # pose of the arm's end-effector
+    poses: Mapping[str, Pose]  # of every thing, by name
+    speed_m_s: Mapping[str, float]  # of every thing's middle, by name, m/s
+    stabbed: frozenset[str]  # names of things on the tines of the arm's attachment
+    gripped: frozenset[str]  # names of things that both fingers touch
+    bonds: frozenset[tuple[str, str]]  # pairs of names that nothing has cut apart
+    grains: Mapping[str, FloatArray]  # (K, 3), middles by the grains' name, m
+    # Largest normal force between two of the tool (`TOOL`), the table (`TABLE`) and the things since the
+    # state of an earlier moment, N; by pairs of names in alphabetical order, pairs without contact left out
     force_n: Mapping[tuple[str, str], float]
 
     def inside(self, grains: str, container: str, interior: Interior) -> BoolArray:

@@ -39,45 +39,27 @@ class Interior:
 @final
 @dataclass(frozen=True)
 class Food:
-    """The behaviour of food under a fork.
+    """The behaviour of food under a fork."""
 
-    Attributes:
-        pierce_n: force along the tines that makes them enter, N.
-        depth_m: how deep the tines must enter for the food to stay on them, m.
-        grip_n: pull that takes it off the tines again, N.
-    """
-
-    pierce_n: float
-    depth_m: float
-    grip_n: float
+    pierce_n: float  # force along the tines that makes them enter, N
+    depth_m: float  # how deep the tines must enter for the food to stay on them, m
+    grip_n: float  # pull that takes it off the tines again, N
 
 
 @final
 @dataclass(frozen=True, eq=False)
 class Thing:
-    """A rigid thing.
+    """A rigid thing."""
 
-    Attributes:
-        name: unique in its scene.
-        parts: its solids.
-        mass_kg: ignored where it is fixed.
-        pose: of its frame when the scene begins, in the arm's base frame.
-        friction: sliding friction of its surface.
-        fixed: whether nothing can push it.
-        food: its behaviour under a fork; None where tines do not enter it.
-        interior: room in a container, else None.
-        soft: solids that are visible and give way to everything, such as icing.
-    """
-
-    name: str
-    parts: tuple[Part, ...]
-    mass_kg: float
-    pose: Pose
-    friction: float = 0.6
-    fixed: bool = False
-    food: Food | None = None
-    interior: Interior | None = None
-    soft: tuple[Part, ...] = ()
+    name: str  # unique in its scene
+    parts: tuple[Part, ...]  # its solids
+    mass_kg: float  # ignored where it is fixed
+    pose: Pose  # of its frame when the scene begins, in the arm's base frame
+    friction: float = 0.6  # sliding friction of its surface
+    fixed: bool = False  # whether nothing can push it
+    food: Food | None = None  # its behaviour under a fork; None where tines do not enter it
+    interior: Interior | None = None  # room in a container, else None
+    soft: tuple[Part, ...] = ()  # solids that are visible and give way to everything, such as icing
 
     @property
     def room(self) -> Interior:
@@ -90,43 +72,27 @@ class Thing:
 @final
 @dataclass(frozen=True)
 class Bond:
-    """Two things that are one until a cut parts them, such as slices of tofu.
+    """Two things that are one until a cut parts them, such as slices of tofu."""
 
-    Attributes:
-        first: the cut lies in this thing's frame.
-        second: the other thing.
-        point: any point of the plane of the cut, m.
-        normal: unit normal of that plane, from ``first`` to ``second``.
-        depth_m: how far an edge must come through the plane, downwards from the top, m.
-        angle_rad: largest turn of the edge out of the plane, rad.
-    """
-
-    first: str
-    second: str
-    point: tuple[float, float, float]
-    normal: tuple[float, float, float]
-    depth_m: float
-    angle_rad: float
+    first: str  # the cut lies in this thing's frame
+    second: str  # the other thing
+    point: tuple[float, float, float]  # any point of the plane of the cut, m
+    normal: tuple[float, float, float]  # unit normal of that plane, from ``first`` to ``second``
+    depth_m: float  # how far an edge must come through the plane, downwards from the top, m
+    angle_rad: float  # largest turn of the edge out of the plane, rad
 
 
 @final
 @dataclass(frozen=True, eq=False)
 class Grains:
-    """Round grains: flour, eggs, coffee, rice.
+    """Round grains: flour, eggs, coffee, rice."""
 
-    Attributes:
-        name: unique in its scene.
-        radius_m: of the largest grains, m.
-        mass_kg: of a grain, kg.
-        positions: (K, 3), their middles when the scene begins, in the arm's base frame, m.
-        colour: red, green, blue, opacity, each in [0, 1].
-        sizes: radii of the grains as shares of the largest, in turn. Equal grains stand like a crystal and
-            then leave a cup all at once.
-    """
-
-    name: str
-    radius_m: float
-    mass_kg: float
-    positions: FloatArray
+    name: str  # unique in its scene
+    radius_m: float  # of the largest grains, m
+    mass_kg: float  # of a grain, kg
+    positions: FloatArray  # (K, 3), their middles when the scene begins, in the arm's base frame, m
+    # Red, green, blue, opacity, each in [0, 1]
     colour: tuple[float, float, float, float] = (0.9, 0.85, 0.7, 1.0)
+    # Radii of the grains as shares of the largest, in turn. Equal grains stand like a crystal and then leave
+    # a cup all at once.
     sizes: tuple[float, ...] = (1.0,)
