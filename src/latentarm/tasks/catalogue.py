@@ -16,10 +16,7 @@ def _task(name: str, thing: object) -> type[Task]:
 TASKS: Final = Catalogue(
     "latentarm.tasks",
     "task",
-    {
-        "table_top": "latentarm.tasks.table_top:TableTop",
-        "reach": "latentarm.tasks.reach:Reach",
-    },
+    {"table_top": "latentarm.tasks.table_top:TableTop", "reach": "latentarm.tasks.reach:Reach"},
     _task,
 )
 """Each is made with a robot where it is for `Task.any_robot`, and without arguments otherwise."""

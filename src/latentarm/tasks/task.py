@@ -15,13 +15,9 @@ from latentarm.robots.scene.scene import Scene
 
 
 class Task(ABC):
-    """A robot with discrete goals, and ways (manners) of doing something at each.
+    """A robot with discrete goals, and ways (manners) of doing something at each."""
 
-    Attributes:
-        any_robot: whether the task takes any robot as its argument; else it takes no arguments and has its
-            own.
-    """
-
+    # Whether the task takes any robot as its argument; else it takes no arguments and has its own
     any_robot: ClassVar[bool] = False
 
     @property
