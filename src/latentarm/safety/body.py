@@ -23,21 +23,16 @@ class Body:
     to link by what lies between their axes. With it the second derivative of p(q + t d) over t is
     at most ``Σ_jk |d_j| |d_k| R[p, j, k]`` with ``R[p, j, k] = lever[p, the outer of j and k]``,
     because ``∂²p/∂q_j∂q_k = w_j × (w_k × (p - o_k))`` for a joint k further out than j.
-
-    Attributes:
-        capsule: (K,), index into the robot's capsules of each moving capsule.
-        link: (P,), the link that carries each point.
-        radius: (P,), m; zero for tools.
-        moves: (n, P), whether joint j moves point p.
-        lever: (P, n), m (1 where the joint is prismatic).
     """
 
     def __init__(self, robot: "Robot") -> None:
         self.robot = robot
         capsules, chain = robot.capsules, robot.chain
+        # (K,), index into the robot's capsules of each moving capsule
         self.capsule: IntArray = np.flatnonzero(capsules.link >= 0)
         tools = [tool for tool in chain.tools if tool.link >= 0]
         links = capsules.link[self.capsule]
+        # (P,), the link that carries each point
         self.link: IntArray = np.concatenate(
             [links, links, np.array([t.link for t in tools], dtype=np.int64)]
         )
@@ -49,8 +44,10 @@ class Body:
             ]
         )
         radius = capsules.radius[self.capsule]
+        # (P,), m; zero for tools
         self.radius: FloatArray = np.concatenate([radius, radius, np.zeros(len(tools))])
-        self.moves = np.ascontiguousarray(chain.moves[self.link].T)
+        self.moves = np.ascontiguousarray(chain.moves[self.link].T)  # (n, P), whether joint j moves point p
+        # (P, n), m (1 where the joint is prismatic)
         self.lever: FloatArray = np.array(
             [self._levers(int(link), point) for link, point in zip(self.link, self.local, strict=True)]
         ).reshape(-1, chain.dof)
@@ -128,13 +125,7 @@ class Body:
 
 @final
 class Placement:
-    """The arm in one configuration (n,), rad: where its points are and how joint velocities move them.
-
-    Attributes:
-        points: (P, 3), m, base frame.
-        jacobian: (n, 6, P), what a unit speed of joint j does at point p: rows 0-2 its velocity, m/s,
-            rows 3-5 the angular velocity of its link, rad/s.
-    """
+    """The arm in one configuration (n,), rad: where its points are and how joint velocities move them."""
 
     __slots__ = ("_flat", "body", "jacobian", "points", "q")
 
@@ -143,7 +134,7 @@ class Placement:
         self.body = body
         self.q = q
         transforms = chain.link_transforms(q)
-        self.points = chain.points(transforms, body.link, body.local)
+        self.points = chain.points(transforms, body.link, body.local)  # (P, 3), m, base frame
         axes, origins = chain.joint_axes(transforms)
         turn = axes * body.turns
         skew = (turn @ SKEW).reshape(-1, 3, 3)
@@ -153,6 +144,8 @@ class Placement:
         jacobian[:, :3] += shift[:, :, None]
         jacobian[:, 3:] = turn[:, :, None]
         jacobian *= body.moves_factor
+        # (n, 6, P), what a unit speed of joint j does at point p: rows 0-2 its velocity, m/s, rows 3-5 the
+        # angular velocity of its link, rad/s
         self.jacobian = jacobian
         self._flat = jacobian.reshape(len(axes), -1)
 

@@ -25,30 +25,6 @@ MAY_BEND_M = 1e-6  # a command that keeps a distance which is too small already 
 class Bounds:
     """Limits in joint space of one robot, and the times that follow from them and the loop's period, s.
 
-    Attributes:
-        dof: n.
-        speed: (n,), largest speed of each joint, rad/s; that of links, m/s, where a joint slides.
-        slowest: the smallest of these.
-        lower: (n,), lowest joint position, margin taken off, rad.
-        upper: (n,), highest joint position, margin taken off, rad.
-        positions: (2, n), `lower` and `upper` together.
-        acceleration: (n,), for ordinary motion, rad/s².
-        quickening: (n,), the most that ordinary motion may speed up in one period, rad/s.
-        jerk: (n,), for ordinary motion, rad/s³.
-        one_step: (n,), by how much ordinary motion can change a speed and be steady after one period, rad/s.
-        release_acceleration: (n,), once the person has let go, rad/s².
-        release_jerk: (n,), once the person has let go, rad/s³.
-        stop_acceleration: (n,), for stops, rad/s².
-        stop_jerk: (n,), for stops, rad/s³.
-        hold_s: how long one command lasts, s.
-        reading_timeout_s: how old the newest reading may be, s.
-        lag_s: how far readings may lag behind commands, s.
-        stop_s: the longest stop, s.
-        reach_s: an upper bound of the distance that a command and its brake cover, over its speed, s.
-        damping_per_s: approach speed per remaining distance; ordinary motion can always slow down this fast.
-        nearest_m: distance that shaping keeps from obstacles and from the arm itself, m.
-        horizon_s: a distance that lasts longer than this at the current speed does not limit it, s.
-
     Raises UserError where a figure is above what the hardware can do, or stopping takes too long.
     """
 
@@ -84,33 +60,42 @@ class Bounds:
                 )
         self.config = config
         self.dt_s = dt_s
-        self.dof = robot.dof
+        self.dof = robot.dof  # n
+        # (n,), largest speed of each joint, rad/s; that of links, m/s, where a joint slides
         self.speed = speed
-        self.slowest = float(speed.min())
+        self.slowest = float(speed.min())  # the smallest of these
+        # (n,), lowest joint position, margin taken off, rad
         self.lower = hardware.lower + config.joint_margin
+        # (n,), highest joint position, margin taken off, rad
         self.upper = hardware.upper - config.joint_margin
         for joint in np.flatnonzero(self.lower + 2 * BUFFER_RAD >= self.upper):
             raise UserError(
                 f"The safety limit joint_margin is {config.joint_margin:g} rad, which leaves joint"
                 f" {names[joint]!r} of {robot.name} no room between its limits: set it lower."
             )
-        self.positions = np.stack([self.lower, self.upper])
+        self.positions = np.stack([self.lower, self.upper])  # (2, n), `lower` and `upper` together
+        # (n,), for ordinary motion, rad/s²
         self.acceleration = config.acceleration_fraction * hardware.acceleration
+        # (n,), the most that ordinary motion may speed up in one period, rad/s
         self.quickening = self.acceleration * dt_s
-        self.jerk = config.jerk_fraction * hardware.jerk
+        self.jerk = config.jerk_fraction * hardware.jerk  # (n,), for ordinary motion, rad/s³
+        # (n,), by how much ordinary motion can change a speed and be steady after one period, rad/s
         self.one_step = np.minimum(0.25 * self.jerk * dt_s**2, 0.5 * self.quickening)
+        # (n,), once the person has let go, rad/s²
         self.release_acceleration = config.release_fraction * hardware.acceleration
+        # (n,), once the person has let go, rad/s³
         self.release_jerk = config.release_fraction * hardware.jerk
-        self.stop_acceleration = config.stop_fraction * hardware.acceleration
-        self.stop_jerk = config.stop_fraction * hardware.jerk
-        self.hold_s = config.command_periods * dt_s
+        self.stop_acceleration = config.stop_fraction * hardware.acceleration  # (n,), for stops, rad/s²
+        self.stop_jerk = config.stop_fraction * hardware.jerk  # (n,), for stops, rad/s³
+        self.hold_s = config.command_periods * dt_s  # how long one command lasts, s
+        # How far readings may lag behind commands, s
         self.lag_s = config.following_lag_s + LATE_PERIODS * dt_s
         if config.following_window_s < 2.0 * self.lag_s:
             raise UserError(
                 f"The safety limit following_window_s is {config.following_window_s:g} s: it must be at least"
                 f" {2.0 * self.lag_s:g} s, twice following_lag_s and {LATE_PERIODS} periods of the loop."
             )
-        self.stop_s = self._longest_stop_s()
+        self.stop_s = self._longest_stop_s()  # the longest stop, s
         needed = config.input_timeout_s + dt_s + self.stop_s
         if needed > STOPPED_WITHIN_S:
             raise UserError(
@@ -120,6 +105,7 @@ class Bounds:
                 " lower joint_speed (teleop: --joint-speed; where joints slide, link_speed) or"
                 " input_timeout_s, or raise stop_fraction or the rate."
             )
+        # How old the newest reading may be, s
         self.reading_timeout_s = min(config.reading_periods * dt_s, STOPPED_WITHIN_S - dt_s - self.stop_s)
         if config.input_timeout_s + config.input_grace_s > STOPPED_WITHIN_S:
             raise UserError(
@@ -127,9 +113,13 @@ class Bounds:
                 f" {1000 * (config.input_timeout_s + config.input_grace_s):.0f} ms together, but an arm that"
                 f" had no fresh input for {1000 * STOPPED_WITHIN_S:.0f} ms must be enabled again: lower one."
             )
+        # An upper bound of the distance that a command and its brake cover, over its speed, s
         self.reach_s = self.hold_s + self.stop_s
+        # Approach speed per remaining distance; ordinary motion can always slow down this fast
         self.damping_per_s = min(float((self.acceleration / self.speed).min()), 1.0 / self.reach_s)
+        # Distance that shaping keeps from obstacles and from the arm itself, m
         self.nearest_m = config.clearance + BUFFER_M
+        # A distance that lasts longer than this at the current speed does not limit it, s
         self.horizon_s = 1.0 / self.damping_per_s
 
     def brake(self, velocity: np.ndarray, acceleration: np.ndarray) -> Brake:

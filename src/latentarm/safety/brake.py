@@ -26,14 +26,6 @@ class Brake:
     ``B = min_i J_i / |v+_i|``, lasts ``1 / rate + rate / B`` and covers half of that time at full speed.
 
     Its arguments are (n,): velocity, rad/s, and acceleration, rad/s²; the stop's A, rad/s², and J, rad/s³.
-
-    Attributes:
-        settle_s: duration of phase one, s.
-        kink: (n,), ``v+ - v``, rad/s.
-        settled: (n,), ``v+``, rad/s.
-        rate: plateau deceleration of sigma, 1/s; infinite where ``v+`` is zero.
-        onset_s: time that phase two takes to reach its plateau, s.
-        ramp_s: duration of phase two, s.
     """
 
     __slots__ = (
@@ -62,9 +54,9 @@ class Brake:
         self._fall: _Fall | None = None
         if any_nonzero(acceleration):
             settle = np.abs(acceleration) / stop_jerk
-            self.settle_s = largest(settle)
-            self.kink = 0.5 * acceleration * settle
-            self.settled = velocity + self.kink
+            self.settle_s = largest(settle)  # duration of phase one, s
+            self.kink = 0.5 * acceleration * settle  # (n,), ``v+ - v``, rad/s
+            self.settled = velocity + self.kink  # (n,), ``v+``, rad/s
         else:
             self.settle_s, self.kink, self.settled = 0.0, acceleration, velocity
         speed = np.abs(self.settled)
@@ -73,9 +65,10 @@ class Brake:
             self.rate, self.onset_s, self.ramp_s = math.inf, 0.0, 0.0
             return
         by_jerk = largest(speed / stop_jerk)
+        # Plateau deceleration of sigma, 1/s; infinite where ``v+`` is zero
         self.rate = min(1.0 / by_acceleration, math.sqrt(1.0 / by_jerk))
-        self.onset_s = self.rate * by_jerk
-        self.ramp_s = 1.0 / self.rate + self.onset_s
+        self.onset_s = self.rate * by_jerk  # time that phase two takes to reach its plateau, s
+        self.ramp_s = 1.0 / self.rate + self.onset_s  # duration of phase two, s
 
     @property
     def duration_s(self) -> float:

@@ -44,69 +44,54 @@ class SafetyConfig:
     Figures that need no robot are checked here; `latentarm.safety.bounds.Bounds` checks the
     rest against the hardware when a robot and the loop's period are known.
 
-    Attributes:
-        joint_speed: largest speed of a joint, rad/s.
-        link_speed: largest speed of any point of the arm, m/s.
-        acceleration_fraction: share of the hardware's acceleration for ordinary motion, in (0, 1].
-        jerk_fraction: share of the hardware's jerk for ordinary motion, in (0, 1].
-        release_fraction: share of the hardware's acceleration and jerk for slowing down once the person has
-            let go, in (0, 1].
-        stop_fraction: share of the hardware's acceleration and jerk for a stop, in (0, 1]. A stop is
-            ramped too, only harder.
-        joint_margin: distance kept from the hardware's joint limits, rad.
-        clearance: distance kept from obstacles and from the arm itself, m.
-        input_timeout_s: how long the last fresh input counts, s. With the stopping ramp and one
-            period of the loop it must fit into 0.15 s.
-        input_grace_s: for how much longer fresh inputs may be missing before the arm has to be enabled again,
-            s. In between it slows down just as for a stop, and goes on if inputs come back. With
-            input_timeout_s it must fit into 0.15 s.
-        dead_zone: inputs no longer than this are zero, in [0, 0.5].
-        command_periods: for how many periods of the loop one command lasts; past that the arm stops
-            by itself. At least 1.5, so that an ordinary delay does not stop it.
-        reading_periods: how many periods of the loop old the newest reading of the arm may be; less where the
-            stop after it would not be over 0.15 s after that reading. At least 1.
-        jump_margin: a reading that lies farther from the one before it than the joint can move in the time
-            between them, by more than this, stops the arm, rad (m where a joint slides, here and below).
-        freeze_margin: a reading that repeats exactly while its joint was commanded to move farther than this
-            stops the arm, rad.
-        following_error: how far a joint's displacement may differ from the commanded one within the last
-            following_window_s, beyond what lag explains, rad.
-        following_lag_s: the arm's own lag behind its commands, s. Readings may be five periods of the loop
-            late on top of it. A longer lag delays the detection of faults by as much.
-        following_window_s: time over which displacements are compared, s. A longer window detects slower
-            joints that do not follow, but mistakes drift that accumulates over it for an error.
-        gripper_speed: fastest change of a gripper's opening, m/s.
-        gripper_force: largest force with which a gripper's fingers press together, N.
-        workspace: where the arm may be, or None for anywhere.
-        obstacles: what the arm must keep clear of.
-        zones: where the arm is slower than link_speed; that begins where a part of it is nearer to a zone
-            than clearance.
-
     Raises UserError where a figure is not a number, not finite, or out of its range.
     """
 
-    joint_speed: float = 0.5
-    link_speed: float = 0.25
-    acceleration_fraction: float = 0.2
-    jerk_fraction: float = 0.2
+    joint_speed: float = 0.5  # largest speed of a joint, rad/s
+    link_speed: float = 0.25  # largest speed of any point of the arm, m/s
+    acceleration_fraction: float = 0.2  # share of the hardware's acceleration for ordinary motion, in (0, 1]
+    jerk_fraction: float = 0.2  # share of the hardware's jerk for ordinary motion, in (0, 1]
+    # Share of the hardware's acceleration and jerk for slowing down once the person has let go, in (0, 1]
     release_fraction: float = 0.2
+    # Share of the hardware's acceleration and jerk for a stop, in (0, 1]. A stop is ramped too, only harder.
     stop_fraction: float = 0.8
-    joint_margin: float = 0.1
-    clearance: float = 0.02
+    joint_margin: float = 0.1  # distance kept from the hardware's joint limits, rad
+    clearance: float = 0.02  # distance kept from obstacles and from the arm itself, m
+    # How long the last fresh input counts, s. With the stopping ramp and one period of the loop it must fit
+    # into 0.15 s.
     input_timeout_s: float = 0.04
+    # For how much longer fresh inputs may be missing before the arm has to be enabled again, s. In between it
+    # slows down just as for a stop, and goes on if inputs come back. With input_timeout_s it must fit into
+    # 0.15 s.
     input_grace_s: float = 0.0
-    dead_zone: float = 0.02
+    dead_zone: float = 0.02  # inputs no longer than this are zero, in [0, 0.5]
+    # For how many periods of the loop one command lasts; past that the arm stops by itself. At least 1.5, so
+    # that an ordinary delay does not stop it.
     command_periods: float = 2.5
+    # How many periods of the loop old the newest reading of the arm may be; less where the stop after it
+    # would not be over 0.15 s after that reading. At least 1.
     reading_periods: float = 5.0
+    # A reading that lies farther from the one before it than the joint can move in the time between them, by
+    # more than this, stops the arm, rad (m where a joint slides, here and below)
     jump_margin: float = 0.03
+    # A reading that repeats exactly while its joint was commanded to move farther than this stops the arm,
+    # rad
     freeze_margin: float = 0.01
+    # How far a joint's displacement may differ from the commanded one within the last following_window_s,
+    # beyond what lag explains, rad
     following_error: float = 0.05
+    # The arm's own lag behind its commands, s. Readings may be five periods of the loop late on top of it. A
+    # longer lag delays the detection of faults by as much.
     following_lag_s: float = 0.05
+    # Time over which displacements are compared, s. A longer window detects slower joints that do not follow,
+    # but mistakes drift that accumulates over it for an error.
     following_window_s: float = 1.0
-    gripper_speed: float = 0.05
-    gripper_force: float = 20.0
-    workspace: Workspace | None = None
-    obstacles: tuple[Obstacle, ...] = ()
+    gripper_speed: float = 0.05  # fastest change of a gripper's opening, m/s
+    gripper_force: float = 20.0  # largest force with which a gripper's fingers press together, N
+    workspace: Workspace | None = None  # where the arm may be, or None for anywhere
+    obstacles: tuple[Obstacle, ...] = ()  # what the arm must keep clear of
+    # Where the arm is slower than link_speed; that begins where a part of it is nearer to a zone than
+    # clearance
     zones: tuple[Zone, ...] = ()
 
     def __post_init__(self) -> None:

@@ -41,10 +41,6 @@ class Situation:
         state: (n,), measured joint positions, rad, finite.
         velocity: (n,), the last command, rad/s.
         acceleration: (n,), the acceleration that the last command was reached with, rad/s².
-
-    Attributes:
-        room: (2, n), distance to the lowest position (zero or below inside) and to the highest, rad.
-        nearest_limit: the smallest of these distances in size, negative where a limit is passed, rad.
     """
 
     def __init__(
@@ -61,8 +57,10 @@ class Situation:
         self.velocity = velocity
         self.acceleration = acceleration
         self.input_age_s = input_age_s
+        # (2, n), distance to the lowest position (zero or below inside) and to the highest, rad
         self.room = self.bounds.positions - state
         below, above = self.room
+        # The smallest of these distances in size, negative where a limit is passed, rad
         self.nearest_limit = min(smallest(above), -largest(below))
         self._nearby: tuple[Placement, FloatArray] | None = None
         self._asked = velocity

@@ -27,25 +27,19 @@ class StoppingPath:
     path lies from the straight one.
 
     ``hold_s`` is how long the command lasts, s.
-
-    Attributes:
-        before_s: for how long the arm moves at the command, phase one of the brake included, s.
-        after_s: the time at full speed that covers the rest, s.
-        way: (n,), rad.
-        kink: (n,), ``|v+ - v|``, rad/s.
-        fastest: (n,), largest speed of each joint, rad/s.
     """
 
     __slots__ = ("after_s", "before_s", "brake", "fastest", "kink", "way")
 
     def __init__(self, velocity: FloatArray, brake: Brake, hold_s: float) -> None:
         self.brake = brake
+        # For how long the arm moves at the command, phase one of the brake included, s
         self.before_s = hold_s + brake.settle_s
-        self.after_s = 0.5 * brake.ramp_s
-        self.kink = np.abs(brake.kink)
+        self.after_s = 0.5 * brake.ramp_s  # the time at full speed that covers the rest, s
+        self.kink = np.abs(brake.kink)  # (n,), ``|v+ - v|``, rad/s
         if brake.settle_s == 0.0:
-            self.way = velocity * (self.before_s + self.after_s)
-            self.fastest = np.abs(velocity)
+            self.way = velocity * (self.before_s + self.after_s)  # (n,), rad
+            self.fastest = np.abs(velocity)  # (n,), largest speed of each joint, rad/s
         else:
             self.way = velocity * self.before_s + brake.settled * self.after_s
             self.fastest = np.maximum(np.abs(velocity), np.abs(brake.settled))

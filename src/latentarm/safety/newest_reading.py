@@ -18,16 +18,13 @@ class NewestReading:
         timeout_s: how old the newest reading may be, s.
         ahead_s: how much newer than its tick a reading may be, s: arms go on measuring after the tick has
             begun.
-
-    Attributes:
-        new: whether the reading was not the newest one already the time before.
     """
 
     def __init__(self, timeout_s: float, ahead_s: float) -> None:
         self._timeout_s = timeout_s + _ROUNDING_S
         self._ahead_s = ahead_s + _ROUNDING_S
         self._sequence: int | None = None
-        self.new = False
+        self.new = False  # whether the reading was not the newest one already the time before
 
     def reset(self) -> None:
         """Start again: any reading may come next."""

@@ -50,10 +50,6 @@ class Proximity:
         link_speed: the fastest that any point of the arm may move, m/s.
         nearest_m: distance to be kept, m.
         horizon_s: for how long the arm may go on towards something, s.
-
-    Attributes:
-        lever: (pairs, n), bound of how fast a joint changes the pair's distance, m.
-        curvature: (pairs, n, n), bound of the heights' second derivative, see `Body`.
     """
 
     def __init__(
@@ -84,10 +80,11 @@ class Proximity:
         a_link = np.full(len(b), -1)
         on_arm = (kind == 0) & (a < body.count)
         a_link[on_arm] = body.link[a[on_arm]]
-
         lever, curvature, between, branch = _motion(body, b, a, a_link)
         kept = lever.max(axis=1, initial=0.0) > _STILL_M
         kept[kind == 1] &= _heights_change(body, planes)[a[kind == 1], b[kind == 1]]
+        # curvature: (pairs, n, n), bound of the heights' second derivative, see `Body`
+        # lever: (pairs, n), bound of how fast a joint changes the pair's distance, m
         self.lever, self.curvature = lever[kept], curvature[kept]
         self._b, self._a, self._between, self._branch = b[kept], a[kept], between[kept], branch[kept]
         self._first_plane = int((kind[kept] < 1).sum())

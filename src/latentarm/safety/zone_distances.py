@@ -19,15 +19,12 @@ class ZoneDistances:
 
     The K + T parts are the arm's moving capsules and its tools. A distance that was measured at q' is at q
     within ``Σ_j lever_j |q_j - q'_j|`` of that (see `Body`).
-
-    Attributes:
-        limit: (Z, 1), the zones' speeds, m/s.
     """
 
     def __init__(self, body: "Body", zones: "tuple[Zone, ...]") -> None:
         count = body.count
         tools = np.arange(2 * count, len(body.link))
-        self.limit: FloatArray = np.array([[zone.speed] for zone in zones])
+        self.limit: FloatArray = np.array([[zone.speed] for zone in zones])  # (Z, 1), the zones' speeds, m/s
         self._start: IntArray = np.concatenate([np.arange(count), tools])
         self._end: IntArray = np.concatenate([np.arange(count, 2 * count), tools])
         self._radius: FloatArray = body.radius[self._start]
