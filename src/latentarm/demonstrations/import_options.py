@@ -68,7 +68,6 @@ class ImportOptions:
         float | None, arg(help="Bring all episodes to this rate, joints by linear interpolation.")
     ] = None
     time_unit: Annotated[
-        TimeUnit | None,
-        arg(help="Unit of a CSV file's timestamps; known from their spacing by default."),
+        TimeUnit | None, arg(help="Unit of a CSV file's timestamps; known from their spacing by default.")
     ] = None
     topic: Annotated[str | None, arg(help="Topic of a bag's joints, if it has several.")] = None
