@@ -124,7 +124,6 @@ def _drive(problem: _Problem, start: FloatArray) -> tuple[FloatArray, ...]:
     path, straight = np.zeros((2, len(start)))
     steps = max(1, round(config.time_s / problem.step_s))
     latent = np.zeros((len(start), steps, problem.decoder.latent_dim))
-
     # The drives still running: their indices and their progress.
     running, waited, way = np.arange(len(start)), np.zeros(len(start)), np.zeros(len(start))
     mark, context, places = distance.copy(), start, first
@@ -140,7 +139,6 @@ def _drive(problem: _Problem, start: FloatArray) -> tuple[FloatArray, ...]:
         better = running[nearer]
         distance[better], nearest[better], path[better] = left[nearer], context[nearer], way[nearer]
         straight[better] = mean_distance(places[nearer], first[better])
-
         advanced = left < mark - PROGRESS_M
         mark, waited = np.where(advanced, left, mark), np.where(advanced, 0.0, waited + problem.step_s)
         on = waited < config.stall_s

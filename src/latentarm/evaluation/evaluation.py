@@ -162,7 +162,6 @@ def measure_behaviour(
     reach = reach_goals(decoders, probe.pairs, robot.chain, probe.step_s, config.reach.solver, (config.tool,))
     figures["controllability_m"] = reach.tool_error_m.mean(axis=1)
     figures["controllability_state_error"] = reach.state_error_rad.mean(axis=1)
-
     grid = axis_grid(config.grid)
     effects = axis_effects(decoders, probe.states, grid, robot.chain, probe.step_s, config.tool)
     for name, per_axis in (
