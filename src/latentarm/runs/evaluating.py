@@ -129,12 +129,7 @@ def evaluate_run(options: EvaluateOptions) -> Evaluation:
     judged = rows
     if cells:
         refitted = run_grid(
-            _measure_fold,
-            cells,
-            jobs=options.jobs,
-            label=_fold_name,
-            bars=options.bars,
-            unit="folds",
+            _measure_fold, cells, jobs=options.jobs, label=_fold_name, bars=options.bars, unit="folds"
         )
         judged = _rows_over_folds(replace(subject, condition=OVER_FOLDS), [measured.figures, *refitted])
         rows = [*rows, *judged]
