@@ -138,7 +138,6 @@ def export(
             print_renderables(listing(recordings))
             say("Nothing was exported: name a new folder with --out.", json)
         return 0
-
     check_vacant(out)
     chosen = choose(recordings, episodes, source, incomplete=incomplete)
     write_dataset(read_recordings(chosen, source=str(source), incomplete=incomplete), out)

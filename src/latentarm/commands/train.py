@@ -16,7 +16,6 @@ def train(options: TrainOptions) -> int:
 
     with epoch_bar(options.bars) as report:
         training = train_run(options, report)
-
     folder, json = options.folder, options.json
     write_options(folder, "train")
     note(training.import_warnings)
