@@ -124,10 +124,7 @@ class RecordedStep:
 def _bound(
     operation: Operation, args: tuple[Any, ...], kwargs: Mapping[str, Any], result: Any
 ) -> Callable[[], object]:
-    """One step as a call without arguments; it has then run once.
-
-    torch's functions of the same name are the same operations, and cost half as much to call.
-    """
+    """One step, which has run once, as a call without arguments. torch's namesakes cost half as much."""
     if result is not None:
 
         def copied() -> None:
@@ -206,10 +203,7 @@ def _varying(calls: Sequence[_Call], inputs: set[int]) -> list[_Call]:
 def _placed(
     calls: Sequence[_Call], device: torch.device
 ) -> list[tuple[Operation, tuple[Any, ...], Mapping[str, Any], Any]]:
-    """The calls with their intermediate results in memory that later results use again.
-
-    Each is an operation, its arguments, and the place that its result must be copied to, if any.
-    """
+    """Operation, arguments and place for its result, if any, of each call; the memory of results is reused."""
     homes = dict(_homes(calls, device))
 
     def moved(leaf: Any) -> Any:

@@ -262,11 +262,7 @@ def _versions(origin: Origin | None) -> dict[str, str]:
 
 
 def load_decoder(folder: StrPath, seed: int = 0) -> Decoder:
-    """Read one seed's decoder from a folder that a model was saved to. Loads no torch.
-
-    Args:
-        folder: holds ``config.json`` and ``model.safetensors``.
-        seed: index of the seed, 0..S-1.
+    """Read the decoder of a seed, 0..S-1, from a folder that a model was saved to. Loads no torch.
 
     Raises UserError where the files are missing, broken or foreign, or there is no such seed.
     """

@@ -104,8 +104,7 @@ class CAEZero(_Deterministic):
 class VAE(_Variational):
     """Variational autoencoder: ``‖a - phi(z)‖^2 + lambda KL[N(mu, sigma) ‖ N(0, 1)]`` (equation 7).
 
-    Attributes:
-        kl_weight: lambda. Below 1, as in the paper, to keep the latent space from collapsing.
+    ``kl_weight`` is lambda: below 1, as in the paper, to keep the latent space from collapsing.
     """
 
     kind: ClassVar[ModelKind] = runtime.VAE
@@ -117,11 +116,7 @@ class VAE(_Variational):
 @final
 @dataclass(kw_only=True, eq=False, repr=False)
 class CVAE(_Variational):
-    """Conditioned variational autoencoder (equation 8): ``‖a - phi(z, c)‖^2 + lambda KL``.
-
-    Attributes:
-        kl_weight: lambda. Below 1, as in the paper, to keep the latent space from collapsing.
-    """
+    """Conditioned variational autoencoder (equation 8): ``‖a - phi(z, c)‖^2 + lambda KL``, as in `VAE`."""
 
     kind: ClassVar[ModelKind] = runtime.CVAE
 
@@ -193,15 +188,10 @@ class CAEJacobian(_Deterministic):
 @final
 @dataclass(kw_only=True, eq=False, repr=False)
 class CVAEJacobian(_Variational):
-    """cVAE with the penalty of `CAEJacobian`: ``‖a - phi(z, c)‖^2 + lambda KL + lambda_J ‖d phi / d s‖_F^2``.
-
-    Attributes:
-        kl_weight: lambda. Below 1, as in the paper, to keep the latent space from collapsing.
-        jacobian_weight: lambda_J.
-    """
+    """cVAE with the penalty of `CAEJacobian`, ``‖a - phi(z, c)‖^2 + lambda KL + lambda_J ‖d phi / d s‖_F^2``."""
 
     kind: ClassVar[ModelKind] = runtime.CVAE_JACOBIAN
-    jacobian_weight: NotNegative = 0.1
+    jacobian_weight: NotNegative = 0.1  # lambda_J
 
     def _loss(self, networks: Networks, batch: Batch) -> Tensor:
         latent, divergence = self._drawn(networks, batch)

@@ -52,10 +52,7 @@ def _explained(columns: Tensor, target: Tensor, direction: Tensor) -> Tensor:
 
 
 def _best_fixed(columns: Tensor, target: Tensor, latent_dim: int) -> Tensor:
-    """The directions (S, d, B) among `directions` that explain most.
-
-    `_explained` of all of them, ``(a^T C e)^2 / ‖C e‖^2``, from ``C^T C`` and ``C^T a`` alone.
-    """
+    """The directions (S, d, B) among `directions` that explain most, by ``(a^T C e)^2 / ‖C e‖^2`` of all."""
     every = torch.cat([columns, target[:, None]], dim=1).permute(0, 3, 1, 2).contiguous()
     gram = every @ every.mT
     fixed = _fixed(latent_dim).to(target)
