@@ -20,12 +20,9 @@ class ArmFactory(Protocol):
     """Makes an arm; its class is such a factory."""
 
     def __call__(self, robot: Robot, state: FloatArray, now_s: Callable[[], float]) -> Arm:
-        """An arm that is not connected.
+        """An arm that is not connected, with readings on the clock ``now_s``, s, which never goes back.
 
-        Args:
-            robot: the robot with these joints.
-            state: (n,), start of a simulated arm, rad; a real arm ignores it.
-            now_s: the clock of readings, s; never goes back.
+        A simulated arm starts at ``state`` (n,), rad; a real arm ignores it.
         """
         ...
 
@@ -42,16 +39,10 @@ class RealArmFactory(Protocol):
     """Makes the driver of a real arm; its class is such a factory."""
 
     def __call__(self, robot: Robot, address: ArmAddress, now_s: Callable[[], float]) -> RealArm:
-        """A driver that is not connected.
+        """A driver that is not connected, with readings on the clock ``now_s``, s, which never goes back.
 
-        Args:
-            robot: the arm's model.
-            address: of the arm.
-            now_s: the clock of readings, s; never goes back.
-
-        Raises:
-            UserError: an option of the address is unknown or out of range, or the manufacturer's library is
-                not installed.
+        Raises UserError where an option of the address is unknown or out of range, or the manufacturer's
+        library is not installed.
         """
         ...
 
@@ -96,16 +87,13 @@ def address_form(scheme: str) -> str:
 
 
 def make_arm(name: str, robot: Robot, state: FloatArray, now_s: Callable[[], float]) -> Arm:
-    """An arm of the catalogue, not connected yet.
+    """An arm of `ARMS`, or the real one at an address, not connected yet.
 
-    Args:
-        name: a name in `ARMS`, or the address of a real arm.
-        robot: the robot with these joints.
-        state: (n,), start of a simulated arm, rad; a real arm ignores it.
-        now_s: the clock of readings, s; never goes back. A simulated arm moves as it goes on.
+    A simulated arm starts at ``state`` (n,), rad, and moves as its clock ``now_s``, s, goes on, which never
+    goes back; a real arm ignores ``state``.
 
-    Raises:
-        UserError: there is no such arm, it does not load, it cannot be made for this robot, or it is none.
+    Raises UserError where there is no such arm, it does not load, it cannot be made for this robot, or is
+    none.
     """
     if is_address(name):
         return make_real_arm(name, robot, now_s)

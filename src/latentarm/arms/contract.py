@@ -121,10 +121,8 @@ class Arm(ABC):
     def move_gripper(self, command: GripperCommand) -> None:
         """Move the gripper of an arm that takes no commands, if it can be reached.
 
-        This stops it, and may open it, while the arm is disabled, guided by hand, or has a fault.
-
-        Args:
-            command: replaces the one before.
+        This replaces the command before. It stops the gripper, and may open it, while the arm is disabled,
+        guided by hand, or has a fault.
         """
 
     @abstractmethod

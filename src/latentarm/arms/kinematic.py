@@ -18,14 +18,9 @@ RATE_HZ: Final = 1000.0  # as fast as any loop
 class KinematicArm(SimulatedArm):
     """Kinematic simulation of the paper's transition, ``s' = s + a dt``.
 
-    A joint that reaches a limit stays there, as at a hard stop. A gripper follows its commands.
-
-    Args:
-        state: (n,), start, rad.
-        now_s: the clock, s; never goes back.
-
-    Raises:
-        UserError: ``state`` has the wrong shape, is not finite, or lies outside the limits.
+    A joint that reaches a limit stays there, as at a hard stop. A gripper follows its commands. ``state``
+    (n,), rad, is the start. Raises UserError where it has the wrong shape, is not finite, or lies outside the
+    limits.
     """
 
     def __init__(self, robot: Robot, state: FloatArray, now_s: Callable[[], float]) -> None:

@@ -27,18 +27,11 @@ class SimulatedArm(Arm):
     """A simulated arm. It moves as its clock goes on, even if nobody reads it.
 
     With a real clock it lives in real time; with a simulated one, time passes when that does. Either way it
-    stops by itself once a command has run out, as a real arm must.
+    stops by itself, as a real arm must: ``stops_after_s`` after a command has run out. Nothing moves for
+    longer than ``settles_s`` after the last command; the simulation stops then. ``state`` (n,), rad, is the
+    start, ``now_s`` the clock, s, which never goes back.
 
-    Args:
-        robot: the robot with these joints.
-        state: (n,), start, rad.
-        now_s: the clock, s; never goes back.
-        rate_hz: largest rate of commands, 1/s.
-        stops_after_s: delay until it notices that a command has run out, s.
-        settles_s: how long anything can move after the last command, s; the simulation stops then.
-
-    Raises:
-        UserError: ``state`` has the wrong shape, is not finite, or lies outside the limits.
+    Raises UserError where ``state`` has the wrong shape, is not finite, or lies outside the limits.
     """
 
     def __init__(

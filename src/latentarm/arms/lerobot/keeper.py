@@ -41,12 +41,10 @@ def now_s() -> float:
 
 @final
 class Keeper:
-    """Keeps one arm, for the commanding process at the other end of ``port``.
+    """Keeps one arm, on a bus not yet open, for the commanding process at the other end of ``port``.
 
-    Args:
-        bus: not open
-        setup: ``joints``, ``lower``, ``upper`` and ``speed`` (n each, rad, rad/s), and ``width_m`` of the
-            gripper or None.
+    ``setup`` has ``joints``, ``lower``, ``upper`` and ``speed`` (n each, rad, rad/s), and the gripper's
+    ``width_m`` or None.
     """
 
     def __init__(self, port: MessagePort, bus: MotorsBus, setup: Mapping[str, Any]) -> None:
