@@ -111,18 +111,15 @@ ATTACHMENTS: Final = {"fork": _fork, "spoon": _spoon, "cup": _cup}  # for `attac
 
 
 def attach(robot: Robot, attachment: str) -> Robot:
-    """The robot with an attachment in its hand.
+    """The robot with an attachment in its hand: a name in `ATTACHMENTS`.
 
-    A gripper is closed about the handle and stays so: the robot has none to command. The attachment becomes
-    part of the last link, with its mass, its inertia and its shell. The first tool of the chain is then named
-    "tool". It is turned as the hand is, and lies on the hand's z axis: for a *fork* between the tips of the
-    tines, with z along them and y across them, along the cutting edge; for a *spoon* in the middle of its
-    bowl, which opens along x; for a *cup* in the middle of its room, which opens along x, so that it stands
-    upright when the Panda's hand points straight away.
-
-    Args:
-        robot: any robot; its end-effector is the hand, whose z axis points away from the arm.
-        attachment: a name in `ATTACHMENTS`.
+    The hand is the end-effector, whose z axis points away from the arm. A gripper is closed about the handle
+    and stays so: the robot has none to command. The attachment becomes part of the last link, with its mass,
+    its inertia and its shell. The first tool of the chain is then named "tool". It is turned as the hand is,
+    and lies on the hand's z axis: for a *fork* between the tips of the tines, with z along them and y across
+    them, along the cutting edge; for a *spoon* in the middle of its bowl, which opens along x; for a *cup* in
+    the middle of its room, which opens along x, so that it stands upright when the Panda's hand points
+    straight away.
 
     Raises UserError where there is no such attachment, or the robot has one already.
     """
