@@ -17,13 +17,7 @@ from latentarm.tasks.task import GripperTask, Task, check_not_done
 
 @final
 class GoalTask(SceneTask):
-    """A task at goals, done in one manner. Its choices are the goals.
-
-    Args:
-        task: the task.
-        manner: one of its manners.
-        time_limit_s: a run that takes longer has failed, s.
-    """
+    """A task at goals, done in one of its manners, in at most ``time_limit_s``. Its choices are the goals."""
 
     def __init__(self, task: Task, manner: str, time_limit_s: float) -> None:
         self._task, self._manner, self._time_limit_s = task, manner, time_limit_s
@@ -82,26 +76,13 @@ class GoalTask(SceneTask):
 
 
 def coming_to(task: Task, kind: StepKind, goal: str, waypoint: Pose) -> TaskStep:
-    """The step that is done once the tool is at a waypoint.
-
-    Args:
-        task: says when that is.
-        kind: of the step.
-        goal: name of the goal.
-        waypoint: one of its waypoints.
-    """
+    """The step that is done once the tool is at one of the goal's waypoints, as the task judges it."""
     done = partial(_reached, task=task, waypoint=waypoint)
     return TaskStep(kind, goal, f"{kind} the {goal}", done, (Waypoint(lambda _: waypoint),))
 
 
 def without_things(tool: Pose, time_s: float, poses: Mapping[str, Pose]) -> SceneState:
-    """How everything stands where nothing can be touched.
-
-    Args:
-        tool: pose of the arm's end-effector.
-        time_s: the clock, s.
-        poses: of what stays where it is, by name.
-    """
+    """The state of a scene where nothing can be touched; ``poses`` are of things that stay where they are."""
     return SceneState(
         time_s=time_s,
         tool=tool,

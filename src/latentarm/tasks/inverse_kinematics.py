@@ -18,13 +18,9 @@ _POSTURE_COST = 1e-3  # weight of the preferred posture relative to the tool's p
 def solve(robot: Robot, pose: Pose, posture: FloatArray, held: Sequence[int] = ()) -> FloatArray:
     """The configuration (n,), rad, near a posture that puts the robot's first tool at a pose.
 
-    Differential inverse kinematics (mink), within the joint limits.
-
-    Args:
-        robot: its tool is a site of its model.
-        pose: in the base frame.
-        posture: (n,), rad, the start of the search; redundant joints stay close to it.
-        held: indices of joints that stay exactly at the posture.
+    Differential inverse kinematics (mink), within the joint limits; the tool is a site of the model, and the
+    pose in the base frame. The search starts at the posture (n,), rad; redundant joints stay close to it, and
+    those with indices in ``held`` exactly there.
     """
     import mink
 

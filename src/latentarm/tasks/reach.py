@@ -18,12 +18,7 @@ MARGIN = 0.15  # of starts and goals to joint limits, rad
 
 @final
 class Reach(Task):
-    """Bring the tool of any arm to poses about its home configuration, in free space.
-
-    Args:
-        goals: number of poses
-        seed: the same seed gives the same poses
-    """
+    """Bring the tool of any arm to poses about its home configuration, drawn by ``seed``, in free space."""
 
     any_robot = True
 

@@ -59,14 +59,10 @@ def routes_of(robot: Robot, demonstrations: Demonstrations) -> tuple[FloatArray,
 
 @final
 class Replay(GripperTask):
-    """Drive the ways of demonstrations, from their starts through poses along them.
+    """Drive the ways of demonstrations (see `routes_of`), from their starts through poses along them.
 
     A goal is the end of an episode. Episodes that training never saw make this the honest test of a model on
-    real demonstrations.
-
-    Args:
-        routes: one or more, from `routes_of`
-        open_at: the gripper along them, see `GripperRoutes`; empty for none
+    real demonstrations. ``open_at`` is the gripper along them, see `GripperRoutes`; empty for none.
     """
 
     def __init__(

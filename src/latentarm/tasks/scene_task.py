@@ -69,9 +69,4 @@ class SceneTask(ABC):
 
     @abstractmethod
     def begin(self, choice: int, rng: np.random.Generator) -> Beginning:
-        """Draw one run: places of things and start of the arm.
-
-        Args:
-            choice: index into `choices`.
-            rng: source of all variation.
-        """
+        """Draw one run of the choice with this index: places of things and start of the arm."""

@@ -30,17 +30,11 @@ class GoalMove:
 
 @final
 class StepGoals:
-    """Where the arm would be taken for each thing that a person may turn to next.
+    """Where the arm would be taken for each thing that a person may turn to next, by its first tool.
 
     A goal that stays over a thing pulls back a person who has arrived and goes down to stab it. So the goal
-    of the present step's thing is the person's present waypoint; that of another thing is where its next
-    step ends. What has no step left, and a goal that is no thing of the scene, stay.
-
-    Args:
-        robot: its first tool is meant.
-        goals: at the start.
-        steps: of the task, in order.
-        things: names of the scene's things.
+    of the present step's thing is the person's present waypoint; that of another thing is where its next step
+    ends. What has no step left, and a goal that is none of the scene's ``things``, stay.
     """
 
     def __init__(
@@ -56,17 +50,10 @@ class StepGoals:
     def look(
         self, done: int, step: TaskStep | None, waypoint: Waypoint | None, state: SceneState, q: FloatArray
     ) -> GoalMove | None:
-        """The change since the last look, or None.
+        """The change since the last look, or None; ``step`` is None where nothing is left to do.
 
         At most one goal is solved for, which takes some 2 ms: near ``q`` (n,), rad, where the arm is. One
         that the arm cannot reach stays.
-
-        Args:
-            done: number of steps done.
-            step: the present one; None where nothing is left.
-            waypoint: the present one.
-            state: of the scene.
-            q: joint positions.
         """
         if not self._poses or step is None:
             return None

@@ -52,23 +52,13 @@ class Task(ABC):
 
     @abstractmethod
     def sample_start(self, goal: int, rng: np.random.Generator) -> FloatArray:
-        """A start on the way to a goal, (n,), rad.
-
-        Args:
-            goal: index into `goals`.
-            rng: source of all variation.
-        """
+        """A start on the way to the goal with this index, (n,), rad."""
 
     @abstractmethod
     def waypoints(self, goal: int, manner: str) -> tuple[Pose, ...]:
-        """Poses that the tool must reach in turn for the task to be done.
+        """Poses that the tool must reach in turn for the task to be done, at the goal with this index.
 
-        Args:
-            goal: index into `goals`.
-            manner: one of `manners`.
-
-        Raises:
-            UserError: there is no such goal or manner.
+        Raises UserError where there is no such goal or manner.
         """
 
     @abstractmethod
@@ -77,14 +67,9 @@ class Task(ABC):
 
     @abstractmethod
     def demonstrate(self, episodes: int, rng: np.random.Generator) -> Demonstrations:
-        """Demonstrations by a simulated person.
+        """Demonstrations by a simulated person, spread evenly over goals and manners.
 
-        Args:
-            episodes: how many, spread evenly over goals and manners.
-            rng: source of all variation.
-
-        Raises:
-            UserError: fewer than one episode is asked for.
+        Raises UserError where fewer than one episode is asked for.
         """
 
 
@@ -95,12 +80,7 @@ class GripperTask(Task, ABC):
     def asks(self, goal: int, manner: str) -> tuple[GripperAsk, ...]:
         """Requests to the gripper at the start, and from each of the `waypoints` on; () for none.
 
-        Args:
-            goal: index into `goals`.
-            manner: one of `manners`.
-
-        Raises:
-            UserError: there is no such goal or manner.
+        Raises UserError where there is no such goal or manner.
         """
 
 

@@ -44,14 +44,10 @@ def marshmallow(name: str, x: float, y: float, turn_rad: float = 0.0) -> Thing:
 
 
 def fork(place: FloatArray, height_m: float, turn_rad: float | None = None, tilt_rad: float = 0.0) -> Pose:
-    """A pose of a fork over a place.
+    """A pose of a fork with its tip at a height over a place (3,), m.
 
-    Args:
-        place: (3,), m.
-        height_m: of its tip over that place, m.
-        turn_rad: bearing of its back; None faces away from the arm's base. Its tines stand in a row across
-            that.
-        tilt_rad: from upright, its tip towards that bearing, rad.
+    Its back faces the bearing ``turn_rad``, by default away from the arm's base; its tines stand in a row
+    across that. ``tilt_rad`` leans it from upright, its tip towards the bearing.
     """
     bearing = float(np.arctan2(place[1], place[0])) if turn_rad is None else turn_rad
     out = np.array([np.cos(bearing), np.sin(bearing), 0.0])
