@@ -27,13 +27,7 @@ _SHORTEST = 2  # an episode with fewer samples has no motion in it
 
 @final
 class ImplausibleWarning(UserWarning):
-    """Some samples of an episode are impossible and were not exported.
-
-    Args:
-        message: one sentence.
-        task: the episode's task.
-        kept_s: duration of the exported part, s; 0 where it was left out.
-    """
+    """Some samples of an episode are impossible and were not exported; ``kept_s`` is the exported part, s."""
 
     def __init__(self, message: str, task: str, kept_s: float) -> None:
         super().__init__(message)
@@ -44,7 +38,7 @@ class ImplausibleWarning(UserWarning):
 def demonstrations_of(
     episodes: Sequence[JournalEpisode], *, source: str, incomplete: bool = False
 ) -> Demonstrations:
-    """Recorded episodes as a dataset, with every decision of a step as further features.
+    """Episodes of `read_journal` as a dataset, with every decision of a step as further features.
 
     The command is the action; where the arm was guided by hand, it is the velocity of the joints. Further
     features: ``input.u``, ``latent.z``, ``action.human``, ``action.assist``, ``assist.alpha``, ``mode``,
@@ -52,18 +46,11 @@ def demonstrations_of(
     and ``assist.added`` where help was ever added to the person's action (see `StepRecord.added`).
     ``observation.environment_state`` has the poses of the things that matter or, where no things were
     recorded, of the goals; these are the dataset's objects. An arm with a gripper adds
-    ``observation.gripper_width`` (m; a reading below zero counts as zero), ``observation.gripper_holding``
-    (0 or 1) and ``action.gripper`` (m): the width commanded last, or until a command the measured one (0
-    where it holds something). Time starts at each episode's first sample. Incomplete episodes are skipped
-    unless asked for. An episode is cut before its first impossible sample (see `first_implausible`).
-
-    Args:
-        episodes: from `read_journal`.
-        source: the name in errors, such as the journal's path.
-        incomplete: take episodes that were cut short too.
-
-    Warns:
-        ImplausibleWarning: an episode was cut, or skipped because too little of it remained.
+    ``observation.gripper_width`` (m; a reading below zero counts as zero), ``observation.gripper_holding`` (0
+    or 1) and ``action.gripper`` (m): the width commanded last, or until a command the measured one (0 where
+    it holds something). Time starts at each episode's first sample. Incomplete episodes are skipped unless
+    asked for. An episode is cut before its first impossible sample (see `first_implausible`), or skipped
+    where too little of it remains, with an `ImplausibleWarning`. Errors name the ``source``.
 
     Raises UserError where no episode is complete and long enough, or the episodes are of different robots,
     goals or things, or of an arm with a gripper and one without.

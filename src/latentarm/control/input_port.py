@@ -28,16 +28,12 @@ class InputSource(ABC):
 
 @final
 class InputPort(InputSource):
-    """Accepts inputs from any thread and judges their freshness by the loop's clock alone.
+    """Accepts inputs of d axes from any thread and judges their freshness by the loop's clock alone.
 
     The loop's side issues nonces. The sender of inputs echoes the newest nonce that it has seen, with a
     sequence number that grows. A message that was delayed in either direction is thus detected without
     trusting the sender's clock. At most one input is kept. A press of the mode switch, or a request to the
     gripper, is not lost when a later input replaces it before the loop has looked.
-
-    Args:
-        input_dim: number of axes d.
-        clock: the loop's clock.
     """
 
     def __init__(self, input_dim: int, clock: Clock) -> None:
@@ -69,13 +65,7 @@ class InputPort(InputSource):
         return age_s if age_s >= 0.0 else math.inf
 
     def offer(self, given: Input, nonce: str, sequence: int) -> bool:
-        """Hand in an input; whether it was accepted.
-
-        Args:
-            given: what the person does.
-            nonce: the newest nonce that the sender has seen; a stale or unknown one is refused.
-            sequence: number of this input; must grow.
-        """
+        """Hand in an input; whether it was accepted: the nonce must be fresh, the sequence number grow."""
         # Comparisons with NaN are false, so every later number would seem to be larger.
         if not _is_stamp(nonce, sequence):
             return False

@@ -55,13 +55,10 @@ class JournalEntry:
 
 
 def read_journal(path: Path, only: Collection[int] | None = None) -> list[JournalEpisode]:
-    """The episodes of a journal, oldest first, with every acknowledged sample; the file is not changed.
+    """The episodes of a journal, oldest first, or ``only`` these, with every acknowledged sample.
 
-    Args:
-        path: of a journal. Its ``-wal`` file, where one is left, belongs to it.
-        only: numbers of the episodes to read, from `list_journal`; all where None.
-
-    Raises UserError where there is no such file, it is damaged, or it is no journal.
+    The file is not changed; its ``-wal`` file, where one is left, belongs to it. ``only`` are numbers from
+    `list_journal`. Raises UserError where there is no such file, it is damaged, or it is no journal.
     """
     with _opened(path) as database:
         (verdict,) = database.execute("PRAGMA quick_check(1)").fetchone()

@@ -35,12 +35,7 @@ class DeadlineStatistics:
 
 @final
 class DeadlineLog:
-    """Collects how late ticks were, in bounded memory.
-
-    Args:
-        period_s: the loop's period, s.
-        window: number of recent ticks that figures are over (counts are over all).
-    """
+    """Collects how late ticks of a period, s, were: counts over all, figures over a window of recent ones."""
 
     def __init__(self, period_s: float, window: int = 65536) -> None:
         self._period_s = period_s
@@ -155,11 +150,7 @@ class ControlLoop:
     def run(self, ticks: int | None = None, mode: int = 0) -> DeadlineStatistics:
         """Run for a number of ticks, or until `finish`; then bring the arm to rest.
 
-        Args:
-            ticks: how many, or None for no end.
-            mode: index of the controller's mode to begin in.
-
-        Raises UserError where the controller has no such mode.
+        The controller begins in the mode with this index. Raises UserError where it has no such mode.
         """
         self._step.reset(self._arm.read().q)
         self._step.choose_mode(mode)
