@@ -37,10 +37,8 @@ class GuardedArm:
 class Situation:
     """One tick as the filters see it; expensive quantities are computed once, on first use.
 
-    Args:
-        state: (n,), measured joint positions, rad, finite.
-        velocity: (n,), the last command, rad/s.
-        acceleration: (n,), the acceleration that the last command was reached with, rad/s².
+    Of the arm: its finite measured joint positions (n,), rad; the last command (n,), rad/s, and the
+    acceleration that it was reached with, rad/s².
     """
 
     def __init__(

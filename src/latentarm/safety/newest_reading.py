@@ -10,14 +10,10 @@ _ROUNDING_S = 1e-9  # times that differ by less are the same, s
 
 @final
 class NewestReading:
-    """Refuses readings that are too old or come out of order.
+    """Refuses readings that are older than ``timeout_s``, come out of order, or are from the future.
 
-    A reading may be seen more than once while no newer one has come, as long as it is new enough.
-
-    Args:
-        timeout_s: how old the newest reading may be, s.
-        ahead_s: how much newer than its tick a reading may be, s: arms go on measuring after the tick has
-            begun.
+    A reading may be seen more than once while no newer one has come, as long as it is new enough. It may be
+    up to ``ahead_s`` newer than its tick: arms go on measuring after the tick has begun.
     """
 
     def __init__(self, timeout_s: float, ahead_s: float) -> None:

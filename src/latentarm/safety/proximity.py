@@ -41,15 +41,10 @@ class Contacts:
 class Proximity:
     """All pairs that could come close to each other, and which of them matter now.
 
-    Pairs that do not matter are skipped by proof: a distance known from an earlier configuration has
-    shrunk by at most ``Σ_j lever_j |q_j - q_j'|`` since, and will shrink by at most ``Σ_j lever_j |v_j|`` per
-    second, nor faster than the points of the arm may move. Only the pairs that this could bring too
-    close are measured anew.
-
-    Args:
-        link_speed: the fastest that any point of the arm may move, m/s.
-        nearest_m: distance to be kept, m.
-        horizon_s: for how long the arm may go on towards something, s.
+    Pairs that do not matter are skipped by proof: a distance known from an earlier configuration has shrunk
+    by at most ``Σ_j lever_j |q_j - q_j'|`` since, and will shrink by at most ``Σ_j lever_j |v_j|`` per
+    second, nor faster than the points of the arm may move, ``link_speed``, m/s. Only the pairs that this
+    could bring closer than ``nearest_m`` within ``horizon_s`` are measured anew.
     """
 
     def __init__(

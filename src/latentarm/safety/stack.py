@@ -94,11 +94,8 @@ class SafetyStack:
     def command(self, wanted: FloatArray, state: FloatArray, input_age_s: float, pace: float = 1.0) -> Passed:
         """The next command: a velocity that keeps all limits, or a stop that is under way.
 
-        Args:
-            wanted: (n,), rad/s, any floats.
-            state: (n,), measured joint positions, rad, finite.
-            input_age_s: age of the newest input, s.
-            pace: share of the permitted velocity that the arm moves with, in [0, 1].
+        ``wanted`` is any (n,), rad/s; the state (n,), rad, is measured and finite; ``pace`` in [0, 1] is the
+        share of the permitted velocity that the arm moves with.
         """
         situation = Situation(self._surroundings, state, self._velocity, self._acceleration, input_age_s)
         limited_by: list[str] = []

@@ -45,11 +45,9 @@ class StraightWay:
         self.clear = False
 
     def look(self, times: int) -> tuple[str, str] | None:
-        """Look at up to ``times`` further places along the way.
+        """Look at up to ``times`` further places: the two things that would come too close, or None so far.
 
-        Returns:
-            The two things that would come too close, or None where none have been found so far. Once `clear`
-            is set, there are none on the whole way.
+        Once `clear` is set, there are none on the whole way.
         """
         for _ in range(times):
             if self.clear:
