@@ -121,10 +121,7 @@ def train_run(options: TrainOptions, report: Report | None = None) -> TrainedRun
 
 
 def _joined_dataset(datasets: Sequence[Path], run: Path) -> Path:
-    """The one dataset to train on, or all that are named, joined in the run's folder.
-
-    Raises UserError where none is named, they do not fit each other, or the folder holds other ones.
-    """
+    """The one dataset, or all that are named, joined in the run's folder; UserError where they do not fit."""
     if not datasets:
         raise UserError("No dataset is named: say which with --demonstrations.")
     if len(datasets) == 1:
