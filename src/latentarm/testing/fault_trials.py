@@ -76,12 +76,7 @@ class _Stick(InputSource):
 def try_fault(make: ArmFactory, robot: Robot, fault: Fault, seed: int, late_s: float = 0.0) -> FaultTrial:
     """Drive an arm by its tool, let a fault happen in motion, and look at what follows.
 
-    Args:
-        make: what makes the arm.
-        robot: whose joints these are.
-        fault: what happens.
-        seed: of the direction, and of when it happens.
-        late_s: how late readings are from the beginning, s.
+    The seed draws the direction, and when it happens. Readings are ``late_s`` late from the beginning.
     """
     rng = np.random.default_rng([list(FAULTS).index(fault), seed])
     clock = SimulatedClock()

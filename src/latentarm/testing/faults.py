@@ -15,10 +15,6 @@ class FaultyArm(Arm):
 
     Several faults may hold at once. Each lasts until `repair` is called, except for the two that stop the
     arm: these end as on a real arm, by releasing the button and by `recover`.
-
-    Args:
-        arm: what moves.
-        now_s: its clock, s.
     """
 
     def __init__(self, arm: Arm, now_s: Callable[[], float]) -> None:

@@ -16,14 +16,7 @@ _PERIOD_S = 0.01
 
 @final
 class Driving:
-    """Another process that connects to an arm, enables it and drives it, until it is killed.
-
-    Args:
-        address: of the arm.
-        robot: what the arm is.
-        velocity: (n,), what it is commanded, rad/s.
-        hold_s: how long a command lasts, s.
-    """
+    """Another process that drives an arm at a velocity (n,), rad/s, by commands of ``hold_s``."""
 
     def __init__(self, address: str, robot: Robot, velocity: FloatArray, hold_s: float) -> None:
         context = multiprocessing.get_context("spawn")
