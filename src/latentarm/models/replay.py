@@ -203,7 +203,7 @@ def _varying(calls: Sequence[_Call], inputs: set[int]) -> list[_Call]:
 def _placed(
     calls: Sequence[_Call], device: torch.device
 ) -> list[tuple[Operation, tuple[Any, ...], Mapping[str, Any], Any]]:
-    """Operation, arguments and place for its result, if any, of each call; the memory of results is reused."""
+    """Operation, arguments and place for its result, if any, of each call; results' memory is reused."""
     homes = dict(_homes(calls, device))
 
     def moved(leaf: Any) -> Any:

@@ -118,7 +118,7 @@ def _grown(solid: Obstacle, by_m: float) -> Obstacle:
 def _entry(
     key: str, entry: object, where: str, besides: tuple[str, ...] = ()
 ) -> tuple[Callable[[str], Obstacle], float]:
-    """Check an entry's keys, its shape's and ``besides``; what makes its solid of a name, and its speed, m/s."""
+    """Check an entry's keys, its shape's and ``besides``; a maker of its solid, and its speed, m/s."""
     given = table_of(entry, where, key)
     shape = given.get("shape")
     if not isinstance(shape, str) or shape not in _SHAPES:

@@ -188,7 +188,7 @@ class CAEJacobian(_Deterministic):
 @final
 @dataclass(kw_only=True, eq=False, repr=False)
 class CVAEJacobian(_Variational):
-    """cVAE with the penalty of `CAEJacobian`, ``‖a - phi(z, c)‖^2 + lambda KL + lambda_J ‖d phi / d s‖_F^2``."""
+    """cVAE with the penalty of `CAEJacobian`: ``‖a - phi‖^2 + lambda KL + lambda_J ‖d phi / d s‖_F^2``."""
 
     kind: ClassVar[ModelKind] = runtime.CVAE_JACOBIAN
     jacobian_weight: NotNegative = 0.1  # lambda_J
