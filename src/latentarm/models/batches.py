@@ -12,7 +12,6 @@ from latentarm.core.types import FloatArray
 
 ELSEWHERE: Final = 32  # most contexts without demonstrated actions in a step, for terms that ask for them
 ELSEWHERE_JUDGED: Final = 256  # the same for validation, which always uses the first ones
-
 JUDGED_AT_ONCE: Final = 400
 """Validation pairs per seed that are judged together, so that they fit into the processor's cache."""
 

@@ -20,7 +20,6 @@ from latentarm.core.untrusted.opening import check_file
 from latentarm.models.optimiser import FlatAdam
 
 _HEADER_BYTES: Final = 1 << 26  # bytes that the names and the loss history may take: 64 MiB
-
 METADATA_KEY: Final = "latentarm_training"
 
 

@@ -27,7 +27,6 @@ import numpy as np
 from latentarm.core.types import FloatArray
 
 ROUNDING: Final = 1e-9  # relative margin for rounding, many times that of float64 in networks of these sizes
-
 CELLS_PER_AXIS: Final = {1: 16, 2: 8, 3: 4}
 """Cells along each axis of z, by d, as many as a control loop has time for. One cell in larger spaces."""
 

@@ -79,9 +79,7 @@ class LatentActionModel(BaseEstimator, ABC):
     of the networks and their training.
     """
 
-    kind: ClassVar[ModelKind]
-    """The kind of model this is."""
-
+    kind: ClassVar[ModelKind]  # the kind of model this is
     looks_ahead: ClassVar[bool] = False
     """Whether the loss looks at the context that an action leads to within `AHEAD_S`."""
 

@@ -13,12 +13,8 @@ from latentarm.models.perceptron import Perceptrons
 if TYPE_CHECKING:
     from latentarm.models.kind import Shape
 
-Layer = tuple[Tensor, Tensor]
-"""Weight (S, in, out) and bias (S, 1, out)."""
-
-Networks = Mapping[str, Sequence[Layer]]
-"""Layers, input first, by the network's name ("encoder", "decoder")."""
-
+Layer = tuple[Tensor, Tensor]  # weight (S, in, out) and bias (S, 1, out)
+Networks = Mapping[str, Sequence[Layer]]  # layers, input first, by the network's name ("encoder", "decoder")
 ALIGNMENT: Final = 16
 """Each layer starts at a multiple of this many floats within its seed's row (64 bytes). The matrix
 kernels may round differently at other alignments; this keeps a seed's result free of its neighbours. The bias

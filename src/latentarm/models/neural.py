@@ -34,9 +34,7 @@ class NeuralModel(LatentActionModel, ABC):
     decoder and loss on batches with a leading seed axis and normalised values.
     """
 
-    start: ClassVar[Start | None] = None
-    """Initial values of some weights; the others are drawn at random."""
-
+    start: ClassVar[Start | None] = None  # initial values of some weights; the others are drawn at random
     jitters: ClassVar[bool] = False
     """Whether the loss adds noise to contexts: it then takes as many numbers per pair as a context has."""
 

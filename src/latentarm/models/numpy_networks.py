@@ -14,8 +14,7 @@ if TYPE_CHECKING:
 NORM_FLOOR: Final = 1e-12
 """Added to a squared column length under the root, so that a column of zeros does not divide by zero."""
 
-Layer = tuple[FloatArray, FloatArray]
-"""Weight (in, out) and bias (out,)."""
+Layer = tuple[FloatArray, FloatArray]  # weight (in, out) and bias (out,)
 
 
 def network_shapes(networks: "Mapping[str, Shape]", seeds: int) -> "dict[str, Shape]":

@@ -9,8 +9,7 @@ from torch import Tensor
 FIRST_DECAY: Final = 0.9
 SECOND_DECAY: Final = 0.999
 EPSILON: Final = 1e-8
-FINAL_RATE: Final = 0.01
-"""The learning rate ends at this share of where it began."""
+FINAL_RATE: Final = 0.01  # the learning rate ends at this share of where it began
 
 
 def falling_rate(initial: float, done: int, total: int) -> float:

@@ -16,18 +16,14 @@ if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
 LARGEST: Final = 2**31 - 1  # the largest whole-numbered parameter or seed
-
 Count = Annotated[int, Field(ge=1, le=LARGEST)]
 Seed = Annotated[int, Field(ge=0, le=LARGEST)]
-Seeds = Annotated[int, Field(ge=1, le=1000)]
-"""Models trained side by side; memory grows with them."""
-Units = tuple[Annotated[int, Field(ge=1, le=4096)], ...]
-"""Of each hidden layer."""
+Seeds = Annotated[int, Field(ge=1, le=1000)]  # models trained side by side; memory grows with them
+Units = tuple[Annotated[int, Field(ge=1, le=4096)], ...]  # of each hidden layer
 NotNegative = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 Share = Annotated[float, Field(gt=0.0, lt=1.0)]
-Features = Annotated[str | tuple[str, ...], AfterValidator(feature_names)]
-"""Of a context, by name."""
+Features = Annotated[str | tuple[str, ...], AfterValidator(feature_names)]  # of a context, by name
 
 
 @cache

@@ -19,7 +19,6 @@ from torch.utils._python_dispatch import TorchDispatchMode
 from torch.utils._pytree import tree_leaves, tree_map
 
 Operation = torch._ops.OpOverload  # pyright: ignore[reportPrivateUsage]
-
 WARM_UP: Final = 3  # runs on a GPU before the capture, as torch's documentation asks for
 ROOMY: Final = 4  # a block of memory is used again for a tensor that is at most so many times smaller
 

@@ -33,8 +33,7 @@ from latentarm.models.way_back.runtime import pull_shapes
 CONFIG_NAME: Final = "config.json"
 WEIGHTS_NAME: Final = "model.safetensors"
 SCHEMA: Final = 4
-EARLIER_SCHEMAS: Final = (2, 3)
-"""They have no layout; their contexts are the joints, perhaps with a belief."""
+EARLIER_SCHEMAS: Final = (2, 3)  # they have no layout; their contexts are the joints, perhaps with a belief
 OLD_NAMES: Final = {
     "held_out_fraction": "validation_fraction",
     "held_out_episodes": "validation_episodes",

@@ -106,12 +106,10 @@ def action_normaliser(action: FloatArray) -> Normaliser:
 
 
 SPAN_QUANTILE: Final = 0.99  # u in [-1, 1] spans this share of the demonstrations; the rest are outliers
-
 EFFECT_SAMPLES: Final = 512
 """Training contexts, at most, in which the effect of a latent dimension is measured."""
 
 SMALLEST_SCALE: Final = 1e-9  # least range of a latent dimension, so that a dead one does not divide by zero
-
 DEAD_EFFECT: Final = 0.01
 """A dimension whose full deflection changes the action by less than this share of the demonstrated speed is
 dead: nobody could steer with it."""

@@ -17,7 +17,6 @@ from latentarm.robots.kinematics.pose_rows import pose_rows
 
 TWIST: Final = 6  # entries of a tool's twist: 3 of velocity, 3 of angular velocity
 PLACE: Final = 9  # numbers of a tool's place: its position and the first two columns of its rotation
-
 ROTATION_WEIGHT_M: Final = 0.05
 """Weight of a tool's turn by 1 rad relative to a motion by 1 m. Low, so that directions of z differ mainly in
 where they move the tools; not zero, so that turning a tool in place counts too."""

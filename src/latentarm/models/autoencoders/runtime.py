@@ -85,7 +85,6 @@ _MOVES: Final = (
     " reversal by construction try --model homogeneous, or the plainer --model scl."
 )
 _TRAINING: Final = "latentarm.models.autoencoders.training"
-
 AE: Final = ModelKind(
     name="ae",
     label="AE",

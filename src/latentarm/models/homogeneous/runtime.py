@@ -11,18 +11,13 @@ from latentarm.models.kind import Dimensions, ModelKind, SearchingRuntime, Shape
 from latentarm.models.numpy_networks import NORM_FLOOR, halve_hidden, layers_of, propagate, scale_context
 
 DAMPING_M2: Final = 1e-3
-ORDERS: Final = (3, 5, 7)
-"""Odd degrees by which the model bends."""
-
+ORDERS: Final = (3, 5, 7)  # odd degrees by which the model bends
 BEND_SIZE: Final = 0.3  # factor of the network's bends, so that they start small
-
-
 HALF_TURN: Final = 64
 """Directions that the encoder tries for d = 2, over half a turn: each stands for its opposite too."""
 
 DIRECTIONS: Final = 128  # directions that it tries for d > 2
 REFINEMENTS: Final = 2  # rounds of refinement of the best direction, each four times finer than the last
-
 CELLS: Final = 64
 """Cells that half of all directions are cut into for the enclosure; 45 degrees lie between two of them."""
 

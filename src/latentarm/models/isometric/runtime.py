@@ -11,11 +11,9 @@ from latentarm.models.numpy_networks import NORM_FLOOR, halve_hidden, layers_of,
 from latentarm.models.tool_contexts import PLACE, TWIST
 
 DAMPING_M2: Final = 1e-2
-
 BEND_SIZE: Final = 0.3  # factor of the network's bend, so that it starts small
 RADII: Final = 10  # values of ‖z‖ that the encoder tries before it refines the best
 REFINEMENTS: Final = 3  # rounds of refinement, each six times finer than the one before
-
 LEAST_RADIUS: Final = 1e-4
 MOST_RADIUS: Final = 1.5
 """The encoder's smallest and largest ‖z‖; the fastest hundredth of the demonstrations lies beyond 1."""

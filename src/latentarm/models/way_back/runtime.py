@@ -44,7 +44,6 @@ if TYPE_CHECKING:
 NETWORK: Final = "way_back"  # name of its network among a model's tensors
 GATE_M: Final = 0.06  # the pull fades out as the length of D grows from this to twice this, m
 STRENGTH: Final = 0.7  # largest pull, relative to the person
-
 DAMPING_M2: Final = 1e-3
 """Weight of a joint's motion by 1 rad in the metric, relative to the square of a tool's motion by 1 m."""
 

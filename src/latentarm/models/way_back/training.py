@@ -27,13 +27,11 @@ MOST_SAMPLES: Final = 20_000  # demonstrated states that are displaced, at most
 NOISE_M: Final = 0.06  # standard deviation of the largest displacements of a tool along each axis, m
 NOISE_RAD: Final = 0.4  # the same of its turns, rad
 NULL_NOISE_RAD: Final = 0.1  # the same of each joint in motions that no tool shows, rad
-
 LEAST_DISPLACED: Final = 0.15
 """Displacements below this share of the largest weigh no more than those, or they would outweigh the rest."""
 
 HIDDEN: Final = (128, 128)  # units of each hidden layer
 OUTPUT_RAD: Final = 0.1  # the network's output is multiplied by this, rad
-
 CONFIG: Final = TrainingConfig(
     learning_rate=3e-3, epochs=30, batch_size=256, patience=6, checkpoint_interval_s=np.inf
 )
