@@ -62,7 +62,6 @@ ARMS: Final[Catalogue[ArmFactory]] = Catalogue(
 
 DEFAULT_ARM: Final = "kinematic"
 PHYSICAL_ARM: Final = "mujoco"  # can touch and hold things
-
 REAL_ARMS: Final[Catalogue[RealArmFactory]] = Catalogue(
     "latentarm.real_arms",
     "driver",

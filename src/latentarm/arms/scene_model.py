@@ -16,7 +16,6 @@ SOLID: Final = 1  # bit of everything that collides with solids
 TINE: Final = 2  # bit of tines: a thing without it lets them in
 _GRAIN_DRAG_S: Final = 0.1  # a grain that nothing touches loses its speed within this time, s
 _ROLLING: Final = (0.005, 0.0001)  # friction against turning on the spot and against rolling, m
-
 _STIFF: Final = (0.005, 1.0)
 """A thing at 1 m/s enters another by 2 mm, less than a wall's thickness; with MuJoCo's 0.02 by 7 mm."""
 

@@ -12,7 +12,6 @@ from latentarm.robots.kinematics.reader import reference_positions
 from latentarm.robots.robot import Robot
 
 FREQUENCY_RAD_S: Final = 100.0  # natural frequency of a free joint, critically damped
-
 _JOINT: Final = int(mujoco.mjtTrn.mjTRN_JOINT)
 _NO_BIAS: Final = int(mujoco.mjtBias.mjBIAS_NONE)
 

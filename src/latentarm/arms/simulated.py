@@ -16,7 +16,6 @@ from latentarm.robots.robot import Robot
 
 _CLOCK_DIGITS: Final = 9  # whole nanoseconds, so that equal periods are equally long
 SETTLED_S: Final = 1.0  # an arm without a command is at rest by then
-
 _REASONS: Final[dict[ArmPhase, str]] = {
     "off": "The arm is not connected.",
     "disabled": "The arm is not enabled yet.",

@@ -16,9 +16,7 @@ CUT_WITHIN_M: Final = 0.01
 
 _SPACING_M: Final = 0.001  # of the sampled points on tines
 _CLEAR_M: Final = 0.003  # food collides with tines again this far out of it: more than they are thick
-
 _EQUALITY: Final = int(mujoco.mjtConstraint.mjCNSTR_EQUALITY)
-
 _Way = Literal["whole", "entered", "held", "loose", "parting"]
 """How a food is with the tines.
 

@@ -16,7 +16,6 @@ from latentarm.core.types import Command, GripperCommand, Reading
 from latentarm.robots.robot import Robot
 
 RATE_HZ: Final = 100.0
-
 STOPS_AFTER_S: Final = 0.03
 """A motion that runs out is stopped within two cycles of 1 ms by franky's control thread. Where that has
 ended, because the process was killed or the cable is cut, the arm itself stops after 20 cycles without a

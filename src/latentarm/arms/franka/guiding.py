@@ -9,9 +9,7 @@ from latentarm.arms.franka.link import Link
 from latentarm.core.types import FloatArray
 
 LASTS_S: Final = 1.0  # the arm comes to rest if guiding is not renewed within this time
-
 _RENEWED_S: Final = 0.4
-
 _DAMPING: Final = (1.0, 1.0, 1.0, 1.0, 0.5, 0.5, 0.5)
 """N m s/rad, against the hand, so that a released arm comes to rest."""
 

@@ -14,14 +14,11 @@ POLL_S: Final = 0.02  # between two readings; the hand has some thirty a second
 _ANSWER_S: Final = 3.0  # a hand confirms a stop within this time
 _CLOSED_M: Final = 0.001  # a command to a smaller width closes the hand
 _NOTHING_M: Final = 0.002  # fingers this close hold nothing
-
 _ALIKE_M: Final = 5e-4
-
 _ABANDONED: Final[list["franky.Gripper"]] = []
 """Hands that never answered: a thread of franky still waits for each."""
 
 _LEAST_SPEED: Final = 0.001
-
 _LEAST_FORCE: Final = 1.0
 
 

@@ -20,12 +20,9 @@ if TYPE_CHECKING:
     import franky
 
 _CONNECT_S: Final = 8.0  # an arm that has not answered by then is absent
-
 _AXIS_RAD: Final = 0.01
 _AXIS_M: Final = 0.003  # tolerance of a joint's axis in the robot's model
-
 _REALTIME_FILE: Final = Path("/sys/kernel/realtime")
-
 _CLOCK_S: Final = 0.3
 _ROUND_TRIPS: Final = 9
 

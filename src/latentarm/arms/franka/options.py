@@ -9,7 +9,6 @@ from latentarm.arms.address import ArmAddress
 from latentarm.core.errors import UserError
 
 Realtime = Literal["enforce", "ignore"]
-
 _LARGEST_PAYLOAD_KG: Final = 3.0
 
 

@@ -18,16 +18,13 @@ from latentarm.core.types import Command, GripperCommand, GripperReading, Readin
 from latentarm.robots.robot import Robot
 
 RATE_HZ: Final = 100.0  # of the servos' targets
-
 STOPS_AFTER_S: Final = 0.05
 """Its process sees that a command has run out in its next round; a round takes 10 ms, and 50 ms at most where
 the bus is slow. A process that is slower than that, or killed, tells the servos nothing new."""
 
 _LOADING_S: Final = 240.0  # for importing LeRobot
 _BUS_S: Final = 10.0  # for opening and asking the bus
-
 _ENDING_S: Final = 2.0
-
 _SILENT_S: Final = 1.0  # a process that is silent for so long does not answer
 
 

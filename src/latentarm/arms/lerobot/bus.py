@@ -19,7 +19,6 @@ KINDS: Final = ("so100_follower", "so101_follower", "koch_follower", "omx_follow
 """The robots of LeRobot that have one arm on one bus, and the modules that register them."""
 
 _MODULES: Final = ("so_follower", "koch_follower", "omx_follower")
-
 GRIPPER: Final = "gripper"  # motor of the gripper; LeRobot reads it from 0 (closed) to 100 (open)
 HOTTEST_C: Final = 60  # hotter motors are not driven; their own protection is at 70
 _ANSWER_S: Final = 0.002  # longest wait for a byte before the servos' SDK checks its time-out
@@ -30,8 +29,6 @@ _ALIKE_STEPS: Final = 20  # largest difference between two readings of a motor a
 _TRIES: Final = 3  # a bus loses an answer now and then
 _MISSING: Final = re.compile(r"- (\d+) \(expected")  # numbers of missing motors in LeRobot's list
 _FAILURES: Final = (OSError, RuntimeError, ValueError)  # raised by LeRobot for a bad answer
-
-
 _Answer = TypeVar("_Answer")
 
 

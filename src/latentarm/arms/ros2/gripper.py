@@ -11,9 +11,7 @@ from latentarm.core.types import GripperCommand, GripperReading
 from latentarm.robots.gripper import Gripper
 
 _ACTION: Final = "control_msgs/action/GripperCommand"
-
 _SUCCEEDED, _CANCELED = 4, 5  # of ``action_msgs/GoalStatus``
-
 _SAME_M: Final = 5e-4
 _HOLDS_M: Final = 2e-3  # fingers that stall this far before their goal hold something, m
 

@@ -18,7 +18,6 @@ FREE_S: Final = 1.5  # wait for a client that has gone
 LISTEN_S: Final = 0.3  # span in which joint states are counted
 LOWEST_HZ: Final = 40.0  # slower joint states are refused
 LONGEST_TRIP_S: Final = 0.08  # a longer round trip is refused: commands would arrive too old
-
 _TRIPS: Final = 5
 _CHANCES: Final = 3
 _LIST: Final = "controller_manager_msgs/srv/ListControllers"

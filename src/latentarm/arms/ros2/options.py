@@ -11,9 +11,7 @@ from latentarm.core.errors import UserError
 from latentarm.robots.robot import Robot
 
 PORT: Final = 9090  # the usual port of rosbridge
-
 Kind = Literal["velocity", "trajectory"]
-
 _NAME: Final = re.compile(r"/?[A-Za-z_][A-Za-z0-9_]{0,99}(/[A-Za-z_][A-Za-z0-9_]{0,99}){0,9}")
 _JOINT: Final = re.compile(r"[A-Za-z0-9_./-]{1,100}")
 

@@ -11,7 +11,6 @@ from latentarm.arms.ros2.link import Link
 from latentarm.arms.ros2.watchdog_state import WatchdogState, parse_state
 
 STRING: Final = "std_msgs/msg/String"
-
 SILENT_S: Final = 0.5  # a watchdog that is silent for so long is out of reach
 
 

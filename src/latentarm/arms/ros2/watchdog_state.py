@@ -9,10 +9,8 @@ from latentarm.core.errors import UserError
 from latentarm.core.untrusted.documents import parse_object
 
 VERSION: Final = 1  # of its messages, as in ``docs/your-arm/latentarm_watchdog.py``
-
 _LONGEST: Final = 65536
 _VERSION_NAME: Final = "latentarm_watchdog"
-
 Text = Annotated[str, Field(max_length=1000)]
 
 
@@ -21,7 +19,6 @@ class WatchdogState(BaseModel):
     """A state of the watchdog; of one with another version nothing but the version is known."""
 
     model_config = ConfigDict(frozen=True, strict=True, allow_inf_nan=False)
-
     version: int = Field(alias=_VERSION_NAME)  # of its messages
     time_s: float = math.nan  # on its own clock, s
     controller: Text = ""  # that it commands

@@ -23,9 +23,7 @@ from latentarm.robots.kinematics.stillness import STILL_RAD_S
 from latentarm.robots.robot import Robot
 
 RATE_HZ: Final = 100.0
-
 _CYCLE_S: Final = 0.02  # of the controller, including its reaction to the end of a command
-
 _JOIN_S: Final = 8.0
 
 

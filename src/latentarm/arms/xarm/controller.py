@@ -14,17 +14,13 @@ from latentarm.core.types import FloatArray
 ANSWER_S: Final = 0.08  # a later answer to a motion ends the connection and drops undelivered data
 _QUERY_S: Final = 0.5  # the same for requests that move nothing
 _SLOW_S: Final = 5.0  # the same for changes, such as switching on the motors, s
-
 ALL_JOINTS: Final = 8
 JOINT_VELOCITY: Final = 4  # the mode that takes joint velocities
 MANUAL: Final = 2  # the mode in which a person moves the arm by hand
 STATES_THAT_MOVE: Final = (0, 1, 2)  # states of an arm that takes commands: ready or moving
-
 _READY, _STOP = 0, 4
 _TIMEOUT, _INVALID = 3, 10
 _ANSWERED: Final = (0, 1, 2, 9)  # valid codes: fine, an error is set, a warning is set, not ready to move
-
-
 T = TypeVar("T", int, float)
 
 

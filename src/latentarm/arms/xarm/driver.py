@@ -30,7 +30,6 @@ _ERRORS_S: Final = 0.1  # least time between questions about errors
 _RELEASED_S: Final = 0.3  # a cleared emergency stop that does not come back for so long is over
 _SILENT_S: Final = 0.25  # without a new report for so long, the connection counts as lost, s
 _SHORTEST_S: Final = 0.002  # a command that ends sooner is not worth sending, s
-
 _READY_S: Final = 2.0
 _RESTING_S: Final = 1.0
 

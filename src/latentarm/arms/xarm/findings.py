@@ -16,7 +16,6 @@ from latentarm.robots.kinematics.stillness import STILL_RAD_S
 from latentarm.robots.robot import Robot
 
 _SLOW_S: Final = 0.02  # an arm with a longer median answer cannot be driven at 50 Hz
-
 _OUTSIDE_RAD: Final = 0.1
 _APART_RAD: Final = 0.02
 _RATE_OVER_S: Final = 0.1

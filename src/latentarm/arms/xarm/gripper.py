@@ -13,10 +13,8 @@ from latentarm.core.types import GripperCommand, GripperReading
 from latentarm.robots.gripper import Gripper
 
 PORT: Final = 503
-
 OPEN_UNITS: Final = 850  # position of the open gripper; 0 is closed
 FASTEST_UNITS: Final = 5000  # its largest speed
-
 _SLOWEST_UNITS: Final = 300
 _ANSWER_S: Final = 0.5
 _POLL_S: Final = 0.1

@@ -8,9 +8,7 @@ from latentarm.arms.xarm.controller import LinkLostError
 
 _LINE: Final = re.compile(r"(\d+),(\d+),([^,]*),([^,]*),[^,]*?[vV]?(\d+)\.(\d+)\.(\d+)")
 _FIRMWARE: Final = re.compile(r"[vV]?(\d+)\.(\d+)\.(\d+)")
-
 _NAMES: Final = {9: "Lite 6", 12: "850"}
-
 BOUNDED_COMMANDS: Final = (1, 8, 0)  # older firmware silently drops a velocity's duration, and moves for ever
 GRIPPER_PORT: Final = (1, 11, 0)  # from this firmware on, the gripper has its own port
 TIMED_REPORTS: Final = (2, 1, 0)  # from this firmware on, reports have a time of measurement

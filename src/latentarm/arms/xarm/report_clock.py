@@ -5,7 +5,6 @@ from typing import Final, final
 _DRIFT: Final = 2e-4  # largest relative drift between the clocks
 _AHEAD_S: Final = 0.05  # a report that arrives this long before its measurement shows that a clock jumped
 _BEHIND_S: Final = 0.5  # no report is so late without a fault
-
 _OWN_JUMP_S: Final = 0.05
 
 

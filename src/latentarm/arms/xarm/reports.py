@@ -19,7 +19,6 @@ from latentarm.core.types import FloatArray
 TIMED_PORT: Final = 30000  # joint states with the controller's time, 200 per second; from firmware 2.1 on
 PLAIN_PORT: Final = 30003  # joint angles without a time, 100 per second
 STATUS_PORT: Final = 30002  # everything else, a few times per second
-
 _LEAST: Final[dict[int, int]] = {TIMED_PORT: 172, PLAIN_PORT: 87, STATUS_PORT: 245}
 """A frame with fewer bytes does not hold what is read from it."""
 

@@ -22,7 +22,6 @@ Condition = Literal[
 *stopping*: enabled, and on its way to rest. *lost*: a fault of the connection."""
 
 Request = Literal["halt", "guide", "enable", "stop", "recover"]
-
 TAKES_COMMANDS: tuple[Condition, ...] = ("enabled", "stopping")
 
 

@@ -12,9 +12,7 @@ from latentarm.robots.kinematics.stillness import STILL_RAD_S
 _FROZEN_S: Final = 0.12  # a joint moves after so long a command, whatever its lag
 _COMMANDED_RAD_S: Final = 0.02  # slower commands do not count for that
 _SETTLED_S: Final = 0.5  # an arm stands still so long after its last command
-
 _UNTOLD_RAD_S: Final = 5.0 * STILL_RAD_S
-
 _AGAIN: Final = "then enable the arm again"
 
 

@@ -5,7 +5,6 @@ from typing import Final
 from latentarm.arms.xarm.sdk import Sdk
 
 EMERGENCY_STOPS: Final = (1, 2, 3)  # codes: on the control box, on its inputs, on a three-state switch
-
 _BUTTONS: Final = {
     1: "The emergency stop button on the control box is pressed",
     2: "The emergency stop input of the control box is triggered",
