@@ -8,7 +8,6 @@ from latentarm.robots.scene.thing import Interior
 
 TINES_BODY: Final = "tines"  # the tines' body in the robot's model; its frame is the tool's
 ATTACHMENT_BODY: Final = "attachment"  # the body of its other solids; its frame is the tool's
-
 ATTACHED_BODIES: Final = (ATTACHMENT_BODY, TINES_BODY)
 
 

@@ -19,20 +19,16 @@ from latentarm.robots.scene.containers import WALL_M, cup
 from latentarm.robots.scene.thing import Part
 
 HANDLE_HALF_M: Final = 0.006  # half the thickness of every handle
-
 _TOOL: Final = "tool"
 _STEEL: Final = (0.75, 0.77, 0.80, 1.0)
 _BEHIND_M: Final = 0.015  # how far a handle reaches back past the middle of the fingertips
-
 _TINE_LENGTH_M: Final = 0.045
 _TINE_RADIUS_M: Final = 0.0015
 _TINE_YS: Final = (-0.0105, -0.0035, 0.0035, 0.0105)
 _FORK_REACH_M: Final = 0.11
-
 _SPOON_REACH_M: Final = 0.10
 _SPOON_HALF: Final = (0.005, 0.014, 0.020)  # of the bowl's outside: depth, width, length, m
 _SPOON_WALL_M: Final = 0.0015
-
 _CUP_REACH_M: Final = 0.06
 _CUP: Final = cup()
 

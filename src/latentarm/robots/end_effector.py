@@ -15,7 +15,6 @@ FINGER_BODY: Final = re.compile(r"finger|jaw|knuckle|thumb|claw|mover", re.IGNOR
 """Names of bodies that only a gripper's joint moves; "gripper" is often the whole hand."""
 
 MOST_NAMED: Final = 12  # end-effectors in an error
-
 _DRIVABLE: Final = (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE))
 _JOINT: Final = int(mujoco.mjtEq.mjEQ_JOINT)
 

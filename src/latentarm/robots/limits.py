@@ -8,12 +8,9 @@ import numpy as np
 from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray
 
-Source = Literal["model", "manufacturer", "limits_file", "assumed"]
-"""Source of a limit."""
-
+Source = Literal["model", "manufacturer", "limits_file", "assumed"]  # source of a limit
 Quantity = Literal["position", "velocity", "acceleration", "jerk"]
 QUANTITIES: Final[tuple[Quantity, ...]] = ("position", "velocity", "acceleration", "jerk")
-
 _FIGURES: Final = ("lower", "upper", "velocity", "acceleration", "jerk")
 
 

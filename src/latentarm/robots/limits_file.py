@@ -33,11 +33,8 @@ from latentarm.core.untrusted.yaml_file import parse_yaml
 from latentarm.robots.limits import JointLimits, LimitSources, Quantity, Source
 
 TOOL_SPEED: Final = "tool_speed_m_per_s"
-
 GRIPPER: Final = "gripper"
-
 _GRIPPER_FIGURES: Final = {"width_m": "width", "speed_m_per_s": "speed", "force_n": "force"}
-
 _FIGURES: Final = {
     "lower": "",
     "upper": "",

@@ -21,7 +21,6 @@ MOST_FILES: Final = 1000  # in a model
 MOST_ELEMENTS: Final = 20_000  # in one file, and copies of one element
 MOST_LEVELS: Final = 100  # as in MuJoCo's own parser
 NESTED: Final = frozenset({"include", "model"})  # elements that name another model's file
-
 FILE_ATTRIBUTES: Final = frozenset(
     {"file", "filename", "fileup", "filedown", "fileleft", "fileright", "filefront", "fileback"}
 )

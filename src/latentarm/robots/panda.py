@@ -25,10 +25,8 @@ LIMITS = JointLimits(
 """Franka control-parameters documentation."""
 
 TORQUE_LIMIT = (87.0, 87.0, 87.0, 87.0, 12.0, 12.0, 12.0)  # of each joint, N m; the same documentation
-
 _FR3_LOWER = np.array([-2.7437, -1.7837, -2.9007, -3.0421, -2.8065, 0.5445, -3.0159])
 _FR3_UPPER = np.array([2.7437, 1.7837, 2.9007, -0.1518, 2.8065, 4.5169, 3.0159])
-
 FR3_LIMITS = JointLimits(
     lower=np.maximum(_FR3_LOWER, LIMITS.lower),
     upper=np.minimum(_FR3_UPPER, LIMITS.upper),
@@ -42,7 +40,6 @@ Positions end where the Panda's do too: beyond, it is not known which of the lin
 
 FR3_TOOL_SPEED_LIMIT = 3.0  # Cartesian limit of the FR3's end-effector, m/s
 TOOL_SPEED_LIMIT = 1.7  # Cartesian limit of the end-effector, m/s
-
 # Modified Denavit-Hartenberg (Craig): a and d in m, alpha in rad. Joint i turns about its own z axis.
 _A = (0.0, 0.0, 0.0, 0.0825, -0.0825, 0.0, 0.088)
 _D = (0.333, 0.0, 0.316, 0.0, 0.384, 0.0, 0.0)
@@ -50,7 +47,6 @@ _ALPHA = (0.0, -np.pi / 2, np.pi / 2, np.pi / 2, -np.pi / 2, np.pi / 2, np.pi / 
 _FLANGE_D = 0.107
 _HAND_TURN = -np.pi / 4
 _TOOL_D = 0.1034  # hand -> the point between the fingertips
-
 # Mass, kg; centre of mass, m; inertia xx, yy, zz, xy, xz, yz about it, kg m². Links 1-7 as identified
 # by Gaz et al. (IEEE RA-L 4(4), 2019); the base likewise.
 _INERTIA = (
@@ -80,7 +76,6 @@ _INERTIA = (
     ),
 )
 _HAND_INERTIA = (0.73, (-0.01, 0.0, 0.03), (0.001, 0.0025, 0.0017, 0.0, 0.0, 0.0))
-
 GRIPPER = Gripper(joints=("finger_joint1", "finger_joint2"), width_m=0.08, speed_m_s=0.1, force_n=70.0)
 """The Franka Hand: its datasheet's stroke, speed for each change of the opening, and continuous force."""
 
@@ -98,11 +93,9 @@ _PAD_FRICTION = (1.5, 0.02, 0.0001)
 # the hand's own turning, in proportion to this time constant. With MuJoCo's 0.02 a cup creeps by 1 mm/s.
 _PAD_SOLREF = (0.003, 1.0)
 _PAD_SOLIMP = (0.99, 0.99, 0.001, 0.5, 2.0)
-
 _WHITE = (0.93, 0.94, 0.95, 1.0)
 _GREY = (0.35, 0.37, 0.40, 1.0)
 _DARK = (0.15, 0.15, 0.16, 1.0)
-
 # The shell, capsule by capsule: body, both ends in its frame (m), radius (m), colour. Fitted to the
 # manufacturer's visual meshes (franka_description): the smallest capsules found that together leave
 # nothing of them outside by more than 1 mm, in any configuration. A seam may be covered by the

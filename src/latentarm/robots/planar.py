@@ -12,7 +12,6 @@ from latentarm.robots.robot import Robot
 
 REACH_M = 1.0  # length of a whole arm
 BASES_APART_M = 0.8  # distance between the bases of two arms, along y
-
 _RADIUS_M = 0.02
 
 

@@ -19,10 +19,8 @@ _SPHERE = int(mujoco.mjtGeom.mjGEOM_SPHERE)
 _CAPSULE = int(mujoco.mjtGeom.mjGEOM_CAPSULE)
 _CYLINDER = int(mujoco.mjtGeom.mjGEOM_CYLINDER)
 _MESH = int(mujoco.mjtGeom.mjGEOM_MESH)
-
 PER_BODY = 2  # capsules that one body keeps; more are merged, so that distances stay cheap online
 PER_LINK = 4  # capsules that one link keeps, over all the bodies fixed to it
-
 Balls = tuple[FloatArray, FloatArray]
 """Centres (K, 3), m, and radii (K,), m, of balls whose convex hull covers a shape."""
 

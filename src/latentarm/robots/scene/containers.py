@@ -11,10 +11,8 @@ from latentarm.core.types import FloatArray, Pose
 from latentarm.robots.scene.thing import Interior, Part
 
 Colour = tuple[float, float, float, float]
-
 WALL_M: Final = 0.003  # of walls and floors: no grain passes through one within a time step
 SIDES: Final = 12  # walls of a round container; four of them stand across x and y, where a gripper takes hold
-
 _CHINA: Final = (0.92, 0.93, 0.95, 1.0)
 _WOOD: Final = (0.76, 0.60, 0.42, 1.0)
 _ROOM_ABOVE_PLATE_M: Final = 0.06

@@ -7,7 +7,6 @@ from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray, Pose
 
 Shape = Literal["box", "cylinder", "capsule", "sphere"]
-
 UPRIGHT = (1.0, 0.0, 0.0, 0.0)  # the quaternion of a part that is not turned
 
 
