@@ -4,7 +4,6 @@ from dataclasses import dataclass
 from typing import Final, Literal, final
 
 MishapKind = Literal["dropped", "knocked_over", "spilled", "pressed"]  # kind of failure
-
 _SAID: Final[dict[MishapKind, str]] = {
     "dropped": "dropped the",
     "knocked_over": "knocked over the",

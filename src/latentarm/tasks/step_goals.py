@@ -15,8 +15,7 @@ from latentarm.tasks.inverse_kinematics import solve
 from latentarm.tasks.steps import TaskStep, Waypoint
 
 MOVED_M: Final = 0.002
-MOVED_RAD: Final = 0.02
-"""A goal is solved for again once its pose has moved farther than this."""
+MOVED_RAD: Final = 0.02  # a goal is solved for again once its pose has moved farther than this
 
 
 @final

@@ -31,13 +31,9 @@ Predicate = Callable[[SceneState], bool]
 """Whether something holds of the things at one moment. One that remembers is made anew for every run."""
 
 Failure = Callable[[SceneState], Mishap | None]  # an irreversible failure, or None
-
-
 CAREFUL: Final = 0.5  # factor of a waypoint's tolerances with each further try
-
 FINE_M: Final = 0.002
 FINE_RAD: Final = 0.04  # least tolerances where something is done
-
 ROUGH_M: Final = 0.01
 ROUGH_RAD: Final = float(np.deg2rad(7.5))  # the same at waypoints on the way
 PATIENCE_S: Final = 3.0  # the person waits so long at a waypoint for its condition

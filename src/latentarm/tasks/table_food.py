@@ -12,11 +12,9 @@ from latentarm.robots.scene.thing import Part, Thing
 _PLATE_RADIUS_M: Final = 0.06
 _PLATE_HALF_M: Final = 0.005
 _HALF_M: Final = 0.014  # half the height of every item
-
 _CHINA: Final = (0.95, 0.95, 0.97, 1.0)
 _WOOD: Final = (0.62, 0.47, 0.33, 1.0)
 _ALONG_Y: Final = (float(np.sqrt(0.5)), float(np.sqrt(0.5)), 0.0, 0.0)
-
 _FOOD: Final[Mapping[str, Part]] = {
     "carrot": Part("capsule", (_HALF_M, 0.025), quaternion=_ALONG_Y, colour=(0.93, 0.45, 0.10, 1.0)),
     "tofu": Part("box", (0.020, 0.020, _HALF_M), colour=(0.93, 0.86, 0.66, 1.0)),

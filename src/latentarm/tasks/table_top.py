@@ -17,7 +17,6 @@ from latentarm.tasks.table_food import food_on_dishes
 from latentarm.tasks.task import Task, within
 
 TABLE_HEIGHT = 0.0  # in the robot's base frame, m: the arm stands on the table
-
 ITEMS = {"carrot": (0.50, -0.28), "tofu": (0.60, 0.0), "melon": (0.50, 0.28)}
 """x and y of the food, m; each item lies on a raised dish."""
 
@@ -25,7 +24,6 @@ ITEM_HEIGHT = 0.10  # above the table top, m
 HOVER = 0.13  # height of a reach's end above the food, m
 SCOOP_TILT = 0.45  # of the tool, its tip outwards, rad
 SCOOP_SWEEP = (-0.03, 0.04)  # start and end of a scoop, m outwards from the food's middle
-
 START_SPREAD = np.array([0.3, 0.05, 0.05, 0.05, 0.05, 0.05, 0.05])
 """How far each joint may start from the ready pose, rad: mostly turned about the base."""
 

@@ -23,25 +23,17 @@ OWN_M: Final = (0.62, 0.0)  # of the person's own plate
 SMALL_M: Final = 0.06  # radius of the two plates
 SPREAD_M: Final = 0.02  # largest offset of the marshmallow along each axis
 ICING_DEEP_M: Final = 0.035  # height of the icing over its dish; it gives way to everything
-
 ICING_RADIUS_M: Final = 0.06
-
 SWEEP_M: Final = 0.04  # way of the marshmallow through the icing
 SCOOP_RAD: Final = 0.5  # tilt of the fork while it scoops
 RICE: Final = 40  # grains of rice
-
 RICE_RADIUS_M: Final = 0.005
-
 SPILLED: Final = 0.5  # largest share of spilled rice
-
 BOWL_RADIUS_M: Final = 0.045
 BOWL_HEIGHT_M: Final = 0.035
-
 WET: Final = Interior(ICING_RADIUS_M, 0.0, ICING_DEEP_M)  # the icing, in the frame of its dish
 _ICING: Final = (0.93, 0.60, 0.70, 0.5)  # translucent
-
 MARSHMALLOW: Final = "marshmallow"
-
 NAMES: Final = (MARSHMALLOW, "icing", "rice bowl", "own plate")  # relevant things, in the order of need
 
 

@@ -19,14 +19,12 @@ DISH_M: Final = (0.50, 0.14)  # x and y of the dish with the tofu
 OWN_M: Final = (0.50, -0.14)  # of the person's own plate
 SPREAD_M: Final = 0.02  # largest offset of the tofu along each axis
 TURN_RAD: Final = 0.3  # largest turn to either side
-
 TOFU: Final = Food(pierce_n=0.6, depth_m=0.008, grip_n=2.5)
 """Chosen: firm tofu, softer than a marshmallow's skin."""
 
 HALF_M: Final = (0.018, 0.016, 0.012)  # half lengths of the block
 SLICE_HALF_M: Final = 0.008  # half the thickness of the slice, along the block's y axis
 EDGE_RAD: Final = float(np.deg2rad(25.0))  # largest turn of the fork's edge out of the cut's plane
-
 _COLOUR: Final = (0.96, 0.93, 0.82, 1.0)
 
 

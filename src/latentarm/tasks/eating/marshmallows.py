@@ -16,7 +16,6 @@ PLATE_AT_M: Final[Region] = ((0.5, 0.5), (0.0, 0.0))
 """x and y of the plate's middle: always the same, as in the paper."""
 
 NAMES: Final = ("left marshmallow", "middle marshmallow", "right marshmallow")
-
 BEARINGS_RAD: Final = (np.pi / 2, 0.0, -np.pi / 2)  # of the sectors from the plate's middle
 SECTOR_RAD: Final = 0.6  # half the width of a sector
 OUT_M: Final = (0.045, 0.075)  # distance from the plate's middle

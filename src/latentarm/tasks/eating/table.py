@@ -8,16 +8,13 @@ from latentarm.core.types import FloatArray, Pose
 from latentarm.robots.scene.thing import Food, Part, Thing
 
 STAND_M: Final = 0.06  # height of dishes over the table: the arm keeps clear of its top
-
 PLATE_RADIUS_M: Final = 0.10
 PLATE_M: Final = 0.012  # thickness of a plate, m
-
 MARSHMALLOW: Final = Food(pierce_n=1.0, depth_m=0.010, grip_n=4.0)
 """Chosen: it takes about a newton to enter soft food, and a pull of a few to take it off."""
 
 MARSHMALLOW_RADIUS_M: Final = 0.014
 MARSHMALLOW_HALF_M: Final = 0.014
-
 _WOOD: Final = (0.62, 0.47, 0.33, 1.0)
 _CHINA: Final = (0.95, 0.95, 0.97, 1.0)
 

@@ -36,25 +36,18 @@ BIN_AT_M: Final[Region] = ((0.50, 0.54), (0.34, 0.38))  # the recycling bin
 SPOON_AT_M: Final = (0.72, -0.08)  # the spoon in its holder
 SHELF_M: Final = 0.02  # height of the shelf over the counter
 APART_M: Final = 0.16  # between things on the shelf
-
 CHOICES: Final = ("eggs", "flour", "apple")
-
 EGGS: Final = 6
 EGG_RADIUS_M: Final = 0.008
 EGG_KG: Final = 0.004
 GRAINS: Final = 30
-
 APPLE_RADIUS_M: Final = 0.028
-
 STAND_M: Final = 0.05  # height of the apple over the shelf: the hand stays over the cups
 SPOON_M: Final = 0.17  # length of the spoon
-
 STIR_TURNS: Final = 1.5
 STIR_RADIUS_M: Final = 0.05
 STIR_RAD: Final = 0.9  # sweep of the spoon to either side, opposite the apple
-
 STIR_STROKES: Final = 6
-
 STROKE_M: Final = 0.009  # tolerance at the end of a stroke: there is 12 mm of room under the spoon
 
 

@@ -22,7 +22,6 @@ START_AT_M: Final[Region] = ((0.56, 0.62), (-0.30, -0.24))  # its start
 PLANE_M: Final = TOP_M + 0.12  # height of the hand's plane
 ROUND_M: Final = 0.16  # distance of the hand's way before the bottle's middle
 TOUCHED_N: Final = 0.5  # a harder touch is a failure
-
 _HALF_M: Final = 0.11
 _RADIUS_M: Final = 0.03
 

@@ -13,17 +13,13 @@ from latentarm.tasks.eating.table import at
 TOP_M: Final = 0.28  # of the counter in the base frame: a Panda can tilt its load there
 COUNTER_M: Final = ((0.44, 0.80), (-0.45, 0.45))  # extent along x and y
 PITCH_RAD: Final = -0.9  # of the hand above the horizontal: it can pour to either side from here
-
 CUP_RADIUS_M: Final = 0.025
 CUP_HEIGHT_M: Final = 0.08
 GRIP_M: Final = 0.064  # height of the fingers over a cup's underside: the palm stays clear of its rim
-
 BOWL_RADIUS_M: Final = 0.055
 BOWL_HEIGHT_M: Final = 0.05
-
 GRAIN_RADIUS_M: Final = 0.005
 GRAIN_KG: Final = 4e-4
-
 POSTURE_RAD: Final = (0.0, -0.5, 0.0, -2.3, 0.0, 2.2, np.pi / 4)
 """Start of the search for configurations: the hand before the chest, pointing out and down."""
 

@@ -16,9 +16,7 @@ from latentarm.tasks.scene_task import SceneTask
 from latentarm.tasks.serving.counter import POSTURE_RAD, TOP_M, bearing_of, hand
 
 START_M: Final = (0.45, 0.0, 0.50)  # about the hand's start
-
 START_SPREAD_M: Final = 0.03
-
 SPILLED: Final = 0.25  # largest share of spilled grains
 
 

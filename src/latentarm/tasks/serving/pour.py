@@ -13,12 +13,9 @@ from latentarm.tasks.serving.cup_steps import pour, take
 CUP_AT_M: Final[Region] = ((0.54, 0.58), (-0.02, 0.02))  # the cup, x and y
 LEFT_AT_M: Final[Region] = ((0.54, 0.58), (0.20, 0.24))  # the left bowl
 RIGHT_AT_M: Final[Region] = ((0.54, 0.58), (-0.24, -0.20))  # the right bowl
-
 GRAINS: Final = 36
-
 GRAIN_M: Final = 0.0049
 SIZES: Final = (1.0, 0.96, 0.92, 0.88, 0.84)  # radii of the grains, as shares of `GRAIN_M`, the largest
-
 FLOOR_M: Final = 0.059
 """Thickness of the cup's floor: the cup is shallow and full, so that grains begin to leave it at a tilt of
 about 60 degrees, and more of them the farther it is tilted."""

@@ -21,7 +21,6 @@ from latentarm.tasks.serving.cup_steps import POURED, pour, take
 
 CUP_AT_M: Final[Region] = ((0.53, 0.62), (-0.28, -0.10))  # the cup, x and y
 BOWL_AT_M: Final[Region] = ((0.54, 0.60), (0.12, 0.24))  # the bowl
-
 GRAINS: Final = 24
 
 
