@@ -14,7 +14,6 @@ from latentarm.control.clock import Clock
 from latentarm.core.types import FloatArray, GripperAsk, Input
 
 NONCE_LIFE_S = 0.2  # an input must echo a nonce no older than this
-
 _KEPT_NONCES = 1024
 
 

@@ -28,8 +28,7 @@ _SCALARS = 7
 _LATER = 3
 _MOST_FIGURES = 100_000
 _MOST_CELL_BYTES = 1 << 20
-_MOST_BYTES = 1 << 38
-"""Of a journal: 256 GiB, which is days of driving."""
+_MOST_BYTES = 1 << 38  # of a journal: 256 GiB, which is days of driving
 
 
 @final

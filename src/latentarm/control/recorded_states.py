@@ -9,7 +9,6 @@ from latentarm.core.types import StepRecord
 from latentarm.robots.limits import JointLimits
 
 _OUTSIDE: Final = 0.01  # readings this far past a limit are noise, rad
-
 _JUMP: Final = 0.03
 """Tolerance on how far a joint can move between two samples, rad: sensors that are slower than the loop move
 in steps, and are noisy."""

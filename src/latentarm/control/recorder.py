@@ -22,13 +22,11 @@ from latentarm.robots.limits import JointLimits
 from latentarm.robots.limits_file import limits_document
 
 LIMITS = ("lower", "upper", "velocity", "acceleration", "jerk")  # the fields of a header's joint limits
-
 SCHEMA_VERSION = 5
 """Version 2 made samples compact, version 3 gave them a gripper, version 4 things, version 5 a co-pilot's
 pace. All older versions can still be read and appended to."""
 
 _READABLE = (1, 2, 3, 4, 5)
-
 _PAGE_BYTES = 2048
 """Each sample is a transaction, and each transaction writes one or two whole pages to the log."""
 

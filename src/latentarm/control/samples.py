@@ -18,7 +18,6 @@ ALWAYS: Final = 8
 or command, and the things', empty where all stand as in the sample before."""
 
 _WRITTEN: Final = b"\x04"
-
 _ZERO: Final = 0x8000
 _SAME: Final = 0x4000
 _WIDEST: Final = 0x3FFF
