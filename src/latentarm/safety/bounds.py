@@ -17,7 +17,6 @@ STOPPED_WITHIN_S = 0.15  # from the last fresh input to a command of zero
 LATE_PERIODS = 5  # readings may be late by this many periods of the loop
 BUFFER_M = 1e-3  # margin that shaping adds to every distance, so that the guard after it rarely has to act
 BUFFER_RAD = 2e-3  # the same for joint positions
-
 MAY_BEND_M = 1e-6  # a command that keeps a distance which is too small already may bend towards it by this, m
 
 

@@ -114,8 +114,7 @@ class Situation:
 class SafetyFilter(ABC):
     """Makes a velocity safe in one respect, or rejects it."""
 
-    name: str
-    """The name that ``limited_by`` gets when this filter has changed a command."""
+    name: str  # the name that ``limited_by`` gets when this filter has changed a command
 
     @abstractmethod
     def apply(self, velocity: FloatArray, situation: Situation) -> FloatArray | Stop:

@@ -11,7 +11,6 @@ OPENS_AFTER_S: Final = 1.0
 """The gripper of an arm that is not enabled opens where this was held down for so long without a break, s."""
 
 _ASKS: Final = (None, *get_args(GripperAsk))
-
 _ASTRAY: Final = 0.01  # a reading this far outside the gripper's range is wrong, m
 
 

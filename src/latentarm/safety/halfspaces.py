@@ -11,7 +11,6 @@ _LEAN = 0.2
 
 _UNFELT = 1e-9  # a distance that no joint changes by more than this, in m per rad, has no direction
 _ROUNDING = 1e-6  # a velocity whose share left is below this is rest
-
 _SOFTNESS = 1e-10
 """The solver may miss half-spaces by this times their force, or it finds no way between opposite ones."""
 

@@ -12,9 +12,7 @@ from latentarm.safety.config import SafetyConfig
 from latentarm.safety.proximity import Contacts, Proximity
 
 LARGEST_RAD: Final = 0.05  # the farthest joint moves no farther between two looks, rad
-
 _SMALLEST_RAD: Final = 0.003
-
 _NEARER_M: Final = 1e-3  # things that are too near already may come nearer by this much at most, m
 
 

@@ -13,7 +13,6 @@ from latentarm.safety.small import largest
 
 YIELDING: Final = "yielding"  # stands among the limits of each command that draws back
 FARTHEST_M: Final = 0.03  # once a point of the arm has gone back this far, the arm slows down and rests
-
 LONGEST_S: Final = 1.0
 """No command draws back for longer than this, s; the last one is ramped down as any other."""
 
@@ -21,7 +20,6 @@ PACE: Final = 0.5
 """Commands are taken back at this share of their speed, and joints go to where they are at this share."""
 
 LOOK_S: Final = 0.5  # an arm that does not stand still so long after its stop does not draw back, s
-
 _STILL_RAD: Final = 2e-3
 _REMEMBERED_S: Final = LOOK_S + 1.0
 

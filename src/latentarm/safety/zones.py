@@ -10,9 +10,7 @@ from latentarm.robots.kinematics.obstacles import Obstacle
 from latentarm.safety.obstacles import checked_shape, is_number
 
 MOST_ZONES: Final = 8
-
 SLOWEST_M_PER_S: Final = 0.01  # no zone allows less: the way out of it would take minutes
-
 _FASTEST_M_PER_S: Final = 5.0
 _FILTER: Final = "zone "
 
