@@ -17,9 +17,7 @@ if TYPE_CHECKING:
 AXIS_COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7")
 HOLD_S = 1.0
 BASE_AXES = "xyz"
-AWAY_M = 0.04
-"""The way back is drawn from this far off the starts, m."""
-
+AWAY_M = 0.04  # the way back is drawn from this far off the starts, m
 AROUND = 6  # directions in which the way back is drawn
 
 

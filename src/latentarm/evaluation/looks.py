@@ -6,7 +6,6 @@ from latentarm.core.style import Look
 from latentarm.models.catalogue import KINDS
 
 _PLAIN: Final = ("#000000", "o", "-")
-
 LOOKS: Final[dict[str, Look]] = {
     "latent": Look("latent actions", "#0072B2", "o", "-"),
     "latent_assist": Look("latent actions + shared autonomy", "#009E73", "D", "-"),

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import Final, Literal
 
 Better = Literal["higher", "lower"]
-
 ARROWS: Final[dict[Better | None, str]] = {"higher": "↑", "lower": "↓", None: ""}
 """How a table shows which way is better."""
 
@@ -27,7 +26,6 @@ EXPRESSED: Final = "what the decoder can express"
 ENCODED: Final = "through the encoder network"
 PROPERTIES: Final = "the four properties"
 AT_REST: Final = "rest and reversal"
-
 MEASURES: Final[dict[str, Measure]] = {
     "search_error": Measure(
         "rad^2/s^2",

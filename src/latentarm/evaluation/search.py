@@ -31,9 +31,7 @@ from latentarm.evaluation.contract import DecodesActions
 
 GRID: Final = {1: 33, 2: 7, 3: 5}  # values per axis, by d; beyond that `SCATTERED` points
 RAYS: Final = 48  # directions from rest for d > 1
-
 SCATTERED: Final = 128
-
 ROUNDS: Final = ((12, 2), (6, 3), (3, 6), (1, 40))
 """Of each pair, how many of the best searches go on, and for how many steps at most."""
 
@@ -42,19 +40,16 @@ APART: Final = 0.35
 have starts in several directions too."""
 
 LEAST_SIZE: Final = 0.05  # inputs nearer to rest than this count as this large
-
 AT_ONCE: Final = 4096
 """Inputs tried at a time, so that the values of a hidden layer stay in the processor's cache."""
 
 BLOCK: Final = 256  # pairs refined at a time
 DIFFERENCE: Final = 1e-4  # of z, for numeric derivatives
 STOPPED: Final = 1e-5  # a search whose next step would change no axis by more than this has ended
-
 FIRST_DAMPING: Final = 1e-3
 """Relative to the mean curvature; ten times less after a step that helped, ten times more after another."""
 
 AFFINE: Final = 1e-9  # deviation from an affine map, relative to the largest action, that is rounding
-
 Decode = Callable[[FloatArray, FloatArray], FloatArray]
 
 
