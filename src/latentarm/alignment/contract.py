@@ -9,8 +9,7 @@ Alignment = Callable[[FloatArray, FloatArray], FloatArray]
 """``z = f(u, c)`` (equation 4): inputs (..., d) and contexts (..., c), whose leading axes broadcast, to
 latent actions (..., d)."""
 
-Seat = Literal["facing", "behind"]
-"""A person sits facing the arm or behind it."""
+Seat = Literal["facing", "behind"]  # a person sits facing the arm or behind it
 
 
 def identity(u: FloatArray, context: FloatArray) -> FloatArray:

@@ -12,7 +12,6 @@ from latentarm.core.types import FloatArray, IntArray
 from latentarm.robots.kinematics.chain import Chain
 
 REGIONS: Final = 24  # regions that the demonstrated places are divided into, at most
-
 SETTLED: Final = 1e-4
 """Means of clusters that all together move by less than this have settled, as a share of the variance."""
 

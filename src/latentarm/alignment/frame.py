@@ -26,13 +26,11 @@ CAMERAS: Final[dict[Seat, tuple[float, float, float]]] = {
 
 FLAT: Final = (0.0, -0.01, 1.0)  # the same where the whole arm moves in one plane
 FLAT_SHARE: Final = 0.1  # an arm whose height is below this share of its reach is shown like that
-
 STEEPEST_RAD_M: Final = 5.0
 """The most that the stick turns per distance between poses, see `pose_vectors`, rad/m."""
 
 LENGTH_M: Final = 0.3  # distance between poses over which the turn changes
 ROUGHNESS: Final = 0.01  # weight of the turn's roughness at first, where perfect agreement weighs 2
-
 CONTEXTS: Final = 500
 CENTRES: Final = 32
 PUSHES: Final = 16

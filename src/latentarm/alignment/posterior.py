@@ -28,13 +28,10 @@ from latentarm.robots.kinematics.chain import Chain
 
 RESOLUTION: Final = 0.02  # SD of an answer of zero: a stick is held no more finely
 LOOSE: Final = 10.0  # SD of an entry of Q_0, in full pushes per fastest motion
-
 GAIN: Final = 0.5  # SD of the logarithm of a full push's speed, relative to the fastest demonstrated motions
 STEPS: Final = 25  # Gauss-Newton steps
 MIRRORED: Final = 4  # directions, at most, that a second start is mirrored in
 LARGEST_STEP_RAD: Final = 0.5  # largest turn of the stick in one step
-
-
 VARIATIONS: Final = (0.0, 0.1, 0.3, 0.5)
 """Coefficients of variation of answers that are considered, equally probable."""
 

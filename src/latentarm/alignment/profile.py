@@ -43,14 +43,10 @@ from latentarm.robots.kinematics.chain import Chain
 FOLDER: Final = "profiles"
 ALIGNMENT_NAME: Final = "alignment.safetensors"
 SCHEMA: Final = 2
-NETWORK_SCHEMA: Final = 1
-"""Older profiles hold a network; they are still read."""
-
+NETWORK_SCHEMA: Final = 1  # older profiles hold a network; they are still read
 MOST_PLACES: Final = 10_000  # most answers and most regions; a profile of ours keeps some tens
 NAMED: Final = re.compile(r"\w[\w-]{0,63}")  # names that are also the name of their folder
-
 MOST_CHARACTERS: Final = 64
-
 _DIGEST: Final = re.compile(r"\+[0-9a-f]{24}")
 """Folders of all other names; the name itself is in ``config.json``."""
 

@@ -18,7 +18,6 @@ from latentarm.core.types import FloatArray
 from latentarm.robots.kinematics.chain import Chain
 
 TOO_FEW: Final = 2  # answers after which asking may stop
-
 LENGTH_M: Final = 0.3
 """Distance over which the meaning of an input may change with the place, when questions are chosen."""
 

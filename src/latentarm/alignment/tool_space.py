@@ -15,7 +15,6 @@ from latentarm.models.decoder import Decoder
 from latentarm.robots.kinematics.chain import Chain
 
 OUTSIDE: Final = 1.0  # weight of motion that was not demonstrated in a place, as a share of a full push
-
 RIDGES: Final = (1.0, 0.3, 0.1, 0.03, 0.01, 0.01, 0.01)
 """Weight of ‖z‖^2 in each step. It falls, so that of several z that do the same, one near rest is found."""
 
