@@ -28,8 +28,7 @@ from latentarm.runs.questions import AlignmentProblem
 from latentarm.runs.samples import ALIGN_STREAM, load_samples
 
 NO_ALIGN: Final = "no_align"
-PROFILE: Final = "profile"
-"""Conditions of the rows: z = u, and the learned alignment."""
+PROFILE: Final = "profile"  # conditions of the rows: z = u, and the learned alignment
 
 
 @final

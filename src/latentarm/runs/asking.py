@@ -15,10 +15,8 @@ from latentarm.runs.person import Kind, Question, Respondent, Say
 from latentarm.runs.stick_line import parse
 
 CELLS: Final = 4  # cells of the figure from its middle to each edge
-
 STILL_M: Final = 5e-4
-STILL_DEG: Final = 0.5
-"""Smaller motions count as none."""
+STILL_DEG: Final = 0.5  # smaller motions count as none
 
 
 def moved(chain: Chain, motion: Motions) -> list[tuple[str, Pose, Pose]]:

@@ -9,11 +9,8 @@ from latentarm.alignment.answers import Motions
 from latentarm.core.types import FloatArray
 from latentarm.robots.kinematics.chain import Chain
 
-Say = Callable[[str], None]
-"""Shows text to the person."""
-
+Say = Callable[[str], None]  # shows text to the person
 Kind = Literal["person", "simulated person"]
-
 Reply = FloatArray | Literal["back"] | None
 """An input (d,), None where they would not know, or ``back`` to be asked the question before once more."""
 

@@ -20,11 +20,8 @@ from latentarm.models.saving import CONFIG_LIMIT, CONFIG_NAME, read_tensors, wri
 from latentarm.robots.kinematics.chain import Chain
 
 SAMPLES_NAME: Final = "samples.safetensors"
-ALIGN_STREAM: Final = 3
-"""Stream of a seed that draws the motions that a person is asked about."""
-
+ALIGN_STREAM: Final = 3  # stream of a seed that draws the motions that a person is asked about
 MOST_ROWS: Final = 100_000  # most rows of an array; a run of ours keeps some thousands
-
 _WIDTHS: Final = {
     "unlabelled": "context",  # runs of earlier versions have it
     "motions.start": "action",

@@ -11,12 +11,10 @@ import numpy as np
 from latentarm.core.types import FloatArray
 
 ARROW: Final = re.compile(r"\x1b[\[O]([ABCD])")  # a terminal's bytes for an arrow key
-
 PUSHES: Final = {"C": (0, 1), "D": (0, -1), "A": (1, 1), "B": (1, -1)}
 """Axis and direction of the keys right, left, up and down."""
 
 PRESS: Final = 0.25  # how far one press of an arrow key pushes
-
 ESCAPE: Final = "\x1b"
 END: Final = "\x04"
 ERASE: Final = ("\x7f", "\b")

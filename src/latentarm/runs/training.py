@@ -37,7 +37,6 @@ from latentarm.runs.samples import ALIGN_STREAM, save_samples, take_samples
 from latentarm.runs.tasks import routes_seen, usual_task
 
 CHECKPOINT: Final = "training.safetensors"
-
 JOINED: Final = "demonstrations"
 """Folder of a run with the datasets that it was trained on, where there were several."""
 
