@@ -23,8 +23,7 @@ if TYPE_CHECKING:
     from latentarm.web.arm_process.initial_state import RobotOptions
 
 FIRST_RAD_S: Final = 0.2
-FIRST_M_PER_S: Final = 0.05
-"""Limits for a first drive."""
+FIRST_M_PER_S: Final = 0.05  # limits for a first drive
 
 
 def check_arm_at(address: str, run: Path | None, robot: "RobotOptions", speeds: Speeds) -> Findings:

@@ -20,7 +20,6 @@ from latentarm.core.errors import UserError
 from latentarm.core.files import write_text
 
 Command = Callable[..., int]
-
 ConfigFile = Annotated[
     Path | None,
     arg(
@@ -31,7 +30,6 @@ ConfigFile = Annotated[
 
 OPTION: Final = "config"
 MOST_BYTES: Final = 1 << 16  # of a file of options
-
 NOT_KEPT: Final = (OPTION, "json", "resume")
 """Options of reporting and resuming, which do not change results; they are not written."""
 
