@@ -12,7 +12,6 @@ from latentarm.testing.arm_laws import ArmLaws
 from latentarm.testing.fault_trials import FAULTS, Fault, try_fault
 
 DT_S = 0.02
-
 ZERO_COMMAND_S = 0.15  # from a fault to a command of zero, s
 REST_S = 0.4  # from a fault until the arm stands still, s
 

@@ -14,16 +14,13 @@ from latentarm.core.types import FloatArray
 
 DOF, COUNT = 7, 3
 GOALS = np.random.default_rng(0).normal(0.0, 1.0, (COUNT, DOF))
-
 MakeBelief = Callable[..., Belief]
-
 states = hnp.arrays(float, DOF, elements=st.floats(-3, 3))
 inputs = hnp.arrays(float, 2, elements=st.floats(-1, 1))
 weights = hnp.arrays(float, COUNT, elements=st.floats(0.01, 1))
 maps = hnp.arrays(float, (2, DOF), elements=st.floats(-1, 1))
 seeds = st.integers(0, 2**32 - 1)
 anything = st.floats(allow_nan=True, allow_infinity=True)
-
 # A rule is a class without state, so one serves all examples and every subclass of the tests.
 law = settings(
     max_examples=40,

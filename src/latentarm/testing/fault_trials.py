@@ -39,10 +39,8 @@ FAULTS: Final[dict[Fault, str]] = {
 """What happens while the arm moves."""
 
 PERIOD_S: Final = 0.01
-
 _STOPPED_S: Final = 0.6  # from the fault until it is repaired, s
 _WAITING_S: Final = 0.3  # from then on the stick is still pushed, without anybody having enabled the arm, s
-
 _TOO_LATE_S: Final = 0.06
 
 

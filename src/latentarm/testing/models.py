@@ -29,9 +29,7 @@ from latentarm.robots.planar import planar
 
 JOINTS: Final = 4
 OBJECTS: Final = ("cup", "table")
-STANDS: Final = np.array([0.5, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
-"""Pose of the table, which never moves."""
-
+STANDS: Final = np.array([0.5, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0])  # pose of the table, which never moves
 EVERYTHING: Final = ("joints", "objects_in_tool", "gripper", "belief", "objects")
 CONTEXTS: Final[Mapping[tuple[str, ...], int]] = {
     ("joints",): JOINTS,

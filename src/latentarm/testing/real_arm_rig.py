@@ -55,7 +55,6 @@ class RealArmRig(ArmLaws):
     """Fixtures and helpers of `latentarm.testing.real_arms.RealArmContract`, where they are described."""
 
     pytestmark = pytest.mark.clock
-
     tolerance_rad = 2e-3
     settling_s = 0.5
     waits_s = 5.0

@@ -18,7 +18,6 @@ from latentarm.testing.killed import Driving
 from latentarm.testing.real_arm_rig import HOLD_S, StandIn
 
 __all__ = ["RealArmContract", "StandIn"]
-
 QUICK_S = 0.005  # a call that does not wait for the arm takes no longer than this, s
 
 
