@@ -36,10 +36,8 @@ def read_aloha(source: Path, rate_hz: float | None = None, task: str | None = No
         raise UserError(f"{source} is of ALOHA and does not say its rate: pass --rate-hz 50, ALOHA's own.")
     with opened_hdf5(source) as file:
         observations = group(file, "observations", source)
-        tables = [member(observations, "qpos"), member(file, "action")]
-        check_values(
-            source, "it", sum(math.prod(one.shape) for one in tables if isinstance(one, h5py.Dataset))
-        )
+        both = [member(observations, "qpos"), member(file, "action")]
+        check_values(source, "it", sum(math.prod(one.shape) for one in both if isinstance(one, h5py.Dataset)))
         state, action = table(observations, "qpos", source), table(file, "action", source)
     if state is None:
         raise UserError(f"{source}: observations/qpos is no table of joint positions.")

@@ -21,9 +21,7 @@ from latentarm.demonstrations.timing import typical_rate_hz
 
 ROS1: Final = b"#ROSBAG V"
 MCAP: Final = b"\x89MCAP"  # first bytes of these files
-
 JOINT_STATE: Final = "sensor_msgs/msg/JointState"
-
 _DAMAGE: Final = (ArithmeticError, AssertionError, EOFError, LookupError, OSError, RuntimeError, struct.error)
 """Raised by damaged files, besides `TypeError`, `ValueError` and the errors of the libraries."""
 
@@ -72,24 +70,14 @@ def _messages(source: Path, topic: str | None) -> list[tuple[float, dict[str, fl
         raise UserError(f"{source} is a bag of ROS: pip install 'latentarm[bags]' to read it.") from error
     first = source.suffix == ".bag"
     store = typesys.Stores.ROS1_NOETIC if first else typesys.Stores.ROS2_HUMBLE
-    damage = (
-        *_DAMAGE,
-        rosbag1.ReaderError,
-        rosbag2.ReaderError,
-        serde.SerdeError,
-        apsw.Error,
-        zstd.ZstdError,
-    )
+    unreadable = (rosbag1.ReaderError, rosbag2.ReaderError, serde.SerdeError)
     try:
         with rosbag1.Reader(source) if first else rosbag2.Reader(source) as reader:
             types = typesys.get_typestore(store)
             read = types.deserialize_ros1 if first else types.deserialize_cdr
-            chosen = _connections(reader.connections, topic, source)
-            messages = reader.messages(chosen)
-            return [
-                _positions(read(raw, JOINT_STATE), received_ns, source) for _, received_ns, raw in messages
-            ]
-    except damage as error:
+            messages = reader.messages(_connections(reader.connections, topic, source))
+            return [_positions(read(raw, JOINT_STATE), at_ns, source) for _, at_ns, raw in messages]
+    except (*_DAMAGE, *unreadable, apsw.Error, zstd.ZstdError) as error:
         raise UserError(f"{source} is not a whole bag of ROS; it is truncated or damaged.") from error
 
 
@@ -102,10 +90,8 @@ def _connections(connections: Sequence[Any], topic: str | None, source: Path) ->
 
 
 def _positions(message: Any, received_ns: int, source: Path) -> tuple[float, dict[str, float]]:
-    names, positions = list(message.name), message.position.tolist()
-    if len(names) != len(positions) or len(set(names)) != len(names):
-        raise UserError(
-            f"{source}: a message has {len(positions)} positions for the joints {', '.join(names)}."
-        )
+    names, values = list(message.name), message.position.tolist()
+    if len(names) != len(values) or len(set(names)) != len(names):
+        raise UserError(f"{source}: a message has {len(values)} positions for the joints {', '.join(names)}.")
     stamp_ns = message.header.stamp.sec * 10**9 + message.header.stamp.nanosec
-    return (stamp_ns or received_ns) * 1e-9, dict(zip(names, positions, strict=True))
+    return (stamp_ns or received_ns) * 1e-9, dict(zip(names, values, strict=True))

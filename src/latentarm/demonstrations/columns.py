@@ -59,9 +59,8 @@ def find_columns(
     if told:
         found, how = _as_told(names, joints, told, source), "as told"
     else:
-        candidates = [
-            index for index in range(len(names)) if index not in grippers and index != found_gripper
-        ]
+        excluded = {*grippers, found_gripper}
+        candidates = [index for index in range(len(names)) if index not in excluded]
         found, how = _by_name(names, candidates, joints, source)
     if found_gripper in found:
         if gripper is not None:
@@ -116,9 +115,8 @@ def _by_name(
     if len(set(wanted)) == len(wanted) and all(keys.count(key) == 1 for key in wanted):
         return [candidates[keys.index(key)] for key in wanted], "by name, though spelled differently"
     if len(candidates) == len(joints) and _numbered(keys):
-        return list(
-            candidates
-        ), "by number: the names carry no meaning, so the file's order is taken as base to tool"
+        how = "by number: the names carry no meaning, so the file's order is taken as base to tool"
+        return list(candidates), how
     if len(candidates) < len(joints):
         listed = ", ".join(names[index] for index in candidates)
         raise UserError(

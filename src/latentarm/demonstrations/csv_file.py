@@ -28,15 +28,12 @@ from latentarm.demonstrations.timing import typical_rate_hz
 
 ACTION_PREFIX: Final = "action."
 RESERVED_COLUMNS: Final = frozenset({"episode", "timestamp", "task", "robot"})
-
 TimeUnit = Literal["s", "ms", "us", "ns"]
 SECONDS: Final[dict[str, float]] = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
-
 _LEAST_STEP: Final[dict[str, float]] = {"ns": 1e6, "us": 1e3, "ms": 5.0}
 """No recording has so few samples a second that its timestamps would advance by this in any longer unit."""
 
 _ROSTOPIC: Final = "%time"  # first column of what ``rostopic echo -p`` prints
-
 _ROS_NAME: Final = "field.name"
 _ROS_POSITION: Final = "field.position"
 
@@ -61,12 +58,8 @@ def read_csv(
 ) -> SourceData:
     """Read demonstrations from a CSV file.
 
-    Args:
-        source: the file.
-        joint_names: the robot's joints, where the robot is known.
-        rate_hz: nominal sampling rate; by default the timestamps' rate.
-        task: for files without such a column; the file's name by default.
-        time_unit: of the timestamps; by default s, or a shorter unit where steps are too long for s.
+    ``joint_names`` are the robot's, where it is known. By default the rate is the timestamps', the task of a
+    file without such a column its name, and the unit s, or a shorter one where steps are too long for s.
     """
     table = CsvTable(source)
     header, rows = table.header, table.rows()
@@ -159,19 +152,17 @@ def _runs(
     wanted = [place[name] for name in columns]
     runs: list[_Run] = []
     seen: set[str] = set()
-    for number, fields in rows:
+    for at, fields in rows:
         told = {name: fields[place[name]] for name in ("episode", "task", "robot") if name in place}
         label = told.get("episode", "0")
         if not runs or runs[-1].label != label:
             if label in seen:
-                raise UserError(
-                    f"{table.source}: line {number} goes back to episode {label!r}, which had ended."
-                )
+                raise UserError(f"{table.source}: line {at} goes back to episode {label!r}, which had ended.")
             if len(seen) == MAX_EPISODES:
                 raise UserError(f"{table.source} has more than {MAX_EPISODES:,} episodes; split the file.")
             seen.add(label)
             runs.append(_Run(label, told.get("task", task), told.get("robot", "")))
         runs[-1].numbers.extend(
-            table.number(fields[index], number, name) for name, index in zip(columns, wanted, strict=True)
+            table.number(fields[index], at, name) for name, index in zip(columns, wanted, strict=True)
         )
     return runs

@@ -79,8 +79,7 @@ class _Lines:
     """Lines of bounded length. ``in_record`` counts those since a reader set it to zero."""
 
     def __init__(self, stream: TextIO, source: Path) -> None:
-        self._stream = stream
-        self._source = source
+        self._stream, self._source = stream, source
         self._characters = 0
         self.number = 0
         self.in_record = 0

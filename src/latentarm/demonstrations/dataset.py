@@ -50,12 +50,8 @@ def write_dataset(demonstrations: Demonstrations, path: StrPath) -> None:
 
     Values are stored in single precision, as the layout has them; goals exactly.
 
-    Args:
-        demonstrations: valid ones, see `validate`.
-        path: a folder that does not exist yet, or is empty.
-
-    Raises:
-        UserError: the demonstrations are invalid (see `validate`), or ``path`` exists or is not writable.
+    Raises UserError where the demonstrations are invalid (see `validate`), or ``path`` is not empty
+    or not writable.
     """
     path = Path(path)
     validate(demonstrations, str(path))
@@ -99,15 +95,9 @@ def write_dataset(demonstrations: Demonstrations, path: StrPath) -> None:
 def append_episode(path: StrPath, episode: Episode) -> None:
     """Append one episode to a dataset, atomically: it is absent if the process is killed first.
 
-    The newest data file is copied with the episode added, up to the layout's size of a data file;
-    then a new one begins.
-
-    Args:
-        path: a dataset of `write_dataset`.
-        episode: same joints and features as the others.
-
-    Raises:
-        UserError: the episode is invalid, ``path`` is not a native dataset, or another program is writing it.
+    The newest data file is copied with the episode added, up to the layout's size of a data file; then a new
+    one begins. Raises UserError where the episode is invalid or of other joints or features, ``path`` is not
+    a dataset of `write_dataset`, or another program is writing it.
     """
     path = Path(path)
     with locked(path, path / LOCK_FILE):
@@ -147,13 +137,8 @@ def append_episode(path: StrPath, episode: Episode) -> None:
 def read_dataset(path: StrPath) -> Demonstrations:
     """Read a dataset of `write_dataset`, with every complete episode.
 
-    Values are in single precision.
-
-    Args:
-        path: the dataset's folder.
-
-    Raises:
-        UserError: ``path`` is not a dataset, was written by another program (import it first), or is damaged.
+    Values are in single precision. Raises UserError where ``path`` is not a dataset, was written by another
+    program (import it first), or is damaged.
     """
     path = Path(path)
     info = _native_info(path)
@@ -197,9 +182,7 @@ def _place(pattern: str, place: tuple[int, int]) -> str:
 
 def _data_places(rows: Table) -> list[tuple[int, int]]:
     """Chunk and file of each episode's samples."""
-    chunk, file = (
-        cast(list[int], rows.column(f"data/{name}_index").to_pylist()) for name in ("chunk", "file")
-    )
+    chunk, file = (cast(list[int], rows.column(f"data/{one}_index").to_pylist()) for one in ("chunk", "file"))
     return list(zip(chunk, file, strict=True))
 
 
@@ -214,17 +197,13 @@ def _data_to_extend(path: Path, info: Info, rows: Table, added: Table) -> tuple[
     """The data file for the next episode, and the episodes that it already holds."""
     places = _data_places(rows)
     chunk, file = places[-1]
-    newest = path / _place(DATA_PATTERN, places[-1])
-    stored = read_table(newest)
-    if newest.stat().st_size + added.nbytes < info.data_file_mb * 1024**2 and stored.schema.equals(
-        added.schema
-    ):
+    last = path / _place(DATA_PATTERN, places[-1])
+    table = read_table(last)
+    if last.stat().st_size + added.nbytes < info.data_file_mb * 1024**2 and table.schema.equals(added.schema):
         held = np.array([place == places[-1] for place in places])
         lengths = rows.column("length").to_numpy()[held]
         starts = np.cumsum(lengths) - lengths
-        return places[-1], [
-            stored.slice(start, length) for start, length in zip(starts, lengths, strict=True)
-        ]
+        return places[-1], [table.slice(start, size) for start, size in zip(starts, lengths, strict=True)]
     return divmod(chunk * info.chunk_files + file + 1, info.chunk_files), []
 
 

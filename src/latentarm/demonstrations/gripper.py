@@ -15,7 +15,6 @@ GRIPPER_WIDTH: Final = "observation.gripper_width"
 import then says so."""
 
 GRIPPER_HOLDING: Final = "observation.gripper_holding"  # whether something is held between them: 0 or 1
-
 GRIPPER_TOGGLED: Final = "observation.gripper_toggled"
 """Whether the gripper is other than when the episode began: 0 or 1."""
 
@@ -23,7 +22,6 @@ GRIPPER_OPENING: Final = "observation.gripper_opening"
 """Share of the gripper's opening, from 0 (closed) to 1 (open)."""
 
 GRIPPER: Final = "observation.gripper"  # as recorded, where its unit is unknown
-
 ACTION_GRIPPER: Final = "action.gripper"
 """Target of the gripper, in the unit of its observation: m with `GRIPPER_WIDTH`."""
 
@@ -32,7 +30,6 @@ OBSERVED: Final = (GRIPPER_WIDTH, GRIPPER_HOLDING, GRIPPER_TOGGLED, GRIPPER_OPEN
 
 GripperStart = Literal["open", "closed"]  # state of a gripper when an episode begins
 _WIDEST_M: Final = 1.0  # a larger width is not in m
-
 _YES_OR_NO: Final = (GRIPPER_HOLDING, GRIPPER_TOGGLED)
 
 
@@ -55,14 +52,8 @@ def gripper_uses(demonstrations: Demonstrations, gripper: Gripper | None = None)
     demonstrations.
     """
     extras = [episode.extras for episode in demonstrations.episodes]
-    observed = next(
-        (
-            name
-            for name in (GRIPPER_WIDTH, GRIPPER_OPENING, GRIPPER_TOGGLED)
-            if name in extras[0] and extras[0][name].shape[1] == 1
-        ),
-        None,
-    )
+    known = (name for name in (GRIPPER_WIDTH, GRIPPER_OPENING, GRIPPER_TOGGLED) if name in extras[0])
+    observed = next((name for name in known if extras[0][name].shape[1] == 1), None)
     if observed is None:
         return ()
     if observed == GRIPPER_TOGGLED:

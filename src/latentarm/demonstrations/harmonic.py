@@ -36,10 +36,8 @@ BELIEFS: Final = tuple(f"p_goal_{number}" for number in range(len(MORSELS)))
 STICK: Final = ("axes_x", "axes_y")
 MEASURED: Final = {"observation.velocity": "_vel", "observation.effort": "_eff"}
 SUCCESS: Final = {"next.success": "goal_success", "next.any_success": "any_success"}
-
 _POSITIONS: Final = Path("text_data/joint_positions.csv")
 _DEEPEST: Final = 4  # levels of folders above a run
-
 _MOST_YAML_BYTES: Final = 1 << 16
 _RIGID: Final = 1e-3  # tolerance of a pose's rotation
 
@@ -143,12 +141,8 @@ class _Table:
             if self._csv.header.count(name) != 1:
                 raise UserError(f"{self.path} must have one column {name!r}, as runs of HARMONIC have.")
         places = [(name, self._csv.header.index(name)) for name in names]
-        return np.array(
-            [
-                [self._csv.number(fields[place], number, name) for name, place in places]
-                for number, fields in self._rows
-            ]
-        )
+        rows = ([self._csv.number(one[at], line, name) for name, at in places] for line, one in self._rows)
+        return np.array(list(rows))
 
 
 def _held(path: Path, names: Sequence[str], time_s: FloatArray) -> FloatArray:

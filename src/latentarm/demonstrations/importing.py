@@ -106,8 +106,7 @@ def _without_robot(data: SourceData, actions: ActionChoice, source: Path) -> Dem
     given = data.demonstrations
     if not data.in_rad and is_so_arm(given.robot):
         raise UserError(f"{source} was recorded on {given.robot!r}, not in rad: name the robot with --robot.")
-    kept = "velocity" in (actions.removeprefix("joint_"), data.actions)
-    if kept:
+    if "velocity" in (actions.removeprefix("joint_"), data.actions):
         return given
     return replace(given, episodes=tuple(replace(one, action=None) for one in given.episodes))
 
@@ -148,7 +147,9 @@ def _read_file(source: Path, start: bytes, robot: Robot | None, options: ImportO
 def _read_folder(source: Path, robot: Robot | None, options: ImportOptions) -> SourceData:
     rate_hz, task = options.rate_hz, options.instruction
     if not is_missing(source / INFO_PATH):
-        return _at_rate(read_lerobot(source), rate_hz)
+        data = read_lerobot(source)
+        given = data.demonstrations
+        return data if rate_hz is None else replace(data, demonstrations=replace(given, rate_hz=rate_hz))
     if runs := harmonic_runs(source):
         return read_harmonic(runs, rate_hz, task)
     entries = sorted(source.iterdir(), key=lambda entry: (len(entry.name), entry.name))  # 2 before 10
@@ -160,12 +161,6 @@ def _read_folder(source: Path, robot: Robot | None, options: ImportOptions) -> S
     if not files:
         return read_lerobot(source)  # which says what is missing
     return join_files({file.name: _read(file, robot, options) for file in files}, str(source))
-
-
-def _at_rate(data: SourceData, rate_hz: float | None) -> SourceData:
-    if rate_hz is None:
-        return data
-    return replace(data, demonstrations=replace(data.demonstrations, rate_hz=rate_hz))
 
 
 def _beginning(source: Path) -> tuple[bytes | None, int]:

@@ -22,7 +22,6 @@ from latentarm.robots.limits_file import limits_document, parse_limits
 
 CODEBASE_VERSION: Final = "v3.0"
 OLDER_VERSIONS: Final = ("v2.0", "v2.1")  # importable layouts, see `read_episodes_v2`
-
 STATE: Final = "observation.state"
 ACTION: Final = "action"
 MAX_RATE_HZ: Final = 1e9
@@ -32,13 +31,8 @@ DATA_FILE_MB: Final = 100
 VIDEO_FILE_MB: Final = 200
 DATA_PATTERN: Final = "data/chunk-{chunk_index:03d}/file-{file_index:03d}.parquet"
 EPISODES_PATTERN: Final = "meta/episodes/chunk-{chunk_index:03d}/file-{file_index:03d}.parquet"
-INDEX_DTYPES: Final = {
-    "timestamp": "float32",
-    "frame_index": "int64",
-    "episode_index": "int64",
-    "index": "int64",
-    "task_index": "int64",
-}
+_INDICES: Final = ("frame_index", "episode_index", "index", "task_index")
+INDEX_DTYPES: Final = {"timestamp": "float32"} | dict.fromkeys(_INDICES, "int64")
 
 T = TypeVar("T")
 
@@ -102,10 +96,8 @@ def features_of(demonstrations: Demonstrations) -> tuple[Feature, ...]:
     names = demonstrations.joint_names
     first = demonstrations.episodes[0]
     action = () if first.action is None else (Feature(ACTION, len(names), names),)
-    entries = {ENVIRONMENT: entry_names(demonstrations.objects) or None}
-    extras = tuple(
-        Feature(name, first.extras[name].shape[1], entries.get(name)) for name in sorted(first.extras)
-    )
+    named = {ENVIRONMENT: entry_names(demonstrations.objects) or None}
+    extras = tuple(Feature(one, first.extras[one].shape[1], named.get(one)) for one in sorted(first.extras))
     return (Feature(STATE, len(names), names), *action, *extras)
 
 
@@ -161,7 +153,9 @@ def read_info(root: Path) -> Info:
             f"{path}: the dataset is of LeRobot layout {version}; {CODEBASE_VERSION} and"
             f" {' and '.join(OLDER_VERSIONS)} can be read: convert it with LeRobot first."
         )
-    ours = mapping.get("latentarm")
+    entry = mapping.get("latentarm")
+    ours = cast(Mapping[str, Any], entry) if isinstance(entry, dict) else {}
+    stated = ours.get("limits")
     robot = mapping.get("robot_type")
     features = _read_features(_field(mapping, "features", dict, path), path)
     state = next((feature for feature in features if feature.name == STATE), None)
@@ -179,11 +173,11 @@ def read_info(root: Path) -> Info:
         rate_hz=float(rate),
         robot=robot if isinstance(robot, str) else "",
         features=features,
-        goals=() if not isinstance(ours, dict) else parse_goals(ours.get("goals", []), str(path)),
+        goals=parse_goals(ours.get("goals", []), str(path)),
         end_effector=_read_end_effector(ours, path),
-        limits=_read_limits(ours, path),
+        limits=None if stated is None else parse_limits(stated, f"{path}, limits"),
         version=version,
-        native=isinstance(ours, dict) and version not in OLDER_VERSIONS,
+        native=isinstance(entry, dict) and version not in OLDER_VERSIONS,
         chunk_files=max(_count(mapping, "chunks_size", path), 1),
         data_file_mb=0 if version in OLDER_VERSIONS else _count(mapping, "data_files_size_in_mb", path),
         import_record=_read_import_record(ours, path),
@@ -259,30 +253,23 @@ def _entry_names(names: object, width: int) -> tuple[str, ...] | None:
     return None
 
 
-def _read_end_effector(ours: object, path: Path) -> str | None:
-    name: object = cast(Mapping[str, Any], ours).get("end_effector") if isinstance(ours, dict) else None
+def _read_end_effector(ours: Mapping[str, Any], path: Path) -> str | None:
+    name: object = ours.get("end_effector")
     if name is not None and not isinstance(name, str):
         raise UserError(f"{path}: the entry 'end_effector' is not a name.")
     return name
 
 
-def _read_limits(ours: object, path: Path) -> StatedLimits | None:
-    limits: object = cast(Mapping[str, Any], ours).get("limits") if isinstance(ours, dict) else None
-    return None if limits is None else parse_limits(limits, f"{path}, limits")
-
-
-def _read_import_record(ours: object, path: Path) -> Mapping[str, str]:
-    record: object = cast(Mapping[str, Any], ours).get("import", {}) if isinstance(ours, dict) else {}
-    if not isinstance(record, dict):
-        raise UserError(f"{path}: its record of the import is damaged.")
-    record = cast(Mapping[str, object], record)
-    if not all(isinstance(text, str) for text in record.values()):
+def _read_import_record(ours: Mapping[str, Any], path: Path) -> Mapping[str, str]:
+    record: object = ours.get("import", {})
+    texts = cast(Mapping[str, object], record).values() if isinstance(record, dict) else [None]
+    if not all(isinstance(text, str) for text in texts):
         raise UserError(f"{path}: its record of the import is damaged.")
     return cast(Mapping[str, str], record)
 
 
-def _read_provenance(ours: object, path: Path) -> tuple[Provenance | None, ...]:
-    listed: object = cast(Mapping[str, Any], ours).get("provenance", []) if isinstance(ours, dict) else []
+def _read_provenance(ours: Mapping[str, Any], path: Path) -> tuple[Provenance | None, ...]:
+    listed: object = ours.get("provenance", [])
     try:
         if not isinstance(listed, list):
             raise ValueError

@@ -29,7 +29,7 @@ from latentarm.demonstrations.info import default_joint_names
 
 FEATURES: Final = {"dq": "observation.velocity", "tau": "observation.effort"}
 MAX_ARRAYS: Final = 100  # in one archive
-
+_DAMAGED: Final = (zipfile.BadZipFile, zlib.error, lzma.LZMAError, struct.error)
 TEXTS: Final = ("joint_names", "robot")
 
 
@@ -103,17 +103,7 @@ def _read_arrays(source: Path) -> dict[str, NDArray[np.generic]]:
                 with archive.open(member) as stream:
                     arrays[member.filename.removesuffix(".npy")] = npy.read_array(stream, allow_pickle=False)
             return arrays
-    except (
-        zipfile.BadZipFile,
-        zlib.error,
-        lzma.LZMAError,
-        struct.error,
-        EOFError,
-        ValueError,
-        OSError,
-        NotImplementedError,
-        RuntimeError,
-    ) as error:
+    except (*_DAMAGED, EOFError, ValueError, OSError, RuntimeError) as error:
         raise UserError(
             f"{source} is not a whole .npz file; it is truncated, damaged or encrypted."
         ) from error

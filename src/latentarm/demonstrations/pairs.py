@@ -48,11 +48,8 @@ def make_pairs(
     layout = context_layout(demonstrations, context)
     for index, episode in enumerate(demonstrations.episodes):
         moving = slice(*moving_range(episode.state, episode.timestamp))
-        start, action = (
-            _recorded(episode, moving, index)
-            if actions == "recorded"
-            else _displaced(episode, moving, window)
-        )
+        recorded = actions == "recorded"
+        start, action = _recorded(episode, moving, index) if recorded else _displaced(episode, moving, window)
         seen = episode_contexts(episode, context, index)
         contexts.append(seen[start])
         held.append(held_things(chain, layout, seen)[start])

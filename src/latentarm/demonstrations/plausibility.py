@@ -12,7 +12,6 @@ from latentarm.robots.robot import Robot
 SLOWEST_HZ: Final = 1.0
 FASTEST_HZ: Final = 1000.0
 RATE_TOLERANCE: Final = 0.2  # of the timestamps' rate, as a share of the stated one
-
 IMPLAUSIBLE_RAD_S: Final = 30.0
 """Five turns a second, faster than any arm's joint; usually a sign of lost samples or wrong units."""
 
@@ -23,8 +22,8 @@ def check_rate(demonstrations: Demonstrations, source: str) -> None:
     if not SLOWEST_HZ <= rate <= FASTEST_HZ:
         raise UserError(
             f"{source}: the sampling rate is {rate:g} Hz; recordings of arms have {SLOWEST_HZ:g} to"
-            f" {FASTEST_HZ:g} Hz:"
-            " state the right one with --rate-hz, or check the unit of the timestamps (s)."
+            f" {FASTEST_HZ:g} Hz: state the right one with --rate-hz, or check the unit of the timestamps"
+            " (s)."
         )
     steps = np.concatenate([np.diff(episode.timestamp) for episode in demonstrations.episodes])
     timed = 1.0 / float(np.median(steps))

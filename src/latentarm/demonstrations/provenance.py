@@ -9,7 +9,6 @@ from latentarm import __version__
 from latentarm.core.types import Provenance
 
 BY_HAND: Final = "by_hand"  # `Provenance.controller` of hand guiding
-
 FIELDS: Final = tuple(field.name for field in fields(Provenance) if field.name != "complete")
 """The fields that are text."""
 

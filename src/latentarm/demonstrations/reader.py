@@ -57,28 +57,22 @@ def read_episodes(root: Path, info: Info) -> tuple[Episode, ...]:
         return ()
     size = sum(path.lstat().st_size for path in root.glob("*/**/*.parquet"))
     with bounded_memory(str(root), size):
-        return _read_committed(root, info)
-
-
-def _read_committed(root: Path, info: Info) -> tuple[Episode, ...]:
-    rows = committed_episodes(root, info)
-    folder = root / "meta/episodes"
-    length, chunk, file = (
-        integer_column(rows, name, folder) for name in ("length", "data/chunk_index", "data/file_index")
-    )
-    if length.sum() != info.frames:
-        raise UserError(
-            f"{folder} is damaged: its episodes hold {length.sum()} samples and not {info.frames}."
-        )
-    tasks = ["; ".join(names) for names in _texts(rows.column("tasks"), folder)]
-    episodes: list[Episode] = []
-    while len(episodes) < info.episodes:
-        first = len(episodes)
-        same = (chunk[first:] == chunk[first]) & (file[first:] == file[first])
-        stop = info.episodes if same.all() else first + int(np.argmin(same))
-        path = root / DATA_PATTERN.format(chunk_index=int(chunk[first]), file_index=int(file[first]))
-        episodes += read_file(path, info, first, length[first:stop].tolist(), tasks[first:stop])
-    return tuple(episodes)
+        rows = committed_episodes(root, info)
+        folder = root / "meta/episodes"
+        names = ("length", "data/chunk_index", "data/file_index")
+        length, chunk, file = (integer_column(rows, name, folder) for name in names)
+        total = length.sum()
+        if total != info.frames:
+            raise UserError(f"{folder} is damaged: its episodes hold {total} samples and not {info.frames}.")
+        tasks = ["; ".join(names) for names in _texts(rows.column("tasks"), folder)]
+        episodes: list[Episode] = []
+        while len(episodes) < info.episodes:
+            first = len(episodes)
+            same = (chunk[first:] == chunk[first]) & (file[first:] == file[first])
+            stop = info.episodes if same.all() else first + int(np.argmin(same))
+            path = root / DATA_PATTERN.format(chunk_index=int(chunk[first]), file_index=int(file[first]))
+            episodes += read_file(path, info, first, length[first:stop].tolist(), tasks[first:stop])
+        return tuple(episodes)
 
 
 def _texts(column: Any, path: Path) -> list[list[str]]:
@@ -135,21 +129,16 @@ def read_episodes_v2(root: Path, info: Info) -> tuple[Episode, ...]:
         raise UserError(f"{path} is damaged: it lists {len(lines)} episodes and not {info.episodes}.")
     size = sum(file.lstat().st_size for file in root.glob("data/*/*.parquet"))
     with bounded_memory(str(root), size):
-        return _read_v2(root, info, lines)
-
-
-def _read_v2(root: Path, info: Info, lines: list[bytes]) -> tuple[Episode, ...]:
-    path = root / V2_EPISODES_PATH
-    episodes: list[Episode] = []
-    for number, line in enumerate(lines):
-        length, task = _v2_entry(parse_object(line, f"{path}, line {number + 1},"), number, path)
-        if not 0 < length <= info.frames:
-            raise UserError(f"{path} is damaged: episode {number} cannot have {length} samples.")
-        name = V2_DATA_PATTERN.format(chunk=number // info.chunk_files, episode=number)
-        episodes += read_file(root / name, info, number, [length], [task])
-    if sum(len(episode.timestamp) for episode in episodes) != info.frames:
-        raise UserError(f"{path} is damaged: its episodes do not hold {info.frames} samples.")
-    return tuple(episodes)
+        episodes: list[Episode] = []
+        for number, line in enumerate(lines):
+            length, task = _v2_entry(parse_object(line, f"{path}, line {number + 1},"), number, path)
+            if not 0 < length <= info.frames:
+                raise UserError(f"{path} is damaged: episode {number} cannot have {length} samples.")
+            name = V2_DATA_PATTERN.format(chunk=number // info.chunk_files, episode=number)
+            episodes += read_file(root / name, info, number, [length], [task])
+        if sum(len(episode.timestamp) for episode in episodes) != info.frames:
+            raise UserError(f"{path} is damaged: its episodes do not hold {info.frames} samples.")
+        return tuple(episodes)
 
 
 def _v2_entry(entry: dict[str, Any], number: int, path: Path) -> tuple[int, str]:

@@ -45,12 +45,9 @@ def read_robomimic(
 ) -> SourceData:
     """Read demonstrations from a robomimic HDF5 file.
 
-    Args:
-        source: the file.
-        rate_hz: for environments whose arguments lack it or are wrong.
-        task: the environment's name by default, else the file's.
-        actions: ``"known"`` keeps actions as described above; ``"joint_velocity"`` states that the first n
-            entries are joint velocities in rad/s.
+    ``rate_hz`` is for environments whose arguments lack it or are wrong; the task is the environment's name
+    by default, else the file's. ``"known"`` actions are kept as described above; ``"joint_velocity"`` states
+    that the first n entries are joint velocities in rad/s.
     """
     with opened_hdf5(source) as file:
         data = group(file, "data", source)

@@ -150,9 +150,6 @@ def _episode(index: int, episode: Episode, robot: Robot | None) -> EpisodeSummar
     speed = _speed(episode).max(axis=1)
     elapsed = np.diff(episode.timestamp)
     duration = float(episode.timestamp[-1] - episode.timestamp[0])
-    path_m = None
-    if robot is not None:
-        path_m = _length(robot.chain.forward(episode.state).position)
     return EpisodeSummary(
         index=index,
         task=episode.task,
@@ -160,7 +157,7 @@ def _episode(index: int, episode: Episode, robot: Robot | None) -> EpisodeSummar
         duration_s=duration,
         rate_hz=(len(episode.timestamp) - 1) / duration,
         path_rad=_length(episode.state),
-        path_m=path_m,
+        path_m=None if robot is None else _length(robot.chain.forward(episode.state).position),
         peak_speed_rad_s=float(speed.max()),
         still_fraction=float(elapsed[speed <= STILL_RAD_S].sum() / duration),
     )

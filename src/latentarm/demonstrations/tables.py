@@ -21,7 +21,6 @@ from latentarm.demonstrations.info import ACTION, INDEX_DTYPES, STATE, Feature
 Table: TypeAlias = Any  # a `pyarrow.Table`: the library ships no types
 TASK_COLUMN: Final = "__index_level_0__"  # pandas' name for an unnamed index, in which readers look tasks up
 MAX_TABLE_COLUMNS: Final = 10_000  # the table of episodes has some ten for each feature
-
 INTEGER_COLUMNS: Final = tuple(name for name, dtype in INDEX_DTYPES.items() if dtype == "int64")
 
 
@@ -109,43 +108,23 @@ def statistics_json(episodes: Table) -> str:
 
 def task_table(tasks: Sequence[str]) -> Table:
     """The table of tasks, with the note that tells pandas its index."""
+    keys = ("name", "field_name", "pandas_type", "numpy_type", "metadata")
+    values = (
+        (None, None, "unicode", "object", {"encoding": "UTF-8"}),
+        ("task_index", "task_index", "int64", "int64", None),
+        (None, TASK_COLUMN, "unicode", "object", None),
+    )
+    index, *columns = (dict(zip(keys, one, strict=True)) for one in values)
     note = {
         "index_columns": [TASK_COLUMN],
-        "column_indexes": [
-            {
-                "name": None,
-                "field_name": None,
-                "pandas_type": "unicode",
-                "numpy_type": "object",
-                "metadata": {"encoding": "UTF-8"},
-            }
-        ],
-        "columns": [
-            {
-                "name": "task_index",
-                "field_name": "task_index",
-                "pandas_type": "int64",
-                "numpy_type": "int64",
-                "metadata": None,
-            },
-            {
-                "name": None,
-                "field_name": TASK_COLUMN,
-                "pandas_type": "unicode",
-                "numpy_type": "object",
-                "metadata": None,
-            },
-        ],
+        "column_indexes": [index],
+        "columns": columns,
         "attributes": {},
         "creator": {"library": "pyarrow", "version": pa.__version__},
         "pandas_version": "2.2.0",
     }
-    table = pa.table(
-        {
-            "task_index": pa.array(range(len(tasks)), type=pa.int64()),
-            TASK_COLUMN: pa.array(list(tasks), type=pa.string()),
-        }
-    )
+    numbers, texts = pa.array(range(len(tasks)), type=pa.int64()), pa.array(list(tasks), type=pa.string())
+    table = pa.table({"task_index": numbers, TASK_COLUMN: texts})
     return table.replace_schema_metadata({"pandas": json.dumps(note)})
 
 
@@ -200,12 +179,8 @@ def float_column(table: Table, name: str, width: int, path: Path) -> FloatArray:
         ragged, values = bool(np.any(np.diff(column.offsets.to_numpy()) != width)), column.flatten()
     else:
         ragged, values = width != 1, column
-    if (
-        ragged
-        or column.null_count
-        or len(values) != len(column) * width
-        or not pa.types.is_floating(values.type)
-    ):
+    ragged |= bool(column.null_count) or len(values) != len(column) * width
+    if ragged or not pa.types.is_floating(values.type):
         raise UserError(f"{path}: the column {name} is ragged: every entry must hold {width} numbers.")
     return values.to_numpy(zero_copy_only=False).astype(np.float64).reshape(-1, width)
 

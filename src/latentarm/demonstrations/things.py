@@ -11,7 +11,6 @@ from latentarm.core.errors import UserError
 from latentarm.core.types import Episode
 
 ENVIRONMENT: Final = "observation.environment_state"
-
 ENTRIES: Final = ("x", "y", "z", "qw", "qx", "qy", "qz")
 
 

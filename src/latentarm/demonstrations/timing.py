@@ -113,11 +113,8 @@ def _is_gap(steps: FloatArray) -> "np.ndarray[tuple[int], np.dtype[np.bool_]]":
 def _gaps(episode: Episode) -> IntArray:
     """Samples before a gap; none in an episode that is ragged or whose times do not grow."""
     time_s = episode.timestamp
-    recorded = (
-        episode.state,
-        *([] if episode.action is None else [episode.action]),
-        *episode.extras.values(),
-    )
+    action = () if episode.action is None else (episode.action,)
+    recorded = (episode.state, *action, *episode.extras.values())
     if time_s.ndim != 1 or any(values.shape[:1] != time_s.shape for values in recorded):
         return np.zeros(0, np.int64)
     steps = np.diff(time_s)

@@ -114,11 +114,8 @@ def _units(
     else:
         how = "said by the file or its layout" if data.in_rad else "assumed: the file does not say"
     check_degrees(data.demonstrations, columns.joints, units, robot, source)
-    named = (
-        units[0]
-        if len(set(units)) == 1
-        else ", ".join(map("=".join, zip(robot.joint_names, units, strict=True)))
-    )
+    each = ", ".join(map("=".join, zip(robot.joint_names, units, strict=True)))
+    named = units[0] if len(set(units)) == 1 else each
     text = f"{named} ({how}), stored in rad"
     if "normalized" in units:
         text += "; -100 to 100 is assumed to be each joint's range in the robot's model"
@@ -205,7 +202,6 @@ def _action_text(first: Episode, kind: str) -> str:
     if kind == "velocity":
         return "joint velocities, rad/s"
     if kind == "position":
-        return (
-            f"target positions, stored as {TARGET_POSITION}; velocities come from the states' displacements"
-        )
+        stored = f"target positions, stored as {TARGET_POSITION}"
+        return f"{stored}; velocities come from the states' displacements"
     return "left out: the file does not say what they are (--actions takes your word); taken from the states"

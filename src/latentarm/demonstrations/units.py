@@ -11,11 +11,8 @@ from latentarm.core.types import BoolArray, FloatArray
 from latentarm.robots.limits import JointLimits
 
 Unit = Literal["rad", "deg", "normalized"]
-
 UNITS: Final[tuple[Unit, ...]] = get_args(Unit)
-
 TARGET_POSITION: Final = "action.target_position"  # commanded joint positions, rad
-
 FULL_TURN: Final = "wrist_roll"
 """The joint of SO-100 and SO-101 that LeRobot calibrates to a full turn, whatever its stops."""
 

@@ -18,7 +18,6 @@ from latentarm.robots.limits import JointLimits
 
 LIMIT_TOLERANCE_RAD: Final = 0.01  # of a state past a limit: encoder offsets and compliance, 0.6 degrees
 CLIP_HINT_RAD: Final = 0.2  # calibrations of one kind of arm differ by less
-
 RESERVED_FEATURES: Final = frozenset(
     {"action", "episode_index", "frame_index", "index", "observation.state", "task_index", "timestamp"}
 )
@@ -147,11 +146,9 @@ def _check_finite(name: str, values: FloatArray, where: str) -> None:
         return
     place = np.argwhere(~representable)[0]
     value = values[tuple(place)]
-    fault = (
-        "is not a number" if np.isnan(value) else "is infinite" if np.isinf(value) else "is absurdly large"
-    )
+    fault = "not a number" if np.isnan(value) else "infinite" if np.isinf(value) else "absurdly large"
     entry = f"[{place[1]}]" if len(place) > 1 else ""
-    raise UserError(f"{where}, sample {place[0]}: {name}{entry} {fault} ({value:g}).")
+    raise UserError(f"{where}, sample {place[0]}: {name}{entry} is {fault} ({value:g}).")
 
 
 def _check_times(timestamp: FloatArray, where: str) -> None:
