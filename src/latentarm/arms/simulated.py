@@ -45,16 +45,9 @@ class SimulatedArm(Arm):
         settles_s: float = SETTLED_S,
     ) -> None:
         check_start(robot, state)
-        self._spec = ArmSpec(
-            robot.joint_names,
-            rate_hz,
-            stops_after_s,
-            simulated=True,
-            gripper=None if gripper is None else gripper.gripper,
-        )
-        self._gripper = gripper
-        self._settles_s = settles_s
-        self._now_s = now_s
+        fingers = None if gripper is None else gripper.gripper
+        self._spec = ArmSpec(robot.joint_names, rate_hz, stops_after_s, simulated=True, gripper=fingers)
+        self._gripper, self._settles_s, self._now_s = gripper, settles_s, now_s
         self._at_s = now_s()
         self._phase: ArmPhase = "off"
         self._rest = np.zeros(robot.dof)

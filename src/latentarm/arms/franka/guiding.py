@@ -24,8 +24,7 @@ class Guiding:
     """
 
     def __init__(self, franky: Any, limits: FrankaLimits) -> None:
-        self._franky = franky
-        self._limits = limits
+        self._franky, self._limits = franky, limits
         self._began_s = 0.0
         self.phase: Literal["no", "on", "ending"] = "no"
 

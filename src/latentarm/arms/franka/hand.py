@@ -35,8 +35,7 @@ class Hand:
     """
 
     def __init__(self, hand: "franky.Gripper", gripper: Gripper) -> None:
-        self._hand = hand
-        self._gripper = gripper
+        self._hand, self._gripper = hand, gripper
         self._lock = threading.Lock()
         self._asked: GripperCommand | None = None
         self._carried_out: GripperCommand | None = None

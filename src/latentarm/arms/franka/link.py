@@ -176,15 +176,9 @@ def findings(link: Link, options: FrankaOptions, robot: Robot) -> Findings:
             facts.append(Fact(f"largest {name}", ", ".join(f"{value:g}" for value in values) + f" {unit}"))
     if link.hand is not None:
         hand = link.hand.state
-        facts.append(
-            Fact(
-                "hand",
-                f"version {link.hand.server_version}, {1000 * hand.width:.0f} of"
-                f" {1000 * hand.max_width:.0f} mm open, {hand.temperature} °C",
-            )
-        )
-    facts.append(Fact("clock", _clock(link)))
-    facts.append(Fact("round trip", _round_trip(link, options)))
+        opened = f"{1000 * hand.width:.0f} of {1000 * hand.max_width:.0f} mm open"
+        facts.append(Fact("hand", f"version {link.hand.server_version}, {opened}, {hand.temperature} °C"))
+    facts += [Fact("clock", _clock(link)), Fact("round trip", _round_trip(link, options))]
     return Findings(tuple(facts), refusals(link, options, robot))
 
 
@@ -230,11 +224,9 @@ def _round_trip(link: Link, options: FrankaOptions) -> str:
 
 
 def _thresholds(options: FrankaOptions) -> str:
-    return (
-        f"{', '.join(f'{value:g}' for value in options.collision_torque_nm)} N m;"
-        f" {', '.join(f'{value:g}' for value in options.collision_force_n)} N;"
-        f" {', '.join(f'{value:g}' for value in options.collision_moment_nm)} N m"
-    )
+    figures = (options.collision_torque_nm, options.collision_force_n, options.collision_moment_nm)
+    torque, force, moment = (", ".join(f"{value:g}" for value in one) for one in figures)
+    return f"{torque} N m; {force} N; {moment} N m"
 
 
 def _realtime(franky: Any, options: FrankaOptions) -> Any:

@@ -80,9 +80,7 @@ class Worker:
         if link.limits is None:
             raise ValueError("the limits of the arm are not known")
         self.limits = link.limits  # the arm's
-        self._link = link
-        self._reconnect = reconnect
-        self._now_s = now_s
+        self._link, self._reconnect, self._now_s = link, reconnect, now_s
         self._lock = threading.Lock()
         self._order: Order | None = None
         self.trouble: Trouble | None = None  # why the arm takes no commands

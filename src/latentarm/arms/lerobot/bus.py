@@ -140,9 +140,8 @@ class MotorsBus:
             told["firmware"] = ", ".join(sorted({f"{major[name]}.{minor[name]}" for name in self.motors}))
         if self._has("Acceleration"):
             ramp = min(self._read("Acceleration").values()) * RAMP_RAD_S2
-            told["acceleration"] = (
-                f"{ramp:.0f} rad/s² by its registers" if ramp else "no limit in its registers"
-            )
+            limit = f"{ramp:.0f} rad/s² by" if ramp else "no limit in"
+            told["acceleration"] = f"{limit} its registers"
         if self._has("Present_Voltage"):
             told["supply"] = f"{min(self._read('Present_Voltage').values()) / 10:.1f} V at the weakest motor"
         if self._bus.calibration:
@@ -270,9 +269,8 @@ def _robot(options: Options) -> Any:
     # So that positions are angles, and nothing lets the arm drop.
     given |= {"use_degrees": True, "disable_torque_on_disconnect": False}
     try:
-        robot = robots.make_robot_from_config(
-            config(**{name: value for name, value in given.items() if name in names})
-        )
+        taken = {name: value for name, value in given.items() if name in names}
+        robot = robots.make_robot_from_config(config(**taken))
     except ImportError as error:
         raise UserError(f"LeRobot cannot make {options.kind}: {error}.") from error
     if not hasattr(robot, "bus") or "port" not in names:

@@ -37,8 +37,7 @@ class JointStates:
     """Picks an arm's joints out of messages by name; keeps the newest position of its ``gripper``."""
 
     def __init__(self, joints: tuple[str, ...], gripper_joint: str) -> None:
-        self._joints = joints
-        self._gripper_joint = gripper_joint
+        self._joints, self._gripper_joint = joints, gripper_joint
         self.gripper: float | None = None
 
     def take(self, message: Mapping[str, Any]) -> Measured | None:
@@ -62,11 +61,8 @@ class JointStates:
         if len(set(names)) < len(names):
             raise UnusableStatesError("The joint states name a joint twice: end one of their publishers.")
         stamp = _stamp(message)
-        return Measured(
-            stamp,
-            _figures(message, "position", names, self._joints),
-            _figures(message, "velocity", names, self._joints),
-        )
+        q, dq = (_figures(message, entry, names, self._joints) for entry in ("position", "velocity"))
+        return Measured(stamp, q, dq)
 
 
 @final

@@ -77,11 +77,8 @@ class Link:
         from roslibpy.core import RosTimeoutError, ServiceException
 
         try:
-            return dict(
-                self._lib.Service(self._ros, service, kind).call(
-                    self._lib.ServiceRequest(), timeout=timeout_s
-                )
-            )
+            asked = self._lib.Service(self._ros, service, kind)
+            return dict(asked.call(self._lib.ServiceRequest(), timeout=timeout_s))
         except (RosTimeoutError, ServiceException):
             return None
 

@@ -23,8 +23,7 @@ class Session:
     """
 
     def __init__(self, link: Link, name: str, now_s: Callable[[], float]) -> None:
-        self._link = link
-        self._now_s = now_s
+        self._link, self._now_s = link, now_s
         self._topic = f"{name}/command"
         self._key = secrets.token_hex(16)
         self._owner = hashlib.sha256(self._key.encode()).hexdigest()[:16]

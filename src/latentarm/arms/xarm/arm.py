@@ -43,8 +43,7 @@ class XArm(GuidableArm):
         self._options = read_options(address)
         self._sdk = load_sdk()
         self._host = address.host
-        self._robot = robot
-        self._now_s = now_s
+        self._robot, self._now_s = robot, now_s
         self._shared = Shared()
         self._driver: Driver | None = None
         self._last: tuple[JointReport, GripperReading | None] | None = None

@@ -116,9 +116,7 @@ class Controller:
             spans.append(time.monotonic() - begun_s)
         return statistics.median(spans), max(spans)
 
-    def _ask(
-        self, request: Callable[[], list[T]], figures: int = 0, *, within_s: float = _QUERY_S
-    ) -> list[T]:
+    def _ask(self, query: Callable[[], list[T]], figures: int = 0, *, within_s: float = _QUERY_S) -> list[T]:
         """Ask, and check the answer, which has at least ``figures`` figures and comes within ``within_s``.
 
         Raises LinkLostError if no answer comes in time, or one that cannot be read, and RefusedError if the
@@ -126,7 +124,7 @@ class Controller:
         """
         self._commands.set_timeout(within_s)
         try:
-            answer = request()
+            answer = query()
             code = int(answer[0])
         except (IndexError, TypeError, ValueError, OverflowError) as error:
             self.close()

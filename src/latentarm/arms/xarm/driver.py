@@ -46,9 +46,7 @@ class Driver(threading.Thread):
         self, sdk: Sdk, robot: Robot, shared: Shared, session: Session, reopen: Callable[[int], Session]
     ) -> None:
         super().__init__(name="xarm driver", daemon=True)
-        self._sdk = sdk
-        self._robot = robot
-        self._shared = shared
+        self._sdk, self._robot, self._shared = sdk, robot, shared
         self.session = session
         self._reopen = reopen
         self._watch = Watch(robot.joint_names)

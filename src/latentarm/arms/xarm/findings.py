@@ -119,16 +119,11 @@ def _setting_refusals(session: Session, robot: Robot, *, bare: bool) -> tuple[st
             "The arm's collision detection is off: set a sensitivity of 1 or more in UFACTORY Studio."
         )
     slack = 1.0 + _SINGLE
-    for what, own, unit in (
-        ("speed", float(robot.limits.velocity.max()) - status.speed_rad_s * slack, "rad/s"),
-        (
-            "acceleration",
-            float(robot.limits.acceleration.max()) - status.acceleration_rad_s2 * slack,
-            "rad/s²",
-        ),
+    for what, own, limit, unit in (
+        ("speed", robot.limits.velocity, status.speed_rad_s, "rad/s"),
+        ("acceleration", robot.limits.acceleration, status.acceleration_rad_s2, "rad/s²"),
     ):
-        if not own <= 0.0:
-            limit = status.speed_rad_s if what == "speed" else status.acceleration_rad_s2
+        if not float(own.max()) - limit * slack <= 0.0:
             refusals.append(
                 f"The controller limits the {what} of joints to {limit:.3g} {unit}, less than {robot.name}"
                 f" states: lower the robot's {what} limits with --limits FILE."
@@ -139,27 +134,21 @@ def _setting_refusals(session: Session, robot: Robot, *, bare: bool) -> tuple[st
 def _facts(sdk: Sdk, session: Session, robot: Robot) -> tuple[Fact, ...]:
     identity, status = session.identity, session.status
     centre = ", ".join(f"{figure:.0f}" for figure in status.load_centre_mm)
-    gravity = np.array(status.gravity)
-    tilt = math.degrees(
-        math.acos(float(np.clip(-gravity[2] / max(np.linalg.norm(gravity), 1e-9), -1.0, 1.0)))
-    )
+    down = np.array(status.gravity)
+    tilt = math.degrees(math.acos(float(np.clip(-down[2] / max(np.linalg.norm(down), 1e-9), -1.0, 1.0))))
+    named = ", ".join(robot.joint_names)
+    limits = f"{status.speed_rad_s:.2f} rad/s, {status.acceleration_rad_s2:.1f} rad/s²"
     facts = [
         Fact("arm", f"{identity.name}, {status.axes} joints (type {status.kind})"),
         Fact("firmware", identity.version),
         Fact("serial number", identity.arm_serial or "not told"),
         Fact("control box", identity.box_serial or "not told"),
         Fact("library", f"xarm-python-sdk {sdk.version}"),
-        Fact(
-            "joints",
-            f"{robot.name} by order: " + ", ".join(robot.joint_names) + f" are taken for J1 to J{robot.dof}",
-        ),
+        Fact("joints", f"{robot.name} by order: {named} are taken for J1 to J{robot.dof}"),
         Fact("payload", f"{status.load_kg:.2f} kg, centre ({centre}) mm"),
         Fact("mounting", "upright" if tilt < 1.0 else f"tilted by {tilt:.0f}°"),
         Fact(
-            "limits",
-            f"{status.speed_rad_s:.2f} rad/s, {status.acceleration_rad_s2:.1f} rad/s²"
-            + (", reduced mode on" if status.reduced else "")
-            + (", safety boundary on" if status.fenced else ""),
+            "limits", limits + ", reduced mode on" * status.reduced + ", safety boundary on" * status.fenced
         ),
         Fact("collision sensitivity", f"{status.collision_sensitivity} of 5"),
         Fact("warning", "none" if not status.warning else f"{status.warning}"),
@@ -168,13 +157,9 @@ def _facts(sdk: Sdk, session: Session, robot: Robot) -> tuple[Fact, ...]:
     if status.simulated:
         facts.append(Fact("simulation", "the controller simulates its arm: nothing real moves"))
     if session.gripper is not None and robot.gripper is not None:
-        facts.append(
-            Fact(
-                "gripper",
-                f"{1000 * session.gripper.reading.width_m:.0f} of {1000 * robot.gripper.width_m:.0f} mm open;"
-                " how hard it presses cannot be set",
-            )
-        )
+        width_mm, most_mm = 1000 * session.gripper.reading.width_m, 1000 * robot.gripper.width_m
+        opened = f"{width_mm:.0f} of {most_mm:.0f} mm open"
+        facts.append(Fact("gripper", f"{opened}; how hard it presses cannot be set"))
     return tuple(facts)
 
 
@@ -182,10 +167,9 @@ def _timing(session: Session, median_s: float, worst_s: float, rate_hz: float) -
     timed = session.report.controller_s is not None
     limit = session.status.acceleration_rad_s2
     from_half = f", plus {1000 * 0.5 / limit:.0f} ms to rest from 0.5 rad/s" if limit > 0.0 else ""
+    clock = "the controller's, in every report" if timed else "not told: reports count from arrival"
     return (
-        Fact(
-            "clock", "the controller's, in every report" if timed else "not told: reports count from arrival"
-        ),
+        Fact("clock", clock),
         Fact("reports", f"{rate_hz:.0f} per second"),
         Fact("round trip", f"{1000 * median_s:.1f} ms at the median, {1000 * worst_s:.1f} ms at most"),
         Fact("stop time", f"begins within {1000 * ANSWER_S + 20:.0f} ms of the end of a command{from_half}"),

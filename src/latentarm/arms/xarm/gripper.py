@@ -48,8 +48,7 @@ class GripperLink:
                 f"The controller at {host} does not answer on port {port or PORT}, which the gripper"
                 f" needs: check that no firewall is in between ({error})."
             ) from error
-        self._sdk = sdk
-        self._gripper = gripper
+        self._sdk, self._gripper = sdk, gripper
         self._commands = sdk.commands(self._socket)
         self._commands.set_timeout(_ANSWER_S)
         self._lock = threading.Condition()

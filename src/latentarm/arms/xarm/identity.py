@@ -41,13 +41,8 @@ def read_identity(told: str) -> Identity:
     full = _LINE.search(told)
     if full is not None:
         axes, kind, arm, box, *firmware = full.groups()
-        return Identity(
-            (int(firmware[0]), int(firmware[1]), int(firmware[2])),
-            int(axes),
-            int(kind),
-            _printable(arm),
-            _printable(box),
-        )
+        major, minor, patch = map(int, firmware)
+        return Identity((major, minor, patch), int(axes), int(kind), _printable(arm), _printable(box))
     short = _FIRMWARE.search(told)
     if short is None:
         raise LinkLostError(

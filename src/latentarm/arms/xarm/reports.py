@@ -146,9 +146,7 @@ class JointReports:
     ) -> None:
         kind: Literal[30000, 30003] = TIMED_PORT if timed else PLAIN_PORT
         self._report: Any = sdk.report(kind)
-        self._dof = dof
-        self._timed = timed
-        self._now_s = now_s
+        self._dof, self._timed, self._now_s = dof, timed, now_s
         self.clock = ReportClock()
         self._earlier: deque[tuple[float, FloatArray]] = deque()
         # None before the first; a report that repeats the controller's time does not count

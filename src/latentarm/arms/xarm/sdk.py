@@ -67,10 +67,5 @@ def load_sdk() -> Sdk:
             "--arm xarm cannot import xarm-python-sdk, which keeps a log in ~/.UFACTORY:"
             f" make the home directory writable ({error})."
         ) from error
-    return Sdk(
-        version.__version__,
-        commands.UxbusCmdTcp,
-        report.ReportDataStructure,
-        codes.ControllerErrorCodeMap,
-        codes.GripperErrorCodeMap,
-    )
+    errors = codes.ControllerErrorCodeMap, codes.GripperErrorCodeMap
+    return Sdk(version.__version__, commands.UxbusCmdTcp, report.ReportDataStructure, *errors)
