@@ -56,15 +56,8 @@ def _fork() -> _Kind:
     root = -_TINE_LENGTH_M
     half = _TINE_YS[-1] + _TINE_RADIUS_M
     bar = Part("box", (0.002, half, 0.006), (0.0, 0.0, root - 0.006), colour=_STEEL)
-    tines = tuple(
-        Part(
-            "capsule",
-            (_TINE_RADIUS_M, _TINE_LENGTH_M / 2.0 - _TINE_RADIUS_M),
-            (0.0, y, root / 2.0),
-            colour=_STEEL,
-        )
-        for y in _TINE_YS
-    )
+    size = (_TINE_RADIUS_M, _TINE_LENGTH_M / 2.0 - _TINE_RADIUS_M)
+    tines = tuple(Part("capsule", size, (0.0, y, root / 2.0), colour=_STEEL) for y in _TINE_YS)
     tips = np.array([[0.0, y, 0.0] for y in _TINE_YS])
     what = Attachment("fork", Tines(tips, _TINE_LENGTH_M, half))
     return _Kind(what, _FORK_REACH_M, (_handle(_FORK_REACH_M, root - 0.012), bar), 0.04, tines, 0.01)

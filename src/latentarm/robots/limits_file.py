@@ -173,9 +173,7 @@ def _gripper(entry: object, where: str) -> StatedGripper:
     for key in needed:
         if key not in given:
             raise UserError(f"{where}: {GRIPPER} lacks {key}: give {', '.join(needed)}.")
-    figures = {
-        name: number_of(given[key], where, f"{GRIPPER}.{key}") for key, name in _GRIPPER_FIGURES.items()
-    }
+    figures = {one: number_of(given[key], where, f"{GRIPPER}.{key}") for key, one in _GRIPPER_FIGURES.items()}
     if min(figures.values()) <= 0.0:
         raise UserError(f"{where}: the figures of {GRIPPER} must be above zero.")
     joints = given["joints"]

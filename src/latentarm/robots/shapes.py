@@ -178,11 +178,8 @@ def _belongs(model: mujoco.MjModel, reading: ModelChain, body: int) -> bool:
 
 def _solid_geoms(model: mujoco.MjModel, body: int) -> list[int]:
     first = int(model.body_geomadr[body])
-    geoms = [
-        geom
-        for geom in range(first, first + int(model.body_geomnum[body]))
-        if model.geom_type[geom] != _PLANE
-    ]
+    own = range(first, first + int(model.body_geomnum[body]))
+    geoms = [geom for geom in own if model.geom_type[geom] != _PLANE]
     colliding = [geom for geom in geoms if model.geom_contype[geom] or model.geom_conaffinity[geom]]
     return colliding or geoms
 

@@ -1,7 +1,7 @@
 """Reads a `Chain` from a MuJoCo model."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import final
 
 import mujoco
@@ -83,15 +83,7 @@ def read(model: mujoco.MjModel, end_effectors: Sequence[str]) -> ModelChain:
         Frame(name, int(body_link[body]), body_transform[body] @ local) for name, body, local in tools
     )
     return ModelChain(
-        chain=Chain(
-            joint_names=chain.joint_names,
-            parent=chain.parent,
-            offset=chain.offset,
-            axis=axis,
-            anchor=anchor,
-            slide=slide,
-            tools=frames,
-        ),
+        chain=replace(chain, tools=frames),
         joints=joints,
         body_link=body_link,
         body_transform=body_transform,

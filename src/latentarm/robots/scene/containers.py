@@ -73,15 +73,9 @@ def _round(
         turn = Rotation.from_euler("ZY", [2.0 * np.pi * side / SIDES, flare_rad])
         out = Rotation.from_euler("Z", 2.0 * np.pi * side / SIDES)
         middle = out.apply([radius_m + half / np.cos(flare_rad) + lean / 2.0, 0.0, height_m / 2.0])
-        parts.append(
-            Part(
-                "box",
-                (half, float(width), float(slant / 2.0)),
-                (float(middle[0]), float(middle[1]), float(middle[2])),
-                _quaternion(turn),
-                colour,
-            )
-        )
+        size = (half, float(width), float(slant / 2.0))
+        place = (float(middle[0]), float(middle[1]), float(middle[2]))
+        parts.append(Part("box", size, place, _quaternion(turn), colour))
     return Container(tuple(parts), Interior(float(radius_m + lean), floor_m - half, height_m))
 
 
