@@ -83,17 +83,7 @@ def coming_to(task: Task, kind: StepKind, goal: str, waypoint: Pose) -> TaskStep
 
 def without_things(tool: Pose, time_s: float, poses: Mapping[str, Pose]) -> SceneState:
     """The state of a scene where nothing can be touched; ``poses`` are of things that stay where they are."""
-    return SceneState(
-        time_s=time_s,
-        tool=tool,
-        poses=poses,
-        speed_m_s={},
-        stabbed=frozenset(),
-        gripped=frozenset(),
-        bonds=frozenset(),
-        grains={},
-        force_n={},
-    )
+    return SceneState(time_s, tool, poses, {}, frozenset(), frozenset(), frozenset(), {}, {})
 
 
 def _reached(state: SceneState, task: Task, waypoint: Pose) -> bool:

@@ -235,11 +235,8 @@ class Progress:
         if self._lost is not None:
             return None if self._steps[self._lost].done(state) else self._lost
         thing = self._steps[self._done].holds if self._done < len(self._steps) else None
-        taking = [
-            index
-            for index, step in enumerate(self._steps[: self._done])
-            if step.kind in _TAKES and step.thing == thing
-        ]
+        done = enumerate(self._steps[: self._done])
+        taking = [index for index, step in done if step.kind in _TAKES and step.thing == thing]
         if thing is None or not taking:
             return None
         at = (state.poses[thing].position - state.tool.position) @ state.tool.rotation

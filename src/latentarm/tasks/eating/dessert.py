@@ -126,25 +126,14 @@ def _steps(rice: Interior) -> tuple[TaskStep, ...]:
     iced = CarriedOver(MARSHMALLOW, "icing", ICING_RADIUS_M)
     with_it = partial(TaskStep, holds=MARSHMALLOW)
     dipped = Interior(rice.radius_m, rice.bottom_m, rice.bottom_m + 0.025)
+    over_rice, over_plate = (CarriedOver(MARSHMALLOW, over, 0.03) for over in ("rice bowl", "own plate"))
     return (
         above(MARSHMALLOW),
         stab(MARSHMALLOW),
         with_it("above", "icing", "over the icing", iced, through[:1]),
         with_it("scooped", "icing", "drawn through the icing", swept, through),
-        with_it(
-            "above",
-            "rice bowl",
-            "over the rice",
-            CarriedOver(MARSHMALLOW, "rice bowl", 0.03),
-            (*out, *into[:1]),
-        ),
+        with_it("above", "rice bowl", "over the rice", over_rice, (*out, *into[:1])),
         with_it("dipped", "rice bowl", "dipped in rice", Within(MARSHMALLOW, "rice bowl", dipped), into),
-        with_it(
-            "above",
-            "own plate",
-            "over the own plate",
-            CarriedOver(MARSHMALLOW, "own plate", 0.03),
-            (*into[:1], high),
-        ),
+        with_it("above", "own plate", "over the own plate", over_plate, (*into[:1], high)),
         with_it("placed", "own plate", "set down", laid, (high, down)),
     )

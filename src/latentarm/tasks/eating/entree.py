@@ -98,29 +98,17 @@ def tofu(x: float, y: float, turn_rad: float) -> tuple[Thing, Thing]:
     beyond = pose.rotation @ np.array([0.0, HALF_M[1] + SLICE_HALF_M, 0.0])
     block = Part("box", HALF_M, colour=_COLOUR)
     piece = Part("box", (HALF_M[0], SLICE_HALF_M, HALF_M[2]), colour=_COLOUR)
+    there = Pose(pose.position + beyond, pose.rotation)
     return (
         Thing("tofu", (block,), mass_kg=0.03, pose=pose, friction=0.9, food=TOFU),
-        Thing(
-            "slice",
-            (piece,),
-            mass_kg=0.012,
-            pose=Pose(pose.position + beyond, pose.rotation),
-            friction=0.9,
-            food=TOFU,
-        ),
+        Thing("slice", (piece,), mass_kg=0.012, pose=there, friction=0.9, food=TOFU),
     )
 
 
 def cut_between() -> Bond:
     """The bond between slice and block."""
-    return Bond(
-        "tofu",
-        "slice",
-        point=(0.0, HALF_M[1], HALF_M[2]),
-        normal=(0.0, 1.0, 0.0),
-        depth_m=1.6 * HALF_M[2],
-        angle_rad=EDGE_RAD,
-    )
+    cut = (0.0, HALF_M[1], HALF_M[2])
+    return Bond("tofu", "slice", cut, (0.0, 1.0, 0.0), depth_m=1.6 * HALF_M[2], angle_rad=EDGE_RAD)
 
 
 def _at_cut(state: SceneState, height_m: float, turn_rad: float) -> Pose:

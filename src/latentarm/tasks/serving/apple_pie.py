@@ -165,9 +165,7 @@ def _apple_steps(things: Mapping[str, Thing], rooms: Mapping[str, Interior]) -> 
     spoon_up = 0.115
     strokes = _Strokes(spoon_up + 0.012)
     enter = Waypoint(partial(strokes.pose, index=0, up_m=BOWL_HEIGHT_M + 0.03))
-    to_and_fro = [
-        Waypoint(partial(strokes.pose, index=index), within_m=STROKE_M) for index in range(STIR_STROKES)
-    ]
+    to_and_fro = [Waypoint(partial(strokes.pose, index=i), within_m=STROKE_M) for i in range(STIR_STROKES)]
     above = Waypoint(partial(over, thing="bowl", height_m=spoon_up + 0.10))
     apple_in = Within("apple", "bowl", rooms["bowl"])
     stirred = Stirred("spoon", "bowl", rooms["bowl"], STIR_TURNS)
