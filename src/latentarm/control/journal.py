@@ -139,10 +139,8 @@ def _quoted(path: Path) -> str:
     return str(path.absolute()).replace("%", "%25").replace("?", "%3f").replace("#", "%23")
 
 
-def _episode(
-    database: sqlite3.Connection, path: Path, number: int, about: str, complete: int
-) -> JournalEpisode:
-    samples = database.execute(
+def _episode(db: sqlite3.Connection, path: Path, number: int, about: str, complete: int) -> JournalEpisode:
+    samples = db.execute(
         "SELECT figures, stop, limited_by FROM samples WHERE episode = ? ORDER BY number", (number,)
     ).fetchall()
     header = _checked_header(path, number, about)

@@ -115,9 +115,7 @@ class ControlLoop:
     ) -> None:
         check_arm(arm.spec, step.robot)
         check_rate(arm.spec, step.dt_s)
-        self._step = step
-        self._arm = arm
-        self._source = source
+        self._step, self._arm, self._source = step, arm, source
         self._clock = clock
         self._observers = tuple(observers)
         self._period_s = step.dt_s

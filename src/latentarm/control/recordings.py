@@ -42,9 +42,7 @@ def list_recordings(path: Path) -> list[NumberedEpisode]:
     Raises UserError where there is no journal, or one is damaged.
     """
     entries = [(journal, entry) for journal in journals_in(path) for entry in list_journal(journal)]
-    return [
-        NumberedEpisode(number, journal, entry) for number, (journal, entry) in enumerate(entries, start=1)
-    ]
+    return [NumberedEpisode(number, journal, one) for number, (journal, one) in enumerate(entries, start=1)]
 
 
 def read_recordings(

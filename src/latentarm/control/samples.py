@@ -30,18 +30,9 @@ def figures_of(record: StepRecord) -> Sequence[FloatArray]:
     """The numbers of a record, in the journal's order: scalars, arrays, the gripper's, the things'."""
     command = record.command
     measured, asked = record.gripper, command.gripper
+    figures = record.time_s, record.alpha, float(record.mode), command.duration_s
     return (
-        np.array(
-            [
-                record.time_s,
-                record.alpha,
-                float(record.mode),
-                command.duration_s,
-                record.bound_rad,
-                record.pace,
-                record.added,
-            ]
-        ),
+        np.array([*figures, record.bound_rad, record.pace, record.added]),
         record.state,
         record.input,
         record.latent,
