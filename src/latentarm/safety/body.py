@@ -36,13 +36,9 @@ class Body:
         self.link: IntArray = np.concatenate(
             [links, links, np.array([t.link for t in tools], dtype=np.int64)]
         )
-        self.local: FloatArray = np.concatenate(
-            [
-                capsules.start[self.capsule],
-                capsules.end[self.capsule],
-                np.array([t.transform[:3, 3] for t in tools]).reshape(-1, 3),
-            ]
-        )
+        tips = np.array([t.transform[:3, 3] for t in tools]).reshape(-1, 3)
+        ends = capsules.start[self.capsule], capsules.end[self.capsule]
+        self.local: FloatArray = np.concatenate([*ends, tips])
         radius = capsules.radius[self.capsule]
         # (P,), m; zero for tools
         self.radius: FloatArray = np.concatenate([radius, radius, np.zeros(len(tools))])

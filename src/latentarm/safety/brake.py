@@ -48,9 +48,7 @@ class Brake:
         stop_acceleration: FloatArray,
         stop_jerk: FloatArray,
     ) -> None:
-        self._velocity = velocity
-        self._acceleration = acceleration
-        self._stop_jerk = stop_jerk
+        self._velocity, self._acceleration, self._stop_jerk = velocity, acceleration, stop_jerk
         self._fall: _Fall | None = None
         if any_nonzero(acceleration):
             settle = np.abs(acceleration) / stop_jerk

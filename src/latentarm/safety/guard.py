@@ -179,11 +179,9 @@ class Guard:
         return zones.of_parts(grown)
 
     @staticmethod
-    def _entered(
-        distance: FloatArray, speed: FloatArray, path: StoppingPath, situation: Situation
-    ) -> IntArray:
+    def _entered(away: FloatArray, speed: FloatArray, path: StoppingPath, situation: Situation) -> IntArray:
         """Indices of the zones that a part reaches into on the path, and is too fast for."""
-        near = distance - (path.before_s + path.after_s) * speed <= situation.bounds.config.clearance
+        near = away - (path.before_s + path.after_s) * speed <= situation.bounds.config.clearance
         harmful = (speed > situation.surroundings.zones.limit) & near
         return np.flatnonzero(harmful.any(axis=1)) if any_nonzero(harmful.ravel()) else _NONE
 

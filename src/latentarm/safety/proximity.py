@@ -55,22 +55,15 @@ class Proximity:
         nearest_m: float,
         horizon_s: float,
     ) -> None:
-        self._body = body
-        self._nearest_m = nearest_m
-        self._horizon_s = horizon_s
+        self._body, self._nearest_m, self._horizon_s = body, nearest_m, horizon_s
         rods, planes, boxes = _sorted_by_kind(obstacles)
         self._stay_start, self._stay_end, stay_radius, stay_names = _standing_still(body, rods)
         first, second = _segment_pairs(body, rods)
         moving = np.arange(body.count)
         # Pairs of all kinds in one list: segments, then planes, then boxes. `a` indexes its own kind.
         b = np.concatenate([first, np.tile(moving, len(planes) + len(boxes))])
-        a = np.concatenate(
-            [
-                second,
-                np.repeat(np.arange(len(planes)), body.count),
-                np.repeat(np.arange(len(boxes)), body.count),
-            ]
-        )
+        others = (np.repeat(np.arange(len(solids)), body.count) for solids in (planes, boxes))
+        a = np.concatenate([second, *others])
         kind = np.repeat([0, 1, 2], [len(first), len(planes) * body.count, len(boxes) * body.count])
         a_link = np.full(len(b), -1)
         on_arm = (kind == 0) & (a < body.count)
@@ -204,9 +197,7 @@ class Proximity:
         reach = (np.abs(np.vecdot(rotation.mT, normal[:, None, :])) * extents).sum(axis=1)
         return normal, np.vecdot(normal, centre) + reach
 
-    def _assembled(
-        self, placement: Placement, pair: IntArray, normal: FloatArray, edge: FloatArray
-    ) -> Contacts:
+    def _assembled(self, place: Placement, pair: IntArray, normal: FloatArray, edge: FloatArray) -> Contacts:
         count = self._body.count
         branch = self._branch[pair]
         if (branch >= 0).any():
@@ -216,17 +207,15 @@ class Proximity:
             pair, normal = np.concatenate([pair, pair[twice]]), np.concatenate([normal, normal[twice]])
             branch = np.concatenate([branch, branch[twice]])
             edge = np.concatenate([edge, edge[twice]])
-            edge = np.where(
-                branch >= 0, np.vecdot(normal, placement.points[a]) + self._radius[a % count], edge
-            )
-            carried = (placement.jacobian[:, :3, a] * normal.T).sum(axis=1) * (branch >= 0)
+            edge = np.where(branch >= 0, np.vecdot(normal, place.points[a]) + self._radius[a % count], edge)
+            carried = (place.jacobian[:, :3, a] * normal.T).sum(axis=1) * (branch >= 0)
         else:
             carried = None
         b = self._b[pair]
         ends = np.stack([b, b + count], axis=1)
-        height = np.vecdot(placement.points[ends], normal[:, None, :])
+        height = np.vecdot(place.points[ends], normal[:, None, :])
         height -= (edge + self._radius[b])[:, None]
-        linear = placement.jacobian[:, :3, ends]
+        linear = place.jacobian[:, :3, ends]
         row = (linear * normal.T[None, :, :, None]).sum(axis=1) * self._between[pair].T[:, :, None]
         if carried is not None:
             row -= carried[:, :, None]

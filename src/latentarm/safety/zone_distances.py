@@ -65,13 +65,8 @@ class ZoneDistances:
                 return segment_distance(start, end, first, last)[0] - radius - self._radius
             case Box(centre=centre, rotation=rotation, half_extents=extents):
                 count = len(start)
-                normal = box_separation(
-                    start,
-                    end,
-                    np.broadcast_to(centre, (count, 3)),
-                    np.broadcast_to(rotation, (count, 3, 3)),
-                    np.broadcast_to(extents, (count, 3)),
-                )
+                placed = np.broadcast_to(centre, (count, 3)), np.broadcast_to(rotation, (count, 3, 3))
+                normal = box_separation(start, end, *placed, np.broadcast_to(extents, (count, 3)))
                 # The box reaches this far along the line between the closest points.
                 edge = normal @ centre + np.abs(normal @ rotation) @ extents
                 near = np.minimum(np.vecdot(normal, start), np.vecdot(normal, end))

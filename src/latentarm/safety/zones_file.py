@@ -123,14 +123,12 @@ def _entry(
     shape = given.get("shape")
     if not isinstance(shape, str) or shape not in _SHAPES:
         raise UserError(f"{where}: {key}.shape must be one of {', '.join(_SHAPES)}, not {str(shape)[:40]!r}.")
-    needed, optional, make = _SHAPES[shape]
-    check_keys(given, ("shape", *needed, *optional, *besides), where, f"{key}.")
+    needed, spare, make = _SHAPES[shape]
+    check_keys(given, ("shape", *needed, *spare, *besides), where, f"{key}.")
     for one in (*needed, *besides):
         if one not in given:
             raise UserError(f"{where}: {key} lacks {one}: a {shape} needs {', '.join((*needed, *besides))}.")
-    figures = {
-        one: _figure(given[one], where, f"{key}.{one}") for one in (*needed, *optional) if one in given
-    }
+    figures = {one: _figure(given[one], where, f"{key}.{one}") for one in (*needed, *spare) if one in given}
     speed = number_of(given[_SPEED], where, f"{key}.{_SPEED}") if besides else 0.0
     return lambda name: make(name, figures), speed
 
