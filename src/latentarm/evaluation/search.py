@@ -154,13 +154,11 @@ def _if_affine(
     decode: Decode, fixed: _FixedInputs, context: FloatArray, action: FloatArray
 ) -> FloatArray | None:
     """The exact solution where the decoder is affine in z, as far as inputs all over the range tell."""
-    dim = fixed.rim.shape[1]
-    probes = np.concatenate(
-        [np.zeros((1, dim)), np.eye(dim), -np.eye(dim), fixed.grid[:: len(fixed.grid) // 5]]
-    )
+    d = fixed.rim.shape[1]
+    probes = np.concatenate([np.zeros((1, d)), np.eye(d), -np.eye(d), fixed.grid[:: len(fixed.grid) // 5]])
     came = decode(_repeated(probes, len(context)), context[:, None])
     rest = came[:, 0]
-    columns = np.swapaxes(came[:, 1 : 1 + dim] - came[:, :1], 1, 2)
+    columns = np.swapaxes(came[:, 1 : 1 + d] - came[:, :1], 1, 2)
     expected = rest[:, None] + probes @ columns.mT
     if not np.abs(came - expected).max() <= AFFINE * np.abs(came).max():
         return None
