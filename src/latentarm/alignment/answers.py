@@ -39,7 +39,6 @@ class Motions:
             raise UserError(f"A motion takes a positive time, not {self.duration_s:g} s.")
 
     def __len__(self) -> int:
-        """N."""
         return len(self.start)
 
     def __getitem__(self, rows: IntArray) -> Self:
@@ -78,7 +77,6 @@ class Answers:
             raise UserError(f"Answer {row} is {self.u[row].tolist()}; each number must be in [-1, 1].")
 
     def __len__(self) -> int:
-        """N."""
         return len(self.u)
 
     def __getitem__(self, rows: IntArray) -> Self:

@@ -221,11 +221,8 @@ def _read(folder: Path, section: Section, shapes: Mapping[str, Shape]) -> dict[s
 
 def _network(section: Section) -> dict[str, Shape]:
     """Shapes of an older profile's tensors."""
-    return tensor_shapes(
-        section.integer("latent", 1),
-        section.integer("context", 1),
-        tuple(section.integers("hidden", 1, longest=MOST_LAYERS)),
-    )
+    latent, context = section.integer("latent", 1), section.integer("context", 1)
+    return tensor_shapes(latent, context, tuple(section.integers("hidden", 1, longest=MOST_LAYERS)))
 
 
 def _tool_space_shapes(section: Section) -> dict[str, Shape]:

@@ -78,12 +78,8 @@ class ToolSpaceAlignment:
         place = pose_vectors_at(self._chain, transforms)
         q, outside = self._meaning(place), self._penalty * self._surroundings(place)
         # From here on there is an axis for the paths, before those of vectors and matrices.
-        u, context, q, outside = (
-            u[..., None, :],
-            context[..., None, :],
-            q[..., None, :, :],
-            outside[..., None, :, :],
-        )
+        u, context = u[..., None, :], context[..., None, :]
+        q, outside = q[..., None, :, :], outside[..., None, :, :]
         jacobian = tool_jacobian(self._chain, transforms)[..., None, :, :]
         metric, wanted = self._pulled_back(q, outside, jacobian, u)
         z = np.zeros((*np.broadcast_shapes(u.shape[:-2], state.shape[:-1]), len(SECANTS), u.shape[-1]))
