@@ -74,8 +74,7 @@ class SimulatedRespondent(Respondent):
     """Answers by a stated preference, and prints that."""
 
     def __init__(self, preference: Preference, say: Say) -> None:
-        self._preference = preference
-        self._say = say
+        self._preference, self._say = preference, say
 
     @property
     def kind(self) -> Kind:
@@ -98,8 +97,7 @@ class PersonAtTerminal(Respondent):
     """Sees each motion as numbers and as a small figure, and answers with a line or the arrow keys."""
 
     def __init__(self, say: Say, read: Callable[[int], str]) -> None:
-        self._say = say
-        self._read = read
+        self._say, self._read = say, read
 
     @property
     def kind(self) -> Kind:

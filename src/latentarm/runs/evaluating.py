@@ -216,9 +216,7 @@ def _folds(
         )
     parts = make_folds(len(rest), folds - 1, np.random.default_rng([FOLD_STREAM, seed]))
     return [
-        _FoldCell(
-            run, model, demonstrations, number, tuple(sorted(rest[index] for index in part.held_out)), seed
-        )
+        _FoldCell(run, model, demonstrations, number, tuple(sorted(rest[one] for one in part.held_out)), seed)
         for number, part in enumerate(parts, start=1)
     ]
 

@@ -31,9 +31,7 @@ def refuse_other_results(
 def vacant_name(out: Path) -> Path:
     """The folder's name with the first number that does not exist yet."""
     named = out if out.name else out.resolve()
-    return next(
-        place for number in count(2) if not (place := named.with_name(f"{named.name}-{number}")).exists()
-    )
+    return next(place for one in count(2) if not (place := named.with_name(f"{named.name}-{one}")).exists())
 
 
 def _short(value: object) -> str:
