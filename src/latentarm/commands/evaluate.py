@@ -50,11 +50,8 @@ def evaluation_table(evaluation: "Evaluation") -> RenderableType:
             group = measure.group
             table.add_section()
             table.add_row(Text(group, style="bold"))
-        cells = [
-            measure_name(row),
-            ARROWS[measure.better] if measure else "",
-            format_figure(row.mean, row.sd),
-        ]
+        better = ARROWS[measure.better] if measure else ""
+        cells = [measure_name(row), better, format_figure(row.mean, row.sd)]
         other = folds.get(row.measure)
         if other is not None:
             cells.append(format_figure(other.mean, other.sd))

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from latentarm.control.recordings import NumberedEpisode
 
 UNKNOWN = "–"
+_BY = ("person", "run", "run_fingerprint", "profile", "controller", "device", "version")
 
 
 def choose(
@@ -60,13 +61,7 @@ def describe(recordings: "Sequence[NumberedEpisode]") -> list[dict[str, object]]
                 "samples": entry.samples,
                 "complete": entry.complete,
                 "robot": header.robot,
-                "person": by.person or None,
-                "run": by.run or None,
-                "run_fingerprint": by.run_fingerprint or None,
-                "profile": by.profile or None,
-                "controller": by.controller or None,
-                "device": by.device or None,
-                "version": by.version or None,
+                **{name: getattr(by, name) or None for name in _BY},
             }
         )
     return described

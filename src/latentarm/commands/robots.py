@@ -56,9 +56,7 @@ def _robots(name: str | None, end_effector: str | None, limits: Path | None) -> 
             "An end-effector and limits belong to one robot: name it, as in `latentarm robots PATH`."
         )
     stated = None if limits is None else read_limits(limits)
-    return [
-        load_robot(known, end_effector, stated) for known in ([name] if name is not None else list(ROBOTS))
-    ]
+    return [load_robot(one, end_effector, stated) for one in ([name] if name is not None else list(ROBOTS))]
 
 
 def _facts(robot: Robot) -> dict[str, object]:
