@@ -25,7 +25,6 @@ class Driving:
         self._process = context.Process(target=_drive, args=arguments, daemon=True)
 
     def __enter__(self) -> Self:
-        """Start it."""
         self._process.start()
         return self
 
