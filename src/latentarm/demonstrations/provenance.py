@@ -41,11 +41,7 @@ def provenance_json(provenance: Provenance) -> dict[str, object]:
 
 
 def parse_provenance(document: object) -> Provenance:
-    """The inverse of `provenance_json`; missing fields, as in older files, are unknown.
-
-    Raises:
-        ValueError: the document, or a field of it, has another type.
-    """
+    """The inverse of `provenance_json`; missing fields are unknown. ValueError where one has another type."""
     if not isinstance(document, dict):
         raise ValueError("who recorded an episode must be an object with named fields")
     mapping = cast(Mapping[str, Any], document)
