@@ -87,11 +87,7 @@ class Arm(ABC):
 
     @abstractmethod
     def read(self) -> Reading:
-        """The newest reading, however old it is.
-
-        Raises:
-            RuntimeError: the arm was never connected.
-        """
+        """The newest reading, however old it is; RuntimeError where the arm was never connected."""
 
     @abstractmethod
     def status(self) -> ArmStatus:

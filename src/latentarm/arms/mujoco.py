@@ -31,11 +31,7 @@ SCENE_SETTLED_S: Final = 10.0  # without a command, things about an arm are at r
 @final
 @dataclass(frozen=True)
 class Imperfections:
-    """Imperfections of real arms, besides inertia, that a simulated arm can have.
-
-    Raises:
-        UserError: a figure is negative or not finite.
-    """
+    """Imperfections of a simulated arm, besides inertia; UserError where one is negative or not finite."""
 
     position_noise_rad: float = 0.0  # SD of the noise on positions, rad
     velocity_noise_rad_s: float = 0.0  # SD of the noise on velocities, rad/s

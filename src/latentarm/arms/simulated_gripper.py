@@ -17,10 +17,7 @@ class SimulatedGripper(ABC):
 
     @final
     def send(self, command: GripperCommand) -> None:
-        """Take a command, cut to the gripper's limits.
-
-        Raises ValueError if a figure is not finite: no safety filter sends that.
-        """
+        """Take a command, cut to the gripper's limits; ValueError if a figure is not finite."""
         figures = (command.width_m, command.speed_m_s, command.force_n)
         if not np.isfinite(figures).all():
             raise ValueError("a command to a gripper needs a finite width, speed and force")

@@ -38,11 +38,7 @@ class Guiding:
             self.phase = "ending"
 
     def ended(self, link: Link) -> bool:
-        """Whether the arm has ended guiding by itself, and rests.
-
-        Raises:
-            Exception: of franky, where an error has ended it.
-        """
+        """Whether the arm has ended guiding by itself, and rests; raises what of franky has ended it."""
         if self.phase == "no" or not link.arm.join_motion(timeout=0.0):
             return False
         by_itself, self.phase = self.phase == "on", "no"
