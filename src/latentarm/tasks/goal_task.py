@@ -53,11 +53,7 @@ class GoalTask(SceneTask):
         return self._time_limit_s
 
     def begin(self, choice: int, rng: np.random.Generator) -> Beginning:
-        """Draw where the arm starts.
-
-        Raises:
-            UserError: there is no such manner, or nothing is left to do where the arm starts.
-        """
+        """Draw where the arm starts; UserError without such a manner, or where nothing is left to do."""
         task, manner, goal = self._task, self._manner, self._task.goals[choice].name
         start = task.sample_start(choice, rng)
         waypoints = task.waypoints(choice, manner)

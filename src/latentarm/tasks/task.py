@@ -67,10 +67,7 @@ class Task(ABC):
 
     @abstractmethod
     def demonstrate(self, episodes: int, rng: np.random.Generator) -> Demonstrations:
-        """Demonstrations by a simulated person, spread evenly over goals and manners.
-
-        Raises UserError where fewer than one episode is asked for.
-        """
+        """Episodes by a simulated person, spread over goals and manners; UserError for fewer than one."""
 
 
 class GripperTask(Task, ABC):
