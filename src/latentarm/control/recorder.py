@@ -289,10 +289,7 @@ def _limits_as_json(limits: JointLimits) -> dict[str, list[float]]:
 
 
 def check_is_journal(database: sqlite3.Connection, path: Path, *, may_be_empty: bool) -> None:
-    """Check that an open database is one of our journals.
-
-    Raises UserError where it is not, or of a later version.
-    """
+    """Check that an open database is our journal; UserError where it is not, or of a later version."""
     (version,) = database.execute("PRAGMA user_version").fetchone()
     (tables,) = database.execute("SELECT count(*) FROM sqlite_master").fetchone()
     if may_be_empty and version == 0 and tables == 0:

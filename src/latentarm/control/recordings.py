@@ -24,10 +24,7 @@ class NumberedEpisode:
 
 
 def journals_in(path: Path) -> list[Path]:
-    """A journal itself, or the journals of a folder by name: ``teleop`` names them after their time.
-
-    Raises UserError where no journal was found.
-    """
+    """A journal itself, or those of a folder by name (``teleop``'s is their time); UserError without any."""
     if not path.is_dir():
         return [path]
     found = sorted(path.glob(f"*{JOURNAL_SUFFIX}"))
@@ -37,10 +34,7 @@ def journals_in(path: Path) -> list[Path]:
 
 
 def list_recordings(path: Path) -> list[NumberedEpisode]:
-    """All episodes of a journal, or of the journals in a folder.
-
-    Raises UserError where there is no journal, or one is damaged.
-    """
+    """All episodes of a journal, or of a folder's journals; UserError without any, or where one is damaged."""
     entries = [(journal, entry) for journal in journals_in(path) for entry in list_journal(journal)]
     return [NumberedEpisode(number, journal, one) for number, (journal, one) in enumerate(entries, start=1)]
 
