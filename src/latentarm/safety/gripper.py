@@ -60,10 +60,7 @@ class GripperFilter:
 
     @property
     def target_m(self) -> float | None:
-        """The commanded opening, m; before any command the measured one, or 0 where something is held.
-
-        None where there is no `reading`.
-        """
+        """The commanded opening, m; before that the measured one, 0 if it holds, None without `reading`."""
         reading = self.reading
         if reading is None or self._target_m is not None:
             return None if reading is None else self._target_m

@@ -27,11 +27,7 @@ class NewestReading:
         self._sequence = None
 
     def refusal(self, reading: Reading, time_s: float) -> Stop | None:
-        """Why the reading cannot be used at this time of the loop's clock, or None.
-
-        Raises:
-            Exception: any, where its time or its number is not a number.
-        """
+        """Why the reading cannot be used at this time, or None; raises where its figures are no numbers."""
         before = self._sequence
         sequence, age_s = int(reading.sequence), float(time_s - reading.time_s)
         if before is not None and sequence < before:

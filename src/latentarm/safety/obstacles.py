@@ -14,10 +14,7 @@ _FAR_M = 100.0  # coordinates beyond this are a mistake in units, not an obstacl
 
 
 def table(height: float) -> HalfSpace:
-    """A table top (or floor) that fills everything below ``height``, m, in the base frame.
-
-    Raises UserError where the height is not finite.
-    """
+    """A table top (or floor): everything below ``height``, m, base frame; UserError where not finite."""
     plane = HalfSpace(name="table", point=np.array([0.0, 0.0, height]), normal=np.array([0.0, 0.0, 1.0]))
     checked_obstacle(plane)
     return plane
@@ -36,11 +33,7 @@ def checked_obstacle(obstacle: object) -> Obstacle:
 
 
 def checked_shape(obstacle: Obstacle, what: str) -> Obstacle:
-    """The shape with float arrays, validated; ``what`` is the subject of the messages.
-
-    Raises:
-        UserError: as for `checked_obstacle`.
-    """
+    """The shape with float arrays, validated as by `checked_obstacle`; messages begin with ``what``."""
     match obstacle:
         case HalfSpace():
             return replace(

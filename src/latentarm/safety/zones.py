@@ -61,10 +61,7 @@ def check_name(name: str, what: str) -> None:
 
 
 def checked_zones(value: object) -> tuple[Zone, ...]:
-    """The zones of a safety configuration, as a tuple.
-
-    Raises UserError where these are no zones, too many, or two have the same name.
-    """
+    """The zones as a tuple; UserError where these are no zones, too many, or two have the same name."""
     if not isinstance(value, tuple | list):
         raise UserError("The safety limit zones must be a tuple of zones.")
     zones: list[Zone] = []

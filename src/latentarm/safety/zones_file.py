@@ -52,10 +52,7 @@ class StatedZones:
 
 
 def read_zones(path: Path) -> StatedZones:
-    """Read a zones file.
-
-    Raises UserError where the file cannot be read or is invalid; the message names the key.
-    """
+    """Read a zones file; UserError where it cannot be read or is invalid, which names the key."""
     return parse_zones(parse_toml(read_bytes(path, MOST_BYTES), path, "zones file"), str(path))
 
 
