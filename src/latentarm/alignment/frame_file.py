@@ -39,10 +39,7 @@ def save_frames(
 
 
 def load_frame(folder: Path, seed_index: int, seat: Seat, chain: Chain) -> StickFrame | None:
-    """Read and check a run's frame; None in older runs and those without two axes.
-
-    Raises UserError where a file is missing or damaged.
-    """
+    """Read and check a run's frame, None without one; UserError where a file is missing or damaged."""
     config = Section.of_file(folder / CONFIG_NAME, CONFIG_LIMIT)
     if config.plain().get("frame") is None:
         return None

@@ -59,10 +59,7 @@ def next_motion(worth: FloatArray, asked: Sequence[int]) -> int:
 @final
 @dataclass(frozen=True)
 class StoppingRule:
-    """A rule for when to stop asking.
-
-    Raises UserError where a figure is out of its range.
-    """
+    """A rule for when to stop asking; UserError where a figure is out of its range."""
 
     share: float = 0.1  # enough is known below this share of unknown inputs (`Posterior.share`)
     fall: float = 0.05  # or where ``patience`` answers have not lowered it by this share
