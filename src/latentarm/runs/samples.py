@@ -64,10 +64,7 @@ def take_samples(
 
 
 def save_samples(folder: Path, samples: Samples) -> Mapping[str, object]:
-    """Write samples to a run's folder; returns the key ``samples`` of the run's ``config.json``.
-
-    Raises UserError where the file cannot be written.
-    """
+    """Write samples to a run's folder; the key ``samples`` of ``config.json``. UserError where it fails."""
     tensors: dict[str, FloatArray] = {}
     motions, probe = samples.motions, samples.probe
     if motions is not None:
@@ -89,10 +86,7 @@ def save_samples(folder: Path, samples: Samples) -> Mapping[str, object]:
 
 
 def load_samples(folder: Path) -> Samples | None:
-    """Read and check a run's samples; None for an older run without any.
-
-    Raises UserError where a file is missing or damaged.
-    """
+    """Read and check a run's samples, None without any; UserError where a file is missing or damaged."""
     config = Section.of_file(folder / CONFIG_NAME, CONFIG_LIMIT)
     if config.plain().get("samples") is None:
         return None

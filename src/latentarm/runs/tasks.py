@@ -142,10 +142,7 @@ def usual_task(goals: Sequence[Goal]) -> str:
 
 
 def usual_arm(task: str | None) -> str:
-    """The default arm: only in physics are things touched and held.
-
-    A task of None is not yet known, and has no things.
-    """
+    """The default arm: only in physics are things touched and held. A task not yet known (None) has none."""
     return PHYSICAL_ARM if task in SCENE_TASKS else DEFAULT_ARM
 
 
