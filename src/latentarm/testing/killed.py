@@ -34,11 +34,7 @@ class Driving:
 
     @property
     def driving(self) -> bool:
-        """Whether it has begun to send commands.
-
-        Raises:
-            EOFError: it has failed.
-        """
+        """Whether it has begun to send commands; EOFError where it has failed."""
         return self._reading.poll(0)
 
     def kill(self) -> None:
