@@ -67,10 +67,7 @@ def seed_generator(seed: int, stream: int) -> torch.Generator:
 
 @final
 class Batches:
-    """Shuffled training batches and the validation pairs, on the device.
-
-    `epoch` fills the tensors of ``batch`` anew.
-    """
+    """Shuffled training batches, which `epoch` fills ``batch`` with, and validation pairs, on the device."""
 
     def __init__(
         self, data: TrainingData, seeds: Sequence[int], batch_size: int, noise_dim: int, device: torch.device
@@ -121,14 +118,12 @@ class Batches:
         order = torch.empty(steps, many, size, dtype=torch.int64)
         noise = torch.empty(steps, many, size, noise_dim)
         places = torch.empty(steps, many, self._rows, dtype=torch.int64)
-        for index, seed in enumerate(self._seeds):
+        for at, seed in enumerate(self._seeds):
             generator = seed_generator(seed, epoch)
-            order[:, index] = torch.randperm(self._pairs, generator=generator)[: steps * size].view(
-                steps, size
-            )
-            noise[:, index] = torch.randn(steps, size, noise_dim, generator=generator)
+            order[:, at] = torch.randperm(self._pairs, generator=generator)[: steps * size].view(steps, size)
+            noise[:, at] = torch.randn(steps, size, noise_dim, generator=generator)
             if self._rows:
-                places[:, index] = torch.randint(self._places, (steps, self._rows), generator=generator)
+                places[:, at] = torch.randint(self._places, (steps, self._rows), generator=generator)
         if self._own:
             # Each seed's rows follow those of the seed before it.
             seed = torch.arange(many)[:, None]

@@ -88,10 +88,7 @@ def fingerprint(settings: Mapping[str, object], arrays: Sequence[FloatArray]) ->
 
 
 def write_checkpoint(path: Path, print_of: str, state: TrainingState) -> None:
-    """Write the state, replacing an older checkpoint whole.
-
-    Raises UserError where the file cannot be written.
-    """
+    """Write the state, replacing an older checkpoint whole; UserError where the file cannot be written."""
     progress = {
         "fingerprint": print_of,
         "epoch": state.epoch,
@@ -108,10 +105,7 @@ def write_checkpoint(path: Path, print_of: str, state: TrainingState) -> None:
 
 
 def read_checkpoint(path: Path, print_of: str, state: TrainingState) -> None:
-    """Fill ``state`` from the file.
-
-    Raises UserError where the file is broken, foreign, or of another training.
-    """
+    """Fill ``state`` from the file; UserError where it is broken, foreign, or of another training."""
     check_file(path, _HEADER_BYTES + sum(tensor.nbytes for tensor in state.tensors().values()))
     try:
         with safe_open(path, framework="pt") as stream:

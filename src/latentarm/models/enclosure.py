@@ -104,10 +104,7 @@ def cells(d: int, fineness: int) -> tuple[FloatArray, float]:
 
 
 def linear_enclosure(columns: FloatArray, offset: FloatArray) -> Enclosure:
-    """The enclosure of ``offset + Σ z_i columns_i``, exact and in one cell.
-
-    Columns are (..., d, m), offsets (..., m), rad/s.
-    """
+    """The enclosure of ``offset (..., m) + Σ z_i columns_i (..., d, m)``, rad/s, exact and in one cell."""
     centre = offset[..., None, :]
     return Enclosure(centre, columns[..., None, :, :], np.zeros(centre.shape))
 

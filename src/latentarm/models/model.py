@@ -205,10 +205,7 @@ class LatentActionModel(BaseEstimator, ABC):
         return np.stack([WayBack(trained, seed)(alone, z, context) for seed, (alone, z) in each])
 
     def decoder(self, seed: int = 0) -> Decoder:
-        """The decoder of one seed, by its index, for the control loop.
-
-        Raises UserError where the model is not fitted, or has no such seed.
-        """
+        """One seed's decoder, by its index, for the control loop; UserError if unfitted or without it."""
         return Decoder(self._fitted(), seed)
 
     def torch_decoder(self, seed: int = 0, dtype: torch.dtype = torch.float32) -> TorchDecoder:
@@ -281,9 +278,7 @@ class LatentActionModel(BaseEstimator, ABC):
         check_parameters(type(self), self.get_params(deep=False))
         if validation is None:
             rng = np.random.default_rng([self.data_seed, 0])
-            validation = [
-                int(index) for index in split_episodes(demonstrations, self.validation_fraction, rng)[1]
-            ]
+            validation = [int(i) for i in split_episodes(demonstrations, self.validation_fraction, rng)[1]]
         check_validation(validation, len(demonstrations.episodes))
         layout = context_layout(demonstrations, self.context)
         needs_arm = self.kind.sees_tools or layout.sees_tool_frame or self.way_back_m > 0
@@ -301,14 +296,8 @@ class LatentActionModel(BaseEstimator, ABC):
                 f"A latent action of {self.latent_dim} dimensions is no smaller than the arm's "
                 f"{prepared.joints}: choose at most {prepared.joints}."
             )
-        return Dimensions(
-            self.seeds,
-            self.latent_dim,
-            prepared.width,
-            prepared.joints,
-            self.hidden,
-            len(prepared.arm.tools) if prepared.arm else 0,
-        )
+        tools = len(prepared.arm.tools) if prepared.arm else 0
+        return Dimensions(self.seeds, self.latent_dim, prepared.width, prepared.joints, self.hidden, tools)
 
     def _led_back(self, trained: TrainedModel, prepared: Prepared, report: Report | None) -> TrainedModel:
         """The trained model with the way back that was asked for."""

@@ -54,9 +54,7 @@ def group_layers(tensors: Mapping[str, Tensor]) -> dict[str, list[Layer]]:
     """Networks from tensors named ``<network>.<layer>.weight`` and ``.bias``; others are ignored."""
     networks: dict[str, list[Layer]] = {}
     for network in {name.partition(".")[0] for name in tensors if name.endswith(".0.weight")}:
-        stems = [
-            f"{network}.{layer}" for layer in range(len(tensors)) if f"{network}.{layer}.weight" in tensors
-        ]
+        stems = [f"{network}.{nth}" for nth in range(len(tensors)) if f"{network}.{nth}.weight" in tensors]
         networks[network] = [(tensors[f"{stem}.weight"], tensors[f"{stem}.bias"]) for stem in stems]
     return networks
 
@@ -88,9 +86,7 @@ class FlatNetworks:
         length = math.ceil(length / ALIGNMENT) * ALIGNMENT
         self.values = torch.zeros(seeds, length, device=device)
         self.gradient = torch.zeros_like(self.values)
-        self._leaves = {
-            name: view.detach().requires_grad_() for name, view in self.views(self.values).items()
-        }
+        self._leaves = {name: one.detach().requires_grad_() for name, one in self.views(self.values).items()}
         self._gradient_views = list(self.views(self.gradient).values())
         self.networks: Networks = group_layers(self._leaves)
 
@@ -103,10 +99,7 @@ class FlatNetworks:
         return views
 
     def initialise(self, generators: Sequence[torch.Generator], start: Mapping[str, FloatArray]) -> None:
-        """Draw each seed's weights from its own generator, uniform within ±1/sqrt(inputs).
-
-        Weights in ``start`` begin with those values instead.
-        """
+        """Draw each seed's weights from its generator, uniform in ±1/sqrt(inputs), or take ``start``'s."""
         views = self.views(self.values)
         for seed, generator in enumerate(generators):
             for name, view in views.items():

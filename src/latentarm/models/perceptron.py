@@ -22,9 +22,7 @@ class Perceptrons(torch.autograd.Function):
     def forward(ctx: Any, count: int, *tensors: Tensor) -> Tensor:
         """Outputs (S, B, out) for ``count`` inputs (S, B, k), followed by each layer's weight and bias."""
         inputs, parameters = tensors[:count], tensors[count:]
-        weights = [
-            _joined(weight, bias) for weight, bias in zip(parameters[::2], parameters[1::2], strict=True)
-        ]
+        weights = [_joined(one, bias) for one, bias in zip(parameters[::2], parameters[1::2], strict=True)]
         seeds, pairs = inputs[0].shape[:2]
         values = inputs[0].new_empty(seeds, weights[0].shape[1], pairs)
         *places, one = values.split([*(part.shape[-1] for part in inputs), 1], dim=1)
@@ -63,9 +61,7 @@ class Perceptrons(torch.autograd.Function):
                 _aten.silu_backward.grad_input(after, befores[layer - 1], grad_input=after)
         rows = weights[0][:, :-1].split(ctx.widths, dim=1)
         needed = ctx.needs_input_grad[1 : 1 + len(rows)]
-        of_inputs = [
-            torch.bmm(row, after).mT if need else None for row, need in zip(rows, needed, strict=True)
-        ]
+        of_inputs = [torch.bmm(row, after).mT if on else None for row, on in zip(rows, needed, strict=True)]
         return None, *of_inputs, *of_parameters
 
 

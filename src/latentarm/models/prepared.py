@@ -124,10 +124,7 @@ def prepare(
 
 
 def side_by_side(data_sets: Sequence[TrainingData]) -> TrainingData:
-    """Data sets of S seeds as one, with a leading seed axis.
-
-    Where they differ in length, those that are longer lose their last pairs.
-    """
+    """Data sets of S seeds as one, with a leading seed axis; longer ones lose their last pairs."""
     stacked: dict[str, FloatArray] = {}
     for field in fields(TrainingData):
         arrays: list[FloatArray] = [getattr(data, field.name) for data in data_sets]

@@ -37,6 +37,7 @@ def chain_tensors(chain: Chain) -> dict[str, FloatArray]:
 def chain_of_tensors(tensors: Mapping[str, FloatArray]) -> Chain:
     """The arm that `chain_tensors` gave; its joints and tools are numbered, since names are not kept."""
     parent = tensors["chain.parent"].astype(np.int64)
+    tools = zip(tensors["chain.tool_link"], tensors["chain.tool"], strict=True)
     return Chain(
         joint_names=tuple(f"joint{joint + 1}" for joint in range(len(parent))),
         parent=parent,
@@ -44,10 +45,5 @@ def chain_of_tensors(tensors: Mapping[str, FloatArray]) -> Chain:
         axis=tensors["chain.axis"],
         anchor=tensors["chain.anchor"],
         slide=tensors["chain.slide"] > 0.5,
-        tools=tuple(
-            Frame(f"tool{tool + 1}", int(link), transform)
-            for tool, (link, transform) in enumerate(
-                zip(tensors["chain.tool_link"], tensors["chain.tool"], strict=True)
-            )
-        ),
+        tools=tuple(Frame(f"tool{tool + 1}", int(link), at) for tool, (link, at) in enumerate(tools)),
     )

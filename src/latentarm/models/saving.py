@@ -88,9 +88,7 @@ def write_model(folder: Path, trained: TrainedModel, run: Mapping[str, object]) 
             ],
         },
         "collapsed": summary.collapsed.tolist(),
-        "tensors": {
-            name: {"shape": list(array.shape), "dtype": "F64"} for name, array in trained.tensors.items()
-        },
+        "tensors": {key: {"shape": list(one.shape), "dtype": "F64"} for key, one in trained.tensors.items()},
         "sha256": sha256,
         "versions": {"python": platform.python_version(), **_versions(origin)},
     }
@@ -98,10 +96,7 @@ def write_model(folder: Path, trained: TrainedModel, run: Mapping[str, object]) 
 
 
 def read_model(folder: Path) -> TrainedModel:
-    """Read and check a model.
-
-    Raises UserError where a file is missing, foreign, of another version, or does not agree with the other.
-    """
+    """Read and check a model; UserError where files are missing, foreign, of other versions, or disagree."""
     path = folder / CONFIG_NAME
     section = Section.of_file(path, CONFIG_LIMIT).section("model")
     schema = section.integer("schema", 0)

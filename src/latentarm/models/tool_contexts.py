@@ -124,15 +124,8 @@ class ToolContexts:
         metric = jacobian.mT @ jacobian + self.damping * np.eye(sizes.joints)
         lift = np.asarray(np.linalg.solve(metric, jacobian.mT), dtype=np.float64)
         lead = context.shape[:-1]
-        return np.concatenate(
-            [
-                self.contexts.apply(context),
-                self.places.apply(places),
-                jacobian.reshape(*lead, -1),
-                lift.reshape(*lead, -1),
-            ],
-            axis=-1,
-        )
+        flat = jacobian.reshape(*lead, -1), lift.reshape(*lead, -1)
+        return np.concatenate([self.contexts.apply(context), self.places.apply(places), *flat], axis=-1)
 
     def jacobian(self, state: FloatArray) -> FloatArray:
         """``J_w`` alone at states (..., n): (..., 6 k, n)."""

@@ -41,15 +41,8 @@ class TorchToolContexts:
         jacobian = torch.cat(jacobians, dim=-2) * self._weight
         lift = torch.linalg.solve(jacobian.mT @ jacobian + self._damping, jacobian.mT)
         (centre, scale), (place_centre, place_scale) = self._context, self._place
-        return torch.cat(
-            [
-                (context - centre) / scale,
-                (torch.cat(places, dim=-1) - place_centre) / place_scale,
-                jacobian.flatten(-2),
-                lift.flatten(-2),
-            ],
-            dim=-1,
-        )
+        place = (torch.cat(places, dim=-1) - place_centre) / place_scale
+        return torch.cat([(context - centre) / scale, place, jacobian.flatten(-2), lift.flatten(-2)], dim=-1)
 
 
 def inner(first: Tensor, first_twist: Tensor, second: Tensor, second_twist: Tensor, damping: float) -> Tensor:

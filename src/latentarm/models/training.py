@@ -186,11 +186,7 @@ def threads_for(work: int) -> Generator[None]:
 
 
 def choose_device(name: str) -> torch.device:
-    """The torch device for ``cpu``, ``cuda`` or ``auto``.
-
-    Raises:
-        UserError: CUDA was requested but is not available.
-    """
+    """The torch device for ``cpu``, ``cuda`` or ``auto``; UserError where CUDA is asked for and absent."""
     present = torch.cuda.is_available()
     if name == "cuda" and not present:
         raise UserError("The device is cuda, but torch finds no CUDA on this machine: use cpu, or auto.")
@@ -212,14 +208,7 @@ def epoch_bar(shown: bool) -> Generator[Report]:
 
 def progress_bar(shown: bool, unit: str) -> Progress:
     """A bar on standard error that goes away when it is done, with a field ``loss`` for a few words."""
-    return Progress(
-        TextColumn("{task.description}"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TextColumn(unit),
-        TextColumn("{task.fields[loss]}"),
-        TimeRemainingColumn(),
-        console=VisibleConsole(stderr=True),
-        disable=not shown,
-        transient=True,
-    )
+    first = TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TextColumn(unit)
+    last = TextColumn("{task.fields[loss]}"), TimeRemainingColumn()
+    console = VisibleConsole(stderr=True)
+    return Progress(*first, *last, console=console, disable=not shown, transient=True)

@@ -4,7 +4,7 @@ In all of them the encoder psi(c, a) sees context and action; only the decoder i
 """
 
 from dataclasses import replace
-from typing import Final, final
+from typing import Any, Final, final
 
 import numpy as np
 
@@ -85,6 +85,14 @@ _MOVES: Final = (
     " reversal by construction try --model homogeneous, or the plainer --model scl."
 )
 _TRAINING: Final = "latentarm.models.autoencoders.training"
+
+
+def _like(base: ModelKind, name: str, label: str, training: str, **others: Any) -> ModelKind:
+    """A kind like another but for these fields, trained by a class of `_TRAINING`."""
+    fields = {"advice": _MOVES.format(name=name), **others}
+    return replace(base, name=name, label=label, estimator=f"{_TRAINING}:{training}", **fields)
+
+
 AE: Final = ModelKind(
     name="ae",
     label="AE",
@@ -95,14 +103,7 @@ AE: Final = ModelKind(
     sees_context=False,
     advice=_MOVES.format(name="ae"),
 )
-VAE: Final = replace(
-    AE,
-    name="vae",
-    label="VAE",
-    estimator=f"{_TRAINING}:VAE",
-    encoder="gaussian",
-    advice=_MOVES.format(name="vae"),
-)
+VAE: Final = _like(AE, "vae", "VAE", "VAE", encoder="gaussian")
 CAE: Final = ModelKind(
     name="cae",
     label="cAE",
@@ -112,43 +113,24 @@ CAE: Final = ModelKind(
     encoder="deterministic",
     advice=_MOVES.format(name="cae"),
 )
-CVAE: Final = replace(
+CVAE: Final = _like(CAE, "cvae", "cVAE", "CVAE", encoder="gaussian")
+CAE_ZERO: Final = _like(
     CAE,
-    name="cvae",
-    label="cVAE",
-    estimator=f"{_TRAINING}:CVAE",
-    encoder="gaussian",
-    advice=_MOVES.format(name="cvae"),
-)
-CAE_ZERO: Final = replace(
-    CAE,
-    name="cae_zero",
-    label="cAE, zero penalty",
-    estimator=f"{_TRAINING}:CAEZero",
+    "cae_zero",
+    "cAE, zero penalty",
+    "CAEZero",
     rests_at_zero=True,
     advice="The cae_zero nearly rests but need not go back when the stick is pressed back; for both by"
     " construction try --model homogeneous, or the plainer --model scl.",
 )
-CAE_REVERSAL: Final = replace(
+CAE_REVERSAL: Final = _like(
     CAE,
-    name="cae_reversal",
-    label="cAE, reversal penalty",
-    estimator=f"{_TRAINING}:CAEReversal",
+    "cae_reversal",
+    "cAE, reversal penalty",
+    "CAEReversal",
     rests_at_zero=True,
     advice="The cae_reversal nearly rests and nearly goes back when the stick is pressed back; for both by"
     " construction try --model odd_cae or --model homogeneous.",
 )
-CAE_JACOBIAN: Final = replace(
-    CAE,
-    name="cae_jacobian",
-    label="cAE, Jacobian penalty",
-    estimator=f"{_TRAINING}:CAEJacobian",
-    advice=_MOVES.format(name="cae_jacobian"),
-)
-CVAE_JACOBIAN: Final = replace(
-    CVAE,
-    name="cvae_jacobian",
-    label="cVAE, Jacobian penalty",
-    estimator=f"{_TRAINING}:CVAEJacobian",
-    advice=_MOVES.format(name="cvae_jacobian"),
-)
+CAE_JACOBIAN: Final = _like(CAE, "cae_jacobian", "cAE, Jacobian penalty", "CAEJacobian")
+CVAE_JACOBIAN: Final = _like(CVAE, "cvae_jacobian", "cVAE, Jacobian penalty", "CVAEJacobian")

@@ -101,10 +101,8 @@ class CurveDecoder(SearchingRuntime, ABC):
             return self._enclosed_by_angle(self._columns(context, jacobian), jacobian, fineness * CELLS)
         metric = jacobian.mT @ jacobian + self._contexts.damping * np.eye(self._joints)
         most = np.sqrt(np.linalg.inv(metric).diagonal(axis1=-2, axis2=-1))[..., None, :]
-        remainder = self._speed * np.sqrt(self._latents) * most
-        return Enclosure(
-            np.zeros(remainder.shape), np.zeros((*remainder.shape[:-1], 0, self._joints)), remainder
-        )
+        rest = self._speed * np.sqrt(self._latents) * most
+        return Enclosure(np.zeros(rest.shape), np.zeros((*rest.shape[:-1], 0, self._joints)), rest)
 
     def _enclosed_by_angle(self, columns: FloatArray, jacobian: FloatArray, cells: int) -> Enclosure:
         """The enclosure for d = 2, in cells of the angle theta of z with a half width w.
@@ -117,12 +115,8 @@ class CurveDecoder(SearchingRuntime, ABC):
         width = np.pi / (2 * cells)
         ends = np.pi / cells * np.arange(cells + 1)
         degrees = np.repeat((1, *ORDERS), 2)
-        phase = (
-            degrees
-            * np.stack(np.broadcast_arrays(ends[:-1] + width, 0.5 * np.pi - ends[:-1] - width), -1)[
-                :, np.arange(len(degrees)) % 2
-            ]
-        )
+        phases = np.stack(np.broadcast_arrays(ends[:-1] + width, 0.5 * np.pi - ends[:-1] - width), -1)
+        phase = degrees * phases[:, np.arange(len(degrees)) % 2]
         signs = np.where(np.arange(len(degrees)) % 2, 1.0, -1.0)
         wave, slope = np.cos(phase), signs * degrees * np.sin(phase)
         twists = jacobian @ columns

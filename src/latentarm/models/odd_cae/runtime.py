@@ -28,7 +28,6 @@ class _Runtime(Runtime):
         self._from_latent, self._from_context = weight[:d].copy(), weight[d:].copy()
 
     def __call__(self, z: FloatArray, context: FloatArray) -> FloatArray:
-        """See `Runtime`."""
         push, here = z @ self._from_latent, context @ self._from_context + self._bias
         forth, back = propagate(np.stack([here + push, here - push]), self._rest)
         return forth - back
