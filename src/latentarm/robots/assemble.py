@@ -134,8 +134,6 @@ def _excluded(model: mujoco.MjModel, capsules: Capsules) -> BoolArray:
     excluded = np.zeros((len(capsules), len(capsules)), dtype=np.bool_)
     names = np.array(capsules.name)
     for signature in model.exclude_signature:
-        first, second = (
-            names == body_name(model, int(body)) for body in (signature >> 16, signature & 0xFFFF)
-        )
+        first, second = (names == body_name(model, int(one)) for one in (signature >> 16, signature & 0xFFFF))
         excluded |= np.outer(first, second) | np.outer(second, first)
     return excluded

@@ -95,10 +95,8 @@ class JointLimits:
     def assumed(self) -> dict[Quantity, tuple[int, ...]]:
         """Joints with assumed limits, by quantity, for quantities that have any."""
         found: dict[Quantity, tuple[int, ...]] = {
-            quantity: tuple(
-                joint for joint, source in enumerate(self.sources.of(quantity)) if source == "assumed"
-            )
-            for quantity in QUANTITIES
+            one: tuple(joint for joint, source in enumerate(self.sources.of(one)) if source == "assumed")
+            for one in QUANTITIES
         }
         return {quantity: joints for quantity, joints in found.items() if joints}
 

@@ -100,9 +100,7 @@ def with_stated(
     """The limits with stated values in place of known or assumed ones, for n named joints."""
     known = list(names)
     figures = {name: np.array(getattr(limits, name)) for name in _FIGURES}
-    sources: dict[Quantity, list[Source]] = {
-        quantity: list(limits.sources.of(quantity)) for quantity in _SAID_BY
-    }
+    sources: dict[Quantity, list[Source]] = {one: list(limits.sources.of(one)) for one in _SAID_BY}
     for name, one in stated.joints.items():
         if name not in known:
             raise UserError(

@@ -79,9 +79,7 @@ def read(model: mujoco.MjModel, end_effectors: Sequence[str]) -> ModelChain:
     at_zero = chain.link_transforms(zero)
     carriers = np.where(body_link[:, None, None] >= 0, at_zero[body_link], np.eye(4))
     body_transform = np.linalg.inv(carriers) @ placed
-    frames = tuple(
-        Frame(name, int(body_link[body]), body_transform[body] @ local) for name, body, local in tools
-    )
+    frames = tuple(Frame(name, int(body_link[at]), body_transform[at] @ local) for name, at, local in tools)
     return ModelChain(
         chain=replace(chain, tools=frames),
         joints=joints,
