@@ -34,7 +34,7 @@ def journals_in(path: Path) -> list[Path]:
 
 
 def list_recordings(path: Path) -> list[NumberedEpisode]:
-    """All episodes of a journal, or of a folder's journals; UserError without any, or where one is damaged."""
+    """All episodes of a journal, or of a folder's journals; UserError without any, or where one is broken."""
     entries = [(journal, entry) for journal in journals_in(path) for entry in list_journal(journal)]
     return [NumberedEpisode(number, journal, one) for number, (journal, one) in enumerate(entries, start=1)]
 
