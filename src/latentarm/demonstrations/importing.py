@@ -58,8 +58,7 @@ def import_demonstrations(
             one, every column counts as a joint in rad.
         options: see `ImportOptions`.
 
-    Raises:
-        UserError: one sentence naming the file and, where it applies, the episode and the sample.
+    Raises UserError with one sentence naming the file and, where it applies, the episode and the sample.
     """
     options = options or ImportOptions()
     source = Path(source)
