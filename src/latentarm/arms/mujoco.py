@@ -62,9 +62,8 @@ class MujocoArm(SimulatedArm, SceneArm):
         imperfections: of the arm and its sensors.
         scene: things about the arm, in its base frame; None for none, not even a table.
 
-    Raises:
-        UserError: ``state`` has the wrong shape, is not finite, or lies outside the limits; the model
-            states no torque limit for a joint; or the gripper has no joints in it.
+    Raises UserError where ``state`` has the wrong shape, is not finite, or lies outside the limits; the model
+    states no torque limit for a joint; or the gripper has no joints in it.
     """
 
     def __init__(
