@@ -50,10 +50,7 @@ def demonstrate_goals(
     """Demonstrations of a task, each of one stroke to a goal, the goals in turn.
 
     ``stroke`` maps a goal's index to the configurations (V, n), rad, on the way to it; ``verb`` is for the
-    episodes' texts.
-
-    Raises:
-        UserError: fewer than one episode is asked for.
+    episodes' texts. Raises UserError where fewer than one episode is asked for.
     """
     hand, goals = Hand(), task.goals
 
