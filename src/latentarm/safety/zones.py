@@ -21,10 +21,8 @@ class Zone:
     """A solid in which no part of the arm moves faster than a speed of its own; the arm may go in and out.
 
     The names are free. The page has words for three: ``face`` (a ball or a box at the head), ``table`` (a
-    slab over the table's top) and ``self`` (the person's body or wheelchair).
-
-    Raises:
-        UserError: the shape is no solid, its name is not one, or the speed is not a number in its range.
+    slab over the table's top) and ``self`` (the person's body or wheelchair). Raises UserError where the
+    shape is no solid, its name is not one, or the speed is not a number in its range.
     """
 
     shape: Obstacle  # the solid, in the base frame, with the zone's name
