@@ -85,10 +85,8 @@ def _gripper_figures(part: FloatArray, count: int) -> list[float]:
 def packed(parts: Sequence[FloatArray]) -> bytes:
     """Parts, each (k,), as one sample: a byte, two more for each part, then the parts that must be written.
 
-    The two bytes hold the part's width, and a bit where it is all zeros, or equals the part before it.
-
-    Raises:
-        ValueError: a part is too wide.
+    The two bytes hold the part's width, and a bit where it is all zeros, or equals the part before it. Raises
+    ValueError where a part is too wide.
     """
     heads: list[int] = []
     written: list[bytes] = []
