@@ -185,11 +185,9 @@ def arm_refusals(spec: ArmSpec, robot: Robot) -> tuple[str, ...]:
             f" {', '.join(robot.joint_names)}: choose the robot that the arm is."
         )
     if spec.stops_after_s is None or not 0.0 <= spec.stops_after_s <= STOPS_AFTER_S:
-        known = (
-            "It is not known whether this arm"
-            if spec.stops_after_s is None or math.isnan(spec.stops_after_s)
-            else f"This arm takes {1000 * spec.stops_after_s:.0f} ms until it"
-        )
+        known = "It is not known whether this arm"
+        if spec.stops_after_s is not None and not math.isnan(spec.stops_after_s):
+            known = f"This arm takes {1000 * spec.stops_after_s:.0f} ms until it"
         found.append(
             f"{known} stops by itself when no more commands come: an arm must do so within"
             f" {1000 * STOPS_AFTER_S:.0f} ms."

@@ -91,9 +91,8 @@ class MujocoArm(SimulatedArm, SceneArm):
         self._servo = Servo(self._model, self._data, found.joints, robot.limits.acceleration * STEP_S)
         self._fingers = None
         if robot.gripper is not None:
-            self._fingers = FingerServo(
-                robot.gripper, self._model, self._data, 2 * robot.dof, self._imperfections.delay_s
-            )
+            delay_s = self._imperfections.delay_s
+            self._fingers = FingerServo(robot.gripper, self._model, self._data, 2 * robot.dof, delay_s)
         super().__init__(
             robot,
             state,
