@@ -102,12 +102,10 @@ def _opened(path: Path) -> Generator[sqlite3.Connection]:
     # A journal that is being written has a log beside it. Without one, SQLite must know that
     # nobody writes, or it would leave a log of its own beside a damaged file.
     mode = "mode=ro&immutable=1" if is_missing(beside[0]) else "mode=ro"
+    size = sum(one.stat().st_size for one in (path, beside[0]) if not is_missing(one))
     try:
         with (
-            bounded_memory(
-                f"The journal {path}",
-                sum(one.stat().st_size for one in (path, beside[0]) if not is_missing(one)),
-            ),
+            bounded_memory(f"The journal {path}", size),
             closing(sqlite3.connect(f"file:{_quoted(path)}?{mode}", uri=True)) as database,
         ):
             database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, _MOST_CELL_BYTES)
