@@ -37,11 +37,9 @@ def check_degrees(
     if not many or in_degrees[stops].max(initial=0.0) >= 0.2:
         return
     for joint in [*np.flatnonzero(outside & far), *np.flatnonzero(outside & fast)][:1]:
-        why = (
-            f"goes up to {furthest[joint]:.4g}, more than two turns, though it has stops"
-            if far[joint]
-            else f"moves at {speeds[joint]:.3g} a second, faster than any arm turns in rad"
-        )
+        why = f"moves at {speeds[joint]:.3g} a second, faster than any arm turns in rad"
+        if far[joint]:
+            why = f"goes up to {furthest[joint]:.4g}, more than two turns, though it has stops"
         raise UserError(
             f"{source}: joint {robot.joint_names[joint]} {why}, and in degrees every joint is within its"
             " limits: if these are degrees, pass --units deg."
