@@ -108,10 +108,8 @@ def with_stated(
             )
         joint = known.index(name)
         if one.sliding is not None and one.sliding != slide[joint]:
-            unit = "m" if slide[joint] else "rad or deg"
-            raise UserError(
-                f"The limits file's joints.{name} must be in {unit}: the joint {_moves(slide[joint])}."
-            )
+            unit, does = ("m", "slides") if slide[joint] else ("rad or deg", "turns")
+            raise UserError(f"The limits file's joints.{name} must be in {unit}: the joint {does}.")
         for quantity, fields in _SAID_BY.items():
             value = getattr(one, quantity)
             if value is not None:
@@ -128,10 +126,6 @@ _SAID_BY: Final[Mapping[Quantity, tuple[str, ...]]] = {
     "acceleration": ("acceleration",),
     "jerk": ("jerk",),
 }
-
-
-def _moves(slides: bool) -> str:
-    return "slides" if slides else "turns"
 
 
 def _joint(entry: object, where: str, key: str) -> StatedJointLimits:
@@ -155,13 +149,8 @@ def _joint(entry: object, where: str, key: str) -> StatedJointLimits:
     position = (values["lower"], values["upper"]) if "lower" in values else None
     if position is not None and position[0] >= position[1]:
         raise UserError(f"{where}: {key} has a lower limit that is not below its upper one.")
-    return StatedJointLimits(
-        position=position,
-        velocity=values.get("velocity"),
-        acceleration=values.get("acceleration"),
-        jerk=values.get("jerk"),
-        sliding=next(iter(sliding), None),
-    )
+    rates = {name: values.get(name) for name in ("velocity", "acceleration", "jerk")}
+    return StatedJointLimits(position=position, sliding=next(iter(sliding), None), **rates)
 
 
 def _gripper(entry: object, where: str) -> StatedGripper:
