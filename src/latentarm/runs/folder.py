@@ -129,12 +129,8 @@ def read_run(folder: StrPath) -> Run:
     config = Section.of_file(path, CONFIG_LIMIT)
     plain = config.plain()
     limits = plain.get("limits")
-    # Runs of earlier versions lack these.
-    kept = {
-        key: plain[key]
-        for key in ("robot_model", "task", "goals", "routes", "open_at")
-        if plain.get(key) is not None
-    }
+    later = ("robot_model", "task", "goals", "routes", "open_at")  # runs of earlier versions lack these
+    kept = {key: plain[key] for key in later if plain.get(key) is not None}
     dof = config.section("model").section("dimensions").integer("action", 1) if kept else 0
     goals = parse_goals(kept.get("goals", []), str(path))
     for index, goal in enumerate(goals):
