@@ -36,32 +36,21 @@ def checked_shape(obstacle: Obstacle, what: str) -> Obstacle:
     """The shape with float arrays, validated as by `checked_obstacle`; messages begin with ``what``."""
     match obstacle:
         case HalfSpace():
-            return replace(
-                obstacle, point=_point(what, "point", obstacle.point), normal=_unit(what, obstacle.normal)
-            )
+            point = _point(what, "point", obstacle.point)
+            return replace(obstacle, point=point, normal=_unit(what, obstacle.normal))
         case Sphere():
-            return replace(
-                obstacle,
-                centre=_point(what, "centre", obstacle.centre),
-                radius=_size(what, "radius", obstacle.radius),
-            )
+            centre = _point(what, "centre", obstacle.centre)
+            return replace(obstacle, centre=centre, radius=_size(what, "radius", obstacle.radius))
         case Capsule():
-            return replace(
-                obstacle,
-                start=_point(what, "start", obstacle.start),
-                end=_point(what, "end", obstacle.end),
-                radius=_size(what, "radius", obstacle.radius),
-            )
+            start, end = _point(what, "start", obstacle.start), _point(what, "end", obstacle.end)
+            radius = _size(what, "radius", obstacle.radius)
+            return replace(obstacle, start=start, end=end, radius=radius)
         case Box():
             extents = _point(what, "half_extents", obstacle.half_extents)
             for extent in extents:
                 _size(what, "half_extents", float(extent))
-            return replace(
-                obstacle,
-                centre=_point(what, "centre", obstacle.centre),
-                rotation=_rotation(what, obstacle.rotation),
-                half_extents=extents,
-            )
+            centre, rotation = _point(what, "centre", obstacle.centre), _rotation(what, obstacle.rotation)
+            return replace(obstacle, centre=centre, rotation=rotation, half_extents=extents)
 
 
 def is_number(value: object) -> TypeGuard[float]:

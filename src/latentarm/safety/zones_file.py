@@ -165,9 +165,8 @@ def _turned(angles: FloatArray) -> FloatArray:
     return rotation
 
 
-_SHAPES: Final[
-    dict[str, tuple[tuple[str, ...], tuple[str, ...], Callable[[str, Mapping[str, Any]], Obstacle]]]
-] = {
+_Make = Callable[[str, Mapping[str, Any]], Obstacle]
+_SHAPES: Final[dict[str, tuple[tuple[str, ...], tuple[str, ...], _Make]]] = {
     # name: (keys that it needs, keys that it may have, how it is made)
     "sphere": (("centre_m", "radius_m"), (), lambda name, of: Sphere(name, of["centre_m"], of["radius_m"])),
     "capsule": (
