@@ -56,15 +56,7 @@ class TinesInFood:
         self._points = tines.tips[:, None] + back
         self._foods = [_Served(model, one, one.food) for one in scene.things if one.food and not one.fixed]
         by_name = {food.thing.name: food for food in self._foods}
-        self._bonds = [
-            _Joined(
-                bond,
-                scene,
-                model,
-                {name: by_name[name] for name in (bond.first, bond.second) if name in by_name},
-            )
-            for bond in scene.bonds
-        ]
+        self._bonds = [_Joined(bond, scene, model, by_name) for bond in scene.bonds]
 
     @property
     def stabbed(self) -> frozenset[str]:
@@ -182,7 +174,8 @@ class _Served:
 @final
 class _Joined:
     def __init__(self, bond: Bond, scene: Scene, model: mujoco.MjModel, foods: dict[str, _Served]) -> None:
-        self.bond, self.foods = bond, foods
+        self.bond = bond
+        self.foods = {name: foods[name] for name in (bond.first, bond.second) if name in foods}
         self.weld = model.equality(bond_name(bond)).id
         self.cut = False
         self._body = model.body(thing_body(bond.first)).id
