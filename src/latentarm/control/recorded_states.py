@@ -51,23 +51,14 @@ def _beyond(
     outside = np.nan_to_num(limits.violation(state)) > _OUTSIDE
     if outside.any():
         index, joint = np.argwhere(outside)[0]
-        found.append(
-            (
-                int(index),
-                f"joint {joint_names[joint]!r} reads {state[index, joint]:.3g}, outside its limits"
-                f" {limits.lower[joint]:.3g} and {limits.upper[joint]:.3g}",
-            )
-        )
+        ends = f"{limits.lower[joint]:.3g} and {limits.upper[joint]:.3g}"
+        reads = f"joint {joint_names[joint]!r} reads {state[index, joint]:.3g}"
+        found.append((int(index), f"{reads}, outside its limits {ends}"))
     moved = np.nan_to_num(np.abs(np.diff(state, axis=0)))
     fast = moved > limits.velocity * np.maximum(elapsed_s, 0.0)[:, None] + _JUMP
     if fast.any():
         index, joint = np.argwhere(fast)[0]
         speed = moved[index, joint] / max(float(elapsed_s[index]), 1e-9)
-        found.append(
-            (
-                int(index) + 1,
-                f"joint {joint_names[joint]!r} moves at {speed:.3g} rad/s and can do"
-                f" {limits.velocity[joint]:.3g}",
-            )
-        )
+        moves = f"joint {joint_names[joint]!r} moves at {speed:.3g} rad/s"
+        found.append((int(index) + 1, f"{moves} and can do {limits.velocity[joint]:.3g}"))
     return found
