@@ -51,10 +51,8 @@ def read_npz(source: Path, rate_hz: float | None = None, task: str | None = None
     for key, values in (by_sample if timestamp is None else by_sample | {"timestamp": timestamp}).items():
         expected = q.shape[:1] if key == "timestamp" else q.shape
         if values.shape != expected:
-            raise UserError(
-                f"{source}: the array '{key}' has the shape {values.shape}; "
-                f"with this 'q' it must be {expected}."
-            )
+            shape = f"has the shape {values.shape}; with this 'q' it must be {expected}"
+            raise UserError(f"{source}: the array '{key}' {shape}.")
     extras = {feature: by_sample[key] for key, feature in FEATURES.items() if key in by_sample}
     if "gripper_toggles" in arrays:
         extras[GRIPPER_TOGGLED] = _gripper(arrays["gripper_toggles"], ends, source)
