@@ -14,6 +14,9 @@ from latentarm.robots.scene.scene import SceneState
 from latentarm.tasks.inverse_kinematics import solve
 from latentarm.tasks.steps import TaskStep, Waypoint
 
+STEPS: Final = 100
+"""At most, of inverse kinematics: the page waits for it, and a pose within reach takes some 20."""
+
 MOVED_M: Final = 0.002
 MOVED_RAD: Final = 0.02  # a goal is solved for again once its pose has moved farther than this
 
@@ -71,7 +74,7 @@ class StepGoals:
     def _move(self, index: int, pose: Pose, q: FloatArray) -> None:
         self._poses[index] = pose
         try:
-            configuration = solve(self._robot, pose, q)
+            configuration = solve(self._robot, pose, q, steps=STEPS)
         except UserError:
             return  # out of reach: the goal stays
         self._configurations = self._configurations.copy()
