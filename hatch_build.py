@@ -48,7 +48,7 @@ class ThreeHook(BuildHookInterface[Any]):
         return Path(self.root, "src", "latentarm", "web", "three")
 
     def _there(self) -> bool:
-        """Whether the source tree has the pinned version."""
+        """Return whether the source tree has the pinned version."""
         lock = json.loads(Path(self.root, "package-lock.json").read_text())
         pinned = lock["packages"]["node_modules/three"]["version"]
         package = self._folder / "package.json"

@@ -33,7 +33,7 @@ DRAWS: Final = 1
 
 
 class Draw(NamedTuple):
-    """What is random in one step, or with a leading axis in all of them."""
+    """Random draws of one step, or of all steps with a leading axis."""
 
     answers: Tensor  # (S, N'), rows of the answers
     here: Tensor  # (S, B), rows of the unlabelled contexts

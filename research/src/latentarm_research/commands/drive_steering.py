@@ -28,7 +28,7 @@ USUAL_BELIEF: Final = "boltzmann"  # the rule of the belief where none is named
 
 @dataclass(frozen=True, eq=False)
 class Steering:
-    """What is the same in all drives of one command, whatever is done."""
+    """Settings that all drives of one command share."""
 
     config: DriveOptions
     task: str

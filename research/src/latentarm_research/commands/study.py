@@ -160,7 +160,7 @@ def power_of_study(
 def _request(
     definition: Definition, options: StudyOptions, simulated: int | None, preset: str, out: Path
 ) -> "Request[Sizes]":
-    """What was asked for. Raises a `UserError` where something is out of its range."""
+    """Build the request. Raises a `UserError` where an option is out of its range."""
     from latentarm_research.user_studies.sizes import sizes_of
 
     sizes = sizes_of(preset, definition.people if simulated is None else simulated)

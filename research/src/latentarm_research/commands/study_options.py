@@ -47,7 +47,7 @@ class StudyOptions:
     json: Json = False
 
     def request(self, out: Path, preset: Preset, tasks: tuple[str, ...] = ()) -> "Request[Preset]":
-        """What was asked for. Raises a `UserError` where something is out of its range."""
+        """Build the request. Raises a `UserError` where an option is out of its range."""
         from latentarm_research.studies.study import Request
 
         return Request(

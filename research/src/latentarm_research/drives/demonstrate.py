@@ -46,7 +46,7 @@ class Demonstration:
     """One run of the scripted demonstrator.
 
     Attributes:
-        episode: what is kept of it.
+        episode: the recorded samples.
         progress: how far it came.
         seconds: how long it took, s.
         states: how things stood at every kept sample.

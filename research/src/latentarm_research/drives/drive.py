@@ -211,7 +211,7 @@ class _Rearming:
         self._since_s: float | None = None
 
     def lets_go(self, time_s: float) -> bool:
-        """Whether the person lets go because the arm has stopped. After `REARM_S` this enables the arm."""
+        """Return whether the person holds the stick at rest after a stop; enable the arm after `REARM_S`."""
         if self._step.stopped is None:
             self._since_s = None
             return False

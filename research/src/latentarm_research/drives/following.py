@@ -1,4 +1,4 @@
-"""Follows a simulated drive: how far it has come, whether it is over, and what is kept of it."""
+"""Follows a simulated drive: its progress, its end, and its trace."""
 
 from collections.abc import Mapping
 from typing import Final, final

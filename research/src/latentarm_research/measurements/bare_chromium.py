@@ -186,7 +186,7 @@ class Proxy:
         """Pass nothing on from now on."""
         self._cut.set()
 
-    def mend(self) -> None:
+    def restore(self) -> None:
         """Hang up on all who were cut off; new connections work again."""
         for one in self._open:
             with suppress(OSError):
@@ -198,7 +198,7 @@ class Proxy:
     def close(self) -> None:
         """Take no more connections, and hang up."""
         self._listening.close()
-        self.mend()
+        self.restore()
 
     def _accept(self) -> None:
         with suppress(OSError):

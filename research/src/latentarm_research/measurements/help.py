@@ -103,7 +103,7 @@ class Hover(Task):
         return (TABLE.goals[goal if self._hidden is None else self._hidden].pose,)
 
     def reached(self, pose: Pose, waypoint: Pose) -> bool:
-        """Whether the tool is near enough, in any orientation."""
+        """Return whether the tool is within `REACHED_DISTANCE`, in any orientation."""
         return bool(np.linalg.norm(pose.position - waypoint.position) <= REACHED_DISTANCE)
 
     def demonstrate(self, episodes: int, rng: np.random.Generator) -> Demonstrations:

@@ -126,7 +126,7 @@ def drives(run: Path, out: Path, fault: str, tries: int) -> list[float]:
                     faults_s.append(MonotonicClock().now_s())
                     scene.suffer(fault)
                     time.sleep(WATCHED_S)
-                    proxy.mend()
+                    proxy.restore()
                     scene.tab.close()
                     # The episode ends with its driver.
                     time.sleep(0.3)

@@ -7,7 +7,6 @@ from functools import partial
 from statistics import fmean
 from typing import Any, Final, final
 
-import numpy as np
 from threadpoolctl import threadpool_limits
 
 from latentarm.assistance.assistance import AssistanceRule
@@ -21,7 +20,6 @@ from latentarm.models.catalogue import DEFAULT_MODEL
 from latentarm.models.decoder import Decoder
 from latentarm.models.kind import TrainedModel
 from latentarm.models.way_back.training import NoWayBackWarning
-from latentarm.robots.kinematics.obstacles import Obstacle
 from latentarm.robots.robot import Robot
 from latentarm.tasks.catalogue import make_scene_task
 from latentarm.tasks.scene_task import Beginning, SceneTask
@@ -33,7 +31,7 @@ from latentarm_research.measurements.measurement import Outcome, Work, line
 from latentarm_research.people.catalogue import PEOPLE
 from latentarm_research.people.names import OperatorName
 from latentarm_research.studies.fitting import fit_model, validation_episodes
-from latentarm_research.user_studies.scenes import LimitedTime
+from latentarm_research.user_studies.scenes import AdaptedTask
 
 WAY_BACK_M: Final = 0.06
 MODELS: Final[Mapping[str, tuple[str, tuple[str, ...]]]] = {
@@ -53,42 +51,9 @@ WAYS: Final[Mapping[str, tuple[AssistanceRule | None, bool, Rule]]] = {
 """Help, whether the goals move on, and how inputs change the belief."""
 
 
-@final
-class Staying(SceneTask):
-    """A task whose goals stay, because nothing in the scene has their names."""
-
-    def __init__(self, task: SceneTask) -> None:
-        self._task = task
-
-    @property
-    def name(self) -> str:
-        """That of the task."""
-        return self._task.name
-
-    @property
-    def robot(self) -> Robot:
-        """That of the task."""
-        return self._task.robot
-
-    @property
-    def choices(self) -> tuple[str, ...]:
-        """Those of the task."""
-        return self._task.choices
-
-    @property
-    def obstacles(self) -> tuple[Obstacle, ...]:
-        """Those of the task."""
-        return self._task.obstacles
-
-    @property
-    def time_limit_s(self) -> float:
-        """That of the task."""
-        return self._task.time_limit_s
-
-    def begin(self, choice: int, rng: np.random.Generator) -> Beginning:
-        """As the task begins."""
-        begun = self._task.begin(choice, rng)
-        return replace(begun, goals=tuple(replace(goal, name=f"over {goal.name}") for goal in begun.goals))
+def staying(begun: Beginning) -> Beginning:
+    """The same start with goals that stay, because nothing in the scene has their names."""
+    return replace(begun, goals=tuple(replace(goal, name=f"over {goal.name}") for goal in begun.goals))
 
 
 @final
@@ -124,7 +89,7 @@ def measure(options: StepHelp, work: Work) -> Outcome:
             f"{fit}{' (refused)' if fit.way_back and not model.dimensions.way_back else ''}": model
             for fit, model in zip(fits, fitted, strict=True)
         }
-        planned = dict(_planned(options, LimitedTime(task, options.limit_s), models, work.seed))
+        planned = dict(_planned(options, task, models, work.seed))
         traces = drive_all(list(planned.values()), work.jobs, bars=work.bars)
         for (condition, person), drives in zip(planned, traces, strict=True):
             figures = {
@@ -142,7 +107,7 @@ def _planned(
     for model, trained in models.items():
         controller = LatentController(Decoder(trained))
         for way, (assistance, move_on, rule) in WAYS.items():
-            place = task if move_on else Staying(task)
+            place = AdaptedTask(task, options.limit_s, None if move_on else staying)
             for person in options.people:
                 setup = Setup(place, controller, PEOPLE[person], assistance, rule=rule)
                 yield (f"{model}, {way}", person), plan_drives([[setup]], options.drives, seed)

@@ -132,7 +132,7 @@ class _Drives:
 
 @dataclass(frozen=True)
 class _Outcome:
-    """What came of B drives."""
+    """Results of B drives."""
 
     least: Tensor  # (B,), least distance of the tool from its goal, m
     offset: Tensor  # (B, 3), from the goal at the end, m

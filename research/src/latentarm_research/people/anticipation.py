@@ -49,7 +49,7 @@ class Anticipation:
         self._meant.append(u)
 
     def now(self, moment: Moment, seen: Moment, controller: Controller) -> Moment:
-        """What is there now, as they expect it."""
+        """Predict the present moment from the one they saw and their inputs since."""
         here = seen.context
         for u, mode, time_s in self._since(seen):
             if self._limits.is_push(u):

@@ -1,12 +1,14 @@
-"""What is kept of a person's trial: flat, the same for simulated and real people."""
+"""The flat record of one trial, the same for simulated and real people."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
 from math import isfinite
 from pathlib import Path
-from typing import Any, cast, final
+from typing import Any, TypeVar, cast, final
 
 from latentarm.core.errors import UserError
+
+Listed = TypeVar("Listed")
 
 
 @final
@@ -64,17 +66,21 @@ def read_trial(entry: object, where: str) -> Trial:
     )
 
 
-def read_trials(
-    document: Mapping[str, object],  # with a list `trials`
-    path: Path,
-) -> tuple[Trial, ...]:
-    """The trials of a document.
+def read_listed(
+    document: Mapping[str, object], name: str, path: Path, read: Callable[[object, str], Listed]
+) -> tuple[Listed, ...]:
+    """The list of that name in a document; ``read`` takes an entry and where it stands, for errors.
 
     Raises:
-        UserError: there is no list, or a trial is not what it should be.
+        UserError: there is no list, or an entry is not what it should be.
     """
-    entries = document.get("trials")
+    entries = document.get(name)
     if not isinstance(entries, list):
-        raise UserError(f"{path} must hold a list of trials.")
+        raise UserError(f"{path} must hold a list of {name}.")
     listed = enumerate(cast(list[object], entries))
-    return tuple(read_trial(entry, f"{path}, trial {index}") for index, entry in listed)
+    return tuple(read(entry, f"{path}, {name.removesuffix('s')} {index}") for index, entry in listed)
+
+
+def read_trials(document: Mapping[str, object], path: Path) -> tuple[Trial, ...]:
+    """The trials of a document; see `read_listed`."""
+    return read_listed(document, "trials", path, read_trial)

@@ -18,7 +18,6 @@ from latentarm_research.studies.source import source_digest
 from latentarm_research.studies.streams import generator
 from latentarm_research.studies.study import Grid, Keep, Report, Request, Study, again
 from latentarm_research.user_studies import alignments, conditions, designs, scenes, session, training
-from latentarm_research.user_studies import scenes as limited_time
 from latentarm_research.user_studies.definition import Definition
 from latentarm_research.user_studies.designs import design_of
 from latentarm_research.user_studies.record import read_trials
@@ -140,7 +139,7 @@ def _trained_as(cell: SessionCell) -> str:
 
 def _depends_on(definition: Definition) -> dict[str, object]:
     """The definition, and the code of a session, so that a study does not go on with other code."""
-    used = (alignments, conditions, designs, fitting, limited_time, scenes, session, streams, training)
+    used = (alignments, conditions, designs, fitting, scenes, session, streams, training)
     code = source_digest([Path(module.__file__ or "") for module in used])
     return {"definition": definition.digest, "code": code, "versions": package_versions()}
 

@@ -1,5 +1,6 @@
-"""The tasks that studies are driven at, by name, and such a task cut off early."""
+"""The tasks that studies are driven at, by name, and such a task adapted."""
 
+from collections.abc import Callable
 from typing import Final, final
 
 import numpy as np
@@ -24,15 +25,16 @@ def scene_of(
 
 
 @final
-class LimitedTime(SceneTask):
-    """Another task with a time limit that may be shorter than its own."""
+class AdaptedTask(SceneTask):
+    """Another task, whose time limit may be shorter and whose beginnings may be changed."""
 
     def __init__(
         self,
         task: SceneTask,
         time_limit_s: float,  # a run that takes longer has failed, s
+        change: Callable[[Beginning], Beginning] | None = None,  # of how each run begins
     ) -> None:
-        self._task = task
+        self._task, self._change = task, change
         self._time_limit_s = min(time_limit_s, task.time_limit_s)
 
     @property
@@ -61,5 +63,6 @@ class LimitedTime(SceneTask):
         return self._time_limit_s
 
     def begin(self, choice: int, rng: np.random.Generator) -> Beginning:
-        """One run of the task."""
-        return self._task.begin(choice, rng)
+        """One run of the task, changed."""
+        begun = self._task.begin(choice, rng)
+        return begun if self._change is None else self._change(begun)

@@ -17,7 +17,7 @@ from latentarm_research.studies.streams import generator
 from latentarm_research.user_studies.conditions import setup_of
 from latentarm_research.user_studies.definition import Condition, Definition, StudyTask
 from latentarm_research.user_studies.record import Trial
-from latentarm_research.user_studies.scenes import LimitedTime, scene_of
+from latentarm_research.user_studies.scenes import AdaptedTask, scene_of
 from latentarm_research.user_studies.sizes import Sizes, Stream
 from latentarm_research.user_studies.trace import Trace, trace_of
 from latentarm_research.user_studies.training import Trained
@@ -136,12 +136,12 @@ def _attempts(cell: SessionCell, number: int, choice: int) -> list[drives.Trace]
     """One drive, and where the trial's time allows it another one after each that failed."""
     scene = scene_of(cell.task.scene)
     left_s = min(cell.task.trial_s or scene.time_limit_s, cell.sizes.trial_s)
-    driven = [_drive(cell, LimitedTime(scene, left_s), number, choice, 0)]
+    driven = [_drive(cell, AdaptedTask(scene, left_s), number, choice, 0)]
     while cell.task.trial_s and not driven[-1].figures.success:
         left_s -= driven[-1].figures.time_s
         if left_s < LEAST_S:
             break
-        driven.append(_drive(cell, LimitedTime(scene, left_s), number, choice, len(driven)))
+        driven.append(_drive(cell, AdaptedTask(scene, left_s), number, choice, len(driven)))
     return driven
 
 

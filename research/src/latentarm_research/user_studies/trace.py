@@ -1,17 +1,18 @@
-"""What figures show of a trial: the tool's way, how far it was from the plates, and the stick."""
+"""The trace of a trial for figures: the tool's path, its distance from the plates, and the stick."""
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, cast, final
+from typing import TYPE_CHECKING, Any, Final, final
 
 import numpy as np
 
-from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray
 from latentarm_research.metrics.preference_alignment import StepAlignment
 from latentarm_research.user_studies.definition import StudyTask
 from latentarm_research.user_studies.own.records import read_record
+from latentarm_research.user_studies.record import read_listed
 
 if TYPE_CHECKING:
     from latentarm_research.drives import trace as drives
@@ -24,7 +25,7 @@ DECIMALS: Final = 4
 @final
 @dataclass(frozen=True)
 class Trace:
-    """What is kept of a drive."""
+    """The trace of one drive."""
 
     person: int  # their number
     condition: str  # name of the condition
@@ -47,7 +48,7 @@ class Trace:
 
 
 def trace_of(person: int, condition: str, task: StudyTask, trial: int, driven: "drives.Trace") -> Trace:
-    """What is kept of a drive."""
+    """The trace of one drive."""
     moments = np.unique(np.linspace(0, len(driven.time_s) - 1, POINTS).astype(int))
     position = driven.position[moments]
     plate_m: FloatArray = np.zeros(0)
@@ -71,20 +72,9 @@ def trace_of(person: int, condition: str, task: StudyTask, trial: int, driven: "
     )
 
 
-def read_traces(
-    document: Mapping[str, object],  # with a list `traces`
-    path: Path,
-) -> tuple[Trace, ...]:
-    """The traces of a document.
-
-    Raises:
-        UserError: there is no list, or a trace is not what it should be.
-    """
-    entries = document.get("traces")
-    if not isinstance(entries, list):
-        raise UserError(f"{path} must hold a list of traces.")
-    listed = enumerate(cast(list[object], entries))
-    return tuple(read_record(Trace, entry, f"{path}, trace {index}") for index, entry in listed)
+def read_traces(document: Mapping[str, object], path: Path) -> tuple[Trace, ...]:
+    """The traces of a document; see `read_listed`."""
+    return read_listed(document, "traces", path, partial(read_record, Trace))
 
 
 def _stick(driven: "drives.Trace") -> FloatArray:

@@ -22,7 +22,7 @@ from latentarm_research.studies.fitting import fit_model, validation_episodes
 from latentarm_research.studies.streams import generator, integer, sequence
 from latentarm_research.user_studies.alignments import PRIORS, Aligned, learn_alignments
 from latentarm_research.user_studies.definition import Aligns, Condition, Definition, StudyTask
-from latentarm_research.user_studies.scenes import LimitedTime, scene_of
+from latentarm_research.user_studies.scenes import AdaptedTask, scene_of
 from latentarm_research.user_studies.sizes import LEAST_DEMONSTRATIONS, Sizes, Stream
 
 MOST_TRIES: Final = 10
@@ -86,7 +86,7 @@ def train(cell: TrainingCell) -> Trained:
     keys = list(dict.fromkeys((condition.model, condition.context) for condition in latent))
     aligns: list[Aligns] = [way for way in PRIORS if any(condition.aligns == way for condition in latent)]
     with threadpool_limits(limits=1):
-        task = LimitedTime(scene_of(cell.task.scene), cell.sizes.demonstration_s)
+        task = AdaptedTask(scene_of(cell.task.scene), cell.sizes.demonstration_s)
         belief = any(BELIEF in context for _, context in keys)
         demonstrations, seconds = _demonstrated(cell, task, belief)
         models = {key: _fitted(cell, task, demonstrations, *key) for key in keys}

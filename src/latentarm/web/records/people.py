@@ -96,7 +96,7 @@ class People:
         return found
 
     def folder_of(self, person: str) -> Path:
-        """The folder of all that is kept of a person."""
+        """The folder with a person's records."""
         return self._folder / person
 
     def add(self, name: str, settings: dict[str, bool | float | str] | None = None) -> PersonRecord:

@@ -1,4 +1,4 @@
-"""All that is kept of a person: counting, exporting, importing and deleting it."""
+"""A person's records: counting, exporting, importing and deleting them."""
 
 import json
 import shutil
