@@ -99,8 +99,7 @@ def test_space_as_a_switch_does_not_stop_and_escape_does(page, arm, press_enable
     two(page)
     page.get_by_role("button", name="Settings").click()
     key = page.get_by_label("Key to choose")
-    key.focus()
-    page.keyboard.press("Enter")
+    key.click()
     page.keyboard.press("Space")
     assert key.input_value() == "Space"
     page.get_by_role("button", name="Done").click()
@@ -116,3 +115,75 @@ def test_space_as_a_switch_does_not_stop_and_escape_does(page, arm, press_enable
     page.keyboard.press("Escape")
     arm.comes_to_rest()
     assert arm.state["reason"]["code"].startswith("stop_pressed")
+
+
+def lit(page):
+    return page.locator("#scan li[aria-current=true]").inner_text()
+
+
+def click_next_task(page):
+    page.locator("#task-next").click()
+
+
+def open_and_close_settings(page):
+    page.get_by_role("button", name="Settings").click()
+    page.get_by_role("button", name="Done").click()
+
+
+def open_an_explanation(page):
+    page.locator("details.explain summary:visible").first.click()
+
+
+@pytest.mark.parametrize("helper", [click_next_task, open_and_close_settings, open_an_explanation])
+def test_a_switch_takes_what_is_lit_whatever_a_helper_has_clicked(page, arm, helper):
+    scan(page, Time_on_each_choice="1.5")
+    helper(page)
+    explained = page.locator("details[open]").count()
+    choose_by_one(page, "More …")
+    assert offered(page) >= MORE
+    choose_by_one(page, "Back")
+    assert offered(page) == {"Enable", "Other mode", "Next task", "More …", "Stop"}
+    assert not arm.enabled
+    assert page.get_by_role("dialog").count() == 0
+    assert page.locator("details[open]").count() == explained
+
+
+def test_settings_that_a_helper_has_opened_are_scanned_and_left_by_the_switch(page):
+    two(page)
+    page.get_by_role("button", name="Settings").click()
+    choose_by_two(page, "Switch timing …")
+    assert {"Time on each choice …", "Stop", "Back"} <= offered(page)
+    choose_by_two(page, "Back")
+    choose_by_two(page, "Done")
+    page.get_by_role("dialog").wait_for(state="hidden")
+    assert lit(page) == "Enable"
+
+
+def test_the_menu_of_pages_is_scanned_and_closed_by_the_switch(page):
+    two(page)
+    page.set_viewport_size({"width": 390, "height": 844})
+    page.locator("#pages-open").click()
+    page.locator("#pages:popover-open").wait_for()
+    assert offered(page) >= {"Teach", "People", "Stop", "Back"}
+    choose_by_two(page, "Back")
+    page.locator("#pages:popover-open").wait_for(state="hidden")
+    assert "Enable" in offered(page)
+
+
+def test_a_field_keeps_the_switch_only_while_somebody_types_in_it(page):
+    two(page)
+    page.get_by_role("button", name="Settings").click()
+    page.get_by_label("Key to choose").click()
+    page.keyboard.press("Space")
+    page.get_by_role("button", name="Done").click()
+    field = page.locator("#record-task")
+    field.click()
+    page.keyboard.type("a cup")
+    assert field.input_value() == "a cup"
+    page.wait_for_timeout(5100)
+    for _ in range(3):
+        press_switch(page, "Backspace")
+    press_switch(page, "Space")
+    page.wait_for_timeout(150)
+    assert field.input_value() == "a cup"
+    assert offered(page) >= MORE

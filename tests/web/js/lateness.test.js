@@ -136,9 +136,10 @@ test("what goes on by itself is let go where the stick means something else; wha
 });
 
 test("a dialog that opens stops the arm, however it opens, and a second one stops nobody again", () => {
-  const dialogs = [{ open: false }, { open: false }];
+  const dialogs = [1, 2].map(() => ({ open: false, localName: "dialog" }));
   let changed = () => {};
   fakes.document.getElementsByTagName = () => dialogs;
+  fakes.document.querySelector = () => dialogs.find(({ open }) => open) ?? null;
   fakes.document.documentElement = {};
   globalThis.MutationObserver = class {
     constructor(callback) {

@@ -115,6 +115,32 @@ for (const [what, downMs, upMs] of [
   }
 }
 
+for (const hertz of [10, 15, 20, 25, 30]) {
+  for (const share of [0.2, 0.5, 0.9]) {
+    test(`an adapter that repeats at ${hertz} Hz while it is held, down for ${share} of the time, presses once`, () => {
+      set({ ...REAL, dwellS: 9 });
+      for (const seconds of [0.4, 1, 3]) {
+        pass(500);
+        const period = Math.round(1000 / hertz);
+        for (let time = 0; time < seconds * hertz; time += 1) {
+          press(Math.round(share * period));
+          pass(period - Math.round(share * period));
+        }
+      }
+      assert.deepEqual(done, ["first", "first", "first"]);
+    });
+  }
+}
+
+test("a hand that trembles at 8 Hz on a switch presses nothing that asks for a longer press", () => {
+  set({ ...REAL, acceptS: 0.3 });
+  for (let time = 0; time < 40; time += 1) {
+    press(70);
+    pass(55);
+  }
+  assert.deepEqual(done, []);
+});
+
 test("quick presses of a person count: 80 ms long, three in a second", () => {
   set({ ...REAL, switches: "2" });
   for (let times = 0; times < 6; times += 1) {

@@ -136,19 +136,13 @@ const gripper = attachGripper({
 attachStick(byId("stick"), byId("stick-value"), input, settings);
 const rim = attachRim(byId("stick"));
 attachDpad(byId("dpad"), byId("dpad-help"), input, settings, status.refused);
-const scanner = attachScanning({
-  list: byId("scan"),
-  press: byId("switch", HTMLButtonElement),
-  next: byId("switch-next", HTMLButtonElement),
-  help: byId("scan-help"),
-}, input, settings, () => {
+const scanner = attachScanning(input, settings, stop, (stopIt, group) => {
   const mode = { id: "mode", label: say("scanning.other_mode"), act: modes.next };
-  const stopIt = { id: "stop", label: say("layout.stop"), act: stop };
   const { label, does } = enableButtonOf(connection);
   if (does === "ask") return [{ id: "ask", label: say(label), act: () => connection.send({ type: "ask_to_drive" }) }, stopIt];
   // On the way back any press ends it.
   if (connection.state?.returning || !(connection.driving || does)) return [stopIt];
-  const more = moreChoices(help.choices(), [...wayBack.choices(), ...poses.choices(), ...practice.choices()], stopIt);
+  const more = moreChoices(help.choices(), [...wayBack.choices(), ...poses.choices(), ...practice.choices()], group);
   if (connection.state?.lost) return [...lostArm.choices(), stopIt, more];
   const unconfirmed = checklist.choices();
   if (unconfirmed.length) return [...unconfirmed, stopIt, more];

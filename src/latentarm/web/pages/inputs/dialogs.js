@@ -1,22 +1,35 @@
-/** Nothing moves behind a dialog: however one opens, the arm stops. */
+/** What is open above the page. Nothing moves behind a dialog: however one opens, the arm stops. */
 
 /** @import {DriveInput} from "./drive_input.js" */
 
-/** Whether any dialog is open. */
+/** The dialog or the menu above everything else: opening a dialog closes the menu. @returns {HTMLElement | null} */
+export function topmost() {
+  return document.querySelector(":is(dialog[open], :popover-open)");
+}
+
 export function dialogIsOpen() {
-  return [...document.getElementsByTagName("dialog")].some(({ open }) => open);
+  return topmost()?.localName === "dialog";
 }
 
 /**
- * Watches every dialog of the page, also those that are added later: whatever opens one, it sets the attribute.
+ * Watches every dialog and menu of the page, also those that are added later: whatever opens or closes one, it is noticed.
  *
- * @param {Pick<DriveInput, "halt">} input
+ * @param {(before: HTMLElement | null) => void} changed what was topmost
  */
-export function attachDialogs(input) {
-  let was = dialogIsOpen();
-  new MutationObserver(() => {
-    const is = dialogIsOpen();
-    if (is && !was) input.halt("dialog_opened");
+export function watchOpen(changed) {
+  let was = topmost();
+  const look = () => {
+    const [before, is] = [was, topmost()];
     was = is;
-  }).observe(document.documentElement, { attributes: true, attributeFilter: ["open"], childList: true, subtree: true });
+    if (is !== before) changed(before);
+  };
+  new MutationObserver(look).observe(document.documentElement, { attributes: true, attributeFilter: ["open"], childList: true, subtree: true });
+  document.addEventListener("toggle", look, { capture: true });
+}
+
+/** @param {Pick<DriveInput, "halt">} input */
+export function attachDialogs(input) {
+  watchOpen((before) => {
+    if (dialogIsOpen() && before?.localName !== "dialog") input.halt("dialog_opened");
+  });
 }

@@ -5,8 +5,8 @@ import { byId } from "../layout/dom.js";
 /** @import {PersonInput} from "./deflection.js" */
 /** @import {Settings, Values} from "../settings/settings.js" */
 
-/** @type {Values["panel"][]} */
-const PANELS = ["stick", "dpad", "switch"];
+/** The switch shows itself. */
+const PANELS = ["stick", "dpad"];
 
 /** Where another way is chosen, what is pressed is let go. @param {PersonInput} input @param {Settings} settings */
 export function attachInputChoice(input, settings) {

@@ -86,12 +86,12 @@ function isTaken(target, code, driving) {
 }
 
 /** Whether keys change what is in the focused control. @param {EventTarget | null} target */
-export function isTyping(target) {
+function isTyping(target) {
   return target instanceof HTMLElement && target.matches("textarea, select, input:not([type=radio], [type=checkbox], [type=button])");
 }
 
 /** Whether Enter means something to the focused control. @param {EventTarget | null} target */
-export function isInteractive(target) {
+function isInteractive(target) {
   const takers = "a, button, input:not([type=radio], [type=checkbox]), select, textarea, summary, dialog";
   return target instanceof HTMLElement && target.closest(takers) !== null;
 }

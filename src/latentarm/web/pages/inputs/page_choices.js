@@ -3,9 +3,8 @@
 import { byId } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 import { settingChoices } from "../settings/setting_choices.js";
-import { groupOf } from "./scanning.js";
 
-/** @import {Choice} from "./scanner.js" */
+/** @import {Choice, Group} from "./scanner.js" */
 
 /** Buttons of the page, most wanted first. */
 const BUTTONS = [
@@ -24,31 +23,31 @@ export function buttonChoice(id) {
   return [{ id: `button-${id}`, label: button.textContent.trim(), act: () => button.click() }];
 }
 
-/** Links that stand on a part of the page. @param {HTMLElement} part @returns {Choice[]} */
+/** Links that stand on a part of the page, but not to this page. @param {HTMLElement} part @returns {Choice[]} */
 export function linkChoices(part) {
-  const links = [...part.querySelectorAll("a")].filter((link) => link.closest("[hidden]") === null);
+  const links = [...part.querySelectorAll("a")].filter((link) => link.closest("[hidden]") === null && !link.ariaCurrent);
   return links.map((link) => ({ id: `link-${link.pathname}`, label: link.textContent.trim(), act: () => link.click() }));
 }
 
-/** The other pages, by the names in the row at the top. @returns {Choice[]} */
-export function pageChoices() {
-  const links = /** @type {HTMLAnchorElement[]} */ ([...byId("pages").querySelectorAll("a:not([aria-current])")]);
-  return links.map((link) => ({ id: `page-${link.pathname}`, label: link.textContent.trim(), act: () => link.click() }));
+/** What every page has: the settings and the other pages, by the names in the row at the top. @param {Group} group @returns {Choice[]} */
+export function commonChoices(group) {
+  return [
+    group("settings", say("settings.title"), () => settingChoices(byId("settings-form", HTMLFormElement), group)),
+    group("pages", say("scanning.pages"), () => linkChoices(byId("pages"))),
+  ];
 }
 
 /**
  * @param {Choice[]} help the levels of help
  * @param {Choice[]} here what this page offers besides
- * @param {Choice} stop in reach from everywhere
+ * @param {Group} group
  * @returns {Choice}
  */
-export function moreChoices(help, here, stop) {
-  const group = (/** @type {string} */ id, /** @type {string} */ label, /** @type {() => Choice[]} */ inner) => groupOf(id, label, inner, [stop]);
+export function moreChoices(help, here, group) {
   return group("more", say("scanning.more"), () => [
     ...(help.length ? [group("help", say("help.title"), () => help)] : []),
     ...here,
     ...BUTTONS.flatMap(buttonChoice),
-    group("settings", say("settings.title"), () => settingChoices(byId("settings-form", HTMLFormElement), group)),
-    group("pages", say("scanning.pages"), pageChoices),
+    ...commonChoices(group),
   ]);
 }

@@ -2,7 +2,7 @@
 
 import { fieldChoice, wordsOf } from "../settings/setting_choices.js";
 
-/** @import {Choice} from "./scanner.js" */
+/** @import {Choice, Group} from "./scanner.js" */
 
 const PRESSED = "button, a[href], summary";
 const FIELDS = "select, input[type=radio], input[type=checkbox], input[type=range]";
@@ -23,7 +23,7 @@ export function elementOf(choice) {
 
 /**
  * @param {HTMLElement} root
- * @param {(id: string, label: string, inner: () => Choice[]) => Choice} group a choice that opens others
+ * @param {Group} group a choice that opens others
  * @param {string} [id] under which they are known; the same controls have the same
  * @returns {Choice[]}
  */
@@ -31,7 +31,7 @@ export function pageControls(root, group, id = "page") {
   return controlsIn(root).flatMap((element, at) => choicesOf(element, `${id}-${element.id || at}`, group));
 }
 
-/** @param {HTMLElement} element @param {string} id @param {(id: string, label: string, inner: () => Choice[]) => Choice} group @returns {Choice[]} */
+/** @param {HTMLElement} element @param {string} id @param {Group} group @returns {Choice[]} */
 function choicesOf(element, id, group) {
   if (element.matches(PARTS)) {
     const inner = pageControls(element, group, id);

@@ -27,6 +27,7 @@ const READY_MS = 6000;
  * @property {boolean} [back] leads back to where it was opened from
  * @property {boolean} [stays] is one of several small changes: the light stays there
  */
+/** @typedef {(id: string, label: string, inner: () => Choice[]) => Choice} Group makes a choice that opens others */
 
 /** Event "change" when other choices are offered, or another one is lit or moves. */
 export class Scanner extends EventTarget {

@@ -1,20 +1,24 @@
-/** The list that scanning lights up, the switches' buttons and their keys. */
+/** The list that scanning lights up, and what is in it: never nothing. */
 
-import { create, setText } from "../layout/dom.js";
+import { byId, create, setText } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 import { DIRECTION_NAMES } from "./deflection.js";
+import { topmost, watchOpen } from "./dialogs.js";
 import { attachHeldPointer } from "./held_pointer.js";
-import { isInteractive } from "./keyboard.js";
 import { keyWords } from "./keys.js";
+import { elementOf, pageControls } from "./page_controls.js";
 import { Scanner } from "./scanner.js";
 import { attachSpeech } from "./speech.js";
+import { attachSwitchKeys } from "./switch_keys.js";
+import { attachSwitchPlace } from "./switch_place.js";
 
 /** @import {PersonInput} from "./deflection.js" */
-/** @import {Choice} from "./scanner.js" */
+/** @import {Choice, Group} from "./scanner.js" */
 /** @import {Settings} from "../settings/settings.js" */
 
 /** How often the offered choices are checked, ms. */
 const LOOK_MS = 100;
+const LIT = "lit";
 
 /** The four directions to choose from. @returns {Choice[]} */
 export function directionChoices() {
@@ -36,21 +40,23 @@ export function groupOf(id, label, inner, always = []) {
 }
 
 /**
- * @param {{list: HTMLElement, press: HTMLButtonElement, next: HTMLButtonElement, help: HTMLElement}} parts
  * @param {PersonInput} input
  * @param {Settings} settings
- * @param {() => Choice[]} offered what there is to choose from now
- * @param {(target: EventTarget | null) => boolean} [keeps] whether a focused control keeps its keys; by default while
- *   nothing could move
+ * @param {() => void} stop
+ * @param {(stops: Choice, group: Group) => Choice[]} offered what the page has to choose from now; Stop is added where it is missing
  */
-export function attachScanning(
-  parts, input, settings, offered, keeps = (target) => isInteractive(target) && (!input.live || inDialog(target)),
-) {
+export function attachScanning(input, settings, stop, offered) {
+  const [list, help] = [byId("scan"), byId("scan-help")];
+  const [press, next] = [byId("switch", HTMLButtonElement), byId("switch-next", HTMLButtonElement)];
   const scanner = new Scanner(input, settings);
   const speak = attachSpeech(settings);
+  const place = attachSwitchPlace();
+  const stops = { id: "stop", label: say("layout.stop"), act: stop };
+  /** @type {Group} */
+  const group = (id, label, inner) => groupOf(id, label, inner, [stops]);
 
   const paint = () => {
-    parts.list.replaceChildren(...scanner.choices.map((choice, index) => {
+    list.replaceChildren(...scanner.choices.map((choice, index) => {
       const item = create("li", { textContent: choice.label });
       item.dataset.choice = choice.id;
       if (choice.id === scanner.moving) item.dataset.moving = "true";
@@ -70,14 +76,34 @@ export function attachScanning(
     if (scanner.ready !== null) return say("scanning.hold_to_move");
     return say(`scanning.hint_${scanner.style}`);
   };
+  /** Of what is open above the page everything that can be pressed, else what the page offers. */
+  const now = () => {
+    const open = topmost();
+    if (!open) return offered(stops, group);
+    const close = { id: "close", label: say("scanning.back"), act: () => open.hidePopover() };
+    return [...pageControls(open, group, open.id), ...(open.popover ? [close] : [])];
+  };
   const offer = () => {
-    if (scanner.on) scanner.offer(offered());
+    if (scanner.on) {
+      const choices = now();
+      scanner.offer(choices.some(({ id }) => id === "stop") ? choices : [...choices, stops]);
+    }
+    light();
+  };
+  /** The page may have redrawn the lit element: look it up each time. */
+  const light = () => {
+    place(scanner.on, topmost());
+    const lit = scanner.on ? elementOf(scanner.choices[scanner.lit]) : undefined;
+    for (const other of [...document.getElementsByClassName(LIT)]) if (other !== lit) other.classList.remove(LIT);
+    if (!lit || lit.classList.contains(LIT)) return;
+    lit.classList.add(LIT);
+    lit.scrollIntoView({ block: "nearest" });
   };
   const explain = () => {
     const { switches, switchKey, nextKey, switchMotion } = settings.values;
     const keys = { switchKey: keyWords(switchKey), nextKey: keyWords(nextKey) };
-    parts.next.hidden = switches !== "2";
-    setText(parts.help, `${say(`scanning.${scanner.style}`, keys)} ${say(`scanning.motion_${switchMotion}`)}`);
+    next.hidden = switches !== "2";
+    setText(help, `${say(`scanning.${scanner.style}`, keys)} ${say(`scanning.motion_${switchMotion}`)}`);
     offer();
     paint();
   };
@@ -98,40 +124,17 @@ export function attachScanning(
       if (event.detail === 0) scanner.tap(number);
     });
   };
-  button(parts.press, 0);
-  button(parts.next, 1);
+  button(press, 0);
+  button(next, 1);
 
-  const switchOf = (/** @type {string} */ code) => [settings.values.switchKey, settings.values.nextKey].indexOf(code);
-  /** Keys that are down as switches. @type {Map<string, number>} */
-  const held = new Map();
-  window.addEventListener("keydown", (event) => {
-    const number = switchOf(event.code);
-    if (number < 0 || !scanner.on || number >= Number(settings.values.switches)) return;
-    if (event.target !== parts.press && event.target !== parts.next && keeps(event.target)) return;
-    // Before the keyboard's own meaning of the key, and before the click that Enter would make of it.
-    event.preventDefault();
-    event.stopImmediatePropagation();
-    if (event.repeat) return;
-    held.set(event.code, number);
-    scanner.press(number, true);
-  }, { capture: true });
-  window.addEventListener("keyup", (event) => {
-    const number = held.get(event.code);
-    if (number === undefined) return;
-    held.delete(event.code);
-    event.preventDefault();
-    scanner.press(number, false);
-  }, { capture: true });
-  window.addEventListener("blur", () => held.clear());
-
-  scanner.addEventListener("change", paint);
+  attachSwitchKeys(scanner, input, settings);
+  scanner.addEventListener("change", () => {
+    paint();
+    light();
+  });
   settings.addEventListener("change", explain);
+  watchOpen(offer);
   setInterval(offer, LOOK_MS);
   explain();
   return scanner;
-}
-
-/** @param {EventTarget | null} target */
-function inDialog(target) {
-  return target instanceof HTMLElement && target.closest("dialog") !== null;
 }

@@ -13,6 +13,10 @@
 
 /** Contacts bounce for 1.6 ms on average, and nearly all for less than this, ms (Ganssle, A Guide to Debouncing, 2008). */
 const BOUNCE_MS = 10;
+/** Adapters that repeat while they are held press again within this, ms. No tremor does: 8 Hz at most. */
+const REPEATED_MS = 105;
+/** From this repetition on it is one press that is held. */
+const REPETITIONS = 2;
 
 export class SwitchTiming {
   /** @param {() => Times} times @param {Meanings} means */
@@ -21,7 +25,10 @@ export class SwitchTiming {
     this._means = means;
     this._down = false;
     this._accepted = false;
-    this._downAt = this._upAt = -Infinity;
+    this._downAt = this._upAt = this._heldSince = -Infinity;
+    this._repetitions = 0;
+    /** Whether the press that repeats has counted, or came too early to count. */
+    this._spent = false;
     /** @type {ReturnType<typeof setTimeout> | undefined} */
     this._timer = undefined;
   }
@@ -36,12 +43,22 @@ export class SwitchTiming {
     const now = performance.now();
     if (this._down || now - this._upAt < BOUNCE_MS) return;
     this._down = true;
+    this._repetitions = now - this._downAt < REPEATED_MS ? this._repetitions + 1 : 0;
+    if (this._repetitions === 0) {
+      this._heldSince = now;
+      this._spent = false;
+    }
     this._downAt = now;
     const { acceptS, releaseS } = this._times();
+    const waitMs = 1000 * acceptS - (this._repetitions < REPETITIONS ? 0 : now - this._heldSince);
+    const early = now - this._upAt < 1000 * releaseS && (this._repetitions === 0 || this._spent);
     if (ends) this._accept();
-    else if (now - this._upAt < 1000 * releaseS) return;
-    else if (acceptS === 0) this._accept();
-    else this._timer = setTimeout(() => this._accept(), 1000 * acceptS);
+    else if (early) {
+      this._spent = true;
+      this._upAt = now;
+    }
+    else if (waitMs <= 0) this._accept();
+    else this._timer = setTimeout(() => this._accept(), waitMs);
   }
 
   /** The switch comes up, which counts at once. */
@@ -72,7 +89,7 @@ export class SwitchTiming {
   }
 
   _accept() {
-    this._accepted = true;
+    this._accepted = this._spent = true;
     this._repeatLater();
     this._means.pressed(this._downAt);
   }

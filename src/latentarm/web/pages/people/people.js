@@ -18,7 +18,7 @@ const newName = /** @type {HTMLInputElement} */ (renaming.querySelector("input")
 const erasing = byId("erase", HTMLDialogElement);
 const file = byId("import-file", HTMLInputElement);
 
-const pin = attachPinDialog(settings);
+const pin = attachPinDialog();
 
 /** The person whom the open dialog is about. @type {Person | null} */
 let about = null;

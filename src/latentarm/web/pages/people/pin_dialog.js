@@ -4,12 +4,9 @@ import { byId, setText } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 import { ask } from "../records/ask.js";
 
-/** @import {Settings} from "../settings/settings.js" */
-
 /** @typedef {{id: string, name: string, pin: boolean}} Pinned */
 
-/** @param {Settings} settings */
-export function attachPinDialog(settings) {
+export function attachPinDialog() {
   const dialog = byId("pin", HTMLDialogElement);
   const field = byId("pin-digits", HTMLInputElement);
   /** Takes the digits. @type {(pin: string) => Promise<void>} */
@@ -24,8 +21,7 @@ export function attachPinDialog(settings) {
     field.value = "";
     take = then;
     dialog.showModal();
-    // While a field has the focus, a key that is a switch would be typed into it.
-    if (settings.values.panel !== "switch") field.focus();
+    field.focus();
   };
 
   for (const key of /** @type {NodeListOf<HTMLElement>} */ (dialog.querySelectorAll("[data-digit]"))) {

@@ -20,7 +20,7 @@ import { missedWords, STEPS, stepOf } from "./steps.js";
 import { attachTrial, TRIAL } from "./trial.js";
 
 /** @import {ClientMessage, Personalise} from "../connection/messages.js" */
-/** @import {Choice} from "../inputs/scanner.js" */
+/** @import {Choice, Group} from "../inputs/scanner.js" */
 /** @import {Drawing} from "../views/drawing.js" */
 
 /** @type {Drawing | null} */
@@ -51,22 +51,16 @@ function tell(message) {
 
 const stick = attachStick(byId("stick"), byId("stick-value"), input, settings);
 attachDpad(byId("dpad"), byId("dpad-help"), input, settings, () => {});
-const scanner = attachScanning({
-  list: byId("scan"),
-  press: byId("switch", HTMLButtonElement),
-  next: byId("switch-next", HTMLButtonElement),
-  help: byId("scan-help"),
-}, input, settings, offered);
+const scanner = attachScanning(input, settings, stop, offered);
 attachKeyboard(input, settings, { enable: answer, nextMode: () => {}, axes: () => {}, gripper: () => {} });
 attachGamepad(input, settings, { enable: answer, stop, gripper: () => {}, nextMode: () => {}, press: (number, down) => scanner.press(number, down) },
   (names) => sayUnrested(byId("unrested"), names));
 attachInputChoice(input, settings);
 
-/** A switch's choices at each step: the step's own buttons, and then the pages and settings. @returns {Choice[]} */
-function offered() {
+/** A switch's choices at each step: the step's own buttons, and then the pages and settings. @param {Choice} _ @param {Group} group @returns {Choice[]} */
+function offered(_, group) {
   const step = stepOf(state, again);
-  const stops = { id: "stop", label: say("layout.stop"), act: stop };
-  if (step !== "asking") return [...STEP_BUTTONS[step].flatMap(buttonChoice), ...linkChoices(byId(step)), moreChoices([], [], stops)];
+  if (step !== "asking") return [...STEP_BUTTONS[step].flatMap(buttonChoice), ...linkChoices(byId(step)), moreChoices([], [], group)];
   const choices = [
     ...directionChoices(),
     { id: "answer", label: say("personalise.send"), act: answer },
@@ -74,7 +68,7 @@ function offered() {
     { id: "again", label: say("personalise.show_again"), act: () => replay.again() },
   ];
   const backs = state?.back ? [{ id: "back", label: say("personalise.back"), act: back }] : [];
-  return [...choices, ...backs, ...buttonChoice("answer-cancel"), moreChoices([], [], stops)];
+  return [...choices, ...backs, ...buttonChoice("answer-cancel"), moreChoices([], [], group)];
 }
 
 /** The stick's meaning now, as the person drives; null where it is at rest for them. */
@@ -142,7 +136,6 @@ function show() {
   const now = stepOf(state, again);
   const hadFocus = /** @type {HTMLElement | null} */ (document.activeElement?.closest(".step") ?? null);
   for (const name of STEPS) byId(name).hidden = name !== now;
-  moveSwitch(now);
   // Who was on a button that is gone goes on at the new step.
   if (hadFocus?.hidden) byId(now).querySelector("h2")?.focus({ preventScroll: true });
   byId("problem").hidden = !state?.why;
@@ -171,14 +164,6 @@ function showLearned({ name, answers, error, error_without }) {
   setText(byId("learned-text"), say("personalise.learned_text", { count: answers }));
   setText(byId("missed-with"), missedWords(error));
   setText(byId("missed-without"), missedWords(error_without));
-}
-
-/** The switch stands at every step, with the stick's other ways of pressing while questions are asked. @param {string} step */
-function moveSwitch(step) {
-  const panel = byId("panel-switch");
-  if (panel.closest(".step")?.id === step) return;
-  if (step === "asking") byId("panel-dpad").after(panel);
-  else byId(step).append(panel);
 }
 
 /** Which question is shown; it may come again after a reload. */

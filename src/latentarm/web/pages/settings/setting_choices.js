@@ -2,14 +2,14 @@
 
 import { say } from "../layout/words.js";
 
-/** @import {Choice} from "../inputs/scanner.js" */
+/** @import {Choice, Group} from "../inputs/scanner.js" */
 
 /** How many steps a slider has for a switch, at most. */
 const STEPS = 10;
 
 /**
  * @param {HTMLFormElement} form the dialog's
- * @param {(id: string, label: string, inner: () => Choice[]) => Choice} group a choice that opens others
+ * @param {Group} group a choice that opens others
  * @returns {Choice[]} one for each section.
  */
 export function settingChoices(form, group) {
@@ -30,7 +30,7 @@ function fieldsOf(section) {
 /**
  * @param {HTMLInputElement | HTMLSelectElement} field
  * @param {string} id
- * @param {(id: string, label: string, inner: () => Choice[]) => Choice} group
+ * @param {Group} group
  * @returns {Choice}
  */
 export function fieldChoice(field, id, group) {

@@ -55,10 +55,24 @@ export function attachSettingsDialog(dialog, opener, settings) {
     const value = field.type === "checkbox" ? field.checked : field.type === "range" ? Number(field.value) : field.value;
     settings.change({ [field.name]: value });
   });
+  /** A key's field asks for the key once it is clicked or entered, and until it is left. */
+  const asks = (/** @type {Event} */ { type, target }) => {
+    if (!(target instanceof HTMLInputElement) || !target.matches(".key")) return;
+    if (type === "click") target.dataset.asking = "yes";
+    else delete target.dataset.asking;
+    show();
+  };
+  for (const type of ["click", "focusout"]) form.addEventListener(type, asks);
   form.addEventListener("keydown", (event) => {
     const field = /** @type {HTMLInputElement} */ (event.target);
-    if (event.code === "Enter" && field.matches("input:not(.key)")) event.preventDefault();
-    if (field.matches(".key")) askForKey(field, event, settings);
+    const { code } = event;
+    if (!field.matches("input") || code === "Tab" || code === "Escape") return;
+    if (code === "Enter" || field.matches(".key")) event.preventDefault();
+    if (!field.matches(".key")) return;
+    if (field.dataset.asking) {
+      delete field.dataset.asking;
+      settings.change({ [field.name]: code });
+    } else if (code === "Enter" || code === "Space") field.click();
   });
   attachLanguage(byId("language", HTMLSelectElement));
   form.querySelector("#settings-reset")?.addEventListener("click", () => settings.reset());
@@ -75,21 +89,4 @@ export function attachSettingsDialog(dialog, opener, settings) {
       show();
     },
   };
-}
-
-/** Enter in a key's field, then the key itself. @param {HTMLInputElement} field @param {KeyboardEvent} event @param {Settings} settings */
-function askForKey(field, event, settings) {
-  if (event.code === "Tab" || event.code === "Escape" || (event.code === "Space" && !field.dataset.asking)) {
-    delete field.dataset.asking;
-    field.value = keyWords(settings.values[/** @type {"switchKey" | "nextKey"} */ (field.name)]);
-    return;
-  }
-  event.preventDefault();
-  if (field.dataset.asking) {
-    delete field.dataset.asking;
-    settings.change({ [field.name]: event.code });
-  } else if (event.code === "Enter") {
-    field.dataset.asking = "yes";
-    field.value = say("settings.press_key");
-  }
 }
