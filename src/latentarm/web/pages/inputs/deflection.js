@@ -3,7 +3,7 @@
 /** @typedef {import("../connection/messages.js").DriverInput["source"]} Source */
 /** @typedef {"up" | "down" | "left" | "right"} Direction */
 /** @typedef {"focus_lost" | "page_closed" | "page_hidden" | "pointer_lost" | "gamepad_lost" | "dialog_opened" | "input_changed" | "switch_chatters"} HaltReason */
-/** @typedef {import("./drive_input.js").DriveInput | import("../personalise/answer_input.js").AnswerInput | import("./whole_page.js").StillInput} PersonInput */
+/** @typedef {import("./drive_input.js").DriveInput | import("../personalise/answer_input.js").AnswerInput | (Deflection & {live: boolean, flowing: boolean, halt: () => void})} PersonInput */
 
 /** Full deflections: right, up. @type {Record<Direction, [number, number]>} */
 export const DIRECTIONS = { up: [0, 1], down: [0, -1], left: [-1, 0], right: [1, 0] };

@@ -79,15 +79,10 @@ export function unfocus({ detail, target }) {
 /** Whether the focused control wants this key for itself. @param {EventTarget | null} target @param {string} code @param {boolean} driving */
 function isTaken(target, code, driving) {
   if (!(target instanceof HTMLElement)) return false;
-  if (target.closest("dialog")) return true;
-  if (isTyping(target)) return true;
+  const typed = "textarea, select, input:not([type=radio], [type=checkbox], [type=button])";
+  if (target.closest("dialog") || target.matches(typed)) return true;
   // Arrows choose among radio buttons; while the arm is enabled they drive it.
   return !driving && code.startsWith("Arrow") && target.matches("input[type=radio]");
-}
-
-/** Whether keys change what is in the focused control. @param {EventTarget | null} target */
-function isTyping(target) {
-  return target instanceof HTMLElement && target.matches("textarea, select, input:not([type=radio], [type=checkbox], [type=button])");
 }
 
 /** Whether Enter means something to the focused control. @param {EventTarget | null} target */

@@ -37,7 +37,8 @@ function choicesOf(element, id, group) {
     const inner = pageControls(element, group, id);
     return inner.length < FEWEST ? inner : [known(group(id, nameOf(element), () => inner), element)];
   }
-  if (element instanceof HTMLInputElement || element instanceof HTMLSelectElement) return [known(fieldChoice(element, id, group), shownOf(element))];
+  // A field is drawn by its label.
+  if (element instanceof HTMLInputElement || element instanceof HTMLSelectElement) return [known(fieldChoice(element, id, group), element.closest("label") ?? element)];
   return [known({ id, label: nameOf(element), act: () => element.click() }, element)];
 }
 
@@ -69,11 +70,6 @@ function canPress(element) {
 function known(choice, element) {
   elements.set(choice, element);
   return choice;
-}
-
-/** Of a field that is drawn by its label, the label. @param {HTMLElement} field */
-function shownOf(field) {
-  return field.closest("label") ?? field;
 }
 
 /** @param {HTMLElement} element */

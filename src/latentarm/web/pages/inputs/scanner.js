@@ -90,11 +90,6 @@ export class Scanner extends EventTarget {
     return switches === "2" ? "two" : scan;
   }
 
-  /** Whether what is lit was opened from another choice. */
-  get inside() {
-    return this._path.length > 0;
-  }
-
   /** @param {Choice[]} choices what there is to choose from now; the light starts again where they are others, not where one is only called otherwise */
   offer(choices) {
     this._offered = choices;
@@ -221,7 +216,7 @@ export class Scanner extends EventTarget {
   /** @param {Choice} choice */
   _act(choice) {
     if (choice.back) this._open(this._path.slice(0, -1));
-    else if (this.inside && !choice.stays) this._open([]);
+    else if (!choice.stays) this._open([]);
     choice.act?.();
   }
 

@@ -43,20 +43,14 @@ export class SwitchTiming {
     const now = performance.now();
     if (this._down || now - this._upAt < BOUNCE_MS) return;
     this._down = true;
-    this._repetitions = now - this._downAt < REPEATED_MS ? this._repetitions + 1 : 0;
-    if (this._repetitions === 0) {
-      this._heldSince = now;
-      this._spent = false;
-    }
+    if (now - this._downAt < REPEATED_MS) this._repetitions += 1;
+    else [this._heldSince, this._repetitions, this._spent] = [now, 0, false];
     this._downAt = now;
     const { acceptS, releaseS } = this._times();
     const waitMs = 1000 * acceptS - (this._repetitions < REPETITIONS ? 0 : now - this._heldSince);
     const early = now - this._upAt < 1000 * releaseS && (this._repetitions === 0 || this._spent);
     if (ends) this._accept();
-    else if (early) {
-      this._spent = true;
-      this._upAt = now;
-    }
+    else if (early) [this._upAt, this._spent] = [now, true];
     else if (waitMs <= 0) this._accept();
     else this._timer = setTimeout(() => this._accept(), waitMs);
   }

@@ -7,28 +7,16 @@ import { pageControls } from "./page_controls.js";
 import { commonChoices } from "./page_choices.js";
 import { attachScanning } from "./scanning.js";
 
+/** @import {PersonInput} from "./deflection.js" */
 /** @import {Settings} from "../settings/settings.js" */
-
-/** Nothing on such a page moves the arm: what is pushed is only known. */
-export class StillInput extends Deflection {
-  constructor() {
-    super();
-    this.live = false;
-    this.flowing = false;
-  }
-
-  /** The pushed element was removed. */
-  halt() {
-    this.neutral();
-  }
-}
 
 /**
  * @param {Settings} settings
  * @param {() => void} stop
  */
 export function attachWholePage(settings, stop) {
-  const input = new StillInput();
+  /** Nothing on such a page moves the arm: what is pushed is only known. @type {PersonInput} */
+  const input = Object.assign(new Deflection(), { live: false, flowing: false, halt: () => input.neutral() });
   const scanner = attachScanning(input, settings, stop, (_, group) => [...pageControls(byId("controls"), group), ...commonChoices(group)]);
   attachGamepad(input, settings, { enable: () => {}, stop, gripper: () => {}, nextMode: () => {}, press: (number, down) => scanner.press(number, down) });
 }

@@ -15,16 +15,11 @@ const STEPS = 10;
 export function settingChoices(form, group) {
   return [...form.querySelectorAll("fieldset")].flatMap((section, number) => {
     const id = `settings-${number}`;
-    const fields = fieldsOf(section);
-    const inner = () => fields.map((field, at) => fieldChoice(field, `${id}-${at}`, group));
+    /** @type {NodeListOf<HTMLInputElement | HTMLSelectElement>} */
+    const fields = section.querySelectorAll("select, input[type=radio], input[type=checkbox], input[type=range]");
+    const inner = () => [...fields].map((field, at) => fieldChoice(field, `${id}-${at}`, group));
     return fields.length ? [group(id, wordsOf(section.querySelector("legend")), inner)] : [];
   });
-}
-
-/** @param {Element} section @returns {(HTMLInputElement | HTMLSelectElement)[]} */
-function fieldsOf(section) {
-  return [...section.querySelectorAll("select, input[type=radio], input[type=checkbox], input[type=range]")]
-    .filter((field) => field instanceof HTMLInputElement || field instanceof HTMLSelectElement);
 }
 
 /**
