@@ -283,7 +283,7 @@ def test_an_orphan_brings_the_arm_to_rest_and_ends(desk):
     assert desk.drive.change is None
 
 
-@pytest.mark.parametrize("order", [Reset(), ChooseProfile(name="ada"), ChooseRun(run="other")])
+@pytest.mark.parametrize("order", [Reset(), ChooseProfile(name="ada"), ChooseRun(run="other", own_task=True)])
 def test_what_changes_the_setting_waits_for_a_stopped_arm(desk, order):
     def tick(now_s):
         enabled_at(desk, now_s)

@@ -107,7 +107,7 @@ def test_while_the_arm_moves_no_run_is_tried(among_hostile):
 
 def test_a_run_that_loads_for_ever_is_given_up(tmp_path, trained, monkeypatch):
     monkeypatch.setattr(run_check, "WITHIN_S", 0.0)
-    failure = asyncio.run(why_not_drivable(Spec(out=tmp_path), trained, "mine"))
+    failure = asyncio.run(why_not_drivable(Spec(trained, out=tmp_path), "mine"))
     assert failure is not None
     assert failure.code == "run_too_slow"
     assert "loading a run" not in {child.name for child in multiprocessing.active_children()}

@@ -73,7 +73,7 @@ def report(tick, phase, tool, code=None, **changes):
     return Report(
         nonce="", tick=tick, time_s=100.0 + 0.01 * tick, driver=1, phase=phase, note=None,
         reason=None if code is None else Notice(code=code), held_back=None, zone=None,
-        mode="assisted", axes=0, run=None,
+        mode="assisted", axes=0, run=None, own_task=False,
         returning=False, bound_for=None, at_start=False, guiding=None, lost=False, let_go_first=False,
         late_stops=0, help="medium",
         seed=0,

@@ -126,7 +126,7 @@ def test_things_are_looked_at_25_times_a_second_where_the_arm_knows_of_them():
     first = [thing["pose"] for thing in described(setup.scene)["things"]]
     np.testing.assert_allclose(seen[0].poses, first, atol=1e-3)
     ghost = KinematicArm(setup.task.robot, setup.start, lambda: 0.0)
-    assert ThingPoses(setup.scene, ghost).look(0) is None
+    assert ThingPoses(setup.scene, setup.with_things(ghost)).look(0) is None
 
 
 def test_a_recording_says_where_things_went_and_a_model_can_see_them(tmp_path):

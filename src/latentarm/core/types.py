@@ -59,6 +59,7 @@ class Provenance:
     profile: str = ""  # the person whose alignment was used
     device: str = ""  # kind of input device, such as ``keyboard``; ``simulated`` for a simulated person
     controller: str = ""  # when the episode began
+    task_name: str = ""  # of the task in the catalogue at which the arm was driven
     version: str = ""  # of this package
     started_utc: str = ""  # when the episode began, ISO 8601 in UTC
     complete: bool = True  # whether the recording was ended, rather than cut short

@@ -6,7 +6,7 @@ from typing import Final
 import numpy as np
 
 from latentarm.core.errors import UserError
-from latentarm.core.types import Demonstrations, Episode, FloatArray
+from latentarm.core.types import Demonstrations, Episode, FloatArray, Provenance
 from latentarm.demonstrations.gripper import OBSERVED
 from latentarm.demonstrations.things import ENVIRONMENT
 from latentarm.robots.kinematics.stillness import STILL_RAD_S
@@ -48,7 +48,9 @@ def _moving(episode: Episode, rate_hz: float) -> Episode | None:
     # Where the clock stands still, a gripper or a thing may move: the arm goes on with what has become of it.
     last = np.searchsorted(moved_s, timestamp + _ROUNDING / rate_hz, side="right") - 1
     extras = {name: episode.extras[name][last] for name in (*OBSERVED, ENVIRONMENT) if name in episode.extras}
-    return Episode(state=state, timestamp=timestamp, task=episode.task, extras=extras)
+    # Where it was recorded matters to learning, and not who recorded it.
+    at = None if episode.provenance is None else Provenance(task_name=episode.provenance.task_name)
+    return Episode(state=state, timestamp=timestamp, task=episode.task, extras=extras, provenance=at)
 
 
 def _moving_time(state: FloatArray, timestamp: FloatArray) -> FloatArray:

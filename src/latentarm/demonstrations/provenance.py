@@ -21,6 +21,7 @@ def provenance_now(
     profile: str = "",
     device: str = "",
     controller: str = "",
+    task_name: str = "",
 ) -> Provenance:
     """Provenance of an episode that begins now, with this package."""
     return Provenance(
@@ -30,6 +31,7 @@ def provenance_now(
         profile=profile,
         device=device,
         controller=controller,
+        task_name=task_name,
         version=__version__,
         started_utc=datetime.now(UTC).isoformat(timespec="seconds"),
     )

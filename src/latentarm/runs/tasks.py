@@ -1,6 +1,6 @@
 """The task that a run is driven at: the one it was trained for, or another."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import cast
@@ -10,7 +10,7 @@ import numpy as np
 from latentarm.arms.catalogue import DEFAULT_ARM, PHYSICAL_ARM
 from latentarm.core.context import BELIEF, GRIPPER, Named, feature_names
 from latentarm.core.errors import UserError
-from latentarm.core.types import Demonstrations, FloatArray, Goal, StatedLimits
+from latentarm.core.types import Demonstrations, FloatArray, StatedLimits
 from latentarm.demonstrations.gripper import ACTION_GRIPPER, opening_source
 from latentarm.demonstrations.split import select_episodes
 from latentarm.robots.catalogue import load_robot
@@ -44,9 +44,9 @@ def task_of_run(
     """
     kept = run.task
     if kept is None:
-        goals = run.dataset(dataset, "its task", option).goals
-        kept = usual_task(goals)
-        run = replace(run, goals=goals, task=kept)
+        seen = run.dataset(dataset, "its task", option)
+        kept = usual_task(seen)
+        run = replace(run, goals=seen.goals, task=kept)
     chosen = name or kept
     stated = replace(run, end_effector=end_effector or run.end_effector, limits=limits or run.limits)
     if chosen == HELD_OUT:
@@ -136,9 +136,12 @@ def routes_seen(
     return routes_of(robot, demonstrations), ()
 
 
-def usual_task(goals: Sequence[Goal]) -> str:
-    """The task of a dataset with these goals."""
-    return "table_top" if {goal.name for goal in goals} == set(ITEMS) else HELD_OUT
+def usual_task(demonstrations: Demonstrations) -> str:
+    """The task at which all episodes were recorded, as far as they say; else that of the goals."""
+    named = {one.provenance.task_name for one in demonstrations.episodes if one.provenance is not None} - {""}
+    if len(named) == 1 and named <= {*TASKS, *SCENE_TASKS}:
+        return named.pop()
+    return "table_top" if {goal.name for goal in demonstrations.goals} == set(ITEMS) else HELD_OUT
 
 
 def usual_arm(task: str | None) -> str:

@@ -95,7 +95,7 @@ def train_run(options: TrainOptions, report: Report | None = None) -> TrainedRun
         end_effector=demonstrations.end_effector if robot is None else robot.end_effector,
         fingerprint=fingerprint(demonstrations),
         limits=demonstrations.limits,
-        task=options.task or usual_task(demonstrations.goals),
+        task=options.task or usual_task(demonstrations),
         goals=demonstrations.goals,
     )
     facts: dict[str, object] = {"goal_entropy": options.goal_entropy}

@@ -130,10 +130,10 @@ class Drive:
         self._readings = LatestReadings(setup.start, setup.task.robot.gripper)
         self._ghosts = GhostPaths(setup.task, setup.controller, setup.help, self._step.safety)
         self._late_share = 0.0
-        self._thing_poses = ThingPoses(setup.scene, arm)
+        self._thing_poses = ThingPoses(setup.scene, setup.with_things(arm))
         self._episodes = Episodes(setup, writer, steering, self._inputs, self._thing_poses)
         self._disengaged = Disengaged(self._step, arm, self._episodes, self._say)
-        self._run = steering.run or TaskRun(setup.todo, arm, setup.task.robot.chain)
+        self._run = steering.run or TaskRun(setup.todo, setup.with_things(arm), setup.task.robot.chain)
         steering.run = self._run
         self._goals = setup.step_goals()
         self._note = note
@@ -324,6 +324,7 @@ class Drive:
                 self._disengaged.end_guiding()
                 self._note_until_s = -math.inf
                 self._reasons.clear()
+                self._steering.enabled = True
                 self._loop.enable()
 
     def _look(self, record: StepRecord) -> None:
@@ -397,6 +398,7 @@ class Drive:
             axes=self._steering.axes,
             help=self._steering.help if "assisted" in self._setup.modes else None,
             run=None if spec.run is None else str(spec.run),
+            own_task=spec.own_task,
             seed=spec.seed,
             profile=spec.profile,
             loading=self.change is not None,

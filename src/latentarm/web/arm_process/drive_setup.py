@@ -32,11 +32,12 @@ from latentarm.runs.folder import Run, read_run, weights_fingerprint
 from latentarm.runs.tasks import usual_arm
 from latentarm.safety.config import SafetyConfig
 from latentarm.safety.zones import Zone
+from latentarm.tasks.catalogue import HELD_OUT
 from latentarm.tasks.place import Place, ScenePlace, surroundings_of, watched
 from latentarm.tasks.step_goals import StepGoals
 from latentarm.tasks.task import Task
 from latentarm.web.arm_process.help import Help
-from latentarm.web.arm_process.initial_state import RobotOptions, begin, begin_real
+from latentarm.web.arm_process.initial_state import FREE, RobotOptions, begin, begin_real
 from latentarm.web.arm_process.page_inputs import INPUT_TIMEOUT_S
 from latentarm.web.arm_process.speeds import Speeds
 from latentarm.web.arm_process.task_run import Todo
@@ -74,6 +75,7 @@ class Spec:
         out: folder for recordings.
         arm: a name of `latentarm.arms.catalogue` or the address of a real arm; None for the task's usual one.
         task: a name of `latentarm.tasks.catalogue`; None for the run's own, or the table-top task.
+        own_task: whether the run is driven at its own task, where it has one, rather than at ``task``.
         choice: index of what is done first, of the task's choices or goals.
         robot: used where neither run nor task names one.
         found: names and values found out about a real arm.
@@ -94,6 +96,7 @@ class Spec:
     journal: JournalLimits = field(default_factory=JournalLimits)
     arm: str | None = None
     task: str | None = None
+    own_task: bool = False
     choice: int = 0
     robot: RobotOptions = field(default_factory=RobotOptions)
     found: tuple[tuple[str, str], ...] = ()
@@ -110,6 +113,15 @@ class Spec:
             raise UserError(
                 "A profile belongs to a run: name one, as in `latentarm teleop RUN --profile NAME`."
             )
+
+    def with_run(self, run: Path, own_task: bool) -> "Spec":
+        """The spec of another run, without a profile, at the first choice of its task."""
+        return replace(self, run=run, profile=None, own_task=own_task, choice=0)
+
+    def task_for(self, run: Run | None) -> str | None:
+        """The task that is driven with a run, in so far as a name decides it."""
+        own = None if run is None else run.task
+        return own if self.own_task and own not in (None, HELD_OUT) else self.task or own
 
     def seated(self, seat: Seat | None) -> Seat | None:
         """The seat after a person says where they sit, or None for nothing; z = u stays."""
@@ -197,6 +209,7 @@ class DriveSetup:
                 run_fingerprint=self.run_fingerprint,
                 profile=spec.profile or "",
                 controller=controller,
+                task_name="" if self.todo.task in (FREE, HELD_OUT) else self.todo.task,
             ),
             end_effector=robot.end_effector,
             limits=robot.stated_limits,
@@ -218,13 +231,17 @@ class DriveSetup:
         things = () if self.scene is None else self.scene.names
         return StepGoals(self.task.robot, self.task.goals, self.todo.steps, things)
 
+    def with_things(self, arm: Arm | None) -> SceneArm | None:
+        """The arm, if it was made with the things of this setup; an arm in physics may have none about it."""
+        return arm if self.scene is not None and isinstance(arm, SceneArm) else None
+
     def surroundings(self, arm: Arm | None) -> Callable[[], FloatArray] | None:
         """Where the things are that the controller uses; None for ``arm`` takes their initial poses."""
         objects = self.controller.objects
         if self.scene is None:
             return surroundings_of(self.task, objects)
-        if isinstance(arm, SceneArm):
-            return watched(lambda: arm.scene_state().poses, objects)
+        if (seen := self.with_things(arm)) is not None:
+            return watched(lambda: seen.scene_state().poses, objects)
         begun = {thing.name: thing.pose for thing in self.scene.things}
         return watched(lambda: begun, objects)
 
@@ -279,7 +296,7 @@ def load_setup(spec: Spec) -> DriveSetup:
         UserError: the arm, the run, its dataset or the profile cannot be loaded, or do not fit each other.
     """
     run = None if spec.run is None else read_run(spec.run)
-    name = spec.task or (None if run is None else run.task)
+    name = spec.task_for(run)
     arm = spec.arm or usual_arm(name)
     check_named(arm)  # so that the error appears where the command was typed
     if is_address(arm):

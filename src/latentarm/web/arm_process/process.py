@@ -7,34 +7,28 @@ import multiprocessing
 import os
 import signal
 import sys
-from collections.abc import Callable
-from dataclasses import replace
-from functools import partial
 from multiprocessing.connection import Connection
-from pathlib import Path
 from types import FrameType
-from typing import TypeVar, final
+from typing import final
 
 from threadpoolctl import threadpool_limits
 
-from latentarm.arms.contract import Arm
-from latentarm.control.clock import Clock, MonotonicClock
+from latentarm.control.clock import MonotonicClock
 from latentarm.core.errors import UserError
 from latentarm.core.punctuality import ask_for_priority, short_collections
 from latentarm.core.untrusted.terminal import one_line
-from latentarm.web.arm_process.arm_lifecycle import first_arm, from_where_it_stands, next_arm, reconnect
-from latentarm.web.arm_process.drive import Drive
-from latentarm.web.arm_process.drive_setup import SEEDS, DriveSetup, Spec, load_setup, with_profile
+from latentarm.web.arm_process.arm_lifecycle import first_arm, from_where_it_stands
+from latentarm.web.arm_process.drive import Change, Drive
+from latentarm.web.arm_process.drive_setup import Spec, load_setup
+from latentarm.web.arm_process.driven import Driven, drive_in_turn
 from latentarm.web.arm_process.episode_writer import EpisodeWriter
 from latentarm.web.arm_process.help import USUAL_HELP
 from latentarm.web.arm_process.incident import begin_incident
 from latentarm.web.arm_process.steering import Steering
 from latentarm.web.protocol import orders
 from latentarm.web.protocol.channel import ORDER_LIMIT, Channel, new_channel
-from latentarm.web.protocol.notice import Notice, notice_of
+from latentarm.web.protocol.notice import Notice
 from latentarm.web.protocol.report import Report, parse_report
-
-T = TypeVar("T")
 
 
 def run_control(spec: Spec, channel: Channel, server: int) -> None:
@@ -64,85 +58,22 @@ def run_control(spec: Spec, channel: Channel, server: int) -> None:
             # It may have gone since the server looked at it; pages hear that this process has ended.
             sys.stderr.write(f"latentarm: {one_line(str(error))}\n")
             raise SystemExit(2) from error
-        setup = from_where_it_stands(setup, arm)
-        note: Notice | None = None
+        driven = Driven(from_where_it_stands(setup, arm), arm, steering)
+
+        def drive(driven: Driven, note: Notice | None) -> Change | None:
+            calls = begin_incident(driven.setup)
+            given = (driven.setup, driven.arm, channel, clock, writer, orphaned, driven.steering, note)
+            try:
+                return Drive(*given, calls=calls).run()
+            finally:
+                if calls is not None:
+                    calls.close()
+
         try:
             with short_collections():
-                while True:
-                    calls = begin_incident(setup)
-                    drive = Drive(setup, arm, channel, clock, writer, orphaned, steering, note, calls=calls)
-                    note = None
-                    try:
-                        change = drive.run()
-                    finally:
-                        if calls is not None:
-                            calls.close()
-                    match change:
-                        case None:
-                            break
-                        case orders.Reconnect():
-                            _, failed = _loaded(partial(reconnect, arm), None)
-                            note = failed or Notice(code="reconnected")
-                        case orders.Reset() | orders.BeginTask():
-                            again = orders.BeginTask(choice=None, anew=False)
-                            order = again if isinstance(change, orders.Reset) else change
-                            setup, arm, note = _begun_again(setup, arm, order, clock)
-                            steering.run = None
-                        case orders.ChooseProfile() as order:
-                            setup, note = _loaded(partial(_other_profile, setup, order), setup)
-                        case orders.ChooseRun(run=run):
-                            spec = replace(setup.spec, run=Path(run), profile=None, choice=0)
-                            before = arm
-                            (setup, arm), note = _loaded(
-                                partial(_other_run, spec, setup, arm, clock), (setup, arm)
-                            )
-                            if note is None:
-                                if arm is not before:
-                                    before.close()
-                                steering.run = None
-                                steering.mode, steering.axes = setup.first_mode(steering.help), 0
+                drive_in_turn(driven, drive, clock)
         finally:
-            arm.close()
             writer.close()
-
-
-def _other_profile(setup: DriveSetup, order: orders.ChooseProfile) -> DriveSetup:
-    other = with_profile(setup, order.name, setup.spec.seated(order.seat))
-    other.step()
-    return other
-
-
-def _begun_again(
-    setup: DriveSetup, arm: Arm, order: orders.BeginTask, clock: Clock
-) -> tuple[DriveSetup, Arm, Notice | None]:
-    spec = setup.spec
-    begun = replace(
-        spec,
-        choice=spec.choice if order.choice is None else order.choice,
-        seed=(spec.seed + order.anew) % SEEDS,
-    )
-    (after, moved), note = _loaded(partial(_other_run, begun, setup, arm, clock), (setup, arm))
-    if moved is not arm:
-        arm.close()
-    return after, moved, note
-
-
-def _other_run(spec: Spec, before: DriveSetup, arm: Arm, clock: Clock) -> tuple[DriveSetup, Arm]:
-    setup = load_setup(spec)
-    setup.step()
-    if setup.real:
-        setup = replace(setup, start=before.start)
-    return setup, next_arm(setup, before, arm, clock)
-
-
-def _loaded(load: Callable[[], T], before: T) -> tuple[T, Notice | None]:
-    """The new setup, or the old one and why the new one cannot be used."""
-    try:
-        return load(), None
-    except UserError as error:
-        return before, notice_of(error)
-    except Exception as error:  # noqa: BLE001 - whatever a file does, the process that owns the arm goes on
-        return before, Notice(code="not_loaded", parameters={"text": one_line(repr(error))})
 
 
 @final

@@ -19,6 +19,7 @@ class Steering:
     tick: int = 0  # counts the ticks of all drives
     ending_episode: bool = False  # whether the episode ends as soon as the arm is at rest
     run: TaskRun | None = None  # of the task; None before it begins
+    enabled: bool = False  # whether the arm was enabled since the setup changed
 
     @property
     def help_now(self) -> HelpLevel:

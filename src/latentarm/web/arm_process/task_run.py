@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass, replace
 from typing import Final, final
 
-from latentarm.arms.contract import Arm, SceneArm
+from latentarm.arms.contract import SceneArm
 from latentarm.core.types import FloatArray
 from latentarm.robots.kinematics.chain import Chain
 from latentarm.robots.scene.scene import SceneState
@@ -68,12 +68,12 @@ class TaskRun:
     """Follows one run: from when the arm is enabled first until its outcome is known.
 
     It sees every tick, as simulated drives do: stirring adds up, and a force is seen only once. That takes
-    some 0.2 ms.
+    some 0.2 ms. ``arm`` is None where no things are about it.
     """
 
-    def __init__(self, todo: Todo, arm: Arm, chain: Chain) -> None:
+    def __init__(self, todo: Todo, arm: SceneArm | None, chain: Chain) -> None:
         self._todo = todo
-        self._arm = arm if isinstance(arm, SceneArm) else None
+        self._arm = arm
         self._chain = chain
         self._progress = Progress(todo.steps, todo.failures)
         self._guide = WaypointGuide()

@@ -2,7 +2,7 @@
 
 from typing import Final, final
 
-from latentarm.arms.contract import Arm, SceneArm
+from latentarm.arms.contract import SceneArm
 from latentarm.core.types import NO_THINGS, FloatArray
 from latentarm.robots.kinematics.pose_rows import thing_rows
 from latentarm.robots.scene.scene import Scene
@@ -16,9 +16,9 @@ _EVERY: Final = 4  # ticks between two looks: 25 looks per second; pages interpo
 class ThingPoses:
     """Reads the poses of the things about an arm every few ticks; none without a scene."""
 
-    def __init__(self, scene: Scene | None, arm: Arm) -> None:
+    def __init__(self, scene: Scene | None, arm: SceneArm | None) -> None:
         self._scene = scene
-        self._arm = arm if isinstance(arm, SceneArm) else None
+        self._arm = arm
 
     @property
     def names(self) -> tuple[str, ...]:

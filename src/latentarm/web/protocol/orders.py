@@ -104,6 +104,7 @@ class ChooseRun(Message):
 
     type: Literal["run"] = "run"
     run: str
+    own_task: bool  # see `Spec`
 
 
 @final

@@ -150,6 +150,7 @@ class Report(ArmState):
     time_s: float  # the control process's clock
     driver: int  # number of the driver whose inputs count
     run: str | None  # path of the run that is driven; None without one
+    own_task: bool  # see `Spec`
     seed: int  # decides where things were placed and where the arm started
     loading: bool  # whether another setup is being loaded; there are no further reports until it is
     q: tuple[float, ...]  # (n,), joint positions as last read, rad

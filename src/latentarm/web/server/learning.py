@@ -111,10 +111,11 @@ class Learning:
 
     async def _try_run(self, name: str, run: Path) -> None:
         self._states.say(Notice(code="checking_run", parameters={"name": name}), WITHIN_S)
-        failure = await why_not_drivable(self._states.loaded.spec, run, name)
+        own_task = not self._run_list.is_first(run)
+        failure = await why_not_drivable(self._states.loaded.spec.with_run(run, own_task), name)
         if failure is None:
             self._states.say(None)
-            self._control.order(ChooseRun(run=str(run)))
+            self._control.order(ChooseRun(run=str(run), own_task=own_task))
         else:
             self._states.say(failure)
 

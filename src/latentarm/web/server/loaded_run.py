@@ -24,13 +24,13 @@ from latentarm.web.protocol.server_messages import (
     Welcome,
 )
 
-Beginning = tuple[str | None, int, int]
-"""The run, its seed and what is to be done: they decide how everything stands at first."""
+Beginning = tuple[str | None, bool, int, int]
+"""The run, whether at its own task, its seed and what is to be done: how everything stands at first."""
 
 
 def beginning_of(report: Report) -> Beginning:
     """The beginning that a report belongs to."""
-    return report.run, report.seed, report.task.choice
+    return report.run, report.own_task, report.seed, report.task.choice
 
 
 @final
@@ -70,7 +70,7 @@ class LoadedRun:
     def shows(self, report: Report) -> bool:
         """Whether a report is about this run from this beginning."""
         run = None if self.spec.run is None else str(self.spec.run)
-        return beginning_of(report) == (run, self.spec.seed, self.spec.choice)
+        return beginning_of(report) == (run, self.spec.own_task, self.spec.seed, self.spec.choice)
 
     def welcome(self, page: str, server: str) -> Welcome:
         """The first message to a page."""
@@ -115,7 +115,8 @@ class LoadedRun:
 def load_reported_run(spec: Spec, report: Report, name: str | None) -> LoadedRun:
     """Load the run that a report names, called ``name`` on pages. Raises UserError as `load_setup` does."""
     run = None if report.run is None else Path(report.run)
-    begun = replace(spec, run=run, profile=None, seed=report.seed, choice=report.task.choice)
+    begun = replace(spec, run=run, profile=None, own_task=report.own_task)
+    begun = replace(begun, seed=report.seed, choice=report.task.choice)
     return LoadedRun(load_setup(begun), name)
 
 
@@ -139,6 +140,10 @@ class RunList:
                 name += " (2)"
             found[name] = self._first
         return dict(sorted(found.items()))
+
+    def is_first(self, run: Path) -> bool:
+        """Whether the server was started with this run."""
+        return self._first is not None and _same(self._first, run)
 
     def name_of(self, run: Path | None) -> str | None:
         """The name of a run on pages; None for None."""

@@ -7,8 +7,6 @@ process.
 
 import asyncio
 import time
-from dataclasses import replace
-from pathlib import Path
 from typing import Final
 
 from pydantic import TypeAdapter
@@ -30,10 +28,9 @@ Each file has its own bound too. The meshes of an SO-101, 16 MB, take 1.7 GB for
 reads them."""
 
 
-async def why_not_drivable(spec: Spec, run: Path, name: str) -> Notice | None:
-    """Load a run, called ``name`` on pages, in a child process; None if it can be driven."""
-    arguments = (replace(spec, run=run, profile=None), name)
-    job = Job(try_to_load, arguments, TypeAdapter(Message), "loading a run")
+async def why_not_drivable(spec: Spec, name: str) -> Notice | None:
+    """Load a spec's run, called ``name`` on pages, in a child process; None if it can be driven."""
+    job = Job(try_to_load, (spec, name), TypeAdapter(Message), "loading a run")
     until_s = time.monotonic() + WITHIN_S
     try:
         while job.alive:
