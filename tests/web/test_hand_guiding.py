@@ -171,7 +171,9 @@ def test_an_arm_learns_from_motions_by_hand_and_is_driven_with_what_it_learned(s
             name="by-hand",
             model="pca",
             latent_dim=2,
-            episodes=[before + one for one in (1, 2, 3, 4)],
+            episodes=[
+                {key: one[key] for key in ("file", "episode")} for one in page.learning["recordings"][-4:]
+            ],
         )
         ended = wait_for(lambda: (page.learning["training"] or {}).get("phase") in ("done", "failed"), 180.0)
         assert ended

@@ -10,10 +10,12 @@ import pytest
 
 from latentarm.control.recorder import EpisodeHeader, Recorder
 from latentarm.core.errors import UserError
-from latentarm.core.types import Command, StepRecord
+from latentarm.core.types import Command, Goal, Pose, Provenance, StepRecord
 from latentarm.runs.folder import read_run
-from latentarm.web.arm_process.drive_setup import Spec
+from latentarm.web.arm_process.drive_setup import Spec, load_setup
+from latentarm.web.jobs.chosen import Chosen, check_alike, read_chosen
 from latentarm.web.jobs.training import FEWEST, TrainingJob, TrainingPlan, train_as_planned
+from latentarm.web.protocol.notice import NoticeError
 from latentarm.web.protocol.page_messages import parse_message
 from latentarm.web.server.loaded_run import RunList
 
@@ -22,14 +24,15 @@ from .conftest import said, wait_for
 JOINTS = tuple(f"joint{number}" for number in range(1, 8))
 
 
-def journal_of(path, seconds, *, alike=False):
+def journal_of(path, seconds, *, alike=False, task_name="", **header):
     """Episodes in which a Panda moves for so long, each its own way unless all are alike."""
+    about = {"robot": "panda", "rate_hz": 100.0, "provenance": Provenance(task_name=task_name), **header}
     recorder = Recorder(path)
     rng = np.random.default_rng(0)
     start = np.array([0.0, -0.5, 0.0, -2.0, 0.0, 1.6, 0.8])
     for span_s in seconds:
         velocity = np.full(7, 0.1) if alike else rng.normal(scale=0.1, size=7)
-        recorder.begin_episode(EpisodeHeader("panda", JOINTS, 100.0, "wave"))
+        recorder.begin_episode(EpisodeHeader(joint_names=JOINTS, task="wave", **about))
         for tick in range(round(100 * span_s) + 1):
             nothing = np.zeros(7)
             recorder.record(
@@ -56,8 +59,12 @@ def planned(folder, seconds=(2.0, 2.0, 2.0), name="waving", model="pca", episode
     journal = folder / "journal.sqlite"
     if not journal.exists():
         journal_of(journal, seconds)
-    chosen = episodes or tuple(range(1, len(seconds) + 1))
-    return TrainingPlan(journal, chosen, name, model, 2, folder)
+    numbers = episodes or tuple(range(1, len(seconds) + 1))
+    return TrainingPlan(chosen_of(journal, *numbers), name, model, 2, folder)
+
+
+def chosen_of(journal, *numbers, called=0):
+    return tuple(Chosen(journal, number, number + called) for number in numbers)
 
 
 def ended(job):
@@ -111,11 +118,49 @@ def test_an_axis_that_moves_nothing_is_named(tmp_path):
     plan = planned(tmp_path)
     journal_of(tmp_path / "alike.sqlite", (2.0, 2.0, 2.0), alike=True)
     wire = Listener()
-    train_as_planned(wire, replace(plan, journal=tmp_path / "alike.sqlite"))
+    train_as_planned(wire, replace(plan, chosen=chosen_of(tmp_path / "alike.sqlite", 1, 2, 3)))
     lesson = wire.said[-1].lesson
     assert len(lesson.weak) == 1
     assert (lesson.recordings, lesson.learned_from) == (3, 1)
     assert wire.said[-1].why == ()
+
+
+def test_a_run_is_driven_where_its_recordings_were_made_also_those_of_earlier_starts(tmp_path):
+    earlier = journal_of(tmp_path / "earlier.sqlite", (2.0, 2.0), task_name="marshmallows")
+    now = journal_of(tmp_path / "now.sqlite", (2.0, 2.0), task_name="marshmallows")
+    chosen = (*chosen_of(earlier, 1, 2), *chosen_of(now, 2, called=2))
+    train_as_planned(wire := Listener(), TrainingPlan(chosen, "fed", "pca", 2, tmp_path))
+    assert wire.said[-1].phase == "done"
+    run = read_run(tmp_path / "runs" / "fed")
+    assert run.task == "marshmallows"
+    assert {one.task for one in run.dataset().episodes} == {"wave"}
+    for server in (Spec(), Spec(task="dessert")):
+        setup = load_setup(server.with_run(run.folder, own_task=True))
+        assert setup.todo.task == "marshmallows"
+        assert "plate" in setup.shown.names
+        assert {goal.name for goal in setup.task.goals} <= set(setup.shown.names)
+    assert load_setup(Spec(run.folder, task="dessert")).todo.task == "dessert", "as the command says"
+
+
+@pytest.mark.parametrize(
+    ("other", "code"),
+    [
+        ({"robot": "arm.xml"}, "recordings_of_robots"),
+        ({"rate_hz": 50.0}, "recordings_of_rates"),
+        ({"task_name": "dessert"}, "recordings_of_tasks"),
+        ({"goals": (Goal("cup", np.zeros(7), Pose(np.zeros(3), np.eye(3))),)}, "recordings_of_tasks"),
+    ],
+)
+def test_recordings_that_do_not_go_together_are_named(tmp_path, other, code):
+    first = journal_of(tmp_path / "first.sqlite", (1.0, 1.0), task_name="marshmallows")
+    # A recording that does not say its task goes with any that has the same things.
+    silent = journal_of(tmp_path / "silent.sqlite", (1.0,))
+    check_alike(read_chosen((*chosen_of(first, 1), *chosen_of(silent, 1, called=8))))
+    second = journal_of(tmp_path / "second.sqlite", (1.0,), **{"task_name": "marshmallows", **other})
+    with pytest.raises(NoticeError) as refused:
+        check_alike(read_chosen((*chosen_of(first, 1, 2), *chosen_of(second, 1, called=2))))
+    assert refused.value.notice.code == code
+    assert refused.value.notice.parameters == {"number": 3, "other": 1}
 
 
 def test_a_full_disk_is_said_and_leaves_nothing(tmp_path):
@@ -155,10 +200,10 @@ def test_a_name_that_is_taken_and_too_few_episodes_are_refused(tmp_path):
 @pytest.mark.parametrize(
     "frame",
     [
-        '{"type":"train","name":"a","model":"pca","latent_dim":3,"episodes":[1]}',
-        '{"type":"train","name":"a","model":"../os","latent_dim":2,"episodes":[1]}',
-        '{"type":"train","name":"a","model":"pca","latent_dim":2,"episodes":["1"]}',
-        '{"type":"train","name":"a","model":"pca","latent_dim":2,"episodes":[1],"out":"/tmp"}',
+        '{"type":"train","name":"a","model":"pca","latent_dim":3,"episodes":[]}',
+        '{"type":"train","name":"a","model":"../os","latent_dim":2,"episodes":[]}',
+        '{"type":"train","name":"a","model":"pca","latent_dim":2,"episodes":[1]}',
+        '{"type":"train","name":"a","model":"pca","latent_dim":2,"episodes":[],"out":"/tmp"}',
         '{"type":"run"}',
         '{"type":"run","run":""}',
         '{"type":"cancel_training","why":"x"}',
@@ -210,9 +255,9 @@ def test_what_is_recorded_is_trained_and_driven_without_a_terminal(tmp_path, ser
         wait_for(lambda: len(page.learning["recordings"]) == FEWEST)
         assert {one["task"] for one in page.learning["recordings"]} == {"push"}
         assert all(1.0 < one["seconds"] < 6.0 for one in page.learning["recordings"])
-        numbers = [one["number"] for one in page.learning["recordings"]]
+        chosen = [{key: one[key] for key in ("file", "episode")} for one in page.learning["recordings"]]
 
-        train = {"type": "train", "name": "pushed", "model": "pca", "latent_dim": 1, "episodes": numbers}
+        train = {"type": "train", "name": "pushed", "model": "pca", "latent_dim": 1, "episodes": chosen}
         bob.send(**train)
         time.sleep(0.5)
         assert page.learning["training"] is None, "only the driver may train"
@@ -239,8 +284,18 @@ def test_what_is_recorded_is_trained_and_driven_without_a_terminal(tmp_path, ser
         page.send(type="run", run="pushed")
         wait_for(lambda: page.welcome["run"] == bob.welcome["run"] == "pushed")
         assert page.welcome["latent_dim"] == 1
-        page.wait(lambda state: state["mode"] == "latent")
+        page.wait(lambda state: state["mode"] in ("latent", "assisted"))
         wait_for(lambda: page.learning["run"] == "pushed")
+        page.drive(1.0)
+        named = page.welcome["task"]["choices"]
+    with serve(Spec(out=tmp_path, arm="mujoco")) as site, site.page() as page:
+        wait_for(lambda: [one["earlier"] for one in page.learning["recordings"]] == [True] * FEWEST)
+        page.send(**(train | {"name": "again"}))
+        wait_for(lambda: (page.learning["training"] or {}).get("phase") == "done")
+        page.send(type="run", run="again")
+        wait_for(lambda: page.welcome["run"] == "again")
+        assert page.welcome["task"]["choices"] == named
+        assert set(named) <= {thing["name"] for thing in page.welcome["things"]}
         page.drive(1.0)
 
 

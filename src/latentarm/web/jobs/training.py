@@ -1,4 +1,4 @@
-"""Training on recordings, in a child process: a journal in, a dataset and a run out."""
+"""Training on recordings, in a child process: journals in, a dataset and a run out."""
 
 import math
 import re
@@ -12,9 +12,9 @@ from typing import Final, final
 from pydantic import TypeAdapter
 
 from latentarm.control.export import ImplausibleWarning, demonstrations_of
-from latentarm.control.journal import read_journal
 from latentarm.core.types import Demonstrations
 from latentarm.models.catalogue import DEFAULT_MODEL, KINDS
+from latentarm.web.jobs.chosen import Chosen, check_alike, read_chosen
 from latentarm.web.jobs.job import Job, Wire
 from latentarm.web.jobs.lesson import lesson_of, moving_seconds
 from latentarm.web.protocol.learning_messages import Training
@@ -45,13 +45,11 @@ class TrainingPlan:
     Raises NoticeError if the name cannot be a folder's or is taken, or there are too few episodes.
     """
 
-    journal: Path
-    episodes: tuple[int, ...]
+    chosen: tuple[Chosen, ...]
     name: str
     model: str  # a name in the catalogue of models
     latent_dim: int
     out: Path  # folder that holds ``datasets`` and ``runs``
-    end_effector: str | None = None  # site, body or link, where the robot is a model file
 
     def __post_init__(self) -> None:
         if not _NAME.fullmatch(self.name):
@@ -60,7 +58,7 @@ class TrainingPlan:
             raise NoticeError("run_exists", name=self.name)
         if self.model not in model_names():
             raise NoticeError("model_unknown", name=self.model, known=", ".join(model_names()))
-        chosen = len(set(self.episodes))
+        chosen = len(set(self.chosen))
         if chosen < FEWEST:
             raise NoticeError("too_few_episodes", least=FEWEST, count=chosen)
 
@@ -118,13 +116,11 @@ def train_as_planned(wire: Wire, plan: TrainingPlan) -> None:
 
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", ImplausibleWarning)
-        journal = read_journal(plan.journal, plan.episodes)
-        recorded = demonstrations_of(journal, source="The recording")
+        episodes = read_chosen(plan.chosen)
+        check_alike(episodes)
+        recorded = demonstrations_of(list(episodes.values()), source="The recording")
     cut = [_cut(one.message) for one in caught if isinstance(one.message, ImplausibleWarning)]
-    numbers = sorted(set(plan.episodes))
-    moved_s = {
-        number: moving_seconds(episode, RATE_HZ) for number, episode in zip(numbers, journal, strict=True)
-    }
+    moved_s = {number: moving_seconds(episode, RATE_HZ) for number, episode in episodes.items()}
     too_short = [number for number, seconds in moved_s.items() if seconds < SHORTEST_S]
     if too_short:
         raise NoticeError(
@@ -167,7 +163,6 @@ def _train(progress: "_Progress", plan: TrainingPlan, demonstrations: Demonstrat
         latent_dim=plan.latent_dim,
         seeds=1,
         state_noise_rad=STATE_NOISE_RAD,
-        end_effector=plan.end_effector,
     )
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", UserWarning)

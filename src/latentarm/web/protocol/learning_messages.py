@@ -13,6 +13,14 @@ TrainingPhase = Literal["exporting", "training", "done", "failed", "cancelled"]
 
 
 @final
+class ChosenEpisode(Message):
+    """An episode of `LearningState.recordings`."""
+
+    file: Annotated[str, Field(max_length=255)]
+    episode: Annotated[int, Field(ge=1, le=2**31)]
+
+
+@final
 class Train(Message):
     """Train a model on recorded episodes; from the page that drives."""
 
@@ -20,8 +28,7 @@ class Train(Message):
     name: Annotated[str, Field(max_length=200)]  # of the new run, and of its dataset
     model: ModelName  # a kind of latent action model
     latent_dim: Literal[1, 2]  # d, axes of the latent actions
-    # their numbers, see `Recorded`
-    episodes: Annotated[tuple[Annotated[int, Field(ge=1, le=2**31)], ...], Field(max_length=300)]
+    episodes: Annotated[tuple[ChosenEpisode, ...], Field(max_length=300)]
 
 
 @final
@@ -41,11 +48,15 @@ class PickRun(Message):
 
 @final
 class Recorded(Message):
-    """A complete episode in the journal: its number, the task in words, and its length."""
+    """A complete episode of this or an earlier start of the server."""
 
-    number: int
-    task: str
-    seconds: float
+    number: int  # by which people call it: it counts all that are kept, from the oldest on
+    file: str
+    episode: int  # its number in the file
+    task: str  # in words
+    seconds: float  # its length
+    started: str  # ISO 8601 in UTC; "" where unknown
+    earlier: bool  # whether an earlier start of the server recorded it
 
 
 @final
@@ -80,7 +91,7 @@ class LearningState(Message):
     type: Literal["learning"] = "learning"
     training: Training | None  # null before the first
     personalise: Personalise | None  # null where nobody was asked
-    recordings: tuple[Recorded, ...]  # complete episodes of this journal
+    recordings: tuple[Recorded, ...]  # the newest that are kept, from the oldest on
     runs: tuple[str, ...]
     run: str | None  # the loaded one of ``runs``, or null
     profiles: tuple[str, ...]  # people whose alignment with it can be chosen

@@ -31,12 +31,13 @@ Title = Annotated[str, Field(max_length=80)]
 
 @final
 class RecordedEpisode(Message):
-    """An episode of a recording: task, length in s, driver, and whether it is complete."""
+    """An episode of a recording: task, length in s, driver, start, and whether it is complete."""
 
     number: int
     task: str
     seconds: float
     person: str
+    started: str  # ISO 8601 in UTC; "" where unknown
     complete: bool
 
 
@@ -181,6 +182,7 @@ class Recordings:
                         task=entry.header.task,
                         seconds=round(entry.duration_s, 1),
                         person=entry.header.provenance.person,
+                        started=entry.header.provenance.started_utc,
                         complete=entry.complete,
                     )
                     for entry in list_journal(path)

@@ -226,7 +226,7 @@ def build_app(
     run_list = RunList(spec.out, spec.run)
     states = States(LoadedRun(setup, run_list.name_of(spec.run)), control, sessions, run_list)
     records = Records(spec.out, run_list.runs, states.journal, calendar)
-    learning = Learning(control, states, run_list, spec.out)
+    learning = Learning(control, states, run_list, records.recordings, spec.out)
     history = History(states, sessions, records, calendar)
     pins = Pins(records.people, wanted=config.pins)
     poses = PoseBook(records.people, spec.out / FOLDER)

@@ -1,16 +1,18 @@
 """Recordings, trainings and runs, and their state for pages."""
 
 import asyncio
+import math
+import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, final
 
-from latentarm.control.journal import list_journal
 from latentarm.core.errors import UserError
-from latentarm.runs.folder import read_run
+from latentarm.web.jobs.chosen import Chosen
 from latentarm.web.jobs.training import TrainingJob, TrainingPlan
 from latentarm.web.protocol.learning_messages import LearningState, Recorded, Train, Training
 from latentarm.web.protocol.notice import Notice, NoticeError, notice_of
 from latentarm.web.protocol.orders import ChooseRun
+from latentarm.web.records.recordings import Recordings
 from latentarm.web.server.loaded_run import RunList
 from latentarm.web.server.personalising import Driven, Personalising
 from latentarm.web.server.run_check import WITHIN_S, why_not_drivable
@@ -20,21 +22,32 @@ if TYPE_CHECKING:
     from latentarm.web.arm_process.process import ControlProcess
 
 LOOK_S: Final = 0.2  # how often jobs and recordings are checked, s
+LIST_S: Final = 5.0  # how often files of recordings are looked for that somebody added or deleted, s
+MOST_LISTED: Final = 100
 
 
 @final
 class Learning:
     """Recordings, trainings, runs, and people's alignments. ``out`` holds ``datasets`` and ``runs``."""
 
-    def __init__(self, control: "ControlProcess", states: States, run_list: RunList, out: Path) -> None:
+    def __init__(
+        self,
+        control: "ControlProcess",
+        states: States,
+        run_list: RunList,
+        journals: Recordings,
+        out: Path,
+    ) -> None:
         self._control = control
         self._states = states
         self._run_list = run_list
+        self._journals = journals
         self._out = out
         self._job: TrainingJob | None = None
         self._training: Training | None = None
         self._recordings: tuple[Recorded, ...] = ()
-        self._listed: tuple[str, int] | None = None
+        self._listed: int | None = None
+        self._list_again_s = -math.inf
         self._cancelling: asyncio.Task[None] | None = None
         self._choosing: asyncio.Task[None] | None = None
         self.personalising = Personalising(self._driven, control)
@@ -61,20 +74,19 @@ class Learning:
         """Begin a training, or say why not; ignored while one is under way."""
         if self._job is not None and self._job.under_way:
             return
-        report = self._states.report
-        journal = None if report is None or report.recording is None else Path(report.recording.journal)
+        numbers = {(one.file, one.episode): one.number for one in self._recordings}
         try:
-            if journal is None:
-                raise NoticeError("nothing_recorded")
-            run = self._states.loaded.spec.run
+            if any((one.file, one.episode) not in numbers for one in wish.episodes):
+                raise NoticeError("record_unknown")
             plan = TrainingPlan(
-                journal=journal,
-                episodes=wish.episodes,
+                chosen=tuple(
+                    Chosen(self._out / one.file, one.episode, numbers[one.file, one.episode])
+                    for one in wish.episodes
+                ),
                 name=wish.name.strip(),
                 model=wish.model,
                 latent_dim=wish.latent_dim,
                 out=self._out,
-                end_effector=None if run is None else read_run(run).end_effector,
             )
             self._job = TrainingJob(plan)
             self._training = self._job.look()
@@ -126,21 +138,30 @@ class Learning:
     async def _list_recordings(self) -> None:
         report = self._states.report
         recording = None if report is None else report.recording
-        if recording is None or recording.episodes == 0:
+        # While an episode is written, only its end is news.
+        if recording is not None and recording.on:
             return
-        listed = (recording.journal, recording.episodes)
-        if listed == self._listed:
+        episodes, now_s = 0 if recording is None else recording.episodes, time.monotonic()
+        if episodes == self._listed and now_s < self._list_again_s:
             return
         try:
-            entries = await asyncio.to_thread(list_journal, Path(recording.journal))
+            files = await asyncio.to_thread(self._journals.all)
         except UserError:
             return  # it is being written: try again soon
-        self._listed = listed
+        self._listed, self._list_again_s = episodes, now_s + LIST_S
+        kept = [(file, one) for file in reversed(files) for one in file.episodes if one.complete]
         self._recordings = tuple(
-            Recorded(number=entry.number, task=entry.header.task, seconds=round(entry.duration_s, 1))
-            for entry in entries
-            if entry.complete
-        )
+            Recorded(
+                number=number,
+                file=file.name,
+                episode=one.number,
+                task=one.task,
+                seconds=one.seconds,
+                started=one.started,
+                earlier=not file.in_use,
+            )
+            for number, (file, one) in enumerate(kept, 1)
+        )[-MOST_LISTED:]
 
     def _tell(self, runs: dict[str, Path]) -> None:
         text = LearningState(

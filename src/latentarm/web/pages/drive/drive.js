@@ -113,6 +113,7 @@ attachZones(byId("zones"), connection);
 attachTrialBanner(connection, settings, lease);
 attachProfileChoice(connection, settings);
 attachRecording({
+  section: byId("recording"),
   button: byId("record", HTMLButtonElement),
   task: byId("record-task", HTMLInputElement),
   text: byId("record-text"),

@@ -20,8 +20,17 @@ export function recordingWords({ recording, you, phase, guiding }) {
   return episodes ? say("recording.kept", { count: episodes }) : say("recording.none");
 }
 
+/** Open what hides a section, and go there. @param {HTMLElement} section */
+function showSection(section) {
+  for (let around = section.closest("details"); around; around = around.parentElement?.closest("details") ?? null) around.open = true;
+  section.focus({ preventScroll: true });
+  section.scrollIntoView({ block: "center" });
+}
+
 /**
- * @param {{button: HTMLButtonElement, task: HTMLInputElement, text: HTMLElement, teach: HTMLElement}} parts
+ * The page Teach links to the section by its id; what is drawn later would push it off the screen again.
+ *
+ * @param {{section: HTMLElement, button: HTMLButtonElement, task: HTMLInputElement, text: HTMLElement, teach: HTMLElement}} parts
  * @param {Connection} connection
  */
 export function attachRecording(parts, connection) {
@@ -30,6 +39,7 @@ export function attachRecording(parts, connection) {
     const task = parts.task.value.trim();
     connection.send(on && task ? { type: "record", on, task } : { type: "record", on });
   });
+  if (location.hash === `#${parts.section.id}`) connection.addEventListener("state", () => showSection(parts.section), { once: true });
   connection.addEventListener("state", () => {
     const { state } = connection;
     if (!state) return;

@@ -5,6 +5,7 @@ import { attachWholePage } from "../inputs/whole_page.js";
 import { byId, create, fillBar, setText } from "../layout/dom.js";
 import { attachPage } from "../layout/page.js";
 import { say, sayNotice, sayNumber } from "../layout/words.js";
+import { sayTime } from "../records/ask.js";
 import { attachGuiding } from "./guiding.js";
 import { lessonFigures, lessonWords, shortOnes } from "./lesson.js";
 import { freeName, isBusy, leftWords, progressShare, progressWords } from "./training.js";
@@ -32,8 +33,8 @@ const guiding = attachGuiding({
 /** Whether somebody else drives, who alone may train and choose. */
 let watching = false;
 
-/** Episodes that the person has left out. @type {Set<number>} */
-const leftOut = new Set();
+/** Episodes that the person has chosen or left out; else those of this start of the server are chosen. @type {Map<string, boolean>} */
+const picked = new Map();
 
 const form = byId("train", HTMLFormElement);
 const fields = /** @type {{name: HTMLInputElement, model: HTMLSelectElement, latent_dim: RadioNodeList}} */ (
@@ -59,7 +60,7 @@ form.addEventListener("submit", (event) => {
     name: fields.name.value.trim(),
     model: fields.model.value,
     latent_dim: fields.latent_dim.value === "1" ? 1 : 2,
-    episodes: chosen().map((one) => one.number),
+    episodes: chosen().map(({ file, episode }) => ({ file, episode })),
   });
 });
 fields.model.addEventListener("change", showHelp);
@@ -70,7 +71,17 @@ byId("training-drive").addEventListener("click", () => {
 });
 
 function chosen() {
-  return (connection.learning?.recordings ?? []).filter((one) => !leftOut.has(one.number));
+  return (connection.learning?.recordings ?? []).filter(isChosen);
+}
+
+/** @param {Recorded} recorded */
+function keyOf({ file, episode }) {
+  return `${file} ${episode}`;
+}
+
+/** @param {Recorded} recorded */
+function isChosen(recorded) {
+  return picked.get(keyOf(recorded)) ?? !recorded.earlier;
 }
 
 function showHelp() {
@@ -85,9 +96,21 @@ function showEpisodes({ recordings }) {
   byId("episodes").hidden = recordings.length === 0;
   setText(byId("record-more"), say(recordings.length > 0 ? "teach.record_again" : "teach.record_more"));
   const now = JSON.stringify(recordings);
-  if (now !== listed) byId("episodes").querySelector("ul")?.replaceChildren(...recordings.map((one) => episode(one, shortOnes(recordings).includes(one.number))));
+  if (now !== listed) list(recordings);
   listed = now;
   setText(byId("chosen"), recordings.length ? chosenWords(recordings.length) : "");
+}
+
+/** @param {Recorded[]} recordings */
+function list(recordings) {
+  const short = shortOnes(recordings);
+  const [before, ofNow] = [true, false].map((earlier) => recordings.filter((one) => one.earlier === earlier));
+  byId("episodes").querySelector("ul")?.replaceChildren(...ofNow.map((one) => row(one, short)));
+  const earlier = byId("earlier", HTMLDetailsElement);
+  earlier.hidden = before.length === 0;
+  earlier.open ||= ofNow.length === 0;
+  earlier.querySelector("ul")?.replaceChildren(...before.map((one) => row(one, short)));
+  setText(/** @type {HTMLElement} */ (earlier.querySelector("summary")), say("teach.earlier", { count: before.length }));
 }
 
 /** @param {number} all */
@@ -97,12 +120,12 @@ function chosenWords(all) {
   return say("teach.chosen", { chosen: count, all });
 }
 
-/** @param {Recorded} recorded @param {boolean} short */
-function episode({ number, task, seconds }, short) {
-  const box = create("input", { type: "checkbox", checked: !leftOut.has(number) });
+/** @param {Recorded} recorded @param {number[]} short numbers of those that are short */
+function row(recorded, short) {
+  const { number, task, seconds, started, earlier } = recorded;
+  const box = create("input", { type: "checkbox", checked: isChosen(recorded) });
   box.addEventListener("change", () => {
-    if (box.checked) leftOut.delete(number);
-    else leftOut.add(number);
+    picked.set(keyOf(recorded), box.checked);
     show();
   });
   const label = create("label", { className: "check" });
@@ -111,10 +134,11 @@ function episode({ number, task, seconds }, short) {
     create("span", { textContent: task ? say("teach.episode_task", { number, task }) : say("teach.episode", { number }) }),
     create("span", { textContent: say("unit.seconds", { value: sayNumber(seconds, 1) }) }),
   );
-  if (short) label.append(create("strong", { className: "short", textContent: say("teach.short") }));
-  const row = create("li");
-  row.append(label);
-  return row;
+  if (earlier && started) label.append(create("small", { className: "muted", textContent: sayTime(started) }));
+  if (short.includes(number)) label.append(create("strong", { className: "short", textContent: say("teach.short") }));
+  const item = create("li");
+  item.append(label);
+  return item;
 }
 
 /** Of the training, as it was shown last. */
