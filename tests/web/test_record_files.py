@@ -13,7 +13,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from latentarm.core.errors import UserError
-from latentarm.core.untrusted.names import MOST_CHARACTERS, clean_name
+from latentarm.core.untrusted.names import MOST_CHARACTERS, clean_name, file_words
 from latentarm.web.arm_process.drive_setup import Spec, load_setup
 from latentarm.web.protocol.notice import Notice
 from latentarm.web.protocol.report import Report, TaskState
@@ -62,6 +62,14 @@ def test_any_name_is_kept_or_refused_in_a_sentence(tmp_path, name):
 @pytest.mark.parametrize("name", ["Zoë Müller", "李雷", "محمد", "नेहा", "O’Brien-Łukasz", "👩‍🦽", "佐藤 花子"])
 def test_names_of_people_are_names(name):
     assert clean_name(f"  {name} ") == clean_name(name)
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [("Zoë Müller", "Zoë-Müller"), ("../../etc", "etc"), ("a/b\\c:d", "a-b-c-d"), ("👩‍🦽", "person")],
+)
+def test_a_name_becomes_part_of_the_name_of_a_file(name, words):
+    assert file_words(name) == words
 
 
 BEGUN = TaskState(

@@ -94,3 +94,13 @@ class Whoever(RuleBasedStateMachine):
 
 
 TestWhoever = Whoever.TestCase
+
+
+def test_guests_are_numbered_from_1_among_those_who_are_there():
+    sessions = Sessions()
+    first, second = sessions.join(None), sessions.join("")
+    assert (first.name, second.name) == (1, 2)
+    sessions.release(first)
+    sessions.ask(second)
+    sessions.leave(first)
+    assert [sessions.join(None).name for _ in range(2)] == [1, 3]

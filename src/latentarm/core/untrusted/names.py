@@ -1,5 +1,6 @@
 """Names of people, in any script, in one form."""
 
+import re
 import unicodedata
 from typing import Final
 
@@ -26,6 +27,12 @@ def clean_name(text: str, most: int = MOST_CHARACTERS) -> str:
 def same_name(one: str, other: str) -> bool:
     """Whether two names look the same to people: case and compatible forms of characters do not count."""
     return _folded(one) == _folded(other)
+
+
+def file_words(name: str) -> str:
+    """A name as part of a file's name on any system: letters and digits of any script, and hyphens."""
+    kept = (one if unicodedata.category(one)[0] in "LMN" else "-" for one in name)
+    return re.sub("-+", "-", "".join(kept)).strip("-") or "person"
 
 
 def _folded(name: str) -> str:

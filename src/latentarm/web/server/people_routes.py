@@ -7,6 +7,7 @@ checked the origin and the length of each request.
 import asyncio
 import json
 from collections.abc import Callable, Sequence
+from datetime import date
 from typing import Annotated, Final, final
 
 from pydantic import Field, TypeAdapter, ValidationError
@@ -15,6 +16,7 @@ from starlette.requests import Request
 from starlette.responses import FileResponse, Response
 from starlette.routing import Route
 
+from latentarm.core.untrusted.names import file_words
 from latentarm.web.protocol.notice import Message, NoticeError
 from latentarm.web.records.drive_record import DriveRecord
 from latentarm.web.records.drives import Wanted
@@ -33,7 +35,7 @@ IMPORT: Final = "/records/import"
 
 @final
 class _Named(Message):
-    name: Annotated[str, Field(max_length=200)]
+    name: Annotated[str, Field(max_length=2000)]
 
 
 @final
@@ -173,11 +175,11 @@ class PeopleRoutes:
 
     async def _export(self, request: Request) -> Response:
         await self._history.settled()
-        path = await asyncio.to_thread(self._records.export, self._found(request).id)
-        # A neutral name: a file's name is seen by more people than what is in it.
+        person = self._found(request)
+        path = await asyncio.to_thread(self._records.export, person.id)
         return FileResponse(
             path,
-            filename="latentarm-person.zip",
+            filename=f"latentarm-{file_words(person.name)}-{date.today()}.zip",
             media_type="application/zip",
             headers=NO_STORE,
             background=BackgroundTask(path.unlink, missing_ok=True),

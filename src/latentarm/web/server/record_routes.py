@@ -4,6 +4,7 @@ import asyncio
 import csv
 import io
 from dataclasses import fields
+from datetime import date
 from typing import Annotated, Final, final
 
 from pydantic import Field
@@ -76,7 +77,8 @@ class RecordRoutes:
         rows = csv.writer(table)
         rows.writerow(_COLUMNS)
         rows.writerows(_row(drive, names) for drive in self._drives_for(request))
-        headers = {"content-disposition": 'attachment; filename="latentarm-drives.csv"', **NO_STORE}
+        named = f"latentarm-drives-{date.today()}.csv"
+        headers = {"content-disposition": f'attachment; filename="{named}"', **NO_STORE}
         # With a mark of its encoding, without which spreadsheets show other scripts wrongly.
         return Response(table.getvalue().encode("utf-8-sig"), media_type="text/csv", headers=headers)
 

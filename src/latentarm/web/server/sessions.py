@@ -16,7 +16,7 @@ class Page:
     """A connected page."""
 
     id: str  # of this connection
-    name: PersonName  # a guest without a name is called by a number
+    name: PersonName  # a guest without a name is called by the first number that is free
     person: str | None = None  # id of their record; None for a guest
 
 
@@ -63,11 +63,9 @@ class Sessions:
         """A new page; None if there are too many."""
         if len(self._pages) >= MOST:
             return None
-        page = Page(
-            secrets.token_hex(8),
-            (name or "").strip() or self.turn + len(self._pages) + 1,
-            person,
-        )
+        taken = {other.name for other in self._pages.values()}
+        number = next(number for number in range(1, MOST + 1) if number not in taken)
+        page = Page(secrets.token_hex(8), (name or "").strip() or number, person)
         self._pages[page.id] = page
         if len(self._pages) == 1:
             self._give_to(page.id)

@@ -14,6 +14,7 @@ import { attachSettingsDialog } from "../settings/settings_dialog.js";
 import { attachTheme } from "../settings/theme.js";
 import { byId, setText } from "./dom.js";
 import { robotWords } from "./thing_words.js";
+import { attachTooLong } from "./too_long.js";
 import { readWords, say } from "./words.js";
 
 /**
@@ -39,6 +40,7 @@ export function attachPage({ drop = () => {}, repaint = () => {}, runChanged = (
   attachTheme(byId("theme"), settings, repaint);
   const feedback = attachFeedback(connection, settings);
   attachWakeLock(connection);
+  attachTooLong();
   // Pages from which nobody drives have no such panel.
   if (document.getElementById("driver")) {
     attachInvitation();

@@ -39,6 +39,9 @@ export function taskTitle(name) {
 
 /** @param {string} name @param {string} form */
 function inWords(name, form) {
+  // Where a recording ended, of a run that does not say at which task it was recorded.
+  const end = /^end (\d+)$/.exec(name);
+  if (end) return say("thing.end", { number: end[1] });
   const key = `thing.${name.toLowerCase().replace(/\W+/g, "_")}`;
   const found = [key + form, key].find(knows);
   return found ? say(/** @type {WordKey} */ (found)) : name;

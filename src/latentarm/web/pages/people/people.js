@@ -87,7 +87,7 @@ function rowOf(person) {
 /** @param {Person} person */
 function exportLink(person) {
   const link = create("a", {
-    className: "button", href: `/records/people/${person.id}/export`, download: "latentarm-person.zip",
+    className: "button", href: `/records/people/${person.id}/export`, download: "",
     textContent: say("people.export"), ariaLabel: say("people.export_of", { name: person.name }),
   });
   let opened = !person.pin;

@@ -74,7 +74,7 @@ export function attachSettingsDialog(dialog, opener, settings) {
       settings.change({ [field.name]: code });
     } else if (code === "Enter" || code === "Space") field.click();
   });
-  attachLanguage(byId("language", HTMLSelectElement));
+  attachLanguage(byId("language", HTMLSelectElement), byId("language-offer"));
   form.querySelector("#settings-reset")?.addEventListener("click", () => settings.reset());
   settings.addEventListener("change", show);
 
