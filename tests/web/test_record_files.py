@@ -19,11 +19,11 @@ from latentarm.web.protocol.notice import Notice
 from latentarm.web.protocol.report import Report, TaskState
 from latentarm.web.protocol.scene import drawable
 from latentarm.web.records.drive_log import LATE, MOST_VALUES, About, DriveLog
-from latentarm.web.records.drive_record import checked_trace, packed
+from latentarm.web.records.drive_record import DriveRecord, checked_trace, packed
 from latentarm.web.records.drives import Drives, Wanted
 from latentarm.web.records.people import People
 from latentarm.web.records.poses import read_poses, with_pose, write_poses
-from latentarm.web.records.record_files import SYSTEM_CALENDAR, Calendar
+from latentarm.web.records.record_files import SYSTEM_CALENDAR, Calendar, parse_record
 from latentarm.web.records.records import FOLDER, Records
 
 HOURLY = [HealthCheck.function_scoped_fixture]
@@ -120,6 +120,43 @@ def test_the_figures_of_a_drive_are_those_of_its_reports(about):
     assert (record.stops, record.late_stops, record.reasons) == (1, 1, {LATE: 1})
     assert record.help == 0.5
     assert (record.ended, record.outcome, record.steps_done) == ("reset", None, 0)
+
+
+def test_each_input_is_timed_as_long_as_it_is_pushed_while_the_arm_is_enabled(about):
+    log = DriveLog(SYSTEM_CALENDAR)
+    log.begin(report(0, "ready", 0.0), about)
+    for first, last, u, source in (
+        (1, 100, (1.0, 0.0), "keyboard"),
+        (100, 200, (0.0, 0.0), "keyboard"),
+        (200, 500, (0.0, 0.5), "switch"),
+        (500, 600, (1.0, 0.0), "keyboard"),
+    ):
+        log.given(u, source, gripper=False)
+        for tick in range(first, last):
+            log.take(report(tick, "moving", 0.0))
+    log.take(report(600, "disengaged", 0.0, "stop_pressed_by"))
+    log.take(report(900, "disengaged", 0.0, "stop_pressed_by"))
+    record = log.end("next").record
+    assert record.inputs == ("keyboard", "switch")
+    assert record.input_s == {
+        "keyboard": pytest.approx(2.0, abs=0.05),
+        "switch": pytest.approx(3.0, abs=0.05),
+    }
+
+
+def test_a_record_says_who_stopped_the_arm_and_an_old_one_that_no_input_was_timed(about):
+    reasons = {
+        "stop_pressed_by": 2,
+        "handed_over": 1,
+        LATE: 3,
+        "page_stopped": 1,
+        "joint_astray": 1,
+        "arm_stopped": 1,
+    }
+    record = drive(about).record.model_copy(update={"reasons": reasons, "stops": 9})
+    assert record.stops_by == {"person": 3, "page": 4, "arm": 2}
+    old = record.model_dump_json(exclude={"input_s"})
+    assert parse_record(DriveRecord, old.encode(), "it").input_s is None
 
 
 def test_records_are_dated_by_the_calendar_that_they_were_given_whatever_its_zone(about, tmp_path):

@@ -70,6 +70,8 @@ def test_a_person_s_drives_are_kept_listed_taken_along_and_deleted(server, ask, 
     assert drive["stops"] - late == 1 <= drive["presses"] <= 1 + late
     assert drive["ended"] == "driver_changed"
     assert 0.5 < drive["moving_s"] <= drive["time_s"] < 10
+    assert drive["stops_by"] == {"person": 1, "page": late, "arm": 0}
+    assert drive["input_s"] == {"pointer": pytest.approx(drive["moving_s"], abs=0.3)}
     assert drive["reasons"] == {"stop_pressed_by": 1} | ({"input_late": late} if late else {})
     assert (drive["outcome"], drive["steps_done"]) == (None, 0)
     for other in ({"person": ""}, {"task": "pour"}, {"input": "switch"}, {"until": "2001-01-01"}):
@@ -86,6 +88,8 @@ def test_a_person_s_drives_are_kept_listed_taken_along_and_deleted(server, ask, 
 
     (row,) = csv.DictReader(io.StringIO(ask.get("/records/drives.csv").content.decode("utf-8-sig")))
     assert (row["person"], row["stops"], row["outcome"]) == (name, str(drive["stops"]), "")
+    assert (row["stops_by_person"], row["stops_by_page"], row["stops_by_arm"]) == ("1", str(late), "0")
+    assert row["input_s"] == f"pointer {drive['input_s']['pointer']:g}"
 
     (recording,) = ask.get("/records/recordings").json()["recordings"]
     assert [one["person"] for one in recording["episodes"]] == [person["id"]]

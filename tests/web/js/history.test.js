@@ -2,9 +2,9 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { momentAt, standing } from "#pages/history/player.js";
-import { byDay, byWeek, counted, dayOf, figures, inDays, median, mondayOf, MOST_DAYS, MOST_WEEKS } from "#pages/history/weeks.js";
+import { byDay, byWeek, counted, dayOf, inDays, mondayOf, MOST_DAYS, MOST_WEEKS } from "#pages/history/weeks.js";
 
-const drive = (started, rest = {}) => ({ started, time_s: 10, stops: 0, outcome: null, ...rest });
+const drive = (started) => ({ started });
 
 test("a week begins on Monday, also over the end of a year", () => {
   assert.equal(mondayOf("2026-11-23T12:00:00+00:00"), "2026-11-23");
@@ -13,18 +13,16 @@ test("a week begins on Monday, also over the end of a year", () => {
 });
 
 test("weeks without drives are there and say nothing", () => {
-  const weeks = byWeek([drive("2026-11-23T12:00:00+00:00"), drive("2026-11-03T12:00:00+00:00", { stops: 3 })]);
+  const weeks = byWeek([drive("2026-11-23T12:00:00+00:00"), drive("2026-11-03T12:00:00+00:00")]);
   assert.deepEqual(weeks.map(({ first }) => first), ["2026-11-02", "2026-11-09", "2026-11-16", "2026-11-23"]);
-  assert.deepEqual(weeks.map(({ drives }) => drives), [1, 0, 0, 1]);
-  assert.deepEqual(weeks.map(({ timeS }) => timeS), [10, null, null, 10]);
-  assert.equal(weeks[0].stops, 3);
+  assert.deepEqual(weeks.map(({ drives }) => drives.length), [1, 0, 0, 1]);
   assert.deepEqual(byWeek([]), []);
 });
 
 test("drives of few days are compared day by day, and a day begins at midnight where the page is read", () => {
   const days = ["2026-02-27T12:00:00+00:00", "2026-03-01T12:00:00+00:00", "2026-03-01T11:00:00+00:00"].map((at) => drive(at));
   assert.equal(inDays(days), true);
-  assert.deepEqual(byDay(days).map(({ first, drives }) => [first, drives]), [["2026-02-27", 1], ["2026-02-28", 0], ["2026-03-01", 2]]);
+  assert.deepEqual(byDay(days).map(({ first, drives }) => [first, drives.length]), [["2026-02-27", 1], ["2026-02-28", 0], ["2026-03-01", 2]]);
   const later = new Date(Date.parse(days[0].started) + MOST_DAYS * 24 * 3600 * 1000).toISOString();
   assert.equal(inDays([...days, drive(later)]), false);
   const evening = new Date(2026, 2, 1, 23, 30);
@@ -37,11 +35,7 @@ test("only the last weeks are compared", () => {
   assert.equal(weeks[MOST_WEEKS - 1].first, "2026-11-23");
 });
 
-test("success counts only drives whose outcome is known", () => {
-  const at = "2026-11-23T12:00:00+00:00";
-  assert.equal(figures([drive(at), drive(at)]).success, null);
-  assert.equal(figures([drive(at), drive(at, { outcome: "success" }), drive(at, { outcome: "failure" })]).success, 0.5);
-  assert.equal(median([3, 1, 2, 10]), 2.5);
+test("what there is most of comes first", () => {
   assert.deepEqual(counted(["a", "b", "b"]), [["b", 2], ["a", 1]]);
 });
 

@@ -65,6 +65,7 @@ class _Open:
     help_s: float = 0.0
     modes: Counter[str] = field(default_factory=Counter[str])
     inputs: Counter[str] = field(default_factory=Counter[str])
+    input_s: dict[str, float] = field(default_factory=dict[str, float])
     reasons: Counter[str] = field(default_factory=Counter[str])
     presses: int = 0
     period_s: float = PERIOD_S
@@ -122,6 +123,7 @@ class DriveLog:
         self._calendar = calendar
         self._open: _Open | None = None
         self._u: tuple[float, ...] = ()
+        self._source = ""
         self._standing: Things | None = None
 
     @property
@@ -158,6 +160,8 @@ class DriveLog:
             if was:
                 drive.enabled_s = t
                 drive.modes[before.mode] += 1
+                if any(self._u):
+                    drive.input_s[self._source] = drive.input_s.get(self._source, 0.0) + span_s
         if was and not enabled:
             code = "stop_pressed" if report.reason is None else report.reason.code
             drive.reasons[code] += going
@@ -172,7 +176,7 @@ class DriveLog:
     def given(self, u: tuple[float, ...], source: str, *, gripper: bool) -> None:
         """Note an input with a kind of device; ``gripper``: whether it is a request to the gripper."""
         pressed = (any(u) and not any(self._u)) + gripper
-        self._u = tuple(round(value, 2) for value in u)
+        self._u, self._source = tuple(round(value, 2) for value in u), source
         if self._open is not None and pressed and not self._open.over:
             self._open.presses += pressed
             self._open.inputs[source] += pressed
@@ -244,6 +248,7 @@ def _record(drive: _Open, last: Report, why: Ending) -> DriveRecord:
             "profile": None if first.profile is None else first.profile[:64],
             "modes": tuple(mode for mode, _ in drive.modes.most_common()) or (first.mode,),
             "inputs": tuple(source for source, _ in drive.inputs.most_common()),
+            "input_s": {source: round(spent_s, 2) for source, spent_s in drive.input_s.items()},
             "presses": drive.presses,
             "stops": drive.reasons.total(),
             "late_stops": drive.reasons[LATE],

@@ -6,7 +6,7 @@ from typing import Annotated, Final, Literal, final
 from pydantic import Field, ValidationError, model_validator
 
 from latentarm.core.errors import UserError
-from latentarm.web.protocol.notice import Message
+from latentarm.web.protocol.notice import Message, NoticeCode
 from latentarm.web.protocol.orders import ModeName
 from latentarm.web.protocol.report import Point, PoseRow
 from latentarm.web.records.people import PersonId
@@ -19,8 +19,25 @@ DriveId = Annotated[str, Field(pattern=rf"^{ID.pattern}$")]
 SceneId = Annotated[str, Field(pattern=r"^[0-9a-f]{32}$")]
 Count = Annotated[int, Field(ge=0, le=2**31)]
 Seconds = Annotated[float, Field(ge=0.0, le=1e9)]
+InputKind = Annotated[str, Field(max_length=20)]
 Text = Annotated[str, Field(max_length=200)]
+Stopper = Literal["person", "page", "arm"]
 Ending = Literal["reset", "again", "next", "driver_changed", "run_changed", "server_ended", "broken_off"]
+
+_BY_PERSON: Final[frozenset[NoticeCode]] = frozenset(
+    {
+        "arm_emergency_stop", "copilot_began", "copilot_changed", "copilot_ended", "driver_changed",
+        "driver_released", "emergency_stop_released", "handed_over", "question_began", "stop_pressed",
+        "stop_pressed_by",
+    }
+)  # fmt: skip
+_BY_PAGE: Final[frozenset[NoticeCode]] = frozenset(
+    {
+        "copilot_gone", "copilot_late", "driver_expired", "driver_gone", "input_late", "latch_ended",
+        "message_invalid", "page_stopped",
+    }
+)  # fmt: skip
+"""Codes of stops; the arm, its program or its safety limits cause all others."""
 
 
 @final
@@ -45,8 +62,10 @@ class DriveRecord(Message):
     run: Text | None  # its name; None without one
     profile: Annotated[str, Field(max_length=64)] | None  # whose alignment was used; None for none
     modes: Annotated[tuple[ModeName, ...], Field(max_length=8)]
-    # kinds of device, the most used first
-    inputs: Annotated[tuple[Annotated[str, Field(max_length=20)], ...], Field(max_length=8)]
+    # kinds of device, the most often pressed first
+    inputs: Annotated[tuple[InputKind, ...], Field(max_length=8)]
+    # how long each kind of device was pushed while the arm was enabled, s; None where nobody measured that
+    input_s: Annotated[dict[InputKind, Seconds], Field(max_length=8)] | None = None
     presses: Count  # how often the input left neutral, or the gripper got a request
     stops: Count  # how often the arm was disengaged while it was enabled
     late_stops: Count  # those for a late input
@@ -65,6 +84,14 @@ class DriveRecord(Message):
     # is unknown
     ended: Ending
     scene: SceneId | None  # its id; None where no trace is kept
+
+    @property
+    def stops_by(self) -> dict[Stopper, int]:
+        """How often each stopped the arm: a person, the page or its computer, and the arm itself."""
+        counts: dict[Stopper, int] = {"person": 0, "page": 0, "arm": 0}
+        for code, count in self.reasons.items():
+            counts["person" if code in _BY_PERSON else "page" if code in _BY_PAGE else "arm"] += count
+        return counts
 
 
 @final

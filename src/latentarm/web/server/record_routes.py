@@ -22,8 +22,9 @@ from latentarm.web.server.pins import Pins
 
 _COLUMNS: Final = (
     "started", "person", "title", "task", "choice", "run", "robot", "profile", "modes", "inputs", "outcome",
-    "why", "steps_done", "steps", "time_s", "moving_s", "idle_s", "presses", "stops", "late_stops", "way_m",
-    "help", "help_level", "ended", "id",
+    "why", "steps_done", "steps", "time_s", "moving_s", "idle_s", "input_s", "presses", "stops",
+    "stops_by_person", "stops_by_page", "stops_by_arm", "late_stops", "way_m", "help", "help_level",
+    "ended", "id",
 )  # fmt: skip
 
 
@@ -63,7 +64,7 @@ class RecordRoutes:
         problem = self._history.problem
         return json_answer(
             {
-                "drives": [drive.model_dump() for drive in drives],
+                "drives": [_shown(drive) for drive in drives],
                 "people": {person.id: person.name for person in self._records.people.all()},
                 "problem": None if problem is None else problem.model_dump(),
                 "problems": [problem.model_dump() for problem in self._records.drives.problems],
@@ -103,7 +104,7 @@ class RecordRoutes:
     async def _entitle(self, request: Request) -> Response:
         titled, drive = await body_of(request, _Titled), self._drive(request)
         record = await asyncio.to_thread(self._records.drives.entitle, drive, titled.title.strip())
-        return json_answer(record.model_dump())
+        return json_answer(_shown(record))
 
     async def _delete(self, request: Request) -> Response:
         await asyncio.to_thread(self._records.drives.delete, self._drive(request))
@@ -111,7 +112,7 @@ class RecordRoutes:
 
     async def _restore(self, request: Request) -> Response:
         drive = await asyncio.to_thread(self._records.drives.restore, request.path_params["drive"])
-        return json_answer(drive.model_dump())
+        return json_answer(_shown(drive))
 
     async def _trace(self, request: Request) -> Response:
         content = await asyncio.to_thread(self._records.drives.trace, self._drive(request))
@@ -155,12 +156,18 @@ def _scene_id(request: Request) -> str:
     return scene
 
 
+def _shown(drive: DriveRecord) -> dict[str, object]:
+    return {**drive.model_dump(), "stops_by": drive.stops_by}
+
+
 def _row(drive: DriveRecord, names: dict[str, str]) -> list[object]:
     values = {
         **drive.model_dump(),
         "person": names.get(drive.person or "", ""),
         "modes": " ".join(drive.modes),
         "inputs": " ".join(drive.inputs),
+        "input_s": drive.input_s and " ".join(f"{kind} {time_s:g}" for kind, time_s in drive.input_s.items()),
+        **{f"stops_by_{who}": count for who, count in drive.stops_by.items()},
         "idle_s": round(drive.time_s - drive.moving_s, 2),
     }
     return ["" if values[column] is None else _plain(values[column]) for column in _COLUMNS]

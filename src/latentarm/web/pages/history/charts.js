@@ -3,8 +3,10 @@
 import { create } from "../layout/dom.js";
 import { say, sayNumber } from "../layout/words.js";
 import { sayTime } from "../records/ask.js";
+import { count } from "./figures.js";
 import { byDay, byWeek, inDays } from "./weeks.js";
 
+/** @import {Counted} from "./figures.js" */
 /** @import {Drive, Period} from "./weeks.js" */
 
 const SVG = "http://www.w3.org/2000/svg";
@@ -12,11 +14,11 @@ const [WIDTH, HEIGHT, TOP, FOOT] = [300, 124, 20, 24];
 /** Values and days that there is room for, one next to the other. */
 const [MOST_VALUES, MOST_DATES] = [8, 4];
 
-/** @type {[import("../layout/words.js").WordKey, (period: Period) => number | null, (value: number) => string][]} */
+/** @type {[import("../layout/words.js").WordKey, Counted, (value: number) => string][]} */
 const CHARTS = [
-  ["history.chart_success", ({ success }) => success, (value) => sayNumber(100 * value)],
-  ["history.chart_time", ({ timeS }) => timeS, (value) => sayNumber(value, value < 10 ? 1 : 0)],
-  ["history.chart_stops", ({ stops }) => stops, (value) => sayNumber(value, 1)],
+  ["history.chart_success", "success", (value) => sayNumber(100 * value)],
+  ["history.chart_time", "time", (value) => sayNumber(value, value < 10 ? 1 : 0)],
+  ["history.chart_stops", "stops_person", (value) => sayNumber(value, 1)],
 ];
 
 /** The title of the charts. @param {Drive[]} drives */
@@ -24,13 +26,13 @@ export function chartsTitle(drives) {
   return say(inDays(drives) ? "history.days" : "history.weeks");
 }
 
-/** Success, time and stops over the days or weeks. @param {Drive[]} drives @returns {HTMLElement[]} */
+/** Three figures over the days or weeks. @param {Drive[]} drives @returns {HTMLElement[]} */
 export function charts(drives) {
   const daily = inDays(drives);
   const periods = daily ? byDay(drives) : byWeek(drives);
   const told = (/** @type {string} */ day, /** @type {string} */ value) =>
     daily ? say("history.chart_day", { day, value }) : say("history.chart_week", { week: day, value });
-  return CHARTS.map(([title, value, words]) => chart(say(title), periods, value, words, told));
+  return CHARTS.map(([title, figure, words]) => chart(say(title), periods, ({ drives: here }) => count(figure, here), words, told));
 }
 
 /**

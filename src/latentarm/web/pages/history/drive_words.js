@@ -23,9 +23,19 @@ export function taskWords({ task, choice }) {
 }
 
 /** @param {Drive} drive */
-export function outcomeWords({ outcome, ended }) {
-  if (outcome === null && ended === "broken_off") return say("history.broken_off");
-  return say(outcome === null ? "history.open" : outcome === "success" ? "history.done" : "history.failed");
+export function outcomeWords({ outcome, ended, steps }) {
+  if (outcome !== null) return say(outcome === "success" ? "history.done" : "history.failed");
+  if (ended === "broken_off") return say("history.broken_off");
+  return say(steps === null ? "history.open" : "history.given_up");
+}
+
+/** Who stopped the arm, and how often. @param {Drive} drive */
+export function stoppedBy({ stops_by: { person, page, arm } }) {
+  if (!person && !page && !arm) return say("history.no_stops");
+  return [
+    person && say("history.stops_person", { count: person }), page && say("history.stops_page", { count: page }),
+    arm && say("history.stops_arm", { count: arm }),
+  ].filter(Boolean).join(", ");
 }
 
 /** @param {number} seconds */
@@ -46,7 +56,7 @@ export function figureWords(drive) {
     drive.inputs.map(inputWords).join(", "),
     timeWords(drive.time_s),
     say("history.idle", { time: timeWords(drive.time_s - drive.moving_s) }),
-    say("history.stops", { count: drive.stops }),
+    stoppedBy(drive),
     say("history.presses", { count: drive.presses }),
     steps,
   ].filter(Boolean).map(unbroken).join(" · ");

@@ -1,17 +1,20 @@
 /** The care report: one page on paper about the drives that are listed. */
 
 import { create } from "../layout/dom.js";
-import { say, sayNumber, sayPercent } from "../layout/words.js";
+import { say } from "../layout/words.js";
 import { sayTime } from "../records/ask.js";
 import { charts, chartsTitle } from "./charts.js";
-import { inputWords, outcomeWords, taskWords, timeWords } from "./drive_words.js";
-import { counted, figures, sum } from "./weeks.js";
+import { inputWords, outcomeWords, stoppedBy, taskWords, timeWords } from "./drive_words.js";
+import { FIGURES, figureOf } from "./figures.js";
+import { counted } from "./weeks.js";
 
+/** @import {Figure} from "./figures.js" */
 /** @import {Drive} from "./weeks.js" */
 
 /** Rows that a page has room for. */
 const [MOST_TASKS, MOST_DRIVES] = [5, 10];
-const NONE = "–";
+/** @type {Figure[]} */
+const TASK_FIGURES = ["drives", "success", "time", "stops_person"];
 
 /**
  * @param {Drive[]} drives the newest first
@@ -32,52 +35,40 @@ export function report(drives, name) {
   weekly.append(...charts(drives));
   parts.push(summary(drives), titled(chartsTitle(drives), weekly), titled(say("report.tasks"), taskTable(drives)));
   parts.push(titled(say("report.latest"), driveTable(drives)));
-  parts.push(create("p", { className: "small", textContent: say("report.words") }));
+  parts.push(create("p", { className: "small", textContent: entries().map(([, { means }]) => say(means)).join(" ") }));
   parts.push(create("p", { className: "small", textContent: say("report.made", { when: sayTime(new Date().toISOString()) }) }));
   return parts;
 }
 
 /** @param {Drive[]} drives */
 function summary(drives) {
-  const all = figures(drives);
-  const [input] = counted(drives.flatMap(({ inputs }) => inputs.slice(0, 1)))[0] ?? [];
-  /** @type {[import("../layout/words.js").WordKey, string][]} */
-  const rows = [
-    ["report.drives", String(drives.length)],
-    ["report.driven", timeWords(sum(drives.map(({ time_s }) => time_s)))],
-    ["report.success", all.success === null ? NONE : sayPercent(all.success)],
-    ["report.time", all.timeS === null ? NONE : timeWords(all.timeS)],
-    ["report.stops", all.stops === null ? NONE : sayNumber(all.stops, 1)],
-    ["report.late_stops", String(sum(drives.map(({ late_stops }) => late_stops)))],
-    ["report.presses", sayNumber(sum(drives.map(({ presses }) => presses)) / drives.length, 1)],
-    ["report.input", input ? inputWords(input) : NONE],
-  ];
   const list = create("dl", { className: "figures" });
-  for (const [word, value] of rows) {
+  for (const [figure, { title }] of entries()) {
     const row = create("div");
-    row.append(create("dt", { textContent: say(word) }), create("dd", { textContent: value }));
+    row.append(create("dt", { textContent: say(title) }), create("dd", { textContent: figureOf(figure, drives) }));
     list.append(row);
   }
   return list;
 }
 
+function entries() {
+  return /** @type {[Figure, typeof FIGURES[Figure]][]} */ (Object.entries(FIGURES));
+}
+
 /** @param {Drive[]} drives */
 function taskTable(drives) {
-  const rows = counted(drives.map(taskWords)).slice(0, MOST_TASKS).map(([task, count]) => {
-    const here = figures(drives.filter((drive) => taskWords(drive) === task));
-    return [
-      task, String(count), here.success === null ? NONE : sayPercent(here.success),
-      here.timeS === null ? NONE : timeWords(here.timeS), here.stops === null ? NONE : sayNumber(here.stops, 1),
-    ];
+  const rows = counted(drives.map(taskWords)).slice(0, MOST_TASKS).map(([task]) => {
+    const here = drives.filter((drive) => taskWords(drive) === task);
+    return [task, ...TASK_FIGURES.map((figure) => figureOf(figure, here))];
   });
-  return table([say("history.task"), say("report.drives"), say("report.success"), say("report.time"), say("report.stops")], rows);
+  return table([say("history.task"), ...TASK_FIGURES.map((figure) => say(FIGURES[figure].title))], rows);
 }
 
 /** @param {Drive[]} drives */
 function driveTable(drives) {
   const rows = drives.slice(0, MOST_DRIVES).map((drive) => [
     sayTime(drive.started), drive.title.slice(0, 40) || taskWords(drive).slice(0, 40), drive.inputs.map(inputWords).join(", "), timeWords(drive.time_s),
-    String(drive.stops), outcomeWords(drive),
+    stoppedBy(drive), outcomeWords(drive),
   ]);
   const heads = [say("report.when"), say("history.task"), say("history.input"), say("report.time_one"), say("report.stops_one"), say("report.outcome")];
   return table(heads, rows);

@@ -1,7 +1,7 @@
-/** Drives day by day or week by week, and in all: the figures behind the charts and the report. */
+/** Drives day by day or week by week. */
 
 /**
- * @typedef {object} Drive as `DriveRecord` of the server has it
+ * @typedef {object} Drive a `DriveRecord` of the server, and who stopped it
  * @property {string} id
  * @property {string | null} person
  * @property {string} title
@@ -14,9 +14,10 @@
  * @property {string | null} run
  * @property {string[]} modes
  * @property {string[]} inputs
+ * @property {Record<string, number> | null} input_s how long each was pushed, s; null where nobody measured that
  * @property {number} presses
  * @property {number} stops
- * @property {number} late_stops
+ * @property {{person: number, page: number, arm: number}} stops_by
  * @property {number} way_m
  * @property {number | null} help
  * @property {string | null} help_level
@@ -30,10 +31,7 @@
 /**
  * @typedef {object} Period a day, or a week from Monday on
  * @property {string} first its first day, `YYYY-MM-DD`
- * @property {number} drives how many
- * @property {number | null} success share of those that ended well or badly; null where none did either
- * @property {number | null} timeS median, s; null without drives
- * @property {number | null} stops for each drive; null without drives
+ * @property {Drive[]} drives
  */
 
 const DAY_MS = 24 * 3600 * 1000;
@@ -80,34 +78,9 @@ function compared(drives, firstDay, days) {
   const firsts = drives.map(({ started }) => firstDay(started)).sort();
   const periods = [];
   for (let first = firsts[0]; first <= firsts[firsts.length - 1]; first = later(first, days)) {
-    const here = drives.filter(({ started }) => firstDay(started) === first);
-    periods.push({ first, drives: here.length, ...figures(here) });
+    periods.push({ first, drives: drives.filter(({ started }) => firstDay(started) === first) });
   }
   return periods;
-}
-
-/** @param {Drive[]} drives @returns {{success: number | null, timeS: number | null, stops: number | null}} */
-export function figures(drives) {
-  const judged = drives.filter(({ outcome }) => outcome !== null);
-  const done = judged.filter(({ outcome }) => outcome === "success");
-  return {
-    success: judged.length ? done.length / judged.length : null,
-    timeS: median(drives.map(({ time_s }) => time_s)),
-    stops: drives.length ? sum(drives.map(({ stops }) => stops)) / drives.length : null,
-  };
-}
-
-/** @param {number[]} values @returns {number | null} null without values */
-export function median(values) {
-  const sorted = [...values].sort((one, other) => one - other);
-  const middle = sorted.length >> 1;
-  if (!sorted.length) return null;
-  return sorted.length % 2 ? sorted[middle] : (sorted[middle - 1] + sorted[middle]) / 2;
-}
-
-/** @param {number[]} values */
-export function sum(values) {
-  return values.reduce((total, value) => total + value, 0);
 }
 
 /** Values with how often they are there, the most frequent first. @param {string[]} values @returns {[string, number][]} */
