@@ -41,6 +41,7 @@ def test_a_simulated_person_is_asked_and_drives(run: Run, trained: Path) -> None
     }
     config = json.loads((folder / "config.json").read_text())
     assert (config["name"], config["person"]) == ("ada", "simulated person")
+    assert config["judgement"]["refusal"] == "answers_few"
     assert np.array(config["answers"]["u"]).shape == (4, 2)
     assert np.array(config["answers"]["start"]).shape == (4, 7)
     (row,) = [row for row in rows_in(folder / "config.json") if row.condition == "profile, simulated"]
@@ -108,6 +109,8 @@ def test_a_person_answers_in_lines(run: Run, trained: Path, monkeypatch: pytest.
     typed(monkeypatch, "0.5 -1", "", "left", "2 0", "0.5", "nan 0", "0, 0.25", "\x1b[A\x1b[A\x1b[D")
     code, out, err = run(*ALIGN, "--answers", 3)
     assert code == 0, err
+    assert "The page would not keep this person's profile." in out
+    assert "so few answers" in out
     assert "simulated" not in out
     for said in ("not a number", "from -1 to 1", "1 of 2 numbers"):
         assert said in out
@@ -125,9 +128,9 @@ def test_no_more_is_asked_when_enough_is_known(
     monkeypatch.setattr(aligning.StoppingRule, "enough", lambda self, history: len(history) == 2)
     code, out, _ = run(*ALIGN, "--simulated", "--answers", 9)
     assert code == 0
-    # After two answers it is first known how much is unknown, after three again.
-    assert out.count("Question ") == 3
-    assert "3 answers of a simulated person are enough" in out
+    # After six answers it is first known how much is unknown, after seven again.
+    assert out.count("Question ") == 7
+    assert "7 answers of a simulated person are enough" in out
 
 
 def test_an_input_that_ends_saves_nothing(run: Run, trained: Path, monkeypatch: pytest.MonkeyPatch) -> None:

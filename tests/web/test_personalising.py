@@ -4,14 +4,16 @@ import asyncio
 import json
 import shutil
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from latentarm.alignment.profile import TRIAL, profile_names, trial_folder
+from latentarm.alignment.profile import TRIAL, keep_trial, profile_names, trial_folder
 from latentarm.web.arm_process.drive_setup import Spec
 from latentarm.web.jobs.personalise import PersonaliseJob, PersonalisePlan
+from latentarm.web.protocol.notice import Notice
 from latentarm.web.protocol.orders import ChooseProfile
 from latentarm.web.protocol.page_messages import parse_message
 from latentarm.web.protocol.personalise_messages import (
@@ -22,6 +24,7 @@ from latentarm.web.protocol.personalise_messages import (
     KeepAlignment,
     Personalise,
     QuestionBefore,
+    ShownMotion,
     SkipQuestion,
     TryAlignment,
 )
@@ -42,9 +45,13 @@ def run(trained, tmp_path):
 # --- the job alone ---
 
 
+def plan(run, questions):
+    return PersonalisePlan(run, "ada", questions, None, None, trial_folder(run))
+
+
 @pytest.fixture
 def job(run):
-    job = PersonaliseJob(PersonalisePlan(run, "ada", 2, trial_folder(run)))
+    job = PersonaliseJob(plan(run, 6))
     yield job
     job.end()
 
@@ -64,17 +71,39 @@ def answer(to, u):
 
 
 def ended(job):
-    return wait_for(lambda: job.look() if job.look().phase in ("learned", "failed") else None)
+    return wait_for(lambda: job.look() if job.look().phase in ("learned", "refused", "failed") else None)
+
+
+def pushed(u):
+    """To every motion the same answer."""
+    return lambda motion: u
+
+
+def rightwards(motion):
+    """What a person pushes for whom right is along y of the base, and up along -x: 0.4 m/s at most."""
+    (x, y, _), (to_x, to_y, _) = motion.tools[0][0], motion.tools[0][-1]
+    u = np.clip(np.array([to_y - y, x - to_x]) / (0.4 * motion.duration_s), -1.0, 1.0)
+    return tuple(u.tolist())
+
+
+def answered(job, how, after=0):
+    """The state at the end, when a person answers every question by how they see the motion."""
+    while (state := job.look()).phase not in ("learned", "refused", "failed"):
+        if state.phase == "asking" and state.question > after:
+            after = state.question
+            job.reply(answer(after, how(state.motion)))
+        time.sleep(0.002)
+    return state
 
 
 @pytest.mark.slow
 def test_a_person_answers_skips_goes_back_and_is_learned_from(job, run):
     first = question(job, 0)
-    assert (first.number, first.of, first.back) == (1, 2, False)
+    assert (first.number, first.of, first.back) == (1, 6, False)
     assert first.motion.duration_s == 0.5
     assert len(first.motion.frames[0]) == 8
     assert len(first.motion.tools) == 1
-    job.reply(answer(first.question, (0.5, 0.0)))
+    job.reply(answer(first.question, rightwards(first.motion)))
     assert job.look().phase == "thinking"
     job.reply(answer(first.question, (1.0, 1.0)))  # the same answer twice counts once
 
@@ -86,21 +115,46 @@ def test_a_person_answers_skips_goes_back_and_is_learned_from(job, run):
     job.reply(QuestionBefore(type="question_before", question=third.question))
     again = question(job, third.question)
     assert again.motion == second.motion
-    job.reply(answer(again.question, (0.0, -0.5)))
+    job.reply(answer(again.question, rightwards(again.motion)))
 
-    learned = ended(job)
+    learned = answered(job, rightwards, again.question)
     assert learned.phase == "learned", learned.why
-    assert learned.answers == 2
-    assert learned.error is not None
-    assert learned.error < 0.5, "the answers themselves are met"
+    assert learned.answers == 6
+    assert learned.error < 0.3 < learned.error_without, "answers are met that it was not learned from"
     about = json.loads((trial_folder(run) / "config.json").read_text())
     assert (about["name"], about["person"]) == ("ada", "person")
-    assert about["answers"]["u"] == [[0.5, 0.0], [0.0, -0.5]]
+    assert np.array(about["answers"]["u"][:2]) == pytest.approx(
+        np.array([rightwards(one.motion) for one in (first, again)])
+    )
+
+
+@pytest.mark.slow
+def test_ten_times_the_same_answer_is_not_announced_as_learned(run):
+    job = PersonaliseJob(plan(run, 10))
+    refused = answered(job, pushed((0.0, -0.5)))
+    assert (refused.phase, refused.why.code) == ("refused", "answers_alike")
+    assert not trial_folder(run).exists()
+    assert not job.under_way
+    job.end()
+
+
+@pytest.mark.slow
+def test_answers_that_agree_with_the_directions_of_now_change_nothing(run):
+    first = PersonaliseJob(plan(run, 6))
+    assert answered(first, rightwards).phase == "learned"
+    first.end()
+    keep_trial(run, "bob")
+    again = PersonaliseJob(replace(plan(run, 6), profile="bob"))
+    refused = answered(again, rightwards)
+    assert (refused.phase, refused.why.code) == ("refused", "answers_agree")
+    assert refused.error_without < 0.3
+    assert not trial_folder(run).exists()
+    again.end()
 
 
 @pytest.mark.slow
 def test_whoever_knows_nothing_is_told_so(run):
-    job = PersonaliseJob(PersonalisePlan(run, "ada", 1, trial_folder(run)))
+    job = PersonaliseJob(plan(run, 1))
     asked_last = 0
     while job.look().phase != "failed":
         if job.look().phase == "asking" and job.look().question > asked_last:
@@ -125,7 +179,7 @@ def test_a_job_that_dies_says_so(job):
 @pytest.mark.slow
 def test_a_run_that_cannot_be_asked_about_says_why(run):
     (run / "model.safetensors").write_bytes(b"none")
-    job = PersonaliseJob(PersonalisePlan(run, "ada", 2, trial_folder(run)))
+    job = PersonaliseJob(plan(run, 2))
     failed = ended(job)
     assert failed.phase == "failed"
     assert "model.safetensors" in failed.why.text
@@ -167,7 +221,7 @@ class Desk:
         self.report = Report()
         self.control = Control()
         self.personalising = Personalising(
-            lambda: Driven(self.run, self.latent_dim, self.report), self.control
+            lambda: Driven(self.run, self.latent_dim, self.report, lambda seat: seat), self.control
         )
 
     def take(self, message):
@@ -211,6 +265,7 @@ class Instant:
     """A job that has learned at once."""
 
     def __init__(self, plan):
+        self.plan = plan
         plan.out.mkdir(parents=True)
         (plan.out / "config.json").write_text("{}")
         self.state = Personalise(phase="learned", name=plan.name, answers=plan.questions)
@@ -304,6 +359,39 @@ def test_nobody_drives_while_somebody_is_asked_and_an_end_leaves_nothing(desk, r
     assert not trial_folder(run).exists()
 
 
+class Refused(Instant):
+    """A job that has learned nothing better."""
+
+    def __init__(self, plan):
+        super().__init__(plan)
+        self.state = Personalise(phase="refused", name=plan.name, why=Notice(code="answers_unclear"))
+
+
+def test_what_was_refused_cannot_be_tried_or_kept(desk, run, monkeypatch):
+    monkeypatch.setattr(personalising, "PersonaliseJob", Refused)
+
+    async def refuse():
+        assert desk.take(begin()).phase == "refused"
+        for message in (TRY, KEEP, DISCARD):
+            assert desk.take(message).phase == "refused"
+        assert desk.personalising.standstill is None
+        assert desk.take(CANCEL) is None
+        await desk.personalising.close()
+
+    asyncio.run(refuse())
+    assert desk.control.orders == []
+    assert profile_names(run) == ()
+
+
+def test_new_directions_are_judged_beside_those_from_before_a_trial(learned):
+    assert learned.personalising._job.plan.profile == "bob"
+    learned.take(TRY)
+    learned.report = Report("disengaged", TRIAL)
+    learned.take(begin("ada2").model_copy(update={"seat": "behind"}))
+    assert learned.personalising._job.plan.profile == "bob"
+    assert learned.personalising._job.plan.seat == "behind"
+
+
 def test_being_asked_again_replaces_what_was_tried(learned, run):
     learned.take(TRY)
     learned.report = Report("disengaged", TRIAL)
@@ -354,10 +442,15 @@ def test_only_the_driver_is_asked_and_nobody_drives_meanwhile(run, tmp_path, ser
 @pytest.mark.slow
 def test_the_server_removes_what_was_not_kept(run, tmp_path, serve):
     with serve(Spec(run, out=tmp_path / "out")) as site, site.page() as ada:
-        ada.send(**{**BEGIN, "questions": 1})
-        wait_for(lambda: ada.learning["personalise"] and ada.learning["personalise"]["phase"] == "asking")
-        ada.send(type="answer", question=ada.learning["personalise"]["question"], u=[0.3, 0.4])
-        wait_for(lambda: ada.learning["personalise"]["phase"] == "learned")
+        ada.send(**{**BEGIN, "questions": 6})
+        asked = 0
+        while (state := ada.learning["personalise"]) is None or state["phase"] != "learned":
+            if state is not None and state["phase"] == "asking" and state["question"] > asked:
+                asked = state["question"]
+                u = rightwards(ShownMotion.model_validate_json(json.dumps(state["motion"])))
+                ada.send(type="answer", question=asked, u=u)
+            assert state is None or state["phase"] not in ("refused", "failed"), state["why"]
+            time.sleep(0.02)
         ada.send(type="try_alignment")
         ada.wait(lambda state: state["profile"] == TRIAL)
         assert trial_folder(run).exists()

@@ -17,7 +17,8 @@ from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray
 from latentarm.robots.kinematics.chain import Chain
 
-TOO_FEW: Final = 2  # answers after which asking may stop
+FEWEST: Final = 6
+"""Answers to learn from at least: with fewer, what is learned from all but one says nothing of that one."""
 LENGTH_M: Final = 0.3
 """Distance over which the meaning of an input may change with the place, when questions are chosen."""
 

@@ -16,10 +16,11 @@ from latentarm.core.types import Row
 from latentarm.runs.asking import FASTEST, PersonAtTerminal, SimulatedRespondent
 from latentarm.runs.checks import check_count, check_seed
 from latentarm.runs.options import Json, MovedDataset, Seed
-from latentarm.runs.person import Respondent, Say
+from latentarm.runs.person import Kind, Respondent, Say
 from latentarm.runs.stick_line import read_line
 
 if TYPE_CHECKING:
+    from latentarm.alignment.judgement import Judgement
     from latentarm.runs.questions import AlignmentProblem
 
 
@@ -64,7 +65,18 @@ def align_run(config: AlignOptions, say: Say) -> list[Row]:
     say(f"Learning from {len(answers)} answers of a {person.kind} ...")
     learned = learn(known, answers, config.name, person.kind)
     learned.save(folder)
+    say(_judged(learned.judgement, person.kind))
     return learned.rows
+
+
+def _judged(judgement: "Judgement", kind: Kind) -> str:
+    """How good the profile is, for the person."""
+    from latentarm.web.protocol.notice import Notice
+
+    if judgement.refusal is None:
+        errors = f"{judgement.learned:.0%} of standing still, and {judgement.present:.0%} with z = u"
+        return f"The {kind}'s profile misses answers that it was not learned from by {errors}."
+    return f"The page would not keep this {kind}'s profile. {Notice(code=judgement.refusal).text}"
 
 
 def _person(config: AlignOptions, scene: "AlignmentProblem", say: Say) -> Respondent:

@@ -1,6 +1,6 @@
 """A person's alignment with a run: the questions, and learning from the answers."""
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Final, final
 
@@ -8,9 +8,10 @@ import numpy as np
 
 from latentarm.alignment.affine import fit_affine
 from latentarm.alignment.answers import Answers
-from latentarm.alignment.contract import identity
+from latentarm.alignment.contract import Alignment, identity
 from latentarm.alignment.demonstrated import shown
 from latentarm.alignment.error import relative_alignment_error
+from latentarm.alignment.judgement import Judgement, judge
 from latentarm.alignment.profile import model_fingerprint, save_profile
 from latentarm.alignment.tool_space import ToolSpace
 from latentarm.assistance.annotation import prepared
@@ -53,6 +54,7 @@ class LearnedProfile:
     fingerprint: str  # of the model and the seed that it is for
     seed_index: int
     rows: list[Row]  # error on the answers themselves: with the profile, an affine map, and z = u
+    judgement: Judgement  # of it beside the directions that the person had
     about: dict[str, object]  # further keys of the profile's file
 
     def save(self, folder: Path) -> None:
@@ -86,10 +88,20 @@ def alignable(folder: Path, seed_index: int = 0, seed: int = 0, dataset: Path | 
     return Alignable(run, fingerprint, seed_index, Encoder(trained, seed_index), scene, seed)
 
 
-def learn(known: Alignable, answers: Answers, name: str, kind: Kind) -> LearnedProfile:
-    """Learn a person's alignment from their answers."""
+def learn(
+    known: Alignable, answers: Answers, name: str, kind: Kind, present: Alignment = identity
+) -> LearnedProfile:
+    """Learn a person's alignment from their answers, and judge it beside the present one."""
     scene, decoder = known.scene, known.scene.decoder
     tool_space = scene.learn(answers)
+    judgement = judge(
+        answers,
+        lambda some: scene.learn(some).with_arm(decoder, scene.chain),
+        present,
+        decoder,
+        scene.chain,
+        scene.candidates,
+    )
     alignments = {
         NO_ALIGN: identity,
         "manual_align": fit_affine(known.encoder, answers),
@@ -119,6 +131,7 @@ def learn(known: Alignable, answers: Answers, name: str, kind: Kind) -> LearnedP
             "rest": answers.motions.rest.tolist(),
             "u": answers.u.tolist(),
         },
+        "judgement": asdict(judgement),
         **as_document(rows),
     }
-    return LearnedProfile(tool_space, known.fingerprint, known.seed_index, rows, about)
+    return LearnedProfile(tool_space, known.fingerprint, known.seed_index, rows, judgement, about)

@@ -10,7 +10,7 @@ from latentarm.alignment.answers import Answers, Motions
 from latentarm.alignment.demonstrated import CANDIDATES
 from latentarm.alignment.demonstrated_directions import DemonstratedDirections
 from latentarm.alignment.posterior import Posterior, fit_meaning
-from latentarm.alignment.queries import TOO_FEW, QuestionDesign, StoppingRule, next_motion
+from latentarm.alignment.queries import FEWEST, QuestionDesign, StoppingRule, next_motion
 from latentarm.alignment.tool_space import ToolSpace
 from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray
@@ -70,12 +70,12 @@ def ask(scene: AlignmentProblem, person: Respondent, count: int, say: Say, stopp
         if isinstance(reply, str):
             for again in asked[-2:]:
                 answered.pop(again, None)
-            del asked[-2:], history[max(len(answered) - TOO_FEW + 1, 0) :]
+            del asked[-2:], history[max(len(answered) - FEWEST + 1, 0) :]
             continue
         if reply is None:
             continue
         answered[row] = reply
-        if TOO_FEW <= len(answered) < count:
+        if FEWEST <= len(answered) < count:
             history.append(scene.posterior(_answers(motions, answered)).share)
             if stopping.enough(history):
                 say(f"{len(answered)} answers of a {person.kind} are enough: more would change little.")

@@ -12,8 +12,8 @@ beforeEach(newBrowser);
 
 test("the page follows what the server does, and begins where nobody was asked or asking failed", () => {
   assert.equal(stepOf(null, false), "begin");
-  const steps = ["preparing", "asking", "thinking", "learning", "learned", "kept", "failed"].map((phase) => stepOf({ phase }, false));
-  assert.deepEqual(steps, ["working", "asking", "working", "working", "learned", "kept", "begin"]);
+  const steps = ["preparing", "asking", "thinking", "learning", "learned", "refused", "kept", "failed"].map((phase) => stepOf({ phase }, false));
+  assert.deepEqual(steps, ["working", "asking", "working", "working", "learned", "refused", "kept", "begin"]);
 });
 
 test("a person can be asked again once something was learned, not before", () => {

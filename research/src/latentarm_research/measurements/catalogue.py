@@ -26,6 +26,14 @@ class Clearance:
 
 
 @dataclass(frozen=True)
+class JudgedAnswers:
+    """Options of ``answers``."""
+
+    tries: Annotated[int, arg(help="Of each kind of answers without a look at the motions.")] = 200
+    people: Annotated[int, arg(help="Of each kind who answer by directions of their own.")] = 50
+
+
+@dataclass(frozen=True)
 class Limits:
     """Options of ``limits``."""
 
@@ -143,6 +151,11 @@ class People:
 
 
 MEASUREMENTS: Final[Mapping[str, Measurement]] = {
+    "answers": Measurement(
+        "Measure how often directions are learned from answers that mean something, and from others.",
+        JudgedAnswers,
+        {"tries": 1, "people": 1},
+    ),
     "clearance": Measurement(
         "Push arms at things and at themselves; MuJoCo measures the distances that they keep.",
         Clearance,

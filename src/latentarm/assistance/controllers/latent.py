@@ -7,7 +7,7 @@ from typing import final
 from latentarm.alignment.contract import Alignment, Seat, identity
 from latentarm.alignment.frame import StickFrame
 from latentarm.alignment.frame_file import load_frame
-from latentarm.alignment.profile import load_profile
+from latentarm.alignment.profile import Profile, load_profile
 from latentarm.assistance.controllers.contract import Controller
 from latentarm.core.context import BELIEF, GRIPPER, ContextLayout, context_vector
 from latentarm.core.errors import UserError
@@ -15,6 +15,7 @@ from latentarm.core.types import Context, FloatArray
 from latentarm.demonstrations.gripper import ACTION_GRIPPER, GRIPPER_WIDTH
 from latentarm.models.decoder import Decoder
 from latentarm.models.saving import load_decoder
+from latentarm.robots.kinematics.chain import Chain
 from latentarm.robots.robot import Robot
 
 
@@ -105,10 +106,17 @@ def latent_controller(run: Path, profile: str | None, robot: Robot, seat: Seat |
         raise UserError(
             f"{run} was trained for {decoder.action_dim} joints and the robot {robot.name} has {robot.dof}."
         )
+    return LatentController(decoder, alignment_of(run, person, decoder, robot.chain, seat))
+
+
+def alignment_of(
+    run: Path, person: Profile | None, decoder: Decoder, chain: Chain, seat: Seat | None
+) -> Alignment:
+    """The alignment that `latent_controller` uses; raises UserError as it does."""
     if person is not None:
-        return LatentController(decoder, person.alignment(decoder, robot.chain))
-    frame = None if seat is None else load_frame(run, 0, seat, robot.chain)
-    return LatentController(decoder, frame or identity)
+        return person.alignment(decoder, chain)
+    frame = None if seat is None else load_frame(run, 0, seat, chain)
+    return frame or identity
 
 
 def _misfit(layout: ContextLayout, context: Context) -> str:

@@ -7,6 +7,7 @@ from typing import Annotated, Final, final
 import numpy as np
 from pydantic import Field, TypeAdapter
 
+from latentarm.alignment.contract import Seat
 from latentarm.runs.person import Kind, Question, Reply, Respondent
 from latentarm.web.jobs.job import Job, Wire
 from latentarm.web.protocol.notice import Notice
@@ -37,6 +38,8 @@ class PersonalisePlan:
     run: Path
     name: str  # the person's
     questions: int  # maximum number of answers
+    profile: str | None  # the directions that they have: whose alignment, or
+    seat: Seat | None  # the frame of the stick for this seat
     out: Path  # the profile's folder, which does not exist yet
 
 
@@ -51,7 +54,7 @@ class PersonaliseJob:
     @property
     def under_way(self) -> bool:
         """Whether it is still under way."""
-        return self._state.phase not in ("learned", "failed")
+        return self._state.phase not in ("learned", "refused", "failed")
 
     def look(self) -> Personalise:
         """The state to show."""
@@ -123,28 +126,34 @@ class PersonOnPage(Respondent):
 
 
 def ask_and_learn(wire: Wire, plan: PersonalisePlan) -> None:
-    """The child's work.
+    """The child's work; what is no better than before is not saved.
 
     Raises UserError if the run cannot be aligned, nothing was answered, or the profile cannot be written.
     """
     # They take a second to load: in this process alone.
+    from latentarm.alignment.profile import load_profile
     from latentarm.alignment.queries import StoppingRule
-    from latentarm.runs.aligning import NO_ALIGN, PROFILE, alignable, learn
+    from latentarm.assistance.controllers.latent import alignment_of
+    from latentarm.runs.aligning import alignable, learn
     from latentarm.runs.questions import ask
 
-    known = alignable(plan.run)
+    before = None if plan.profile is None else load_profile(plan.run, plan.profile)
+    known = alignable(plan.run, 0 if before is None else before.seed_index)
+    present = alignment_of(plan.run, before, known.scene.decoder, known.scene.chain, plan.seat)
     person = PersonOnPage(wire, plan)
     answers = ask(known.scene, person, plan.questions, lambda text: None, StoppingRule())
     person.say(phase="learning", motion=None)
-    learned = learn(known, answers, plan.name, person.kind)
-    learned.save(plan.out)
-    errors = {row.condition: float(row.mean or 0.0) for row in learned.rows}
+    learned = learn(known, answers, plan.name, person.kind, present)
+    judged = learned.judgement
+    if judged.refusal is None:
+        learned.save(plan.out)
     person.say(
-        phase="learned",
+        phase="learned" if judged.refusal is None else "refused",
         answers=len(answers),
-        error=errors[PROFILE],
-        error_without=errors[NO_ALIGN],
+        error=judged.learned,
+        error_without=judged.present,
         share=1.0,
+        why=None if judged.refusal is None else Notice(code=judged.refusal),
     )
 
 

@@ -4,6 +4,7 @@ from typing import Literal, final
 
 from pydantic import BaseModel, ConfigDict
 
+from latentarm.alignment.contract import Refusal
 from latentarm.core.errors import UserError
 from latentarm.core.types import Stop, StopCode
 from latentarm.core.untrusted.terminal import one_line
@@ -12,6 +13,7 @@ from latentarm.web.words.catalogue import DEFAULT, languages
 PersonName = str | int  # a guest without a name is called by a number
 
 NoticeCode = Literal[
+    Refusal,
     StopCode,
     "arm_lost",
     "arm_process_ended",

@@ -4,12 +4,16 @@ from typing import Annotated, Final, Literal, final
 
 from pydantic import Field
 
+from latentarm.alignment.contract import Seat
 from latentarm.web.protocol.notice import Message, Notice
 from latentarm.web.protocol.report import Point
 
 MOST_QUESTIONS: Final = 30
 
-PersonalisePhase = Literal["preparing", "asking", "thinking", "learning", "learned", "kept", "failed"]
+# ``refused``: what was learned is no better than before, and is gone; ``why`` says how it was judged
+PersonalisePhase = Literal[
+    "preparing", "asking", "thinking", "learning", "learned", "refused", "kept", "failed"
+]
 QuestionId = Annotated[int, Field(ge=0, le=2**31)]
 Deflection = Annotated[float, Field(ge=-1.0, le=1.0)]
 
@@ -21,6 +25,7 @@ class BeginPersonalise(Message):
     type: Literal["personalise"]
     name: Annotated[str, Field(max_length=200)]
     questions: Annotated[int, Field(ge=1, le=MOST_QUESTIONS)]  # maximum number of answers
+    seat: Seat | None = None  # where the person sits, as in `ChooseProfile`
 
 
 @final
@@ -106,6 +111,7 @@ class Personalise(Message):
     motion: ShownMotion | None = None  # the motion asked about, or null
     share: float = 0.0  # progress of the thinking or learning, from 0 to 1
     answers: int = 0  # how many it was learned from
-    error: float | None = None  # relative alignment error about the answers themselves, as learned
-    error_without: float | None = None  # the same with z = u
+    # relative alignment error about each answer, as learned from the others
+    error: float | None = None
+    error_without: float | None = None  # the same with the directions of before
     why: Notice | None = None

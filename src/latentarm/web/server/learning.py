@@ -133,7 +133,7 @@ class Learning:
 
     def _driven(self) -> Driven:
         loaded = self._states.loaded
-        return Driven(loaded.spec.run, loaded.latent_dim, self._states.report)
+        return Driven(loaded.spec.run, loaded.latent_dim, self._states.report, loaded.spec.seated)
 
     async def _list_recordings(self) -> None:
         report = self._states.report

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, final
 
+from latentarm.alignment.contract import Seat
 from latentarm.alignment.profile import (
     MOST_CHARACTERS,
     NAMED,
@@ -49,6 +50,7 @@ class Driven:
     run: Path | None
     latent_dim: int  # d; 0 without a run
     report: Report | None  # the newest; None before the first
+    seated: Callable[[Seat | None], Seat | None]  # see `Spec.seated`
 
     @property
     def at_rest(self) -> bool:
@@ -110,8 +112,8 @@ class Personalising:
 
     def _obey(self, message: PersonaliseMessage) -> None:
         match message:
-            case BeginPersonalise(name=name, questions=questions):
-                self._begin(name.strip(), questions)
+            case BeginPersonalise():
+                self._begin(message)
             case AnswerQuestion() | SkipQuestion() | QuestionBefore():
                 if self._job is not None:
                     self._job.reply(message)
@@ -125,10 +127,11 @@ class Personalising:
             case DiscardAlignment():
                 self._discard()
 
-    def _begin(self, name: str, questions: int) -> None:
+    def _begin(self, wish: BeginPersonalise) -> None:
         if self._under_way or (self._ending is not None and not self._ending.done()):
             raise NoticeError("asking_already")
-        driven = self._driven()
+        driven, name = self._driven(), wish.name.strip()
+        profile = self._before if self._tried else driven.profile
         try:
             run = _alignable(driven)
             name = name if NAMED.fullmatch(name) else clean_name(name, MOST_CHARACTERS)
@@ -138,12 +141,14 @@ class Personalising:
         except UserError as error:
             if self._state is not None and self._state.phase == "learned":
                 raise
-            self._state = Personalise(phase="failed", name=name, of=questions, why=notice_of(error))
+            self._state = Personalise(phase="failed", name=name, of=wish.questions, why=notice_of(error))
             return
         # An Enable from before that has not been carried out counts for nothing after a stop.
         self._control.stop(Notice(code="question_began"))
         self._run = run
-        self._job = PersonaliseJob(PersonalisePlan(run, name, questions, trial_folder(run)))
+        self._job = PersonaliseJob(
+            PersonalisePlan(run, name, wish.questions, profile, driven.seated(wish.seat), trial_folder(run))
+        )
         self._state = self._job.look()
 
     def _try(self) -> None:

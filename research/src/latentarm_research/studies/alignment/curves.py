@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 
 from latentarm.alignment.answers import Answers
-from latentarm.alignment.queries import TOO_FEW, StoppingRule, order_of_questions
+from latentarm.alignment.queries import FEWEST, StoppingRule, order_of_questions
 from latentarm.core.types import FloatArray
 from latentarm_research.alignment.training import FitConfig
 from latentarm_research.studies.alignment.preset import ALL_PRIORS, CHOSEN, TOOL_SPACE
@@ -76,7 +76,7 @@ def measure_curve(cell: AlignmentCell) -> CurveResult:
 def _stop(scene: Scene, said: Answers, order: Sequence[int]) -> int:
     """After how many answers `latentarm align` stops."""
     history: list[float] = []
-    for count in range(TOO_FEW, len(order)):
+    for count in range(FEWEST, len(order)):
         history.append(scene.meant(said[np.array(order[:count])]).share)
         if StoppingRule().enough(history):
             return count

@@ -10,7 +10,7 @@ import { latentInput } from "../inputs/shaping.js";
 import { attachStick, deflectionWords } from "../inputs/stick.js";
 import { byId, fillBar, setText } from "../layout/dom.js";
 import { attachPage } from "../layout/page.js";
-import { say, sayNotice } from "../layout/words.js";
+import { say, sayNotice, sayPercent } from "../layout/words.js";
 import { attachViews } from "../views/attach_views.js";
 import { motionWords } from "../views/directions.js";
 import { displacement, NOTHING_PREDICTED } from "../views/predictions.js";
@@ -34,7 +34,8 @@ let leaving = false;
 
 /** Buttons of each step, most wanted first. @type {Record<string, string[]>} */
 const STEP_BUTTONS = {
-  begin: ["begin-go"], working: ["working-cancel"], learned: ["try", "keep", "discard", "ask-again"], kept: ["another"],
+  begin: ["begin-go"], working: ["working-cancel"], learned: ["try", "keep", "discard", "ask-again"],
+  refused: ["refused-again"], kept: ["another"],
 };
 
 const input = new AnswerInput();
@@ -71,9 +72,9 @@ function offered(_, group) {
   return [...choices, ...backs, ...buttonChoice("answer-cancel"), moreChoices([], [], group)];
 }
 
-/** The stick's meaning now, as the person drives; null where it is at rest for them. */
+/** The stick's meaning now; null where it is at rest for the person. Their speed is in the motion that is shown. */
 function meant() {
-  const u = input.answer && latentInput(settings.values, connection.welcome, ...input.answer);
+  const u = input.answer && latentInput({ ...settings.values, sensitivity: 1 }, connection.welcome, ...input.answer);
   return u?.some((value) => value !== 0) ? u : null;
 }
 
@@ -93,18 +94,19 @@ function back() {
 const replay = new Replay(
   (bodies) => drawing?.showPose(bodies, settings.values.seat),
   (bodies) => drawing?.shadow(bodies),
+  () => settings.values.sensitivity,
 );
 
 byId("begin").addEventListener("submit", (event) => {
   event.preventDefault();
   again = false;
-  tell({ type: "personalise", name: begin.person.value, questions: Number(begin.questions.value) });
+  tell({ type: "personalise", name: begin.person.value, questions: Number(begin.questions.value), seat: settings.values.seat });
 });
 byId("answer-send").addEventListener("click", answer);
 byId("answer-skip").addEventListener("click", skip);
 byId("answer-again").addEventListener("click", () => replay.again());
 byId("answer-back").addEventListener("click", back);
-for (const id of ["answer-cancel", "working-cancel", "another"]) {
+for (const id of ["answer-cancel", "working-cancel", "refused-again", "another"]) {
   byId(id).addEventListener("click", () => tell({ type: "cancel_personalise" }));
 }
 byId("try").addEventListener("click", () => {
@@ -138,13 +140,14 @@ function show() {
   for (const name of STEPS) byId(name).hidden = name !== now;
   // Who was on a button that is gone goes on at the new step.
   if (hadFocus?.hidden) byId(now).querySelector("h2")?.focus({ preventScroll: true });
-  byId("problem").hidden = !state?.why;
+  byId("problem").hidden = !state?.why || now === "refused";
   setText(byId("problem"), state?.why ? sayNotice(state.why) : "");
   // Who begins by a switch types no name.
   if (now === "begin") begin.person.value ||= state?.name || settings.name || (scanner.on ? say("settings.guest") : "");
   if (state && now === "asking") setText(byId("question"), say("personalise.question_of", { number: state.number, of: state.of }));
   if (state && now === "working") showWorking(state);
   if (state && now === "learned") showLearned(state);
+  if (state?.why && now === "refused") setText(byId("refused-text"), sayNotice(state.why));
   if (state && now === "kept") setText(byId("kept-title"), say("personalise.kept", { name: state.name }));
   fillBar(byId("questions-bar"), (state?.number ?? 1) - 1, state?.of || 1);
   byId("answer-back", HTMLButtonElement).disabled = !state?.back;
@@ -184,7 +187,7 @@ function showQuestion() {
   input.begin();
   if (settings.values.panel === "stick") byId("stick").focus({ preventScroll: true });
   const moved = motionWords(displacement(motion.tools[0]), settings.values.seat);
-  setText(byId("scene-text"), say("personalise.motion", { motion: moved }));
+  setText(byId("scene-text"), say("personalise.motion", { motion: moved, speed: sayPercent(settings.values.sensitivity) }));
 }
 
 /** The arm itself, where no motion is shown. */

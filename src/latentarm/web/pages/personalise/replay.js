@@ -1,6 +1,5 @@
-/** A motion shown again and again: the start, the motion slowed down, a short hold. */
+/** A motion shown again and again: the start, the motion as fast as the person drives, a short hold. */
 
-const SLOWER = 4;
 const REST_MS = 700;
 const HOLD_MS = 900;
 const FRAME_MS = 33;
@@ -8,10 +7,15 @@ const FRAME_MS = 33;
 /** @typedef {import("../connection/messages.js").ShownMotion} Motion */
 
 export class Replay {
-  /** @param {(bodies: number[][]) => void} show @param {(bodies: number[][] | null) => void} shadow a second arm */
-  constructor(show, shadow) {
+  /**
+   * @param {(bodies: number[][]) => void} show
+   * @param {(bodies: number[][] | null) => void} shadow a second arm
+   * @param {() => number} speed share of full speed with which the person drives
+   */
+  constructor(show, shadow, speed) {
     this._show = show;
     this._shadow = shadow;
+    this._speed = speed;
     this._still = matchMedia("(prefers-reduced-motion: reduce)");
     /** @type {Motion | null} */
     this._motion = null;
@@ -41,7 +45,7 @@ export class Replay {
 
   /** @param {Motion} motion */
   _tick(motion) {
-    const moving = 1000 * motion.duration_s * SLOWER;
+    const moving = (1000 * motion.duration_s) / this._speed();
     const passed = (performance.now() - this._began) % (REST_MS + moving + HOLD_MS);
     const share = Math.min(Math.max((passed - REST_MS) / moving, 0), 1);
     this._show(between(motion.frames, share));

@@ -4,10 +4,10 @@ import { sayPercent } from "../layout/words.js";
 
 /** @import {Personalise} from "../connection/messages.js" */
 
-/** @typedef {"begin" | "asking" | "working" | "learned" | "kept"} Step */
+/** @typedef {"begin" | "asking" | "working" | "learned" | "refused" | "kept"} Step */
 
 /** @type {Step[]} */
-export const STEPS = ["begin", "asking", "working", "learned", "kept"];
+export const STEPS = ["begin", "asking", "working", "learned", "refused", "kept"];
 
 /** @type {Record<Personalise["phase"], Step>} */
 const STEP_OF = {
@@ -16,6 +16,7 @@ const STEP_OF = {
   thinking: "working",
   learning: "working",
   learned: "learned",
+  refused: "refused",
   kept: "kept",
   failed: "begin",
 };
