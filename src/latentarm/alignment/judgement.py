@@ -28,7 +28,8 @@ WEAK: Final = 0.25  # a push does hardly anything below this share of a shown mo
 class Judgement:
     """Relative alignment errors of a person's answers, and why their new directions are refused."""
 
-    learned: float | None  # of each answer, with the directions learned from all others; None for too few
+    # of each answer, with the directions learned from all others; None if all together cannot teach any
+    learned: float | None
     present: float  # with the directions that the person has
     refusal: Refusal | None  # None if the new directions are better
 
@@ -43,9 +44,9 @@ def judge(
 ) -> Judgement:
     """Judge what is learned from answers on each answer in turn, which is left out (Stone 1974).
 
-    The learned directions have to be better (`BETTER`) than the present ones, and than a map that ignores the
-    input and moves like the mean of the other shown motions. Where they are not, but the present ones are
-    better than the latter, the answers agree with the present ones.
+    The learned directions have to be better (`BETTER`) than the present ones, than standing still, and than
+    the mean of the other shown motions whatever the answer. Where they are not, but the present ones are
+    better than the last two, the answers agree with the present ones.
 
     ``places`` are motions, at whose starts a full push in each direction has to move the tools.
     """
@@ -58,8 +59,10 @@ def judge(
     now = error(outcome(present, decoder, chain, motions, answers.u))
     if count < FEWEST:
         return Judgement(None, now, "answers_few")
+    if _on_a_line(answers.u):
+        return Judgement(None, now, "answers_alike")
     start, step = pose_vectors(chain, motions.start), _steps(chain, motions)
-    ignoring = error(start + (step.sum(axis=0) - step) / (count - 1))
+    ignoring = min(error(start + (step.sum(axis=0) - step) / (count - 1)), 1.0)
     held_out: list[FloatArray] = []
     for row in range(count):
         one = answers[np.array([row])]
@@ -69,8 +72,6 @@ def judge(
     refusal: Refusal | None = None
     if learned > BETTER * now and now <= BETTER * ignoring:
         refusal = "answers_agree"
-    elif _on_a_line(answers.u):
-        refusal = "answers_alike"
     elif learned > BETTER * min(now, ignoring):
         refusal = "answers_unclear"
     elif _weakest(learn(answers), decoder, chain, places) < WEAK:
