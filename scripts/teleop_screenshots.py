@@ -7,6 +7,7 @@ a row for each state and a column for each look. For example:
 """
 
 import argparse
+import json
 import re
 import shutil
 import tempfile
@@ -199,25 +200,47 @@ def asked(visit: Visit) -> None:
     personalise(visit)
     page = visit.page
     page.locator("#begin input[name=person]").fill("Ada")
-    page.locator("#begin select").select_option("5")
+    page.locator("#begin select").select_option("6")
     page.locator("#begin button[type=submit]").click()
     page.locator("#asking").wait_for(timeout=LEARNING_MS)
     push_aside(page)
 
 
-def learned(visit: Visit) -> None:
+def refused(visit: Visit) -> None:
     """What comes of the same answer to every question."""
     asked(visit)
-    page = visit.page
-    while page.locator("#learned").is_hidden():
-        answer = page.locator("#answer-send")
-        if answer.is_visible() and answer.is_enabled():
+    answer_all(visit.page, lambda: (0.6, 0.2))
+    visit.page.locator("#refused").wait_for()
+
+
+def learned(visit: Visit) -> None:
+    """What comes of answers by where the tool goes: right along y of the base, up along -x."""
+    told: dict[str, Any] = {}
+
+    def hear(text: str | bytes) -> None:
+        if '"personalise"' in str(text):
+            told.update(json.loads(text))
+
+    visit.page.on("websocket", lambda socket: socket.on("framereceived", hear))
+    asked(visit)
+
+    def meant() -> tuple[float, float]:
+        (x, y, _), *_, (to_x, to_y, _) = told["personalise"]["motion"]["tools"][0]
+        return min(max(5 * (to_y - y), -0.6), 0.6), min(max(5 * (x - to_x), -0.6), 0.6)
+
+    answer_all(visit.page, meant)
+    visit.page.locator("#learned").wait_for()
+
+
+def answer_all(page: Page, meant: Callable[[], tuple[float, float]]) -> None:
+    """Answer every question by a push of the stick, right and up, until nothing more is asked."""
+    page.mouse.up()
+    while page.locator("#asking, #working").filter(visible=True).count():
+        if page.locator("#stick").is_visible():
+            push(page, *meant())
             page.mouse.up()
-            answer.click()
-            page.wait_for_timeout(600)
-        elif page.locator("#stick").is_visible():
-            push_aside(page)
-        page.wait_for_timeout(200)
+            page.locator("#answer-send").click()
+        page.wait_for_timeout(600)
 
 
 def tried(visit: Visit) -> None:
@@ -298,13 +321,19 @@ def tidy(page: Page) -> None:
 
 def push_aside(page: Page) -> None:
     """Hold the stick to the right and a little up."""
+    push(page, 0.6, 0.2)
+    page.wait_for_timeout(600)
+
+
+def push(page: Page, right: float, up: float) -> None:
+    """Hold the stick, as shares of half its drawing."""
     box = page.locator("#stick").bounding_box()
     if box is None:
         raise SystemExit("The page has no stick.")
     page.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"])
     page.mouse.down()
-    page.mouse.move(box["x"] + 0.8 * box["width"], box["y"] + 0.4 * box["height"], steps=3)
-    page.wait_for_timeout(600)
+    to_x, to_y = 0.5 + 0.5 * right, 0.5 - 0.5 * up
+    page.mouse.move(box["x"] + to_x * box["width"], box["y"] + to_y * box["height"], steps=3)
 
 
 SHOTS: dict[str, Callable[[Visit], None]] = {
@@ -320,6 +349,7 @@ SHOTS: dict[str, Callable[[Visit], None]] = {
     "card": card,
     "personalise": personalise,
     "personalise-question": asked,
+    "personalise-refused": refused,
     "personalise-learned": learned,
     "personalise-trial": tried,
     "teach": recorded,

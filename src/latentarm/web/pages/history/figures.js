@@ -1,50 +1,28 @@
-/** Every figure about drives, defined once: what it is called, what it means, how it is counted and said. */
+/** Every figure about drives, defined once. It is called `report.<figure>`, and `report.<figure>_means` says what it counts. */
 
 import { say, sayNumber, sayPercent } from "../layout/words.js";
 import { inputWords, timeWords } from "./drive_words.js";
 
-/** @import {WordKey} from "../layout/words.js" */
 /** @import {Drive} from "./weeks.js" */
 
-/** Said where there is nothing to count. */
-export const NONE = "–";
-
-/** Figures that are numbers, each null where no drive has it. */
+/** Numbers; null where no drive has one. @type {Record<Counted, (drives: Drive[]) => number | null>} */
 const COUNTED = {
-  /** Seconds. @param {Drive[]} drives */
   driven: (drives) => sum(drives.map(({ time_s }) => time_s)),
-  /** Of all drives whose end the page can see. @param {Drive[]} drives */
   success: (drives) => mean(drives.filter(isWatched).map((drive) => Number(isDone(drive)))),
-  /** Seconds. @param {Drive[]} drives */
   time: (drives) => median(drives.filter(isDone).map(({ time_s }) => time_s)),
-  /** @param {Drive[]} drives */
   stops_person: (drives) => mean(drives.map(({ stops_by }) => stops_by.person)),
-  /** @param {Drive[]} drives */
   stops_page: (drives) => mean(drives.map(({ stops_by }) => stops_by.page)),
-  /** @param {Drive[]} drives */
   stops_arm: (drives) => mean(drives.map(({ stops_by }) => stops_by.arm)),
-  /** @param {Drive[]} drives */
   presses: (drives) => mean(drives.map(({ presses }) => presses)),
 };
 
-/** @typedef {keyof typeof COUNTED} Counted */
+/** @typedef {"driven" | "success" | "time" | "stops_person" | "stops_page" | "stops_arm" | "presses"} Counted */
+/** @typedef {Counted | "drives" | "input"} Figure */
 
-/** What each figure is called and means. @type {Record<"drives" | Counted | "input", {title: WordKey, means: WordKey}>} */
-export const FIGURES = {
-  drives: { title: "report.drives", means: "report.drives_means" },
-  driven: { title: "report.driven", means: "report.driven_means" },
-  success: { title: "report.success", means: "report.success_means" },
-  time: { title: "report.time", means: "report.time_means" },
-  stops_person: { title: "report.stops_person", means: "report.stops_person_means" },
-  stops_page: { title: "report.stops_page", means: "report.stops_page_means" },
-  stops_arm: { title: "report.stops_arm", means: "report.stops_arm_means" },
-  presses: { title: "report.presses", means: "report.presses_means" },
-  input: { title: "report.input", means: "report.input_means" },
-};
+/** @type {Figure[]} */
+export const FIGURES = ["drives", "driven", "success", "time", "stops_person", "stops_page", "stops_arm", "presses", "input"];
 
-/** @typedef {keyof typeof FIGURES} Figure */
-
-/** @param {Counted} figure @param {Drive[]} drives @returns {number | null} */
+/** @param {Counted} figure @param {Drive[]} drives */
 export function count(figure, drives) {
   return COUNTED[figure](drives);
 }
@@ -52,33 +30,24 @@ export function count(figure, drives) {
 /** A figure in words. @param {Figure} figure @param {Drive[]} drives */
 export function figureOf(figure, drives) {
   if (figure === "drives") return String(drives.length);
-  if (figure === "input") return inputFigure(drives);
+  if (figure === "input") return inputMost(drives);
   const value = count(figure, drives);
-  if (value === null) return NONE;
-  if (figure === "success") {
-    return say("report.share_of", { share: sayPercent(value), part: drives.filter(isDone).length, all: drives.filter(isWatched).length });
-  }
-  return figure === "driven" || figure === "time" ? timeWords(value) : sayNumber(value, 1);
+  if (value === null) return "–";
+  if (figure !== "success") return figure === "driven" || figure === "time" ? timeWords(value) : sayNumber(value, 1);
+  return say("report.share_of", { share: sayPercent(value), part: drives.filter(isDone).length, all: drives.filter(isWatched).length });
 }
 
-/** How long each input was pushed, the longest first, and for how many drives that is not known. @param {Drive[]} drives */
-export function inputTimes(drives) {
+/** The input that was pushed longest, and for how many drives that is not known. @param {Drive[]} drives */
+function inputMost(drives) {
   /** @type {Record<string, number>} */
   const times = {};
-  for (const drive of drives) {
-    for (const [input, time_s] of Object.entries(drive.input_s ?? {})) times[input] = (times[input] ?? 0) + time_s;
-  }
+  for (const [input, time_s] of drives.flatMap(({ input_s }) => Object.entries(input_s ?? {}))) times[input] = (times[input] ?? 0) + time_s;
+  const [most] = Object.entries(times).sort(([, one], [, other]) => other - one);
   const unknown = drives.filter(({ input_s }) => input_s === null).length;
-  return { times: Object.entries(times).sort(([, one], [, other]) => other - one), unknown };
-}
-
-/** @param {Drive[]} drives */
-function inputFigure(drives) {
-  const { times, unknown } = inputTimes(drives);
-  const all = sum(times.map(([, time_s]) => time_s));
-  const most = all ? [say("report.input_most", { input: inputWords(times[0][0]), share: sayPercent(times[0][1] / all) })] : [];
-  const missing = unknown ? [say("report.not_known", { count: unknown })] : [];
-  return [...most, ...missing].join("; ") || NONE;
+  return [
+    most && say("report.input_most", { input: inputWords(most[0]), share: sayPercent(most[1] / (sum(Object.values(times)) || 1)) }),
+    unknown && say("report.not_known", { count: unknown }),
+  ].filter(Boolean).join("; ") || "–";
 }
 
 /** @param {Drive} drive */
@@ -87,16 +56,15 @@ function isDone({ outcome }) {
 }
 
 /** Whether the page can see how a drive ends. @param {Drive} drive */
-export function isWatched({ steps, outcome }) {
+function isWatched({ steps, outcome }) {
   return steps !== null || outcome !== null;
 }
 
 /** @param {number[]} values @returns {number | null} null without values */
-export function median(values) {
+function median(values) {
   const sorted = [...values].sort((one, other) => one - other);
   const middle = sorted.length >> 1;
-  if (!sorted.length) return null;
-  return sorted.length % 2 ? sorted[middle] : (sorted[middle - 1] + sorted[middle]) / 2;
+  return mean(sorted.length % 2 ? [sorted[middle]] : sorted.slice(Math.max(middle - 1, 0), middle + 1));
 }
 
 /** @param {number[]} values @returns {number | null} null without values */

@@ -8,6 +8,7 @@ import { inputWords, outcomeWords, stoppedBy, taskWords, timeWords } from "./dri
 import { FIGURES, figureOf } from "./figures.js";
 import { counted } from "./weeks.js";
 
+/** @import {WordKey} from "../layout/words.js" */
 /** @import {Figure} from "./figures.js" */
 /** @import {Drive} from "./weeks.js" */
 
@@ -35,7 +36,7 @@ export function report(drives, name) {
   weekly.append(...charts(drives));
   parts.push(summary(drives), titled(chartsTitle(drives), weekly), titled(say("report.tasks"), taskTable(drives)));
   parts.push(titled(say("report.latest"), driveTable(drives)));
-  parts.push(create("p", { className: "small", textContent: entries().map(([, { means }]) => say(means)).join(" ") }));
+  parts.push(create("p", { className: "small", textContent: FIGURES.map((figure) => say(/** @type {WordKey} */ (`report.${figure}_means`))).join(" ") }));
   parts.push(create("p", { className: "small", textContent: say("report.made", { when: sayTime(new Date().toISOString()) }) }));
   return parts;
 }
@@ -43,16 +44,17 @@ export function report(drives, name) {
 /** @param {Drive[]} drives */
 function summary(drives) {
   const list = create("dl", { className: "figures" });
-  for (const [figure, { title }] of entries()) {
+  for (const figure of FIGURES) {
     const row = create("div");
-    row.append(create("dt", { textContent: say(title) }), create("dd", { textContent: figureOf(figure, drives) }));
+    row.append(create("dt", { textContent: title(figure) }), create("dd", { textContent: figureOf(figure, drives) }));
     list.append(row);
   }
   return list;
 }
 
-function entries() {
-  return /** @type {[Figure, typeof FIGURES[Figure]][]} */ (Object.entries(FIGURES));
+/** @param {Figure} figure */
+function title(figure) {
+  return say(/** @type {WordKey} */ (`report.${figure}`));
 }
 
 /** @param {Drive[]} drives */
@@ -61,7 +63,7 @@ function taskTable(drives) {
     const here = drives.filter((drive) => taskWords(drive) === task);
     return [task, ...TASK_FIGURES.map((figure) => figureOf(figure, here))];
   });
-  return table([say("history.task"), ...TASK_FIGURES.map((figure) => say(FIGURES[figure].title))], rows);
+  return table([say("history.task"), ...TASK_FIGURES.map(title)], rows);
 }
 
 /** @param {Drive[]} drives */
