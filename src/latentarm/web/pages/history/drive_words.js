@@ -30,12 +30,9 @@ export function outcomeWords({ outcome, ended, steps }) {
 }
 
 /** Who stopped the arm, and how often. @param {Drive} drive */
-export function stoppedBy({ stops_by: { person, page, arm } }) {
-  if (!person && !page && !arm) return say("history.no_stops");
-  return [
-    person && say("history.stops_person", { count: person }), page && say("history.stops_page", { count: page }),
-    arm && say("history.stops_arm", { count: arm }),
-  ].filter(Boolean).join(", ");
+export function stoppedBy({ stops_by }) {
+  const who = /** @type {("person" | "page" | "arm")[]} */ (["person", "page", "arm"]).filter((one) => stops_by[one]);
+  return who.map((one) => say(`history.stops_${one}`, { count: stops_by[one] })).join(", ") || say("history.no_stops");
 }
 
 /** @param {number} seconds */
