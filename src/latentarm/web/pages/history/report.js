@@ -13,7 +13,7 @@ import { counted } from "./weeks.js";
 /** @import {Drive} from "./weeks.js" */
 
 /** Rows that a page has room for. */
-const [MOST_TASKS, MOST_DRIVES] = [5, 10];
+const [MOST_TASKS, MOST_DRIVES] = [4, 6];
 /** @type {Figure[]} */
 const TASK_FIGURES = ["drives", "success", "time", "stops_person"];
 
