@@ -39,10 +39,10 @@ def test_simulated_arms_and_schemes_of_real_ones_are_listed(capsys):
 
 def test_an_arm_that_can_be_driven_is_described_and_does_not_move(server, capsys):
     before = server.positions()
-    assert main(["arms", "check", server.address]) == 0
+    assert main(["arms", "check", server.address, "--robot", "panda"]) == 0
     told = capsys.readouterr().out
     assert "firmware" in told
-    assert f"latentarm teleop --arm {server.address}" in told
+    assert f"latentarm teleop --arm {server.address} --robot panda" in told
     np.testing.assert_array_equal(server.positions(), before)
     assert set(server.requests) == {"hello"}
 
@@ -58,7 +58,7 @@ def test_the_line_that_drives_the_arm_has_what_it_was_checked_with(server, capsy
 
 def test_everything_that_an_arm_is_refused_for_is_said_at_once(capsys):
     with wooden_server(panda(), firmware="1.9") as old:
-        assert main(["arms", "check", f"{old.address}?rate=30&stops_after=0.3", "--json"]) == 2
+        assert main(["arms", "check", f"{old.address}?rate=30&stops_after=0.3", "--robot", "panda", "--json"]) == 2
     told = capsys.readouterr()
     refusals = json.loads(told.out)["refusals"]
     assert len(refusals) == 3
@@ -78,8 +78,14 @@ def test_real_and_simulated_arms_are_told_apart(words, capsys):
     assert "real arm" in capsys.readouterr().err
 
 
+def test_no_robot_is_taken_for_an_arm_that_nobody_named(server, capsys, tmp_path):
+    for words in (["arms", "check", server.address], ["teleop", "--arm", server.address, "--out", str(tmp_path)]):
+        assert main(words) == 2
+        assert "add --robot NAME_OR_FILE" in capsys.readouterr().err
+
+
 def test_where_there_is_no_arm_it_says_so(capsys):
-    assert main(["arms", "check", "wooden://127.0.0.1:1"]) == 2
+    assert main(["arms", "check", "wooden://127.0.0.1:1", "--robot", "panda"]) == 2
     assert "There is no wooden arm at 127.0.0.1:1." in capsys.readouterr().err
 
 

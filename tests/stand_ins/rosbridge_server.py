@@ -102,6 +102,7 @@ class RosbridgeServer(StandIn):
         self.start_watchdog()
         self.goals = self.aborted = 0
         self.publishers = 1
+        self.told: list[str] = []  # what clients have told ROS: topics, services and actions
         self.clock_s = time.time() - now_s
         self.states_as: str = "good"
         self._stamp_s = now_s + self.clock_s
@@ -247,9 +248,11 @@ class RosbridgeServer(StandIn):
             case "unsubscribe":
                 client.topics.discard(message["topic"])
             case "publish":
+                self.told.append(message["topic"])
                 if message["topic"] == "/latentarm_watchdog/command" and self.watchdog is not None:
                     self.watchdog.heard(message["msg"]["data"], time.monotonic())
             case "call_service":
+                self.told.append(message["service"])
                 known = message["service"] == "/controller_manager/list_controllers"
                 client.send(
                     {
@@ -261,6 +264,7 @@ class RosbridgeServer(StandIn):
                     }
                 )
             case "send_action_goal":
+                self.told.append(message["action"])
                 self._take_goal(client, message)
             case "cancel_action_goal":
                 if self._goal is not None and self._goal[1]["id"] == message["id"]:

@@ -43,6 +43,7 @@ class WoodenArm(GuidableArm):
         self._newest: Reading | None = None
         self._thread: threading.Thread | None = None
         self._ending = threading.Event()
+        self._first = "disable"
 
     @property
     def spec(self) -> ArmSpec:
@@ -62,12 +63,19 @@ class WoodenArm(GuidableArm):
         return Findings(facts, refusals, limits)
 
     def connect(self) -> None:
+        self._begin("disable")
+
+    def watch(self) -> None:
+        self._begin("read")
+
+    def _begin(self, first: str) -> None:
         self.close()
         lines, state = self._open()
+        self._first = first
         try:
             for sentence in self._refusals(state):
                 raise UserError(sentence)
-            self._take(_ask(lines, {"do": "disable"}))
+            self._take(_ask(lines, {"do": first}))
         except BaseException:
             lines.close()
             raise
@@ -176,7 +184,7 @@ class WoodenArm(GuidableArm):
                     for one in todo:
                         if one.pop("until_s", math.inf) >= self._now_s():
                             self._take(_ask(lines, one))
-                _ask(lines, {"do": "disable"})
+                _ask(lines, {"do": self._first})
         except (OSError, ValueError, UserError):
             self._status = ArmStatus("off", LOST, lost=True)
 

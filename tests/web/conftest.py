@@ -236,9 +236,16 @@ class Client:
             time.sleep(0.005)
         raise AssertionError(f"it never came to that: {self.state}")
 
+    def confirm(self, **changes: Any) -> None:
+        """Confirm the checklist of a real arm."""
+        start = self.state["arm_start"]
+        self.send(**{"type": "confirm", "arm_start": start, "stop": True, "area": True, "payload": True} | changes)
+
     def enable(self) -> None:
-        """Let go and press Enable, as a page does; on a busy machine more than once."""
+        """Let go, confirm what there is to confirm and press Enable; on a busy machine more than once."""
         self.u = [0.0] * 2
+        if self.welcome["real"]:
+            self.confirm()
         for _ in range(5):
             time.sleep(0.06)
             self.send(type="enable")

@@ -11,6 +11,7 @@ from latentarm.control.journal import read_journal
 from latentarm.demonstrations.provenance import BY_HAND
 from latentarm.robots.panda import panda
 from latentarm.web.arm_process.drive_setup import Spec
+from latentarm.web.arm_process.initial_state import RobotOptions
 
 from .conftest import said, wait_for
 
@@ -33,7 +34,7 @@ def out(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def site(serve, arm, out):
-    with serve(Spec(arm=arm.address, out=out, found=(("firmware", "2.1"),))) as site:
+    with serve(Spec(arm=arm.address, robot=RobotOptions("panda"), out=out, found=(("firmware", "2.1"),))) as site:
         yield site
 
 

@@ -22,6 +22,7 @@ ONE_JOINT = """<mujoco><compiler angle="radian"/><worldbody><body>
 <site name="tool" pos="0 0 0.4"/></body></worldbody>{keys}</mujoco>"""
 
 NOWHERE = "wooden://127.0.0.1:1"
+PANDA = RobotOptions("panda")
 
 
 @pytest.fixture(scope="module")
@@ -31,7 +32,7 @@ def server():
 
 
 def test_without_a_run_a_real_arm_has_nothing_about_it_and_its_way_back_leads_home():
-    setup = load_setup(Spec(arm=NOWHERE))
+    setup = load_setup(Spec(arm=NOWHERE, robot=PANDA))
     assert setup.real
     assert (setup.task.goals, tuple(setup.task.obstacles), setup.scene) == ((), (), None)
     np.testing.assert_array_equal(setup.start, setup.task.robot.home)
@@ -46,7 +47,7 @@ def test_the_robot_of_a_real_arm_can_be_named_with_its_limits(tmp_path):
 
 
 def test_a_task_with_things_drives_a_real_arm_without_physics():
-    setup = load_setup(Spec(arm=NOWHERE, task="marshmallows"))
+    setup = load_setup(Spec(arm=NOWHERE, task="marshmallows", robot=RobotOptions("panda_fork")))
     assert setup.scene is None
     assert setup.shown is None
     assert setup.task.goals == ()
@@ -60,10 +61,16 @@ def test_a_run_goes_with_a_real_arm_and_its_goals_are_those_of_its_demonstration
     assert setup.modes[0] == "latent"
 
 
+@pytest.mark.parametrize("task", [None, "reach", "marshmallows"])
+def test_no_robot_is_taken_for_a_real_arm_that_nobody_named(task):
+    with pytest.raises(UserError, match=r"^A real arm is driven only as a robot that you name: .*--robot.*\.$"):
+        load_setup(Spec(arm=NOWHERE, task=task))
+
+
 @pytest.mark.parametrize("arm", ["brass://127.0.0.1", "wooden://", "brass"])
 def test_an_address_without_a_driver_is_refused_where_it_was_typed(arm):
     with pytest.raises(UserError, match=r"^--arm.*\.$"):
-        load_setup(Spec(arm=arm))
+        load_setup(Spec(arm=arm, robot=PANDA))
 
 
 @pytest.mark.parametrize(
@@ -75,19 +82,19 @@ def test_an_address_without_a_driver_is_refused_where_it_was_typed(arm):
     ],
 )
 def test_an_arm_that_cannot_be_driven_is_refused_before_anything_is_served(server, options, said):
-    config = TeleopConfig(Spec(arm=server.address + options), port=0)
+    config = TeleopConfig(Spec(arm=server.address + options, robot=PANDA), port=0)
     with pytest.raises(UserError, match=said):
         serve(config, lambda sentence: None, pytest.fail)
 
 
 def test_no_arm_at_all_is_one_sentence():
     with pytest.raises(UserError, match=r"^There is no wooden arm at 127.0.0.1:1\.$"):
-        serve(TeleopConfig(Spec(arm=NOWHERE), port=0), lambda sentence: None, pytest.fail)
+        serve(TeleopConfig(Spec(arm=NOWHERE, robot=PANDA), port=0), lambda sentence: None, pytest.fail)
 
 
 def test_a_real_arm_is_connected_once_and_kept_for_the_same_robot(server, trained):
     clock = MonotonicClock()
-    before = load_setup(Spec(arm=server.address))
+    before = load_setup(Spec(arm=server.address, robot=PANDA))
     arm = first_arm(before, clock)
     try:
         hellos = server.requests.count("hello")
@@ -96,7 +103,7 @@ def test_a_real_arm_is_connected_once_and_kept_for_the_same_robot(server, traine
         with_run = load_setup(replace(before.spec, run=trained))
         assert next_arm(with_run, before, arm, clock) is arm
         assert server.requests.count("hello") == hellos
-        other = load_setup(Spec(arm=server.address, task="marshmallows"))
+        other = load_setup(Spec(arm=server.address, task="marshmallows", robot=RobotOptions("panda_fork")))
         with pytest.raises(UserError, match="connected as panda"):
             next_arm(other, before, arm, clock)
     finally:
@@ -104,7 +111,7 @@ def test_a_real_arm_is_connected_once_and_kept_for_the_same_robot(server, traine
 
 
 def test_the_way_back_leads_to_where_a_real_arm_stood(server):
-    setup = load_setup(Spec(arm=server.address))
+    setup = load_setup(Spec(arm=server.address, robot=PANDA))
     arm = first_arm(setup, MonotonicClock())
     try:
         np.testing.assert_allclose(from_where_it_stands(setup, arm).start, server.positions(), atol=1e-6)
@@ -144,8 +151,46 @@ def test_a_page_drives_it_and_what_ends_the_page_stops_it(serve_arm, server):
         np.testing.assert_allclose(server.positions(), rested, atol=1e-3)
 
 
+def test_no_client_enables_it_before_it_has_confirmed_the_checklist(serve_arm, server):
+    with serve_arm(server) as site, site.page("Ada") as page, site.page("Bob") as bob:
+        page.u = [0.0, 0.0]
+        for confirmed in ({}, {"arm_start": page.state["arm_start"] + 1}):
+            if confirmed:
+                page.confirm(**confirmed)
+            page.state["note"] = None
+            server.requests.clear()
+            page.send(type="enable")
+            page.wait(lambda state: state["note"] and state["note"]["code"] == "checklist_first")
+            time.sleep(0.4)
+            assert "enable" not in server.requests
+        bob.confirm()  # one person confirms nothing for another
+        page.send(type="enable")
+        time.sleep(0.4)
+        assert "enable" not in server.requests
+        page.enable()
+        assert "enable" in server.requests
+        page.send(type="stop")
+        page.wait(lambda state: state["phase"] == "disengaged")
+        server.cut()
+        page.wait(lambda state: state["lost"])
+        server.repair()
+        page.send(type="reconnect")
+        page.wait(lambda state: not state["lost"])
+        server.requests.clear()
+        page.send(type="enable")
+        time.sleep(0.4)
+        assert "enable" not in server.requests
+        page.enable()
+
+
+def test_a_confirmation_that_leaves_out_a_point_is_no_message_of_a_page(serve_arm, server):
+    with serve_arm(server) as site, site.page() as page:
+        page.send(type="confirm", arm_start=0, stop=True, area=False, payload=True)
+        page.wait_closed()
+
+
 @pytest.fixture
 def serve_arm(serve, tmp_path):
     return lambda server: serve(
-        Spec(arm=server.address, out=tmp_path / "teleop", found=(("firmware", "2.1"),))
+        Spec(arm=server.address, robot=PANDA, out=tmp_path / "teleop", found=(("firmware", "2.1"),))
     )

@@ -33,6 +33,7 @@ class ArmSpec:
     stops_after_s: float | None
     simulated: bool  # `check_arm` is stricter with real arms
     gripper: Gripper | None = None  # None where it has none
+    follows: bool = True  # whether it carries out commands; a `latentarm.arms.shadow.ShadowArm` drops them
 
 
 @final

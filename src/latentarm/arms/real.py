@@ -52,6 +52,16 @@ class RealArm(Arm, ABC):
             UserError: there is no arm, or what is there does not answer as one.
         """
 
+    @abstractmethod
+    def watch(self) -> None:
+        """Connect as `connect` does, but only to read: nothing is claimed, set, cleared or switched.
+
+        Until `close`, only `read` and `status` are called, which send the arm no command of any kind.
+
+        Raises:
+            UserError: as `connect`.
+        """
+
 
 class GuidableArm(RealArm, ABC):
     """A real arm that carries its own weight while a person moves it by hand.

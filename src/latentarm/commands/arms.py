@@ -53,9 +53,7 @@ def check(
     ] = None,
     robot: Annotated[
         str | None,
-        arg(
-            help="A robot's name or the path of an MJCF or URDF file; by default that of the run, or a Panda."
-        ),
+        arg(help="A robot's name or the path of an MJCF or URDF file; that of the run, where one is named."),
     ] = None,
     end_effector: EndEffector = None,
     limits: LimitsFile = None,

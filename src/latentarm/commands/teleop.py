@@ -31,7 +31,10 @@ def teleop(
     arm: AnyArm = None,
     robot: Annotated[
         str | None,
-        arg(help="A robot's name or the path of an MJCF or URDF file; that of the run or task by default."),
+        arg(
+            help="A robot's name or the path of an MJCF or URDF file; by default that of the run or, for a"
+            " simulated arm, of the task."
+        ),
     ] = None,
     end_effector: EndEffector = None,
     limits: LimitsFile = None,
@@ -68,6 +71,10 @@ def teleop(
     incidents: Annotated[
         bool, arg(help="Keep what the arm was told in the last hours in incidents/ of --out (512 MB).")
     ] = True,
+    shadow: Annotated[
+        bool,
+        arg(help="Read a real arm and send it nothing: commands are computed, drawn and recorded all the same."),
+    ] = False,
     pin: Annotated[bool, arg(help="People may protect their records by a PIN.")] = False,
     json: Json = False,
 ) -> int:
@@ -117,6 +124,7 @@ def teleop(
         speeds=speeds,
         incidents=incidents,
         seat=seat,
+        shadow=shadow,
     )
     config = TeleopConfig(spec, host, port, certfile, keyfile, pin, cameras)
     serve(config, partial(say, json=json), ready, draws=draws_blocks())

@@ -115,6 +115,8 @@ class ControlLoop:
     ) -> None:
         check_arm(arm.spec, step.robot)
         check_rate(arm.spec, step.dt_s)
+        if arm.spec.follows != step.follows:
+            raise ValueError("an arm that follows its commands needs a step that compares it with them")
         self._step, self._arm, self._source = step, arm, source
         self._clock = clock
         self._observers = tuple(observers)

@@ -98,6 +98,8 @@ class Step:
         surroundings: gives the poses (K, 9) of the controller's `objects` at this moment, see
             `Context.objects`; for controllers that look at any.
         calls: where every call that changes anything is recorded; None for nowhere.
+        follows: whether the arm carries out the commands. If not, its readings say nothing of them, and are
+            not compared with them.
 
     Raises:
         UserError: the limits do not suit the robot or the period, assistance lacks goals, or the controller
@@ -115,6 +117,7 @@ class Step:
         dt_s: float = 0.01,
         surroundings: Callable[[], FloatArray] | None = None,
         calls: CallLog | None = None,
+        follows: bool = True,
     ) -> None:
         if controller.objects and surroundings is None:
             raise UserError(
@@ -126,6 +129,7 @@ class Step:
         self._shared = SharedAutonomy(robot.dof, controller, goals, belief, assistance, dt_s)
         self._robot = robot
         self._dof = robot.dof
+        self._follows = follows
         self._lowest = (robot.limits.lower - _ASTRAY).tolist()
         self._highest = (robot.limits.upper + _ASTRAY).tolist()
         self._controller = controller
@@ -152,6 +156,11 @@ class Step:
     def robot(self) -> Robot:
         """The arm that the step commands."""
         return self._robot
+
+    @property
+    def follows(self) -> bool:
+        """Whether it is for an arm that carries out the commands."""
+        return self._follows
 
     @property
     def dt_s(self) -> float:
@@ -360,7 +369,7 @@ class Step:
     def _doubts(self, q: FloatArray, time_s: float, *, new: bool) -> bool:
         """Whether a reading cannot be true; the arm is disengaged for it."""
         jumped = self._plausibility.jump(q, time_s)
-        driven = jumped is None and self._engagement.stopped is None
+        driven = self._follows and jumped is None and self._engagement.stopped is None
         astray = self._plausibility.follow(q, self._stack.velocity, time_s, new=new, driven=driven)
         if jumped is not None:
             # Reported even if the arm is already disengaged: nobody may enable it without knowing.

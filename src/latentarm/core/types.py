@@ -63,6 +63,7 @@ class Provenance:
     version: str = ""  # of this package
     started_utc: str = ""  # when the episode began, ISO 8601 in UTC
     complete: bool = True  # whether the recording was ended, rather than cut short
+    shadow: bool = False  # whether the arm stood by while commands were computed and not sent
 
 
 @dataclass(frozen=True)
@@ -151,8 +152,15 @@ class Demonstrations:
 
     @property
     def warnings(self) -> list[str]:
-        """Warnings of this import and earlier ones."""
-        return [said for subject, said in self.import_record.items() if subject.endswith("warning")]
+        """Warnings of this import and earlier ones, and of episodes in which the arm stood by."""
+        said = [said for subject, said in self.import_record.items() if subject.endswith("warning")]
+        shadows = sum(one.provenance is not None and one.provenance.shadow for one in self.episodes)
+        if shadows:
+            said.append(
+                f"{shadows} of {len(self.episodes)} episodes are from shadow mode: the arm did not follow their"
+                " actions."
+            )
+        return said
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from latentarm import __version__
 from latentarm.core.types import Provenance
 
 BY_HAND: Final = "by_hand"  # `Provenance.controller` of hand guiding
-FIELDS: Final = tuple(field.name for field in fields(Provenance) if field.name != "complete")
+FIELDS: Final = tuple(field.name for field in fields(Provenance) if field.name not in ("complete", "shadow"))
 """The fields that are text."""
 
 
@@ -22,6 +22,7 @@ def provenance_now(
     device: str = "",
     controller: str = "",
     task_name: str = "",
+    shadow: bool = False,
 ) -> Provenance:
     """Provenance of an episode that begins now, with this package."""
     return Provenance(
@@ -32,6 +33,7 @@ def provenance_now(
         device=device,
         controller=controller,
         task_name=task_name,
+        shadow=shadow,
         version=__version__,
         started_utc=datetime.now(UTC).isoformat(timespec="seconds"),
     )
@@ -39,7 +41,8 @@ def provenance_now(
 
 def provenance_json(provenance: Provenance) -> dict[str, object]:
     """Plain mapping, ready for ``json.dumps``, without unknown fields."""
-    return {name: value for name, value in asdict(provenance).items() if value not in ("", True)}
+    usual = asdict(Provenance())
+    return {name: value for name, value in asdict(provenance).items() if value != usual[name]}
 
 
 def parse_provenance(document: object) -> Provenance:
@@ -47,8 +50,10 @@ def parse_provenance(document: object) -> Provenance:
     if not isinstance(document, dict):
         raise ValueError("who recorded an episode must be an object with named fields")
     mapping = cast(Mapping[str, Any], document)
-    complete = mapping.get("complete", True)
+    complete, shadow = mapping.get("complete", True), mapping.get("shadow", False)
     texts = {name: mapping.get(name, "") for name in FIELDS}
-    if not isinstance(complete, bool) or not all(isinstance(text, str) for text in texts.values()):
+    if not isinstance(complete, bool) or not isinstance(shadow, bool):
+        raise ValueError("complete and shadow of an episode must be true or false")
+    if not all(isinstance(text, str) for text in texts.values()):
         raise ValueError("what is said of who recorded an episode must be text")
-    return Provenance(**texts, complete=complete)
+    return Provenance(**texts, complete=complete, shadow=shadow)

@@ -71,8 +71,15 @@ class FrankaArm(GuidableArm):
 
     def connect(self) -> None:
         """Connect; the arm is then disabled."""
+        self._begin(self._ready_link)
+
+    def watch(self) -> None:
+        """Connect to read. Franky itself sets the arm's collision thresholds by connecting, to its own."""
+        self._begin(self._fit_link)
+
+    def _begin(self, link_of: Callable[[], Link]) -> None:
         self.close()
-        link = self._ready_link()
+        link = link_of()
         # franky and libfranka raise exceptions of their own.
         try:
             self._hand = self._new_hand(link)
@@ -187,12 +194,21 @@ class FrankaArm(GuidableArm):
     def _open(self) -> Link:
         return open_link(self._host, self._options, self._robot)
 
-    def _ready_link(self) -> Link:
-        """A link that is ready to drive."""
+    def _fit_link(self) -> Link:
+        """A link to an arm that can be driven."""
         link = self._open()
         try:
             for reason in refusals(link, self._options, self._robot):
                 raise UserError(reason)
+        except Exception:
+            link.close()
+            raise
+        return link
+
+    def _ready_link(self) -> Link:
+        """A link that is ready to drive."""
+        link = self._fit_link()
+        try:
             set_up(link, self._options, self._robot)
         except Exception:
             link.close()

@@ -87,6 +87,10 @@ class LerobotArm(GuidableArm):
         self._open = True
         self._take(state)
 
+    def watch(self) -> None:
+        """Connect to read: the motors are told nothing before the arm is enabled."""
+        self.connect()
+
     def close(self) -> None:
         """Stop the arm and close its bus; it holds its position under power."""
         if self._open and self._alive:

@@ -3,7 +3,7 @@
 import threading
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final, final
 
 import numpy as np
@@ -37,10 +37,12 @@ class _Open:
     session: Session
     feed: JointFeed
     gripper: Ros2Gripper | None
+    claimed: bool = False  # whether the watchdog has given us the arm; else nothing is told to it
 
     def close(self) -> None:
         """Give the arm back and end the connection."""
-        self.session.tell("release")
+        if self.claimed:
+            self.session.tell("release")
         self.link.close()
 
 
@@ -92,8 +94,15 @@ class Ros2Arm(GuidableArm):
         """Connect; the arm is then disabled."""
         if self._open is not None and not self._out_of_reach():
             return
+        self._begin(self._claimed)
+
+    def watch(self) -> None:
+        """Connect to read; another client may have the arm meanwhile."""
+        self._begin(self._fit)
+
+    def _begin(self, opened: Callable[[], _Open]) -> None:
         self.close()
-        self._open = self._claimed()
+        self._open = opened()
         self._take_reading()
         self._ended.clear()
         self._heart = threading.Thread(target=self._beat, name="latentarm-ros2", daemon=True)
@@ -216,20 +225,25 @@ class Ros2Arm(GuidableArm):
         gripper = None if self._gripper is None else Ros2Gripper(link, self._options, self._gripper)
         return _Open(link, session, feed, gripper)
 
-    def _claimed(self) -> _Open:
-        """A new connection that owns the arm, which is disabled."""
+    def _fit(self) -> _Open:
+        """A new connection to an arm that can be driven; nothing is claimed."""
         opened = self._opened()
         refusals = inspect(opened.link, opened.session, opened.feed, self._options).refusals
-        if not refusals:
-            opened.session.tell("claim")
-            until_s = self._now_s() + CLAIM_S
-            while not opened.session.ours and self._now_s() < until_s:
-                time.sleep(0.01)
-            if not opened.session.ours:
-                refusals = ("Another client drives the arm: end it there first.",)
         if refusals:
             opened.close()
             raise UserError(refusals[0])
+        return opened
+
+    def _claimed(self) -> _Open:
+        """A new connection that owns the arm, which is disabled."""
+        opened = replace(self._fit(), claimed=True)
+        opened.session.tell("claim")
+        until_s = self._now_s() + CLAIM_S
+        while not opened.session.ours and self._now_s() < until_s:
+            time.sleep(0.01)
+        if not opened.session.ours:
+            opened.close()
+            raise UserError("Another client drives the arm: end it there first.")
         return opened
 
     def _out_of_reach(self) -> str:
@@ -239,7 +253,7 @@ class Ros2Arm(GuidableArm):
             return "The connection to the arm's computer is lost."
         if opened.session.silent:
             return "Nothing comes from the watchdog next to the arm any more."
-        if not opened.session.ours:
+        if opened.claimed and not opened.session.ours:
             return "The watchdog has given the arm to somebody else, or was started again."
         return ""
 
@@ -274,8 +288,10 @@ class Ros2Arm(GuidableArm):
                 if opened.feed.jumped and not self._fault:
                     self._fault = "The clock of the joint states has jumped."
                     self._arming = None
-                    opened.session.tell("disable")
-                opened.session.tell("heartbeat")
+                    if opened.claimed:
+                        opened.session.tell("disable")
+                if opened.claimed:
+                    opened.session.tell("heartbeat")
             elif not self._lost:
                 # What waits in this connection must never reach the arm.
                 self._lost, self._arming = lost, None

@@ -73,10 +73,18 @@ class XArm(GuidableArm):
 
     def connect(self) -> None:
         """Connect; the arm is then disabled."""
+        self._begin(clears=True)
+
+    def watch(self) -> None:
+        """Connect to read."""
+        self._begin(clears=False)
+
+    def _begin(self, *, clears: bool) -> None:
         self.close()
         session = self._open(0 if self._last is None else self._last[0].number, clear=False)
         self._shared = Shared(condition="disabled")
-        self._driver = Driver(self._sdk, self._robot, self._shared, session, partial(self._open, clear=True))
+        reopen = partial(self._open, clear=clears)
+        self._driver = Driver(self._sdk, self._robot, self._shared, session, reopen, clears=clears)
         self._driver.start()
 
     def close(self) -> None:

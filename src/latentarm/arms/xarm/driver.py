@@ -39,16 +39,23 @@ class Driver(threading.Thread):
     """Carries out the requests in `Shared`, and checks the arm's reports.
 
     ``session`` is the open one; ``reopen`` opens another after a lost one, numbering reports from a number
-    on.
+    on. ``clears``: whether it may clear the error of an emergency stop, to see whether that comes back.
     """
 
     def __init__(
-        self, sdk: Sdk, robot: Robot, shared: Shared, session: Session, reopen: Callable[[int], Session]
+        self,
+        sdk: Sdk,
+        robot: Robot,
+        shared: Shared,
+        session: Session,
+        reopen: Callable[[int], Session],
+        *,
+        clears: bool,
     ) -> None:
         super().__init__(name="xarm driver", daemon=True)
         self._sdk, self._robot, self._shared = sdk, robot, shared
         self.session = session
-        self._reopen = reopen
+        self._reopen, self._clears = reopen, clears
         self._watch = Watch(robot.joint_names)
         self._drives = False
         self._stopped_s = 0.0
@@ -234,7 +241,8 @@ class Driver(threading.Thread):
         self._asked_errors_s = now_s
         error, _ = self.session.controller.errors()
         if error in EMERGENCY_STOPS:
-            self.session.controller.clear()
+            if self._clears:
+                self.session.controller.clear()
         else:
             self._fault("The emergency stop was released: enable the arm again when it is safe.")
 

@@ -4,8 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from latentarm.arms.catalogue import make_arm, make_scene_arm
+from latentarm.arms.catalogue import make_arm, make_real_arm, make_scene_arm
 from latentarm.arms.contract import Arm
+from latentarm.arms.shadow import ShadowArm
 from latentarm.control.clock import Clock
 from latentarm.core.errors import UserError
 from latentarm.robots.robot import Robot
@@ -15,7 +16,9 @@ from latentarm.web.arm_process.drive_setup import DriveSetup
 def first_arm(setup: DriveSetup, clock: Clock) -> Arm:
     """Make and connect the arm of a setup. Raises UserError if it cannot be made or connected."""
     name, robot = setup.arm, setup.task.robot
-    if setup.scene is None:
+    if setup.spec.shadow:
+        arm = ShadowArm(make_real_arm(name, robot, clock.now_s))
+    elif setup.scene is None:
         arm = make_arm(name, robot, setup.start, clock.now_s)
     else:
         arm = make_scene_arm(name, robot, setup.start, clock.now_s, setup.scene)

@@ -278,6 +278,9 @@ class Drive:
             self._choose("latent" if level == "off" else "assisted", self._steering.axes, level)
 
     def _set_out(self, record: StepRecord, pose: PoseToGoTo | None) -> None:
+        if self._setup.spec.shadow:
+            self._say(Notice(code="shadow_stays"))
+            return
         goal = self._setup.start if pose is None else np.array(pose.q)
         limits = self._setup.task.robot.limits
         if goal.shape != limits.lower.shape or limits.violation(goal).any():

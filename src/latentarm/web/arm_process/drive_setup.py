@@ -84,9 +84,11 @@ class Spec:
         speeds: limits everywhere.
         incidents: whether calls are kept for a while, see `latentarm.web.arm_process.incident`.
         seat: where a person without a profile sits, see `latent_controller`; None for z = u.
+        shadow: whether a real arm is read and nothing is sent to it.
 
     Raises:
-        UserError: the seed is out of range, or a profile is named without a run.
+        UserError: the seed is out of range, a profile is named without a run, or a simulated arm gets a
+            shadow.
     """
 
     run: Path | None = None
@@ -105,6 +107,7 @@ class Spec:
     speeds: Speeds = field(default_factory=Speeds)
     incidents: bool = True
     seat: Seat | None = None
+    shadow: bool = False
 
     def __post_init__(self) -> None:
         if not 0 <= self.seed < SEEDS:
@@ -113,6 +116,8 @@ class Spec:
             raise UserError(
                 "A profile belongs to a run: name one, as in `latentarm teleop RUN --profile NAME`."
             )
+        if self.shadow and (self.arm is None or not is_address(self.arm)):
+            raise UserError("--shadow watches a real arm: name its address with --arm SCHEME://HOST.")
 
     def with_run(self, run: Path, own_task: bool) -> "Spec":
         """The spec of another run, without a profile, at the first choice of its task."""
@@ -210,6 +215,7 @@ class DriveSetup:
                 profile=spec.profile or "",
                 controller=controller,
                 task_name="" if self.todo.task in (FREE, HELD_OUT) else self.todo.task,
+                shadow=spec.shadow,
             ),
             end_effector=robot.end_effector,
             limits=robot.stated_limits,
@@ -272,6 +278,7 @@ class DriveSetup:
             dt_s=PERIOD_S,
             surroundings=surroundings or self.surroundings(None),
             calls=calls,
+            follows=not self.spec.shadow,
         )
 
 

@@ -43,7 +43,7 @@ class EpisodeWriter:
     The journal is created when the first episode begins, and again if it was lost. If the disk cannot keep
     up, the episode stays incomplete and never becomes part of a dataset. An episode ends before the arm's
     readings become untrustworthy, and when the journal is full; both are complete. An episode without motion
-    is not kept.
+    is not kept; in shadow mode the commands count as motion.
     """
 
     def __init__(self, folder: Path, limits: JournalLimits | None = None) -> None:
@@ -56,7 +56,7 @@ class EpisodeWriter:
         self.on = False  # whether an episode is under way
         self._samples = 0
         self._first: FloatArray | None = None
-        self._moved = False
+        self._moved = self._shadow = False
         self._episodes = 0
         self._problem: Notice | None = None
         self._lost = False
@@ -83,7 +83,7 @@ class EpisodeWriter:
         if self._lost:
             self._lost, self._path, self._episodes = False, self._new_path(), 0
         self.on, self._samples = True, 0
-        self._first, self._moved = None, False
+        self._first, self._moved, self._shadow = None, False, header.provenance.shadow
         self._put(header)
         if self._thread is None or not self._thread.is_alive():
             self._thread = threading.Thread(target=self._write, name="recording", daemon=True)
@@ -110,6 +110,7 @@ class EpisodeWriter:
             self._first = record.state if self._first is None else self._first
             turned = np.abs(record.state - self._first).max()
             self._moved |= bool(turned > STILL_RAD) or record.command.gripper is not None
+            self._moved |= self._shadow and bool(record.command.velocity.any())
             self._put(record)
 
     def end(self, device: str = "") -> None:

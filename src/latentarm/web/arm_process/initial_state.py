@@ -81,16 +81,21 @@ def begin_real(run: Run | None, task: str | None, choice: int, robot: RobotOptio
 
     Nothing detects the things about a real arm. Of a task with things only the robot and its obstacles count;
     goals are those of a run's demonstrations, or of a task that was named. ``task`` is None for the run's
-    own, or for nothing in particular. Raises UserError if any of these does not exist, or they do not fit
-    each other.
+    own, or for nothing in particular. Raises UserError if neither a run nor a robot is named, any of these
+    does not exist, or they do not fit each other.
     """
+    if run is None and robot.robot is None:
+        raise UserError(
+            "A real arm is driven only as a robot that you name: add --robot NAME_OR_FILE, or a trained run,"
+            " which knows its robot."
+        )
     if task is not None and task in SCENE_TASKS:
         with_things = make_scene_task(task)
         _check_own_robot(task, with_things.robot, robot)
         arm = with_things.robot if robot.stated is None else restate(with_things.robot, robot.stated)
         return _free(arm, ScenePlace(arm, (), tuple(with_things.obstacles)))
-    if run is None and task is None:
-        arm = load_robot(robot.robot or "panda", robot.end_effector, robot.stated)
+    if run is None and task is None and robot.robot is not None:
+        arm = load_robot(robot.robot, robot.end_effector, robot.stated)
         return _free(arm, ScenePlace(arm, (), ()))
     named = (robot.robot, robot.end_effector, robot.stated)
     made = task_without_run(task, *named) if run is None else task_of_run(run, task, *named, option=False)
@@ -106,7 +111,7 @@ def _free(robot: Robot, place: Place) -> InitialState:
 def _check_own_robot(task: str, own: Robot, options: RobotOptions) -> None:
     if options.robot not in (None, own.name) or options.end_effector is not None:
         raise UserError(
-            f"The task {task} has a robot of its own, {own.name}: leave --robot and --end-effector out."
+            f"The task {task} has a robot of its own, {own.name}: name no other with --robot, and no --end-effector."
         )
 
 

@@ -57,6 +57,17 @@ class DriverInput(Message):
 
 
 @final
+class ConfirmChecklist(Message):
+    """A person confirms all points about a real arm. Without this, no `PressEnable` of this page counts."""
+
+    type: Literal["confirm"]
+    arm_start: int  # of the `State` that they saw; counts only as long as it is the newest
+    stop: Literal[True]
+    area: Literal[True]
+    payload: Literal[True]
+
+
+@final
 class PressEnable(Message):
     """Let the arm move. A fresh neutral input must come within 0.3 s, before or after."""
 
@@ -162,6 +173,7 @@ class DeletePose(Message):
 ClientMessage = (
     Hello
     | DriverInput
+    | ConfirmChecklist
     | PressEnable
     | PressStop
     | AskToDrive

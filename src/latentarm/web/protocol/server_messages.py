@@ -49,6 +49,7 @@ class RealArm(Message):
     """A real arm."""
 
     facts: tuple[FoundFact, ...]
+    shadow: bool  # whether it is only read, and nothing is sent to it
 
 
 @final
@@ -123,6 +124,7 @@ class State(ArmState):
     copilot_asking: Person | None  # the person who asks to be the co-pilot, or null
     recording: RecordingState | None  # null before the first
     trail: int  # counts how often the trail was emptied
+    arm_start: int  # counts how often the connection to the arm was lost; see `ConfirmChecklist`
     you: bool  # whether this page drives
 
 

@@ -187,6 +187,8 @@ def _looked_at(
     say(f"A real arm is at {setup.arm}. It says of itself:")
     for fact in found.facts:
         say(f"  {fact.name}: {fact.value}")
+    if setup.spec.shadow:
+        say("Shadow mode: nothing is sent to the arm.")
     if not setup.obstacles:
         say("Nothing keeps the arm off a table: state where it is with --zones FILE (see docs/your-arm.md).")
     kept_off = ", ".join(one.name for one in setup.obstacles) or "nothing, as nothing is stated"

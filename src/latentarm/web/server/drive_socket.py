@@ -74,6 +74,8 @@ class DriveSocket:
         self._server = secrets.token_hex(8)
         self._open = 0
         self._asked: orders.AskedGripper | None = None
+        # `States.arm_start` for which each page has confirmed the checklist
+        self._confirmed: dict[str, int] = {}
 
     async def answer(self, socket: WebSocket) -> None:
         """Serve one page until it goes."""
@@ -133,6 +135,7 @@ class DriveSocket:
         return self._sessions.join(known.name, known.id) if opened else self._sessions.join(None)
 
     def _leave(self, page: Page) -> None:
+        self._confirmed.pop(page.id, None)
         if self._sessions.copilot.leaves(page.id):
             self._copilot_changed("copilot_gone", page)
         if self._sessions.leave(page):
@@ -176,6 +179,8 @@ class DriveSocket:
             self._sessions.ask(page)
         elif isinstance(message, AskToCopilot | CopilotPace | EndCopilot) and not self._sessions.drives(page):
             self._take_from_copilot(page, message)
+        elif isinstance(message, page_messages.ConfirmChecklist):
+            self._confirmed[page.id] = message.arm_start
         elif isinstance(message, page_messages.TrailClear):
             self._states.clear_trail()
         elif self._sessions.drives(page):
@@ -205,6 +210,8 @@ class DriveSocket:
                 self._give(message)
             case page_messages.PressEnable() | page_messages.GuideArm(on=True) if self._stands_still:
                 pass
+            case page_messages.PressEnable() if not self._confirmed_by(page):
+                self._states.say(Notice(code="checklist_first"))
             case page_messages.PressEnable():
                 self._control.order(orders.Enable(driver=self._sessions.turn, stops=self._control.stops))
             case AcceptCopilot(to=to):
@@ -265,6 +272,10 @@ class DriveSocket:
     def _stands_still(self) -> bool:
         """Whether the arm may neither be enabled nor guided: a run is loaded, or a person is asked."""
         return self._states.loading or self._learning.personalising.standstill is not None
+
+    def _confirmed_by(self, page: Page) -> bool:
+        """Whether this page has confirmed what a real arm needs, since its connection was lost last."""
+        return not self._states.loaded.real or self._confirmed.get(page.id) == self._states.arm_start
 
     def _save_pose(self, page: Page, name: str) -> None:
         report = self._states.report

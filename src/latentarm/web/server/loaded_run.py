@@ -97,7 +97,10 @@ class LoadedRun:
             keep_out=tuple(one.name for one in setup.spec.keep_out),
             end_effector_modes=setup.axes,
             limits=Limits(latch_max_s=LATCH_MAX_S),
-            real=RealArm(facts=tuple(FoundFact(name=name, value=value) for name, value in setup.spec.found))
+            real=RealArm(
+                facts=tuple(FoundFact(name=name, value=value) for name, value in setup.spec.found),
+                shadow=setup.spec.shadow,
+            )
             if self.real
             else None,
             poses=tuple(self._poses),

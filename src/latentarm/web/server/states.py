@@ -91,6 +91,8 @@ class States:
         self.report: Report | None = None  # the newest about `loaded`; None before the first
         self._heard_s = time.monotonic()
         self._trail = 0
+        # counts how often the connection to the arm was lost: what was confirmed about it before counts no more
+        self.arm_start = 0
         self._changed = asyncio.Event()
         self._set_off = asyncio.Event()
         self._note: Notice | None = None
@@ -170,6 +172,7 @@ class States:
                 self._set_off.set()
                 self._set_off.clear()
             self._moves = moved
+            self.arm_start += report.lost and not (self.report is not None and self.report.lost)
             self.report = report
             self._things = report.things or self._things
             self.loading = report.loading
@@ -233,6 +236,7 @@ class States:
             copilot_asking=None if would is None else Person(id=would.id, name=would.name),
             recording=recording and RecordingState(**_fields_of(RecordingState, recording)),
             trail=self._trail,
+            arm_start=self.arm_start,
             you=False,
         )
 

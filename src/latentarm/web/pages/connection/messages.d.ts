@@ -62,6 +62,14 @@ export interface ChosenEpisode {
   episode: number;
 }
 
+export interface ConfirmChecklist {
+  type: "confirm";
+  arm_start: number;
+  stop: true;
+  area: true;
+  payload: true;
+}
+
 export interface CopilotPace {
   type: "copilot_pace";
   pace: number;
@@ -195,7 +203,7 @@ export interface NamedZone {
 }
 
 export interface Notice {
-  code: "answers_agree" | "answers_alike" | "answers_few" | "answers_unclear" | "answers_weak" | "arm_emergency_stop" | "arm_fault" | "arm_off" | "clock_jumped" | "clock_stood_still" | "controller_failed" | "controller_invalid" | "emergency_stop_released" | "gripper_invalid" | "input_invalid" | "input_late" | "joint_astray" | "joint_frozen" | "joint_jumped" | "joints_invalid" | "let_go_first" | "loop_late" | "no_smooth_path" | "not_enabled" | "reading_invalid" | "reading_old" | "readings_unsteady" | "slide_astray" | "slide_jumped" | "arm_lost" | "arm_process_ended" | "arm_process_silent" | "arm_stopped" | "asking" | "asking_already" | "at_pose" | "at_start" | "cameras_full" | "cameras_gone" | "checking_run" | "copilot_began" | "copilot_changed" | "copilot_ended" | "copilot_gone" | "copilot_late" | "disk_full" | "disk_too_slow" | "driver_changed" | "driver_expired" | "driver_gone" | "driver_released" | "episodes_too_short" | "error" | "expired" | "full" | "guiding_ended" | "guiding_page_gone" | "handed_over" | "import_invalid" | "journal_full" | "journal_lost" | "journal_unwritable" | "joints_unreadable" | "latch_ended" | "loading_run" | "message_invalid" | "model_unknown" | "name_invalid" | "no_hello" | "no_run" | "not_loaded" | "page_refused" | "page_stopped" | "path_blocked" | "person_driving" | "person_name_invalid" | "person_name_taken" | "person_unknown" | "pin_needed" | "pin_wait" | "pin_wrong" | "pose_name_invalid" | "pose_pushed" | "pose_stuck" | "pose_unreachable" | "profile_exists" | "question_began" | "reconnected" | "reconnecting" | "record_unknown" | "record_unreadable" | "recording_cut" | "recording_ended" | "recording_in_use" | "recording_left_out" | "recording_still" | "recording_unreadable" | "recordings_of_rates" | "recordings_of_robots" | "recordings_of_tasks" | "request_invalid" | "return_blocked" | "return_not_now" | "return_pushed" | "return_stuck" | "run_exists" | "run_too_slow" | "stop_first" | "stop_pressed" | "stop_pressed_by" | "too_few_episodes" | "too_many_axes" | "too_many_people" | "too_many_poses" | "work_broke_off";
+  code: "answers_agree" | "answers_alike" | "answers_few" | "answers_unclear" | "answers_weak" | "arm_emergency_stop" | "arm_fault" | "arm_off" | "clock_jumped" | "clock_stood_still" | "controller_failed" | "controller_invalid" | "emergency_stop_released" | "gripper_invalid" | "input_invalid" | "input_late" | "joint_astray" | "joint_frozen" | "joint_jumped" | "joints_invalid" | "let_go_first" | "loop_late" | "no_smooth_path" | "not_enabled" | "reading_invalid" | "reading_old" | "readings_unsteady" | "slide_astray" | "slide_jumped" | "arm_lost" | "arm_process_ended" | "arm_process_silent" | "arm_stopped" | "asking" | "asking_already" | "at_pose" | "at_start" | "cameras_full" | "cameras_gone" | "checklist_first" | "checking_run" | "copilot_began" | "copilot_changed" | "copilot_ended" | "copilot_gone" | "copilot_late" | "disk_full" | "disk_too_slow" | "driver_changed" | "driver_expired" | "driver_gone" | "driver_released" | "episodes_too_short" | "error" | "expired" | "full" | "guiding_ended" | "guiding_page_gone" | "handed_over" | "import_invalid" | "journal_full" | "journal_lost" | "journal_unwritable" | "joints_unreadable" | "latch_ended" | "loading_run" | "message_invalid" | "model_unknown" | "name_invalid" | "no_hello" | "no_run" | "not_loaded" | "page_refused" | "page_stopped" | "path_blocked" | "person_driving" | "person_name_invalid" | "person_name_taken" | "person_unknown" | "pin_needed" | "pin_wait" | "pin_wrong" | "pose_name_invalid" | "pose_pushed" | "pose_stuck" | "pose_unreachable" | "profile_exists" | "question_began" | "reconnected" | "reconnecting" | "record_unknown" | "record_unreadable" | "recording_cut" | "recording_ended" | "recording_in_use" | "recording_left_out" | "recording_still" | "recording_unreadable" | "recordings_of_rates" | "recordings_of_robots" | "recordings_of_tasks" | "request_invalid" | "return_blocked" | "return_not_now" | "return_pushed" | "return_stuck" | "run_exists" | "run_too_slow" | "shadow_stays" | "stop_first" | "stop_pressed" | "stop_pressed_by" | "too_few_episodes" | "too_many_axes" | "too_many_people" | "too_many_poses" | "work_broke_off";
   parameters: Record<string, string | number>;
 }
 
@@ -246,6 +254,7 @@ export interface QuestionBefore {
 
 export interface RealArm {
   facts: FoundFact[];
+  shadow: boolean;
 }
 
 export interface Reconnect {
@@ -349,6 +358,7 @@ export interface State {
   copilot_asking: Person | null;
   recording: RecordingState | null;
   trail: number;
+  arm_start: number;
   you: boolean;
 }
 
@@ -443,6 +453,6 @@ export interface Why {
   thing: string;
 }
 
-export type ClientMessage = Hello | DriverInput | PressEnable | PressStop | AskToDrive | HandOver | Release | TrailClear | RecordEpisode | GuideArm | ReturnArm | GoToPose | SavePose | DeletePose | Train | CancelTraining | PickRun | BeginPersonalise | AnswerQuestion | SkipQuestion | QuestionBefore | CancelPersonalise | TryAlignment | KeepAlignment | DiscardAlignment | AskToCopilot | AcceptCopilot | EndCopilot | CopilotPace | ChooseMode | ChooseHelp | ChooseProfile | KeepGuiding | Reconnect | Reset | BeginTask;
+export type ClientMessage = Hello | DriverInput | ConfirmChecklist | PressEnable | PressStop | AskToDrive | HandOver | Release | TrailClear | RecordEpisode | GuideArm | ReturnArm | GoToPose | SavePose | DeletePose | Train | CancelTraining | PickRun | BeginPersonalise | AnswerQuestion | SkipQuestion | QuestionBefore | CancelPersonalise | TryAlignment | KeepAlignment | DiscardAlignment | AskToCopilot | AcceptCopilot | EndCopilot | CopilotPace | ChooseMode | ChooseHelp | ChooseProfile | KeepGuiding | Reconnect | Reset | BeginTask;
 
 export type ServerMessage = Welcome | State | LearningState | Poses | Refused;

@@ -1,4 +1,7 @@
-/** Points that a person confirms before a real arm is enabled for the first time, and after its connection was lost. */
+/**
+ * Points that a person confirms before a real arm is enabled for the first time, and after its connection was lost. The
+ * server enables nothing before it has heard of it.
+ */
 
 import { create } from "../layout/dom.js";
 import { say } from "../layout/words.js";
@@ -14,6 +17,13 @@ import { say } from "../layout/words.js";
 export function attachChecklist(parts, connection, confirmed) {
   const done = () => !connection.welcome?.real || parts.boxes.every((box) => box.checked);
   let lost = false;
+  /** Which start of the arm the boxes are about. */
+  let start = 0;
+  /** Whether the server has yet to hear of this connection what was confirmed. */
+  let untold = true;
+  const tell = () => {
+    if (connection.welcome?.real && done()) connection.send({ type: "confirm", arm_start: start, stop: true, area: true, payload: true });
+  };
   const show = () => {
     const real = connection.welcome?.real ?? null;
     // An arm that is not connected is connected first.
@@ -24,17 +34,28 @@ export function attachChecklist(parts, connection, confirmed) {
   for (const box of parts.boxes) {
     box.addEventListener("change", () => {
       show();
+      tell();
       if (done()) confirmed();
     });
   }
-  connection.addEventListener("welcome", show);
-  connection.addEventListener("state", () => {
-    const now = Boolean(connection.state?.lost);
-    if (now === lost) return;
-    lost = now;
-    // It may have been switched off, moved, or given something else to carry.
+  const uncheck = () => {
     for (const box of parts.boxes) box.checked = false;
+  };
+  connection.addEventListener("server_changed", uncheck);
+  connection.addEventListener("welcome", () => {
+    untold = true;
     show();
+  });
+  connection.addEventListener("state", () => {
+    if (!connection.state) return;
+    const { arm_start: now, lost: isLost } = connection.state;
+    // It may have been switched off, moved, or given something else to carry.
+    if (now !== start) uncheck();
+    const changed = now !== start || isLost !== lost;
+    [start, lost] = [now, isLost];
+    if (changed) show();
+    if (untold) tell();
+    untold = false;
   });
   show();
 

@@ -12,7 +12,7 @@ import { isSwitch } from "../inputs/keys.js";
 import { Settings } from "../settings/settings.js";
 import { attachSettingsDialog } from "../settings/settings_dialog.js";
 import { attachTheme } from "../settings/theme.js";
-import { byId, setText } from "./dom.js";
+import { byId, setHidden, setText } from "./dom.js";
 import { robotWords } from "./thing_words.js";
 import { attachTooLong } from "./too_long.js";
 import { readWords, say } from "./words.js";
@@ -55,7 +55,8 @@ export function attachPage({ drop = () => {}, repaint = () => {}, runChanged = (
   settings.addEventListener("person", () => connection.become(settings.person));
   connection.addEventListener("welcome", () => {
     if (!connection.welcome) return;
-    const { run, limits, profiles } = connection.welcome;
+    const { run, limits, profiles, real } = connection.welcome;
+    setHidden(byId("shadow"), !real?.shadow);
     const robot = robotWords(connection.welcome.robot);
     setText(byId("about"), run ? say("layout.about_run", { robot, run }) : say("layout.about_no_run", { robot }));
     /** @type {HTMLInputElement | null} */ (document.querySelector("input[name=latchS]"))?.setAttribute("max", String(limits.latch_max_s));
