@@ -238,8 +238,8 @@ class Client:
 
     def confirm(self, **changes: Any) -> None:
         """Confirm the checklist of a real arm."""
-        start = self.state["arm_start"]
-        self.send(**{"type": "confirm", "arm_start": start, "stop": True, "area": True, "payload": True} | changes)
+        points = {"arm_start": self.state["arm_start"], "stop": True, "area": True, "payload": True}
+        self.send(type="confirm", **(points | changes))
 
     def enable(self) -> None:
         """Let go, confirm what there is to confirm and press Enable; on a busy machine more than once."""

@@ -34,7 +34,8 @@ def out(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def site(serve, arm, out):
-    with serve(Spec(arm=arm.address, robot=RobotOptions("panda"), out=out, found=(("firmware", "2.1"),))) as site:
+    spec = Spec(arm=arm.address, robot=RobotOptions("panda"), out=out, found=(("firmware", "2.1"),))
+    with serve(spec) as site:
         yield site
 
 

@@ -89,7 +89,6 @@ def ros2() -> Iterator[Real]:
 def test_a_drive_is_computed_and_recorded_and_not_one_command_is_sent(
     serve: Any, stand_in: Callable[[], Any], tmp_path: Path
 ) -> None:
-    from dataclasses import replace
 
     with stand_in() as arm:
         stood = arm.positions()
@@ -119,6 +118,7 @@ def test_a_drive_is_computed_and_recorded_and_not_one_command_is_sent(
             page.wait(lambda state: state["phase"] == "disengaged")
         assert arm.orders() == []
         np.testing.assert_allclose(arm.positions(), stood, atol=1e-9)
+    assert not list((tmp_path / "records" / "guests").glob("*.json"))  # nobody has driven an arm
     (journal,) = tmp_path.glob("*.sqlite")
     (episode,) = read_journal(journal)
     assert episode.header.provenance.shadow

@@ -73,7 +73,7 @@ def teleop(
     ] = True,
     shadow: Annotated[
         bool,
-        arg(help="Read a real arm and send it nothing: commands are computed, drawn and recorded all the same."),
+        arg(help="Read a real arm and send it nothing: commands are only computed, drawn and recorded."),
     ] = False,
     pin: Annotated[bool, arg(help="People may protect their records by a PIN.")] = False,
     json: Json = False,

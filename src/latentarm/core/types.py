@@ -157,8 +157,8 @@ class Demonstrations:
         shadows = sum(one.provenance is not None and one.provenance.shadow for one in self.episodes)
         if shadows:
             said.append(
-                f"{shadows} of {len(self.episodes)} episodes are from shadow mode: the arm did not follow their"
-                " actions."
+                f"{shadows} of {len(self.episodes)} episodes are from shadow mode: the arm did not follow"
+                " their actions."
             )
         return said
 

@@ -65,6 +65,19 @@ class RealArmContract(GuidingLaws):
         assert new_arm.status().phase == "disabled"
         self._still(stand_in, before)
 
+    def test_watching_reads_and_leaves_the_arm_as_it_is(self, new_arm: RealArm, stand_in: StandIn) -> None:
+        before = stand_in.positions()
+        new_arm.watch()
+        assert not new_arm.status().takes_commands
+        first = new_arm.read().sequence
+        self._wait_for(lambda: new_arm.read().sequence > first)
+        np.testing.assert_allclose(new_arm.read().q, before, atol=self.tolerance_rad)
+        new_arm.close()
+        assert new_arm.status().phase == "off"
+        self._still(stand_in, before)
+        new_arm.connect()
+        assert new_arm.status().phase == "disabled"
+
     def test_what_looking_refuses_connecting_refuses_with_the_same_sentence(
         self, refused: Callable[[], RealArm]
     ) -> None:

@@ -30,7 +30,8 @@ def real(start_server, arm, tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("PYTHONPATH", path)
         # The stand-in tells its limits, which are the model's.
-        with start_server(tmp_path_factory.mktemp("real"), "--arm", arm.address, "--robot", "panda") as address:
+        words = ("--arm", arm.address, "--robot", "panda")
+        with start_server(tmp_path_factory.mktemp("real"), *words) as address:
             yield address
 
 

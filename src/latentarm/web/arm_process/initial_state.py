@@ -111,7 +111,8 @@ def _free(robot: Robot, place: Place) -> InitialState:
 def _check_own_robot(task: str, own: Robot, options: RobotOptions) -> None:
     if options.robot not in (None, own.name) or options.end_effector is not None:
         raise UserError(
-            f"The task {task} has a robot of its own, {own.name}: name no other with --robot, and no --end-effector."
+            f"The task {task} has a robot of its own, {own.name}: name no other with --robot, and no"
+            " --end-effector."
         )
 
 

@@ -74,6 +74,8 @@ class History:
 
     def _hear(self, report: Report) -> None:
         loaded = self._states.loaded
+        if loaded.spec.shadow:
+            return  # nobody has driven an arm
         about = self._log.under_way
         if about is not None and about.scene is not loaded.scene:
             self.end("run_changed")

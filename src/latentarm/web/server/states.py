@@ -91,7 +91,7 @@ class States:
         self.report: Report | None = None  # the newest about `loaded`; None before the first
         self._heard_s = time.monotonic()
         self._trail = 0
-        # counts how often the connection to the arm was lost: what was confirmed about it before counts no more
+        # counts how often the connection to the arm was lost: what was confirmed before counts no more
         self.arm_start = 0
         self._changed = asyncio.Event()
         self._set_off = asyncio.Event()
