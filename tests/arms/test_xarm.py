@@ -23,7 +23,7 @@ pytestmark = pytest.mark.clock
 
 ROBOT = xarm7()
 HOME = ROBOT.home.tolist()
-READS = {1, 13, 15, 42, 124}
+READS = {1, 13, 15, 42, 44, 124}
 """Registers that change nothing; 124 carries the gripper's."""
 
 
@@ -54,7 +54,7 @@ REFUSED: dict[str, tuple[dict[str, Any], str]] = {
     "load is no number": ({"load_kg": float("nan")}, "payload is no number"),
     "collision detection off": ({"collision_sensitivity": 0}, "collision detection is off"),
     "slower than stated": ({"speed": 1.0}, "limits the speed of joints to 1 rad/s"),
-    "outside the limits": ({"q": [0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0]}, "Joint 'joint4' is at -1.00 rad"),
+    "outside the limits": ({"q": [0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0]}, "Joint 'joint4' is at -57.3°"),
 }
 
 

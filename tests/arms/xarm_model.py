@@ -4,10 +4,22 @@ Written from the manufacturer's documentation of its states, modes and codes. It
 limits allow, without jerk limits or lag, and nothing pulls at it. It is no measurement of a real arm.
 """
 
+import math
 import time
 from dataclasses import dataclass, field
 
 CYCLE_S = 0.004
+DH = (
+    (0.0, 0.0, 267.0),
+    (-math.pi / 2, 0.0, 0.0),
+    (math.pi / 2, 0.0, 293.0),
+    (math.pi / 2, 52.5, 0.0),
+    (math.pi / 2, 77.5, 342.5),
+    (math.pi / 2, 0.0, 0.0),
+    (-math.pi / 2, 76.0, 97.0),
+)
+"""Modified Denavit-Hartenberg figures of an xArm 7: alpha and a before a joint, d along it; rad and mm."""
+IDENTITY = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]]
 READY, MOVING, STOPPED = 2, 1, 4
 MANUAL, JOINT_VELOCITY = 2, 4
 OLD = (1, 8, 0)
@@ -28,6 +40,9 @@ class XArmModel:
     load_kg: float = 0.8
     collision_sensitivity: int = 3
     simulated: int = 0
+    # mm and rad: of the tool from the flange, and of the frame of poses from the base
+    tool_offset: list[float] = field(default_factory=lambda: [0.0, 0.0, 100.0, 0.0, 0.0, 0.0])
+    base_offset: list[float] = field(default_factory=lambda: [0.0] * 6)
 
     def __post_init__(self) -> None:
         self.v = [0.0] * 7
@@ -48,6 +63,17 @@ class XArmModel:
         self.until_s = 0.0
         self.mode, self.state, self.error, self.warning = 0, STOPPED, 0, 0
         self.motors = False
+
+    def tool(self, q: list[float]) -> list[float]:
+        """Pose of the tool at joint angles, mm and rad, by the manufacturer's table of an xArm 7."""
+        frame = IDENTITY
+        for (alpha, a, d), angle in zip(DH, q, strict=True):
+            frame = times(frame, transform([a, 0.0, 0.0], (alpha, 0.0, 0.0)))
+            frame = times(frame, transform([0.0, 0.0, d], (0.0, 0.0, angle)))
+        frame = times(frame, transform(self.tool_offset[:3], tuple(self.tool_offset[3:])))
+        pitch = math.asin(min(max(-frame[2][0], -1.0), 1.0))
+        roll, yaw = math.atan2(frame[2][1], frame[2][2]), math.atan2(frame[1][0], frame[0][0])
+        return [frame[0][3], frame[1][3], frame[2][3], roll, pitch, yaw]
 
     def advance(self) -> None:
         """Move on to now, in whole cycles."""
@@ -126,3 +152,18 @@ class XArmModel:
         """Whether something stands between the fingers that are closing."""
         closes = self.gripper_target < self.gripper
         return self.grips_at is not None and closes and self.gripper <= self.grips_at
+
+
+def times(one: list[list[float]], other: list[list[float]]) -> list[list[float]]:
+    return [[sum(row[k] * other[k][j] for k in range(4)) for j in range(4)] for row in one]
+
+
+def transform(place: list[float], turn: tuple[float, ...]) -> list[list[float]]:
+    """By roll, pitch and yaw about fixed axes."""
+    (sr, sp, sy), (cr, cp, cy) = map(math.sin, turn), map(math.cos, turn)
+    return [
+        [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr, place[0]],
+        [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr, place[1]],
+        [-sp, cp * sr, cp * cr, place[2]],
+        IDENTITY[3],
+    ]

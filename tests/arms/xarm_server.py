@@ -103,7 +103,9 @@ class _Server:
             case 19:
                 model.set_mode(data[0])
             case 41:
-                return struct.pack("<6f", *[0.0] * 6)
+                return struct.pack("<6f", *model.tool(model.q))
+            case 44:
+                return struct.pack("<6f", *model.tool(list(struct.unpack("<7f", data[:28]))))
             case 42:
                 return struct.pack("<7f", *model.q)
             case 81:
@@ -186,8 +188,11 @@ class _Server:
     def _status(self) -> bytes:
         model = self.model
         motors = 0xFF if model.motors else 0
-        body = self._head() + struct.pack("<7f", *self._angles()) + bytes(24 + 28)
-        body += bytes([motors, motors, model.error, model.warning]) + bytes(24)
+        angles = self._angles()
+        body = (
+            self._head() + struct.pack("<7f", *angles) + struct.pack("<6f", *model.tool(angles)) + bytes(28)
+        )
+        body += bytes([motors, motors, model.error, model.warning]) + struct.pack("<6f", *model.tool_offset)
         body += struct.pack("<4f", model.load_kg, 0.0, 0.0, 48.0)
         body += bytes([model.collision_sensitivity, 3]) + struct.pack("<3f", 0.0, 0.0, -1.0)
         body += bytes([model.kind, model.axes, 2, 2, 43, 0])
@@ -195,7 +200,13 @@ class _Server:
         body += struct.pack("<5f", 1000.0, 1.0, 50000.0, 0.1, 1000.0)
         body += struct.pack("<5f", 500.0, 0.01, model.acceleration, 0.0001, model.speed)
         body += struct.pack("<2f", 2.3, 2.7) + bytes(16) + bytes([30] * 7) + struct.pack("<8f", *[0.0] * 8)
-        body += bytes(4) + bytes(24) + bytes(2) + bytes([model.simulated, 1, 0]) + bytes(24)
+        body += (
+            bytes(4)
+            + struct.pack("<6f", *model.base_offset)
+            + bytes(2)
+            + bytes([model.simulated, 1, 0])
+            + bytes(24)
+        )
         return body.ljust(583, b"\0")
 
     def do(self, order: dict[str, Any]) -> Any:

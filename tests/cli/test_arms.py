@@ -58,7 +58,10 @@ def test_the_line_that_drives_the_arm_has_what_it_was_checked_with(server, capsy
 
 def test_everything_that_an_arm_is_refused_for_is_said_at_once(capsys):
     with wooden_server(panda(), firmware="1.9") as old:
-        assert main(["arms", "check", f"{old.address}?rate=30&stops_after=0.3", "--robot", "panda", "--json"]) == 2
+        assert (
+            main(["arms", "check", f"{old.address}?rate=30&stops_after=0.3", "--robot", "panda", "--json"])
+            == 2
+        )
     told = capsys.readouterr()
     refusals = json.loads(told.out)["refusals"]
     assert len(refusals) == 3
@@ -69,7 +72,10 @@ def test_limits_beyond_those_of_the_arm_are_refused(server, capsys, tmp_path):
     limits = tmp_path / "limits.toml"
     limits.write_text("[joints.joint1]\nvelocity_rad_per_s = 9.0\n")
     assert main(["arms", "check", server.address, "--robot", "panda", "--limits", str(limits)]) == 2
-    assert "The velocity limit of joint1 is 9 for panda" in capsys.readouterr().err
+    assert (
+        "The velocity limit of joint1 is 515.7°/s for panda and 124.6°/s for the arm"
+        in capsys.readouterr().err
+    )
 
 
 @pytest.mark.parametrize("words", [("arms", "check", "mujoco"), ("drive", "--arm", "wooden://127.0.0.1:1")])
@@ -79,7 +85,10 @@ def test_real_and_simulated_arms_are_told_apart(words, capsys):
 
 
 def test_no_robot_is_taken_for_an_arm_that_nobody_named(server, capsys, tmp_path):
-    for words in (["arms", "check", server.address], ["teleop", "--arm", server.address, "--out", str(tmp_path)]):
+    for words in (
+        ["arms", "check", server.address],
+        ["teleop", "--arm", server.address, "--out", str(tmp_path)],
+    ):
         assert main(words) == 2
         assert "add --robot NAME_OR_FILE" in capsys.readouterr().err
 

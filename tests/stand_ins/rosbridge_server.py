@@ -20,6 +20,7 @@ from typing import Any, Final
 
 import numpy as np
 from ros2_controllers import SimulatedController, SimulatedGripper
+from scipy.spatial.transform import Rotation
 from websockets.asyncio.server import ServerConnection, serve
 from websockets.exceptions import ConnectionClosed
 
@@ -54,6 +55,8 @@ class Setup:
         stop_topic: of the emergency stop.
         controller: its name.
         rate_hz: of the joint states.
+        describes: whether ``/robot_description`` is published.
+        frames: whether ``/tf`` is.
     """
 
     kind: str = "velocity"
@@ -62,6 +65,8 @@ class Setup:
     stop_topic: str = "/stop"
     controller: str = "arm_controller"
     rate_hz: float = 100.0
+    describes: bool = True
+    frames: bool = True
 
 
 class _Client:
@@ -245,6 +250,9 @@ class RosbridgeServer(StandIn):
         match message["op"]:
             case "subscribe":
                 client.topics.add(message["topic"])
+                if message["topic"] == "/robot_description" and self.setup.describes:
+                    description = {"data": description_of(self._robot)}
+                    client.send({"op": "publish", "topic": message["topic"], "msg": description})
             case "unsubscribe":
                 client.topics.discard(message["topic"])
             case "publish":
@@ -345,6 +353,8 @@ class RosbridgeServer(StandIn):
             if now_s - stated_s > 1.0 / self.setup.rate_hz - PERIOD_S / 2:
                 stated_s = now_s
                 self._tell_joint_states(now_s)
+                if self.setup.frames and count % 20 == 0:
+                    self._publish("/tf", {"transforms": frames_of(self._robot, self.arm.q)})
             if self.watchdog is not None:
                 if count % 20 == 0:
                     self.watchdog.controllers(
@@ -411,6 +421,57 @@ class RosbridgeServer(StandIn):
         for client in self._clients:
             if topic in client.topics:
                 client.send({"op": "publish", "topic": topic, "msg": message})
+
+
+def description_of(robot: Robot) -> str:
+    """The robot as a URDF without shapes."""
+    chain, limits = robot.chain, robot.limits
+    assert not chain.anchor.any()
+    links, joints = ['<link name="base"/>'], []
+
+    def placed(frame: FloatArray) -> str:
+        turn = Rotation.from_matrix(frame[:3, :3]).as_euler("xyz")
+        numbers = [" ".join(repr(float(one)) for one in row) for row in (frame[:3, 3], turn)]
+        return f'<origin xyz="{numbers[0]}" rpy="{numbers[1]}"/>'
+
+    for i, name in enumerate(chain.joint_names):
+        parent = "base" if chain.parent[i] < 0 else f"link{chain.parent[i] + 1}"
+        axis = " ".join(repr(float(one)) for one in chain.axis[i])
+        ends = f'lower="{limits.lower[i]}" upper="{limits.upper[i]}" velocity="{limits.velocity[i]}"'
+        links.append(f'<link name="link{i + 1}"/>')
+        joints.append(
+            f'<joint name="{name}" type="revolute"><parent link="{parent}"/><child link="link{i + 1}"/>'
+            f'{placed(chain.offset[i])}<axis xyz="{axis}"/><limit {ends} effort="1"/></joint>'
+        )
+    tool = chain.tools[0]
+    links.append(f'<link name="{tool.name}"/>')
+    joints.append(
+        f'<joint name="mount" type="fixed"><parent link="link{tool.link + 1}"/><child link="{tool.name}"/>'
+        f"{placed(tool.transform)}</joint>"
+    )
+    return f'<robot name="{robot.name}">{"".join(links)}{"".join(joints)}</robot>'
+
+
+def frames_of(robot: Robot, q: FloatArray) -> list[dict[str, Any]]:
+    """The transforms of ``/tf``, each link in the one before."""
+    links, tool = robot.chain.link_transforms(q), robot.chain.tools[0]
+    found = []
+    for i, parent in enumerate([*robot.chain.parent, tool.link]):
+        is_tool = i == len(links)
+        above = np.eye(4) if parent < 0 else links[parent]
+        frame = tool.transform if is_tool else np.linalg.inv(above) @ links[i]
+        turn = Rotation.from_matrix(frame[:3, :3]).as_quat()
+        found.append(
+            {
+                "header": {"frame_id": "base" if parent < 0 else f"link{parent + 1}"},
+                "child_frame_id": tool.name if is_tool else f"link{i + 1}",
+                "transform": {
+                    "translation": dict(zip("xyz", frame[:3, 3].tolist(), strict=True)),
+                    "rotation": dict(zip("xyzw", turn.tolist(), strict=True)),
+                },
+            }
+        )
+    return found
 
 
 @contextlib.contextmanager

@@ -55,9 +55,14 @@ def _beyond(own: FoundLimits, robot: Robot) -> list[str]:
     said: list[str] = []
     for name, joints in beyond.items():
         for joint in np.flatnonzero(joints):
-            mine, arms = getattr(limits, name)[joint], getattr(own, name)[joint]
+            slides = bool(robot.chain.slide[joint])
+            mine, arms = (
+                (1000.0 if slides else 180.0 / np.pi) * getattr(one, name)[joint] for one in (limits, own)
+            )
+            unit = ("mm" if slides else "°") + ("/s" if name == "velocity" else "")
             said.append(
-                f"The {name} limit of {robot.joint_names[joint]} is {mine:.4g} for {robot.name} and"
-                f" {arms:.4g} for the arm: state the arm's own with --limits FILE."
+                f"The {name} limit of {robot.joint_names[joint]} is {mine:.1f}{unit} for {robot.name} and"
+                f" {arms:.1f}{unit} for the arm: choose the model that the arm is, or state the arm's own"
+                " with --limits FILE."
             )
     return said

@@ -12,6 +12,8 @@ import numpy as np
 from latentarm.arms.franka.limits import SHARE, FrankaLimits, limits_of
 from latentarm.arms.franka.options import FrankaOptions
 from latentarm.arms.franka.words import plain
+from latentarm.arms.kinds import kind_misfit
+from latentarm.arms.own_pose import OwnPose, compared, misfits
 from latentarm.arms.real import Fact, Findings
 from latentarm.core.errors import UserError
 from latentarm.robots.robot import Robot
@@ -136,11 +138,15 @@ def refusals(link: Link, options: FrankaOptions, robot: Robot) -> tuple[str, ...
             f"The arm is a {link.limits.kind}, and {robot.name} may do more than it ({excess}): choose"
             f" --robot {name}, or state lower limits with --limits FILE."
         )
+    if link.limits is not None:
+        found += kind_misfit(link.limits.kind, robot)
     if distance := _axes_apart(link, robot):
         found.append(
             f"The joints of {robot.name} are not where the arm's are ({distance}): choose the robot that the"
             " arm is, in the arm's own base frame."
         )
+    else:
+        found += misfits((_own_pose(link, options),), robot)
     if options.realtime == "enforce" and not has_realtime():
         found.append(
             "This computer has no realtime kernel: install one, or add ?realtime=ignore to the address and"
@@ -178,6 +184,7 @@ def findings(link: Link, options: FrankaOptions, robot: Robot) -> Findings:
         hand = link.hand.state
         opened = f"{1000 * hand.width:.0f} of {1000 * hand.max_width:.0f} mm open"
         facts.append(Fact("hand", f"version {link.hand.server_version}, {opened}, {hand.temperature} °C"))
+    facts.append(compared((_own_pose(link, options),), robot))
     facts += [Fact("clock", _clock(link)), Fact("round trip", _round_trip(link, options))]
     return Findings(tuple(facts), refusals(link, options, robot))
 
@@ -203,8 +210,20 @@ def _axes_apart(link: Link, robot: Robot) -> str:
         moved = float(np.linalg.norm(moments[joint] - np.cross(anchors[joint], axes[joint])))
         if turned > _AXIS_RAD or moved > _AXIS_M:
             name = robot.joint_names[joint]
-            return f"{name} is off by {turned:.3f} rad and {1000 * moved:.0f} mm"
+            return f"{name} is off by {np.degrees(turned):.1f}° and {1000 * moved:.0f} mm"
     return ""
+
+
+def _own_pose(link: Link, options: FrankaOptions) -> OwnPose:
+    """Where the arm says that its end-effector is, or will be once the tip of the address is set."""
+    state = link.arm.state
+    offset = np.asarray(state.F_T_EE.matrix)
+    flange = np.asarray(state.O_T_EE.matrix) @ np.linalg.inv(offset)
+    if options.attachment_tip_m is not None:
+        tip = np.eye(4)
+        tip[:3, 3] = options.attachment_tip_m
+        offset = np.asarray(state.F_T_NE.matrix) @ tip
+    return OwnPose(np.asarray(state.q, dtype=np.float64), flange @ offset, offset)
 
 
 def _clock(link: Link) -> str:

@@ -10,8 +10,10 @@ import numpy as np
 from latentarm.arms.address import ArmAddress
 from latentarm.arms.contract import ArmPhase, ArmSpec, ArmStatus, finite_velocity
 from latentarm.arms.helper_process import HelperProcess
+from latentarm.arms.kinds import kind_misfit
 from latentarm.arms.lerobot import keeper
 from latentarm.arms.lerobot.options import Options
+from latentarm.arms.own_pose import compared
 from latentarm.arms.real import Fact, Findings, GuidableArm
 from latentarm.core.errors import UserError
 from latentarm.core.types import Command, GripperCommand, GripperReading, Reading
@@ -74,8 +76,8 @@ class LerobotArm(GuidableArm):
             f"{1000 * STOPS_AFTER_S:.0f} ms after the last command the servos are told nothing new and hold"
             " their positions; they stay under power when the arm is closed"
         )
-        listed = tuple(Fact(name, value) for name, value in facts.items())
-        return Findings(listed, (*self._misfits(), *answer["refusals"]))
+        listed = (Fact(name, value) for name, value in facts.items())
+        return Findings((*listed, compared((), self._robot)), (*self._misfits(), *answer["refusals"]))
 
     def connect(self) -> None:
         """Connect; the arm is then disabled."""
@@ -194,7 +196,7 @@ class LerobotArm(GuidableArm):
 
     def _misfits(self) -> tuple[str, ...]:
         if set(self._spec.joint_names) == set(self._robot.joint_names):
-            return ()
+            return kind_misfit(self._options.kind, self._robot)
         return (
             f"{self._options.kind} has the motors {', '.join(self._spec.joint_names)}, and"
             f" {self._robot.name} has the joints {', '.join(self._robot.joint_names)}: choose the robot that"

@@ -58,7 +58,7 @@ class Ros2Arm(GuidableArm):
     def __init__(self, robot: Robot, address: ArmAddress, now_s: Callable[[], float]) -> None:
         check_installed()
         self._options = read_options(address, robot)
-        self._gripper = robot.gripper
+        self._robot, self._gripper = robot, robot.gripper
         self._dof = robot.dof
         self._now_s = now_s
         self._spec = ArmSpec(
@@ -86,7 +86,7 @@ class Ros2Arm(GuidableArm):
             raise RuntimeError("the arm is connected; look before that")
         opened = self._opened()
         try:
-            return inspect(opened.link, opened.session, opened.feed, self._options)
+            return inspect(opened.link, opened.session, opened.feed, self._options, self._robot)
         finally:
             opened.link.close()
 
@@ -228,7 +228,7 @@ class Ros2Arm(GuidableArm):
     def _fit(self) -> _Open:
         """A new connection to an arm that can be driven; nothing is claimed."""
         opened = self._opened()
-        refusals = inspect(opened.link, opened.session, opened.feed, self._options).refusals
+        refusals = inspect(opened.link, opened.session, opened.feed, self._options, self._robot).refusals
         if refusals:
             opened.close()
             raise UserError(refusals[0])

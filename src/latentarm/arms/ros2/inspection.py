@@ -5,13 +5,19 @@ from collections.abc import Callable, Iterator, Mapping
 from statistics import median
 from typing import Any, Final
 
+import numpy as np
+
 from latentarm.arms.contract import STOPS_AFTER_S
+from latentarm.arms.own_pose import compared, misfits
 from latentarm.arms.real import Fact, Findings
 from latentarm.arms.ros2.feed import JointFeed
 from latentarm.arms.ros2.link import Link
 from latentarm.arms.ros2.options import Ros2Options
+from latentarm.arms.ros2.own_model import OwnModel
 from latentarm.arms.ros2.session import Session
 from latentarm.arms.ros2.watchdog_state import VERSION, WatchdogState
+from latentarm.robots.kinematics.stillness import STILL_RAD_S
+from latentarm.robots.robot import Robot
 
 ANSWER_S: Final = 1.0  # wait for the watchdog, the controller manager and the joint states
 FREE_S: Final = 1.5  # wait for a client that has gone
@@ -23,8 +29,9 @@ _CHANCES: Final = 3
 _LIST: Final = "controller_manager_msgs/srv/ListControllers"
 
 
-def inspect(link: Link, session: Session, feed: JointFeed, options: Ros2Options) -> Findings:
+def inspect(link: Link, session: Session, feed: JointFeed, options: Ros2Options, robot: Robot) -> Findings:
     """Inspect everything needed for driving, and change nothing."""
+    own, listens_until_s = OwnModel(link, options), time.monotonic() + ANSWER_S
     _wait(lambda: session.state is not None, ANSWER_S)
     _wait(lambda: feed.newest is not None, ANSWER_S)
     answer, trips = _controllers(link, options)
@@ -45,7 +52,16 @@ def inspect(link: Link, session: Session, feed: JointFeed, options: Ros2Options)
             f"The round trip to {options.where} takes {1e3 * trip_s:.0f} ms, more than"
             f" {1e3 * LONGEST_TRIP_S:.0f} ms: use a cable or a faster network.",
         )
-    return Findings(tuple(_facts(options, state, answer, feed, rate_hz, trip_s)), refusals)
+    _wait(lambda: own.told, listens_until_s - time.monotonic())
+    own.end()
+    poses, limits = (), None
+    if feed.newest is not None and np.abs(feed.newest[0].dq).max() > 5.0 * STILL_RAD_S:
+        refusals = (*refusals, "The arm is moving: end the program that drives it, then try again.")
+    elif feed.newest is not None:
+        unlike, poses, limits = own.compare(feed.newest[0].q, robot)
+        refusals = (*refusals, *unlike, *misfits(poses, robot))
+    facts = (*_facts(options, state, answer, feed, rate_hz, trip_s), compared(poses, robot))
+    return Findings(facts, refusals, limits)
 
 
 def _controllers(link: Link, options: Ros2Options) -> tuple[dict[str, Mapping[str, Any]] | None, list[float]]:

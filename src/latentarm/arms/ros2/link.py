@@ -72,6 +72,12 @@ class Link:
         )
         self._topics[topic].subscribe(heard)
 
+    def unsubscribe(self, topic: str) -> None:
+        """Take the messages of a topic no more."""
+        subscribed = self._topics.pop(topic)
+        if self.connected:
+            subscribed.unsubscribe()
+
     def call(self, service: str, kind: str, timeout_s: float) -> Mapping[str, Any] | None:
         """Call a service without arguments; its answer, or None in case of a time-out."""
         from roslibpy.core import RosTimeoutError, ServiceException

@@ -33,6 +33,8 @@ class Ros2Options:
     gripper_joint: str  # in the joint states; "" without a gripper
     gripper_open: float  # position of that joint, and of the action, with the gripper fully open
     gripper_closed: float  # the same with the gripper closed
+    tool_frame: str  # frame of ``/tf`` and ``/robot_description`` that is the robot's end-effector
+    base_frame: str  # that is the robot's base; "" for the first one
 
     @property
     def where(self) -> str:
@@ -81,6 +83,8 @@ def read_options(address: ArmAddress, robot: Robot) -> Ros2Options:
         finger,
         opened,
         closed,
+        given.get("tool_frame", robot.chain.tools[0].name).strip("/"),
+        given.get("base_frame", "").strip("/"),
     )
 
 

@@ -74,6 +74,11 @@ class Controller:
         """(n,), joint angles in the frame of commands, rad."""
         return np.array(self._ask(self._commands.get_joint_pos, dof)[1 : dof + 1], dtype=np.float64)
 
+    def forward(self, q: FloatArray) -> FloatArray:
+        """(6,), the tool's pose at joint angles (n,), rad, as the controller reckons it: mm and rad."""
+        angles = [*q.tolist(), *[0.0] * (7 - len(q))]
+        return np.array(self._ask(lambda: self._commands.get_fk(angles), 6)[1:7], dtype=np.float64)
+
     def switch_on_motors(self) -> None:
         """Release the brakes."""
         self._done(

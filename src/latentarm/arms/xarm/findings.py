@@ -6,9 +6,12 @@ from typing import Final
 
 import numpy as np
 
+from latentarm.arms.kinds import kind_misfit
+from latentarm.arms.own_pose import OwnPose, compared, misfits
 from latentarm.arms.real import Fact, Findings
 from latentarm.arms.xarm.controller import ANSWER_S
 from latentarm.arms.xarm.identity import BOUNDED_COMMANDS, GRIPPER_PORT, Identity
+from latentarm.arms.xarm.model import own_limits, own_poses
 from latentarm.arms.xarm.sdk import Sdk
 from latentarm.arms.xarm.session import Session
 from latentarm.arms.xarm.words import EMERGENCY_STOPS, controller_error, emergency_stop
@@ -40,6 +43,8 @@ def too_different(identity: Identity, robot: Robot) -> tuple[str, ...]:
             f"The arm is an {identity.name} with {identity.axes} joints, and {robot.name} has {robot.dof}:"
             " choose the robot that the arm is."
         )
+    if identity.axes == robot.dof:
+        refusals += kind_misfit(identity.name, robot)
     if robot.gripper is not None and BOUNDED_COMMANDS <= identity.firmware < GRIPPER_PORT:
         refusals.append(
             f"With firmware {identity.version} the gripper would hold up the arm's commands: update it in"
@@ -69,7 +74,12 @@ def find_out(sdk: Sdk, session: Session, robot: Robot, *, bare: bool) -> Finding
         )
     if not rate_hz > 0.0:
         refusals = (*refusals, "The controller's joint angles do not change their time: restart it.")
-    return Findings((*_facts(sdk, session, robot), *_timing(session, median_s, worst_s, rate_hz)), refusals)
+    # An arm that moves is elsewhere in every report.
+    poses = own_poses(session, robot) if _rests(session) else ()
+    refusals = (*refusals, *misfits(poses, robot))
+    facts = (*_facts(sdk, session, robot), *_told(session, robot, poses))
+    facts = (*facts, *_timing(session, median_s, worst_s, rate_hz))
+    return Findings(facts, refusals, own_limits(sdk, session, robot))
 
 
 def unfit(sdk: Sdk, session: Session, robot: Robot) -> str:
@@ -84,14 +94,16 @@ def unfit(sdk: Sdk, session: Session, robot: Robot) -> str:
         return session.fault
     if not np.isfinite(report.q).all() or not np.isfinite(report.dq).all():
         return "The arm reports joint angles that are no numbers: restart its controller."
-    if np.abs(report.dq).max() > 5.0 * STILL_RAD_S:
+    if not _rests(session):
         return "The arm is moving: end the program that drives it, then try again."
     outside = robot.limits.violation(report.q)
     joint = int(np.argmax(outside))
     if outside[joint] > _OUTSIDE_RAD:
+        at, low, high = (
+            f"{math.degrees(one[joint]):.1f}°" for one in (report.q, robot.limits.lower, robot.limits.upper)
+        )
         return (
-            f"Joint {robot.joint_names[joint]!r} is at {report.q[joint]:.2f} rad, outside"
-            f" {robot.limits.lower[joint]:.2f} to {robot.limits.upper[joint]:.2f}: choose the model that"
+            f"Joint {robot.joint_names[joint]!r} is at {at}, outside {low} to {high}: choose the model that"
             " the arm is, or move the joint back in UFACTORY Studio."
         )
     apart = float(np.abs(session.controller.joints(robot.dof) - report.q).max())
@@ -101,6 +113,11 @@ def unfit(sdk: Sdk, session: Session, robot: Robot) -> str:
             " answers: restart the controller."
         )
     return ""
+
+
+def _rests(session: Session) -> bool:
+    report = session.report
+    return bool(np.isfinite(report.q).all() and np.abs(report.dq).max() <= 5.0 * STILL_RAD_S)
 
 
 def _setting_refusals(session: Session, robot: Robot, *, bare: bool) -> tuple[str, ...]:
@@ -113,6 +130,11 @@ def _setting_refusals(session: Session, robot: Robot, *, bare: bool) -> tuple[st
         refusals.append(
             "The controller does not know what the arm carries (payload 0 kg): set it in UFACTORY Studio"
             " under TCP Payload, or add ?load=none to the address where nothing is mounted."
+        )
+    if any(abs(figure) > _SINGLE for figure in status.base_offset):
+        refusals.append(
+            "The controller reckons poses from a frame other than the arm's base: set the base coordinate"
+            " offset to zero in UFACTORY Studio."
         )
     if status.collision_sensitivity == 0:
         refusals.append(
@@ -161,6 +183,13 @@ def _facts(sdk: Sdk, session: Session, robot: Robot) -> tuple[Fact, ...]:
         opened = f"{width_mm:.0f} of {most_mm:.0f} mm open"
         facts.append(Fact("gripper", f"{opened}; how hard it presses cannot be set"))
     return tuple(facts)
+
+
+def _told(session: Session, robot: Robot, poses: tuple[OwnPose, ...]) -> tuple[Fact, ...]:
+    *place, roll, pitch, yaw = session.status.tool_offset
+    turned = ", ".join(f"{math.degrees(one):.1f}" for one in (roll, pitch, yaw))
+    tool = f"({', '.join(f'{one:.0f}' for one in place)}) mm, roll, pitch, yaw ({turned})° from its flange"
+    return (Fact("tool set on the arm", tool), compared(poses, robot))
 
 
 def _timing(session: Session, median_s: float, worst_s: float, rate_hz: float) -> tuple[Fact, ...]:

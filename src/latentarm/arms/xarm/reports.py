@@ -48,6 +48,10 @@ class StatusReport:
 
     axes: int  # number of joints
     kind: int  # the manufacturer's number of the type
+    q: tuple[float, ...]  # joint angles, rad
+    tool: tuple[float, ...]  # pose of the tool at these: x, y, z, mm, and roll, pitch, yaw, rad
+    tool_offset: tuple[float, ...]  # the tool that is set, from the flange: the same
+    base_offset: tuple[float, ...]  # of the frame of these poses from the arm's base: the same
     error: int  # of the controller, 0 for none
     warning: int  # of the controller, 0 for none
     mode: int  # kind of commands that the controller takes
@@ -202,6 +206,10 @@ class StatusReports:
         self.newest = StatusReport(
             axes=int(report.robot_axis),
             kind=int(report.robot_type),
+            q=tuple(float(figure) for figure in report.actual_joint_angle),
+            tool=tuple(float(figure) for figure in report.actual_tcp_pose),
+            tool_offset=tuple(float(figure) for figure in report.tcp_offset),
+            base_offset=tuple(float(figure) for figure in report.world_offset),
             error=int(report.error_code),
             warning=int(report.warn_code),
             mode=int(report.mode),

@@ -37,6 +37,8 @@ class Sdk:
     # the controller's, by code: title and description by language
     errors: dict[object, dict[str, dict[str, str]]]
     gripper_errors: dict[object, dict[str, dict[str, str]]]  # the gripper's
+    # lowest and highest position of each joint, rad, by number of joints and number of the type
+    joint_limits: dict[int, dict[int, list[tuple[float, float]]]]
 
     def commands(self, port: Port) -> Any:
         """Requests over a port, in the manufacturer's private protocol; each answer begins with a code."""
@@ -57,6 +59,7 @@ def load_sdk() -> Sdk:
             commands = importlib.import_module("xarm.core.wrapper.uxbus_cmd_tcp")
             report = importlib.import_module("xarm.x3.report")
             codes = importlib.import_module("xarm.core.config.x_code")
+            figures = importlib.import_module("xarm.core.config.x_config")
     except ImportError as error:
         raise UserError(
             "--arm xarm needs the manufacturer's library: install it with pip install 'latentarm[xarm]'"
@@ -68,4 +71,5 @@ def load_sdk() -> Sdk:
             f" make the home directory writable ({error})."
         ) from error
     errors = codes.ControllerErrorCodeMap, codes.GripperErrorCodeMap
-    return Sdk(version.__version__, commands.UxbusCmdTcp, report.ReportDataStructure, *errors)
+    limits = figures.XCONF.Robot.JOINT_LIMITS
+    return Sdk(version.__version__, commands.UxbusCmdTcp, report.ReportDataStructure, *errors, limits)
