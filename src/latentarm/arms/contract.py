@@ -199,7 +199,7 @@ def arm_refusals(spec: ArmSpec, robot: Robot) -> tuple[str, ...]:
     if assumed and not spec.simulated:
         found.append(
             f"A real arm is driven by known limits alone, and those of {robot.name} are assumed in part"
-            f" ({assumed}): state the manufacturer's figures in a file (of joints, and tool_speed_m_per_s)"
-            " and name it with --limits FILE."
+            f" ({assumed}): `latentarm robots {robot.name} --write-limits limits.toml` writes a file in which"
+            " to state the manufacturer's figures; then name it with --limits."
         )
     return tuple(found)

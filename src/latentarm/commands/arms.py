@@ -1,6 +1,7 @@
 """`latentarm arms`: the arms that there are, and checks of a real one before it moves."""
 
 import json as json_format
+from collections.abc import Callable
 from pathlib import Path
 from shlex import join
 from typing import TYPE_CHECKING, Annotated, Final
@@ -26,24 +27,51 @@ FIRST_RAD_S: Final = 0.2
 FIRST_M_PER_S: Final = 0.05  # limits for a first drive
 
 
-def check_arm_at(address: str, run: Path | None, robot: "RobotOptions", speeds: Speeds) -> Findings:
+def check_arm_at(
+    address: str,
+    run: Path | None,
+    robot: "RobotOptions",
+    speeds: Speeds,
+    guide: Callable[[str], None] | None = None,
+) -> Findings:
     """Check a real arm, such as ``franka://172.16.0.2``, before it is driven from the page; nothing moves.
 
-    ``robot`` describes the arm where there is no run. Raises UserError where the address, the run or the
+    ``robot`` describes the arm where there is no run. With ``guide`` it is looked at in three more poses, see
+    `latentarm.commands.guided_check.look_guided`. Raises UserError where the address, the run or the
     robot cannot be used; a refusal by the arm is among the findings instead.
     """
+    from latentarm.commands.abilities import abilities
+    from latentarm.commands.guided_check import look_guided
+    from latentarm.runs.folder import read_run
     from latentarm.web.arm_process.drive_setup import PERIOD_S, Spec, load_setup
+    from latentarm.web.arm_process.initial_state import begin_real
 
     if not is_address(address):
         raise UserError(f"{address} is not the address of a real arm: write SCHEME://HOST.")
-    driven = load_setup(Spec(run, arm=address, robot=robot, speeds=speeds)).task.robot
+    trained = None if run is None else read_run(run)
+    driven = begin_real(trained, None if trained is None else trained.task, 0, robot).place.robot
+    facts, refusals = abilities(driven, speeds)
+    if not refusals:
+        load_setup(Spec(run, arm=address, robot=robot, speeds=speeds))  # what else could be in the way
     arm = make_real_arm(address, driven, MonotonicClock().now_s)
     try:
-        return look_at(arm, driven, PERIOD_S)
+        found = look_at(arm, driven, PERIOD_S)
+        if guide is not None and not found.refusals:
+            by_hand = look_guided(address, driven, guide)
+            found = Findings((*found.facts, *by_hand.facts), by_hand.refusals)
     except UserError as error:
-        return Findings((), (str(error),))
+        found = Findings((), (str(error),))
     finally:
         arm.close()
+    return Findings((*found.facts, *facts), (*refusals, *found.refusals))
+
+
+def _ask(what: str) -> None:
+    """Say what to do and wait for Enter."""
+    try:
+        input(f"{what} Then press Enter: ")
+    except EOFError as error:
+        raise UserError("--guided asks a person: run it in a terminal.") from error
 
 
 def check(
@@ -59,6 +87,9 @@ def check(
     limits: LimitsFile = None,
     joint_speed: JointSpeed = None,
     link_speed: LinkSpeed = None,
+    guided: Annotated[
+        bool, arg(help="Then let go of the arm, for you to move it by hand to three more poses, and compare.")
+    ] = False,
     json: Json = False,
 ) -> int:
     """Look at a real arm without moving it: what it is, whether it can be driven, and if not, why.
@@ -69,7 +100,8 @@ def check(
     from latentarm.web.arm_process.initial_state import RobotOptions
 
     speeds = Speeds.asked(joint_speed, link_speed)
-    found = check_arm_at(address, run, RobotOptions(robot, end_effector, limits), speeds)
+    named = RobotOptions(robot, end_effector, limits)
+    found = check_arm_at(address, run, named, speeds, _ask if guided else None)
     if json:
         facts = [{"name": fact.name, "value": fact.value} for fact in found.facts]
         print(json_format.dumps({"address": address, "facts": facts, "refusals": found.refusals}, indent=2))
@@ -94,6 +126,7 @@ def check(
     words = join(["latentarm", "teleop", *([] if run is None else [str(run)]), *given])
     first = " slowly, as is right for a first drive" if slowly else ""
     say(f"It can be driven. Nothing was moved. To drive it{first}: {words}", json)
+    say("Add --shadow to that line at first: it does all but send.", json)
     return 0
 
 

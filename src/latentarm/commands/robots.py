@@ -8,11 +8,13 @@ from rich.table import Table
 from tyro.conf import Positional, arg
 
 from latentarm.commands.options import LimitsFile
-from latentarm.commands.output import print_renderables
+from latentarm.commands.output import print_renderables, say
 from latentarm.core.errors import UserError
+from latentarm.core.files import write_text
 from latentarm.core.types import FloatArray
+from latentarm.core.untrusted.opening import is_missing
 from latentarm.robots.limits import QUANTITIES, Quantity, Source
-from latentarm.robots.notices import notices
+from latentarm.robots.notices import assumed_limits, notices
 from latentarm.robots.robot import Robot
 from latentarm.runs.options import EndEffector, Json
 
@@ -57,6 +59,22 @@ def _robots(name: str | None, end_effector: str | None, limits: Path | None) -> 
         )
     stated = None if limits is None else read_limits(limits)
     return [load_robot(one, end_effector, stated) for one in ([name] if name is not None else list(ROBOTS))]
+
+
+def _written(name: str | None, end_effector: str | None, limits: Path | None, path: Path) -> str:
+    """Write a robot's limits file; what is left to fill in, a sentence."""
+    from latentarm.robots.limits_template import limits_template
+
+    if name is None:
+        raise UserError("--write-limits is for one robot: name it, as in `latentarm robots PATH`.")
+    if path.suffix.lower() != ".toml":
+        raise UserError(f"{path} must be a TOML file: name it .toml.")
+    if not is_missing(path):
+        raise UserError(f"{path} is there already: name a new file.")
+    (robot,) = _robots(name, end_effector, limits)
+    write_text(path, limits_template(robot))
+    missing = assumed_limits(robot)
+    return f"Wrote {path}. " + (f"Fill in: {missing}." if missing else "It states all limits.")
 
 
 def _facts(robot: Robot) -> dict[str, object]:
@@ -134,12 +152,19 @@ def robots(
     ] = None,
     end_effector: EndEffector = None,
     limits: LimitsFile = None,
+    write_limits: Annotated[
+        Path | None,
+        arg(metavar="FILE", help="Write a new limits file to fill in: a TOML file with what is known."),
+    ] = None,
     json: Json = False,
 ) -> int:
     """List the robots, or show one: joints, limits and end-effector.
 
     For example: latentarm robots panda
     """
+    if write_limits is not None:
+        say(_written(robot, end_effector, limits, write_limits), json)
+        return 0
     if json:
         print(json_format.dumps(describe(robot, end_effector, limits), indent=2))
     else:

@@ -262,16 +262,7 @@ class DriveSetup:
         return Step(
             self.task.robot,
             JoinedController([self.controller, to_pose or self.to_pose()]),
-            SafetyConfig(
-                joint_speed=self.spec.speeds.joint,
-                link_speed=self.spec.speeds.link,
-                input_timeout_s=INPUT_TIMEOUT_S,
-                input_grace_s=INPUT_GRACE_S,
-                release_fraction=RELEASE_FRACTION,
-                command_periods=COMMAND_PERIODS,
-                obstacles=self.obstacles,
-                zones=self.spec.zones,
-            ),
+            replace(safety_limits(self.spec.speeds), obstacles=self.obstacles, zones=self.spec.zones),
             goals=self.task.goals,
             belief=BoltzmannBelief(goals, period_s=BELIEF_PERIOD_S) if self.task.goals else None,
             assistance=GoalBlending(goals, self.help) if self.task.goals else None,
@@ -280,6 +271,18 @@ class DriveSetup:
             calls=calls,
             follows=not self.spec.shadow,
         )
+
+
+def safety_limits(speeds: Speeds) -> SafetyConfig:
+    """The page's limits, with nothing about the arm."""
+    return SafetyConfig(
+        joint_speed=speeds.joint,
+        link_speed=speeds.link,
+        input_timeout_s=INPUT_TIMEOUT_S,
+        input_grace_s=INPUT_GRACE_S,
+        release_fraction=RELEASE_FRACTION,
+        command_periods=COMMAND_PERIODS,
+    )
 
 
 def with_profile(setup: DriveSetup, profile: str | None, seat: Seat | None) -> DriveSetup:
