@@ -172,7 +172,8 @@ class States:
                 self._set_off.set()
                 self._set_off.clear()
             self._moves = moved
-            self.arm_start += report.lost and not (self.report is not None and self.report.lost)
+            if report.lost and not (self.report is not None and self.report.lost):
+                self.arm_start += 1
             self.report = report
             self._things = report.things or self._things
             self.loading = report.loading
