@@ -110,7 +110,7 @@ def drive_back(page: Page) -> None:
     why = page.locator("#way-back-why")
     at_start = json.loads(page.locator("#words").text_content() or "")[AT_START]
     for _ in range(10):
-        if why.inner_text() == at_start:
+        if why.text_content() == at_start:
             break
         enable(page)
         page.locator("#way-back").dispatch_event("click")

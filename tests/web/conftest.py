@@ -356,8 +356,8 @@ class Site:
 
 
 @contextmanager
-def served(spec: Spec, *, pins: bool = False) -> Iterator[Site]:
-    config = TeleopConfig(spec, port=0, pins=pins)
+def served(spec: Spec, *, pins: bool = False, locked: bool = False) -> Iterator[Site]:
+    config = TeleopConfig(spec, port=0, pins=pins, lock_setup=locked)
     listening = listen(config)
     port = int(listening.getsockname()[1])
     control = ControlProcess(spec)

@@ -240,25 +240,6 @@ def test_the_mode_that_is_on_already_stops_nobody(desk):
     assert desk.speeds()[(desk.times() > 0.8) & (desk.times() < 1.5)].min() > 0.0
 
 
-def test_stops_for_late_inputs_are_counted_for_each_driver(desk):
-    def tick(now_s):
-        for at_s in (0.1, 1.0, 2.0, 3.5):
-            if abs(now_s - at_s) < 0.005:
-                desk.order(Enable(driver=1 if now_s < 3.0 else 2, stops=desk.channel.stop.version))
-        if abs(now_s - 2.3) < 0.005:
-            desk.channel.stop.write(ADA.model_dump_json().encode())
-        if not (0.5 < now_s < 0.8 or 1.5 < now_s < 1.8):
-            desk.give(0.0, 0.0, driver=1 if now_s < 3.0 else 2)
-
-    desk.each_tick = tick
-    desk.run(4.0)
-    counted = {round(report.time_s, 2): report.late_stops for report in desk.reports}
-    # A stop that somebody pressed is no late one.
-    assert [counted[at_s] for at_s in (0.45, 0.9, 1.9, 2.9, 3.6)] == [0, 1, 2, 2, 0]
-    late = next(report for report in desk.reports if round(report.time_s, 2) == 0.9)
-    assert late.reason.code == "input_late"
-
-
 def test_another_driver_finds_a_stopped_arm(desk):
     def tick(now_s):
         enabled_at(desk, now_s)

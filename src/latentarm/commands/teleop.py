@@ -75,6 +75,13 @@ def teleop(
         bool,
         arg(help="Read a real arm and send it nothing: commands are only computed, drawn and recorded."),
     ] = False,
+    idle_minutes: Annotated[
+        float, arg(metavar="MIN", help="Disable the arm when nobody has given an input for so long.")
+    ] = 2.0,
+    lock_setup: Annotated[
+        bool,
+        arg(help="Nobody changes anything in Set up, teaches or personalises; people keep their settings."),
+    ] = False,
     pin: Annotated[bool, arg(help="People may protect their records by a PIN.")] = False,
     json: Json = False,
 ) -> int:
@@ -85,6 +92,7 @@ def teleop(
     from latentarm.core.journal_limits import JournalLimits
     from latentarm.safety.zones_file import StatedZones, read_zones
     from latentarm.web.arm_process.drive_setup import Spec
+    from latentarm.web.arm_process.idle_limit import idle_s_of
     from latentarm.web.arm_process.initial_state import RobotOptions
     from latentarm.web.arm_process.speeds import Speeds
     from latentarm.web.cameras.sources import kept, parse_cameras
@@ -125,7 +133,8 @@ def teleop(
         incidents=incidents,
         seat=seat,
         shadow=shadow,
+        idle_s=idle_s_of(idle_minutes),
     )
-    config = TeleopConfig(spec, host, port, certfile, keyfile, pin, cameras)
+    config = TeleopConfig(spec, host, port, certfile, keyfile, pin, cameras, lock_setup)
     serve(config, partial(say, json=json), ready, draws=draws_blocks())
     return 0

@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from playwright.sync_api import Browser, Page, sync_playwright
+from playwright.sync_api import Browser, Locator, Page, sync_playwright
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
@@ -273,12 +273,34 @@ def page(open_page: Callable[..., Page], arm: Arm) -> Page:
 def seated(page: Page, arm: Arm) -> Page:
     """The page drives, and the arm is at its start."""
     arm.start_again()
-    page.get_by_role("button", name="Ask to drive").click()
-    page.get_by_role("button", name="Let others drive").wait_for()
+    ask_to_drive(page)
     page.get_by_role("radio", name="Learned motions").check()
-    page.get_by_role("group", name="Help from the robot").get_by_role("radio", name="Medium").check()
+    page.get_by_role("radio", name="Fast").check()
+    with set_up(page) as dialog:
+        dialog.get_by_role("group", name="Help from the robot").get_by_role("radio", name="Medium").check()
     arm.wait(lambda: arm.state["mode"] == "assisted")
     return page
+
+
+@contextmanager
+def set_up(page: Page) -> Iterator[Locator]:
+    """Everything but driving, as long as the block lasts; the arm is stopped for it."""
+    page.locator("#settings-open").click()
+    yield page.get_by_role("dialog")
+    page.locator("#settings-close").click()
+
+
+def control_with(page: Page, name: str) -> None:
+    """Press the stick, buttons or a switch from now on."""
+    with set_up(page) as dialog:
+        dialog.get_by_role("radio", name=name, exact=True).check()
+
+
+def ask_to_drive(page: Page) -> None:
+    """Drive, where nobody else does."""
+    with set_up(page) as dialog:
+        dialog.get_by_role("button", name="Ask to drive").click()
+        dialog.get_by_role("button", name="Let others drive").wait_for()
 
 
 def driven_back(page: Page, arm: Arm) -> None:

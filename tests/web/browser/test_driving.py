@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from playwright.sync_api import Error
 
-from .conftest import press_switch
+from .conftest import control_with, press_switch
 
 NEAR_M = 0.03
 PATIENCE_S = 60.0
@@ -72,7 +72,7 @@ class Buttons:
 
     def __init__(self, page, _drag_stick):
         self.page = page
-        page.get_by_role("radio", name="Buttons").check()
+        control_with(page, "Buttons")
 
     def enable(self):
         self.page.get_by_role("button", name="Enable", exact=True).click()
@@ -93,7 +93,7 @@ class OneSwitch:
         page.get_by_role("button", name="Settings").click()
         page.get_by_label("Time on each choice").fill("0.6")
         page.get_by_role("button", name="Done").click()
-        page.get_by_role("radio", name="Switch").check()
+        control_with(page, "Switch")
         page.get_by_role("button", name="Switch", exact=True).focus()
 
     def _choose(self, choice):

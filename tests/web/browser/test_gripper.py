@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from playwright.sync_api import Error
 
-from .conftest import press_switch
+from .conftest import ask_to_drive, control_with, press_switch
 
 GAMEPAD = """
 const buttons = [0, 1, 2, 3].map(() => ({ pressed: false }));
@@ -102,7 +102,7 @@ class OneSwitch:
         page.get_by_role("button", name="Settings").click()
         page.get_by_label("Time on each choice").fill("0.6")
         page.get_by_role("button", name="Done").click()
-        page.get_by_role("radio", name="Switch").check()
+        control_with(page, "Switch")
         page.get_by_role("button", name="Switch", exact=True).focus()
 
     def _choose(self, choice):
@@ -170,8 +170,8 @@ def move(hand, arm, way, until):
 def test_a_person_picks_a_cup_up_and_sets_it_down(open_page, arm, hand_of):
     page = open_page(GAMEPAD if hand_of is Gamepad else "")
     arm.start_again()
-    page.get_by_role("button", name="Ask to drive").click()
-    page.get_by_role("button", name="Let others drive").wait_for()
+    ask_to_drive(page)
+    page.get_by_role("radio", name="Fast").check()
     page.get_by_role("radio", name="Across").check()
     arm.wait(lambda: arm.state["axes"] == 0)
     arm.wait(lambda: arm.state["gripper"]["closing"] is None and abs(height(arm)) < 1e-3)

@@ -5,12 +5,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from playwright.sync_api import expect
 
 from latentarm.alignment.answers import Answers
 from latentarm.alignment.profile import new_profile_folder
 from latentarm.runs.aligning import alignable, learn
 
-from .conftest import press_switch
+from .conftest import control_with, press_switch, set_up
 
 SWITCH_KEY, NEXT_KEY = "Enter", "Backspace"
 FAR_M = 0.02
@@ -75,7 +76,7 @@ def test_swapped_axes_turn_the_way_of_the_tool(page, arm, press_enable, way):
 
 def test_a_latched_press_moves_the_arm_until_the_next(page, arm, press_enable, go):
     settle(page, arm, press_enable, "moves the arm until I press again")
-    page.get_by_role("radio", name="Buttons").check()
+    control_with(page, "Buttons")
     if not arm.comes_to(lambda: arm.enabled, 0.5):
         press_enable(page, arm)
     left = page.get_by_role("button", name="Left", exact=True)
@@ -89,7 +90,7 @@ def test_two_switches_drive_the_arm(page, arm):
     page.get_by_role("button", name="Settings").click()
     page.get_by_role("dialog").get_by_label("Two switches").check()
     page.get_by_role("button", name="Done").click()
-    page.get_by_role("radio", name="Switch").check()
+    control_with(page, "Switch")
     lit = page.locator("#scan li[aria-current=true]")
 
     def choose(name):
@@ -121,7 +122,7 @@ def test_after_handing_over_the_other_drives_and_this_one_does_not(page, arm, op
     other = open_page()
     other.get_by_role("button", name="Ask to drive").click()
     page.get_by_role("button", name="Hand over to").click()
-    other.get_by_text("You are driving").wait_for()
+    expect(other.locator("#enable")).to_have_text("Enable")
     arm.comes_to_rest()
     press_enable(other, arm)
     page.locator("#stick").focus()
@@ -152,7 +153,8 @@ class TestProfile:
             yield arm
 
     def test_a_chosen_profile_turns_the_stick_round(self, page, arm, press_enable, drive_back, way):
-        page.get_by_role("group", name="Help from the robot").get_by_role("radio", name="Off").check()
+        with set_up(page) as dialog:
+            dialog.get_by_role("group", name="Help from the robot").get_by_role("radio", name="Off").check()
         arm.wait(lambda: arm.state["mode"] == "latent")
         press_enable(page, arm)
         plain = way(page, "ArrowLeft")

@@ -2,12 +2,15 @@
 
 from playwright.sync_api import expect
 
+from .conftest import ask_to_drive, set_up
+
 
 def levels(page):
     return page.get_by_role("group", name="Help from the robot")
 
 
 def test_help_is_on_at_first_and_each_level_says_what_it_does(page, arm):
+    page.locator("#settings-open").click()
     expect(levels(page).get_by_role("radio", name="Medium")).to_be_checked()
     arm.wait(lambda: (arm.state["mode"], arm.state["help"]) == ("assisted", "medium"))
     said = set()
@@ -18,6 +21,7 @@ def test_help_is_on_at_first_and_each_level_says_what_it_does(page, arm):
         page.wait_for_timeout(300)
         said.add(page.locator("#help-text").inner_text())
     assert len(said) == 4
+    page.locator("#settings-close").click()
     page.get_by_role("radio", name="Straight lines").check()
     expect(page.locator("#help-text")).to_contain_text("does not help")
     page.get_by_role("radio", name="Learned motions").check()
@@ -25,9 +29,11 @@ def test_help_is_on_at_first_and_each_level_says_what_it_does(page, arm):
 
 
 def test_the_level_is_kept_for_the_person(page, arm):
-    levels(page).get_by_role("radio", name="Low").check()
-    arm.wait(lambda: arm.state["help"] == "low")
+    with set_up(page):
+        levels(page).get_by_role("radio", name="Low").check()
+        arm.wait(lambda: arm.state["help"] == "low")
     page.reload()
-    page.get_by_role("button", name="Ask to drive").click()
-    expect(levels(page).get_by_role("radio", name="Low")).to_be_checked()
+    ask_to_drive(page)
+    with set_up(page):
+        expect(levels(page).get_by_role("radio", name="Low")).to_be_checked()
     arm.wait(lambda: arm.state["help"] == "low")

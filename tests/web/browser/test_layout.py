@@ -1,7 +1,16 @@
 """The arm, the stick and Stop are on one screen, whatever its size, direction and colours."""
 
+import itertools
+
 import pytest
 
+from latentarm.tasks.catalogue import SCENE_TASKS, TASKS
+from latentarm.web.words.catalogue import COOKIE
+
+SEEN_PX = 90
+"""A view that is smaller shows nothing."""
+
+PRACTISED = '{"practised": true}'
 SIZES = {
     "a laptop": (1280, 720),
     "200 %": (640, 360),
@@ -42,28 +51,80 @@ def opened(open_page):
     return opened
 
 
+ALWAYS = [".line", "#enable", "#status", "#stop", "#poses-open", "#settings-open"]
+CHOICES = [
+    "#mode .options",
+    "#axes .options",
+    "#speed .options",
+    "#gripper-close",
+    "#gripper-open",
+    "#gripper-state",
+]
+"""Some of these have nothing to choose in some tasks."""
+
+
+def parts(page, panel):
+    """What must be wholly on the screen, as this task has it."""
+    shown = [one for one in CHOICES if page.locator(one).is_visible()]
+    return [".views:not([hidden])", *ALWAYS, *PANELS[panel], *shown]
+
+
+def assert_on_one_screen(page, look):
+    assert page.evaluate(CUT_OFF, parts(page, look[-1])) == [], look
+    assert page.evaluate("document.scrollingElement.scrollHeight <= innerHeight"), look
+    assert page.evaluate("document.scrollingElement.scrollWidth <= innerWidth"), look
+    view = page.locator(".view:visible").first.bounding_box()
+    assert min(view["width"], view["height"]) >= SEEN_PX, look
+
+
 @pytest.mark.parametrize("name", SIZES)
 def test_arm_stick_and_stop_are_on_one_screen(opened, name):
     page = opened(SIZES[name])
-    always = ["#view-front", "#status", "#enable", "#stop"]
     for offered in (True, False):
         if not offered:
             page.get_by_role("button", name="Skip", exact=True).click()
-            page.evaluate("scrollTo(0, 0)")
-        for panel, parts in PANELS.items():
+        for panel in PANELS:
             page.locator(f"input[name=panel][value={panel}]").evaluate("one => one.click()")
-            assert page.evaluate(CUT_OFF, [*always, *parts]) == [], (panel, offered)
-            assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
-    if name == "a laptop":
-        assert page.evaluate(CUT_OFF, ["#gripper-close", "#gripper-open", "#gripper-state"]) == []
+            assert_on_one_screen(page, (name, panel))
+
+
+@pytest.mark.parametrize("task", ["learned", *TASKS, *SCENE_TASKS])
+def test_nothing_scrolls_in_any_task_at_any_size_with_any_control(
+    chromium, start_server, tmp_path, trained, task
+):
+    named = [str(trained)] if task == "learned" else ["--task", task]
+    physics = ["--arm", "mujoco"] if task in SCENE_TASKS else []
+    with start_server(tmp_path, *named, *physics) as address:
+        for language in ("en", "de"):
+            context = chromium.new_context(reduced_motion="reduce")
+            context.add_cookies([{"name": COOKIE, "value": language, "url": address}])
+            context.add_init_script(f"localStorage['latentarm.settings.'] = '{PRACTISED}'")
+            page = context.new_page()
+            page.goto(address)
+            page.locator(".label").first.wait_for(state="attached")
+            for name, panel in itertools.product(SIZES, PANELS):
+                page.set_viewport_size({"width": SIZES[name][0], "height": SIZES[name][1]})
+                page.locator(f"input[name=panel][value={panel}]").evaluate("one => one.click()")
+                page.wait_for_timeout(120)
+                assert_on_one_screen(page, (name, panel))
+            context.close()
+
+
+@pytest.mark.parametrize("name", SIZES)
+def test_stop_is_in_its_corner(opened, name):
+    width, height = SIZES[name]
+    page = opened((width, height))
+    box = page.locator("#stop").bounding_box()
+    assert box["x"] + box["width"] > width - 16
+    assert box["y"] + box["height"] > height - 16
 
 
 @pytest.mark.parametrize("name", SIZES)
 def test_the_practice_leaves_the_arm_the_stick_and_stop_on_the_screen(opened, name):
     page = opened(SIZES[name])
     page.get_by_role("button", name="Practise now").click()
-    page.evaluate("scrollTo(0, 0)")
-    assert page.evaluate(CUT_OFF, ["#practice-now", "#view-front", "#stick", "#enable", "#stop"]) == []
+    assert page.evaluate(CUT_OFF, ["#practice-now"]) == []
+    assert_on_one_screen(page, (name, "stick"))
 
 
 @pytest.mark.parametrize("path", ["", "personalise", "teach"])
@@ -83,8 +144,6 @@ def test_a_script_from_right_to_left_breaks_nothing(opened, address, name, path)
         )
         # Left is where the arm goes left, in every script.
         assert left < right
-        begin, end = (page.locator(f"#{name}").bounding_box()["x"] for name in ("view-side", "view-front"))
-        assert begin <= end
 
 
 COLOURS = """async (names) => {
@@ -104,7 +163,7 @@ def test_forced_colours_leave_food_table_and_paths_apart(opened, scheme):
         "all => all.map((one) => getComputedStyle(one).backgroundColor)"
     )
     assert len(set(marks)) == 4
-    chosen, other = page.locator("#panel-choice .options span").evaluate_all(
+    chosen, other = page.locator("#speed .options span").evaluate_all(
         "all => all.slice(0, 2).map((one) => getComputedStyle(one).backgroundColor)"
     )
     assert chosen != other
@@ -152,6 +211,7 @@ def test_the_page_can_be_installed_and_has_no_service_worker(open_page):
 
 def test_a_question_mark_opens_an_explanation_without_hiding_stop(open_page):
     page = open_page()
+    page.locator("#settings-open").click()
     for mark in page.locator(".explain > summary").all():
         if not mark.is_visible():
             continue
@@ -161,7 +221,7 @@ def test_a_question_mark_opens_an_explanation_without_hiding_stop(open_page):
             "one => one.parentElement.open && one.parentElement.querySelector('p').checkVisibility()"
         )
         assert mark.get_attribute("aria-label").startswith("What is this?")
-        assert page.evaluate(CUT_OFF, ["#stop"]) == []
+        assert page.locator("#settings [data-stop]").is_visible()
     # Nothing has enabled the arm.
     assert page.locator("#status").get_attribute("data-phase") == "disengaged"
 

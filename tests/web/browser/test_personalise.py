@@ -13,6 +13,8 @@ from latentarm.alignment.demonstrated import demonstrated_motions
 from latentarm.runs.folder import read_run, robot_of
 from latentarm_research.studies.alignment.drives_learning import turned_person
 
+from .conftest import ask_to_drive, set_up
+
 REACH = 96 / 264
 """From the middle of the stick's drawing to its edge, as a share of the drawing."""
 
@@ -145,7 +147,9 @@ def question(page, arm, number):
 def straightness(page, arm, person, drag, press_until_moving, press_enable, drive_back):
     """The cosine between the way of the tool from its start and what the person means by up."""
     page.get_by_role("radio", name="Learned motions").check()
-    page.get_by_role("group", name="Help from the robot").get_by_role("radio", name="Off").check()
+    page.get_by_role("radio", name="Fast").check()
+    with set_up(page) as dialog:
+        dialog.get_by_role("group", name="Help from the robot").get_by_role("radio", name="Off").check()
     arm.wait(lambda: arm.state["mode"] == "latent")
     drive_back(page, arm)
     begin = arm.tool
@@ -167,8 +171,7 @@ def test_a_person_is_asked_and_the_arm_does_what_they_mean(
     open_page, arm, person, drag_stick, press_until_moving, press_enable, drive_back, run
 ):
     page = open_page(GAMEPAD)
-    page.get_by_role("button", name="Ask to drive").click()
-    page.get_by_role("button", name="Let others drive").wait_for()
+    ask_to_drive(page)
     hands = (person, drag_stick, press_until_moving, press_enable, drive_back)
     before = straightness(page, arm, *hands)
     drive_back(page, arm)

@@ -76,6 +76,7 @@ def test_keys_alone_tick_every_step_off(practising, arm, press_enable):
     page.reload()
     page.locator(".label").first.wait_for(state="attached")
     assert not page.locator("#practice").is_visible()
+    page.locator("#settings-open").click()
     page.get_by_role("button", name="Practise", exact=True).click()
     assert page.locator("#practice-now").is_visible()
 

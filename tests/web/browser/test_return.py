@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from playwright.sync_api import Error, expect
 
-from .conftest import press_switch
+from .conftest import control_with, press_switch
 
 TRIES = 8
 SAID = """() => {
@@ -71,7 +71,7 @@ def test_it_drives_back_without_a_jump_and_says_so(on_its_way, arm, drive_back):
         assert "The arm is back at the start." in page.evaluate("said") or not arm.enabled
     drive_back(page, arm)
     expect(page.locator("#way-back")).to_be_disabled()
-    page.get_by_text("The arm is at the start.").wait_for()
+    expect(page.locator("#way-back-why")).to_have_text("The arm is at the start.")
 
 
 @pytest.mark.parametrize("ending", ["Space", "ArrowLeft", "settings", "button", "closed"])
@@ -80,6 +80,7 @@ def test_whatever_the_person_does_ends_it(on_its_way, arm, ending):
     if ending == "settings":
         page.locator("#settings-open").click()
     elif ending == "button":
+        page.locator("#poses-open").click()
         page.get_by_role("button", name="End the way back").click()
     elif ending == "closed":
         page.close()
@@ -107,7 +108,7 @@ def test_a_button_that_does_nothing_says_why(page, arm, open_page, away):
 
 def test_it_begins_from_the_scan_and_a_press_of_the_switch_ends_it(away, arm, press_enable):
     page = away()
-    page.get_by_role("radio", name="Switch").check()
+    control_with(page, "Switch")
     page.get_by_role("button", name="Switch", exact=True).focus()
 
     def choose(name):

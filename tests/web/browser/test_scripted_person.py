@@ -2,6 +2,7 @@
 
 import pytest
 
+from .conftest import ask_to_drive
 from .scripted_person import Person
 
 
@@ -19,8 +20,8 @@ def arm(watch, address):
 
 def test_what_the_page_shows_is_enough_to_eat(open_page, arm):
     page = open_page(viewport={"width": 1024, "height": 800}, locale="en-GB")
-    page.get_by_role("button", name="Ask to drive").click()
-    page.get_by_role("button", name="Let others drive").wait_for()
+    ask_to_drive(page)
+    page.get_by_role("radio", name="Fast").check()
     page.locator("#stick").focus()
     said = Person(page).drive()
     assert said.startswith("Done!"), said

@@ -8,6 +8,8 @@ import pytest
 from playwright.sync_api import expect
 from websockets.sync.client import connect
 
+from .conftest import control_with
+
 CUT = """
 const Real = window.WebSocket;
 window.sockets = [];
@@ -120,7 +122,7 @@ def test_the_button_of_a_watcher_says_that_it_asks(page, arm, open_page):
     expect(button).to_be_disabled()
     reads(watcher, r"You have asked to drive: wait until Guest \d+ hands over.$")
     expect(third.locator("#enable")).to_be_disabled()
-    third.get_by_text("has asked to drive already").wait_for()
+    expect(third.locator("#driver")).to_contain_text("has asked to drive already")
     page.get_by_role("button", name="Hand over to").click()
     reads(watcher, "Press Enable to move the arm.$")
     reads(page, "is driving; you are watching.$")
@@ -130,7 +132,7 @@ def test_the_button_of_a_watcher_says_that_it_asks(page, arm, open_page):
 
 def test_a_press_of_a_watcher_says_what_to_do(enabled, open_page):
     watcher = open_page()
-    watcher.get_by_role("radio", name="Buttons").check()
+    control_with(watcher, "Buttons")
     watcher.get_by_role("button", name="Up", exact=True).click()
     reads(watcher, "^You are watching. Press “Ask to drive” first.$")
 
@@ -138,9 +140,8 @@ def test_a_press_of_a_watcher_says_what_to_do(enabled, open_page):
 HANG = "setTimeout(() => { const end = performance.now() + 600; while (performance.now() < end); })"
 
 
-def test_a_slow_computer_is_named_and_counted(page, arm, open_page, stop_for):
+def test_a_slow_computer_is_named(page, arm, open_page, stop_for):
     watcher = open_page()
-    before = arm.state["late_stops"]
     for _ in range(5):
         stop_for(page, "input_late", lambda: page.evaluate(HANG))
         page.wait_for_timeout(800)
@@ -149,16 +150,13 @@ def test_a_slow_computer_is_named_and_counted(page, arm, open_page, stop_for):
             break
     reads(page, "^Your computer was too slow for a moment, so the arm stopped. Press Enable")
     reads(watcher, "^The driver's computer or connection was too slow for a moment, so the arm stopped")
-    assert arm.state["late_stops"] > before
-    page.get_by_text(re.compile(r"^The arm has stopped (once|\d+ times) because")).wait_for()
-    expect(watcher.locator("#late-stops")).to_be_hidden()
 
 
 @pytest.fixture
 def latched(page, arm, press_enable):
     """A page whose arm moves on by itself."""
     page.evaluate("localStorage.clear()")
-    page.get_by_role("radio", name="Buttons").check()
+    control_with(page, "Buttons")
     page.get_by_role("button", name="Settings").click()
     page.get_by_role("radio", name="moves the arm until I press again").check()
     page.get_by_role("button", name="Done").click()

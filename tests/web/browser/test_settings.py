@@ -5,6 +5,8 @@ import json
 import numpy as np
 import pytest
 
+from .conftest import control_with
+
 SENT = """
 window.sent = [];
 const send = WebSocket.prototype.send;
@@ -87,7 +89,7 @@ def test_the_tool_goes_where_the_stick_points_in_the_front_view(person, arm, hel
 def test_a_step_ends_by_itself(person, arm, press_enable, press_until_moving):
     settings(person).get_by_label("moves the arm one step").check()
     person.get_by_role("button", name="Done").click()
-    person.get_by_role("radio", name="Buttons").check()
+    control_with(person, "Buttons")
     arm.wait(lambda: not arm.enabled)
     press_enable(person, arm)
     before = arm.tool
@@ -99,7 +101,7 @@ def test_a_step_ends_by_itself(person, arm, press_enable, press_until_moving):
 def test_a_latched_press_goes_on_until_the_next(person, arm, press_enable, press_until_moving):
     settings(person).get_by_role("radio", name="moves the arm until I press again").check()
     person.get_by_role("button", name="Done").click()
-    person.get_by_role("radio", name="Buttons").check()
+    control_with(person, "Buttons")
     arm.wait(lambda: not arm.enabled)
     press_enable(person, arm)
     left = person.get_by_role("button", name="Left", exact=True)
@@ -112,7 +114,7 @@ def test_a_latched_press_goes_on_until_the_next(person, arm, press_enable, press
 def test_two_switches_go_on_and_choose(person, arm):
     settings(person).get_by_label("Two switches").check()
     person.get_by_role("button", name="Done").click()
-    person.get_by_role("radio", name="Switch").check()
+    control_with(person, "Switch")
     arm.wait(lambda: not arm.enabled)
     lit = person.locator("#scan li[aria-current=true]")
     lit.get_by_text("Enable").wait_for()

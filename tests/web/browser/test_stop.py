@@ -1,6 +1,7 @@
 """Stop acts on press, on Space and on Escape, from every page; one page drives at a time."""
 
 import pytest
+from playwright.sync_api import expect
 
 
 @pytest.fixture
@@ -28,7 +29,7 @@ def test_stop_acts_on_press_and_not_on_release(moving, arm):
 
 def test_a_watching_page_stops_the_arm_and_cannot_drive_it(moving, arm, open_page):
     watcher = open_page()
-    watcher.locator("#driver", has_text="is driving; you are watching").wait_for()
+    expect(watcher.locator("#driver")).to_contain_text("is driving; you are watching")
     watcher.keyboard.press("Escape")
     arm.comes_to_rest()
     watcher.locator("#stick").focus()
@@ -56,10 +57,9 @@ def test_settings_have_a_stop_of_their_own(enabled, arm):
 def test_driving_is_handed_over(page, arm, open_page, press_enable, hold_key):
     other = open_page()
     other.get_by_role("button", name="Ask to drive").click()
-    page.get_by_text("asks to drive").wait_for()
     page.get_by_role("button", name="Hand over to").click()
-    other.get_by_text("You are driving").wait_for()
-    page.locator("#driver", has_text="is driving; you are watching").wait_for()
+    expect(other.locator("#enable")).to_have_text("Enable")
+    expect(page.locator("#driver")).to_contain_text("is driving; you are watching")
     press_enable(other, arm)
     hold_key(other)
     other.keyboard.up("ArrowLeft")

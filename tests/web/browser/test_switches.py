@@ -2,7 +2,7 @@
 
 import pytest
 
-from .conftest import press_switch
+from .conftest import control_with, press_switch
 
 SPEECH = """
 window.spoken = [];
@@ -23,7 +23,7 @@ def scan(page, **settings):
     for label, value in settings.items():
         dialog.get_by_label(label.replace("_", " ")).fill(value)
     page.get_by_role("button", name="Done").click()
-    page.get_by_role("radio", name="Switch", exact=True).check()
+    control_with(page, "Switch")
     page.get_by_role("button", name="Switch", exact=True).focus()
 
 
@@ -31,7 +31,7 @@ def two(page):
     page.get_by_role("button", name="Settings").click()
     page.get_by_role("dialog").get_by_label("Two switches").check()
     page.get_by_role("button", name="Done").click()
-    page.get_by_role("radio", name="Switch", exact=True).check()
+    control_with(page, "Switch")
     page.get_by_role("button", name="Switch", exact=True).focus()
 
 

@@ -8,6 +8,8 @@ import pytest
 from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import expect
 
+from .conftest import ask_to_drive, set_up
+
 NEAR_M = 0.02
 """So near the tool comes to where it started."""
 
@@ -62,14 +64,16 @@ def push(press_until_moving, press_enable):
 def record(page, arm, push, drive_back, number):
     """One episode by keyboard alone, from the start; the way that the tool went, m."""
     begin = arm.tool
-    page.get_by_role("button", name="Start recording").click()
+    with set_up(page) as dialog:
+        dialog.get_by_role("button", name="Start recording").click()
     arm.wait(lambda: arm.state["recording"] and arm.state["recording"]["on"])
     assert push(page, arm, "ArrowUp", lambda: np.linalg.norm(arm.tool - begin) > 2 * WAY_M)
     page.keyboard.press("Escape")
     arm.comes_to_rest()
     way = arm.tool - begin
-    page.get_by_role("button", name="Stop recording").click()
-    expect(page.locator("#record-text")).to_have_text(re.compile(f"^{number} recordings? kept"))
+    with set_up(page) as dialog:
+        dialog.get_by_role("button", name="Stop recording").click()
+        expect(page.locator("#record-text")).to_have_text(re.compile(f"^{number} recordings? kept"))
     drive_back(page, arm)
     assert np.linalg.norm(arm.tool - begin) < NEAR_M
     return way
@@ -77,11 +81,14 @@ def record(page, arm, push, drive_back, number):
 
 def test_the_arm_learns_on_the_page_what_it_was_shown(open_page, arm, push, drive_back, tmp_path):
     page = open_page()
-    page.get_by_role("button", name="Ask to drive").click()
+    ask_to_drive(page)
+    page.get_by_role("radio", name="Fast").check()
     assert arm.welcome["run"] is None
-    page.get_by_label("What you are doing").fill("push")
+    with set_up(page) as dialog:
+        dialog.get_by_label("What you are doing").fill("push")
     ways = [record(page, arm, push, drive_back, number) for number in (1, 2, 3)]
 
+    page.locator("#settings-open").click()
     page.get_by_role("link", name="Teach the arm from these").click()
     expect(page.get_by_role("checkbox", name=re.compile("Recording 3: push"))).to_be_checked()
     train = page.get_by_role("button", name="Train", exact=True)
@@ -113,7 +120,7 @@ def test_the_arm_learns_on_the_page_what_it_was_shown(open_page, arm, push, driv
     page.locator(".label").first.wait_for(state="attached")
     expect(page.locator("#about")).to_have_text(re.compile("Learned: pushing"))
     arm.wait(lambda: arm.welcome["run"] == "pushing")
-    page.get_by_role("button", name="Ask to drive").click()
+    ask_to_drive(page)
     page.get_by_role("radio", name="Learned motions").check()
     arm.wait(lambda: arm.state["mode"] in ("latent", "assisted"))
     shown = np.mean([way / np.linalg.norm(way) for way in ways], axis=0)

@@ -3,7 +3,6 @@
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 
-import { attachBelief } from "#pages/drive/belief.js";
 import { nextSteering } from "#pages/drive/modes.js";
 import { attachProfileChoice } from "#pages/drive/profile_choice.js";
 import { recordingWords } from "#pages/drive/recording.js";
@@ -31,17 +30,6 @@ test("one button reaches every mode and every pair of axes, and comes round", ()
 
 test("a mode that is not offered is followed by the first one", () => {
   assert.deepEqual(nextSteering(welcomeOf({ modes: ["end_effector"] }), { mode: "latent", axes: 0 }), { mode: "end_effector", axes: 0 });
-});
-
-test("how much the robot helps is said only where it can help", () => {
-  const [list, none, alphaText, level] = Array.from({ length: 4 }, () => new FakeElement());
-  const alpha = Object.assign(new FakeElement(), { firstElementChild: { style: {} } });
-  const belief = attachBelief({ list, none, alpha, alphaText, level });
-  const shown = [{}, { help: "medium", mode: "assisted" }, { mode: "end_effector" }, { help: null }, { belief: null }].map((fields) => {
-    belief.show(stateOf({ belief: [0.5, 0.5], ...fields }));
-    return !level.hidden;
-  });
-  assert.deepEqual(shown, [true, true, false, false, false]);
 });
 
 test("a goal is marked as the likeliest only where it stands out", () => {

@@ -65,7 +65,8 @@ test("a real arm is enabled once everything was confirmed, a simulated one at on
 
 test("the robot's own poses come before saved ones, and cannot be deleted", () => {
   const sent = [];
-  const parts = { list: new FakeElement(), why: new FakeElement(), name: new FakeElement(), save: new FakeElement() };
+  const parts = Object.fromEntries(["panel", "list", "why", "name", "save"].map((name) => [name, new FakeElement()]));
+  parts.panel.hidePopover = () => {};
   parts.list.querySelectorAll = () => [];
   const connection = Object.assign(new EventTarget(), {
     ...DRIVING, state: stateOf({ phase: "ready", you: true }), welcome: welcomeOf({ poses: ["home", "tuck"] }),

@@ -2,7 +2,9 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { modeInput, shape } from "#pages/inputs/shaping.js";
-import { DEFAULTS } from "#pages/settings/settings.js";
+import { DEFAULTS as USUAL } from "#pages/settings/settings.js";
+
+const DEFAULTS = { ...USUAL, sensitivity: 1 };
 
 const near = (found, wanted) => {
   assert.equal(found.length, wanted.length);

@@ -40,7 +40,7 @@ function hears(run = {}, fields = {}) {
 
 beforeEach(() => {
   fakes = newBrowser();
-  const names = ["panel", "steps", "fills", "said", "time", "why", "chooser", "choice", "next", "again"];
+  const names = ["panel", "steps", "fills", "said", "time", "why", "chooser", "choice", "next", "again", "more"];
   parts = Object.fromEntries(names.map((name) => [name, new FakeElement()]));
   parts.panel.hidden = true;
   sent = [];
@@ -49,7 +49,7 @@ beforeEach(() => {
   task = attachTask(parts, connection, (outcome) => heard.push(outcome));
 });
 
-const marks = () => parts.steps.children.map((item) => item.children[0].textContent).join("");
+const marks = () => parts.steps.children.map((item) => ({ done: "✓", now: "▸", later: "○" })[item.dataset.step]).join("");
 const press = (part) => parts[part].dispatchEvent(event("click"));
 
 test("without steps there is no panel, and nothing to choose", () => {
@@ -74,7 +74,7 @@ test("steps tick off, and each is said with the next", () => {
 test("the distance that is left is told at the step that is to be done", () => {
   welcomes();
   hears();
-  const away = () => parts.steps.children.map((item) => item.children[3].textContent);
+  const away = () => parts.steps.children.map((item) => item.children[2].textContent);
   assert.deepEqual(away(), ["20 cm to go", ""]);
   hears({}, { tool: [0.5, 0, 0.15] });
   assert.deepEqual(away(), ["5 cm to go", ""]);
@@ -115,7 +115,7 @@ test("what slipped is said with what to do, its step is to be done again, and th
   assert.equal(parts.said.textContent, "The arm no longer holds the left marshmallow. Take it again, or press Again.");
   assert.equal(marks(), "▸✓");
   assert.equal(parts.panel.dataset.outcome, "stuck");
-  assert.deepEqual(parts.steps.children.map((item) => item.children[3].textContent), ["20 cm to go", ""]);
+  assert.deepEqual(parts.steps.children.map((item) => item.children[2].textContent), ["20 cm to go", ""]);
   assert.deepEqual(task.choices().map(({ id }) => id), ["next", "again"]);
   assert.deepEqual(heard, []);
   hears({ done: 1 });

@@ -20,9 +20,10 @@ from latentarm.web.arm_process.drive_setup import PERIOD_S, DriveSetup
 from latentarm.web.arm_process.episode_writer import EpisodeWriter
 from latentarm.web.arm_process.episodes import Episodes
 from latentarm.web.arm_process.ghosts import GhostPaths
+from latentarm.web.arm_process.idle_limit import IdleLimit
 from latentarm.web.arm_process.latest_readings import LatestReadings
 from latentarm.web.arm_process.neutral_interlock import NeutralInterlock
-from latentarm.web.arm_process.page_inputs import LateStops, PageInputs
+from latentarm.web.arm_process.page_inputs import PageInputs
 from latentarm.web.arm_process.pose_motion import AT_START_RAD, PoseMotion
 from latentarm.web.arm_process.steering import Steering
 from latentarm.web.arm_process.task_run import TaskRun
@@ -121,7 +122,8 @@ class Drive:
         straight = StraightWay(setup.task.robot, self._step.safety)
         self._way_back = PoseMotion(self._neutral, self._inputs, setup.start, straight)
         self._ended: Notice | None = None
-        self._late = LateStops()
+        self._idle = IdleLimit(setup.spec.idle_s, self._stop)
+        self._ordered = False
         self._loop = ControlLoop(self._step, arm, self._way_back, clock, [self._observe, *observers])
         self._stop_version = channel.stop.version
         self._reasons: dict[str, Notice] = {}
@@ -156,15 +158,22 @@ class Drive:
         kept = replace(record, things=self._thing_poses.rows()) if self._writer.on else record
         self._episodes.follow(kept, at_rest=self._step.at_rest)
         self._obey(record)
-        self._late.look(self._step.stopped, self._inputs.driver)
         self._disengaged.follow(record.time_s)
         self._follow_way_back(record)
         self._enable_if_asked(record.time_s)
+        self._look_for_inputs(record.time_s)
         self._channel.report.write(self._report(record).model_dump_json().encode())
         if self._clock.now_s() + _SPARE_S < record.time_s + PERIOD_S:
             self._look(record)
         if self._calls is not None:
             self._record_calls(self._calls)
+
+    def _look_for_inputs(self, now_s: float) -> None:
+        used = (
+            self._step.stopped is not None or self._way_back.on or self._inputs.take_used() or self._ordered
+        )
+        self._ordered = False
+        self._idle.look(now_s, used=used)
 
     def _record_calls(self, calls: CallLog) -> None:
         calls.flush()
@@ -183,6 +192,7 @@ class Drive:
             self._loop.finish()
         try:
             for order in self._channel.read_orders(_ORDERS_PER_TICK):
+                self._ordered = True
                 self._carry_out(order, record)
         except EOFError:
             self._loop.finish()
@@ -396,7 +406,7 @@ class Drive:
             guiding=self._disengaged.guiding,
             lost=self._disengaged.lost is not None,
             let_go_first=self._neutral.waiting,
-            late_stops=self._late.count,
+            idle_left_s=self._idle.left_s,
             mode=self._steering.mode,
             axes=self._steering.axes,
             help=self._steering.help if "assisted" in self._setup.modes else None,

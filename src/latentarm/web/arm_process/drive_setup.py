@@ -37,6 +37,7 @@ from latentarm.tasks.place import Place, ScenePlace, surroundings_of, watched
 from latentarm.tasks.step_goals import StepGoals
 from latentarm.tasks.task import Task
 from latentarm.web.arm_process.help import Help
+from latentarm.web.arm_process.idle_limit import USUAL_MINUTES, idle_s_of
 from latentarm.web.arm_process.initial_state import FREE, RobotOptions, begin, begin_real
 from latentarm.web.arm_process.page_inputs import INPUT_TIMEOUT_S
 from latentarm.web.arm_process.speeds import Speeds
@@ -85,6 +86,7 @@ class Spec:
         incidents: whether calls are kept for a while, see `latentarm.web.arm_process.incident`.
         seat: where a person without a profile sits, see `latent_controller`; None for z = u.
         shadow: whether a real arm is read and nothing is sent to it.
+        idle_s: without an input for so long, the arm is disabled, s.
 
     Raises:
         UserError: the seed is out of range, a profile is named without a run, or a simulated arm gets a
@@ -108,6 +110,7 @@ class Spec:
     incidents: bool = True
     seat: Seat | None = None
     shadow: bool = False
+    idle_s: float = idle_s_of(USUAL_MINUTES)
 
     def __post_init__(self) -> None:
         if not 0 <= self.seed < SEEDS:

@@ -9,7 +9,7 @@ import numpy as np
 
 from latentarm.control.clock import Clock
 from latentarm.control.input_port import InputPort, InputSource
-from latentarm.core.types import Input, Stop
+from latentarm.core.types import Input
 from latentarm.web.protocol.notice import Notice
 from latentarm.web.protocol.orders import Given, Paced, parse_given
 from latentarm.web.protocol.shared_memory import LatestSlot
@@ -51,6 +51,7 @@ class PageInputs(InputSource):
         self.held_by: tuple[str, int] | None = None  # kind and number of the deflected device; None for none
         # kinds of device that have moved the arm or its gripper since this was last emptied
         self.devices: set[str] = set()
+        self._was_used = False
 
     def latest(self, now_s: float) -> tuple[Input, float]:
         """The newest input and its age, s."""
@@ -62,6 +63,11 @@ class PageInputs(InputSource):
             self._same_since_s = math.inf
             self._stop(Notice(code="latch_ended", parameters={"seconds": round(LATCH_MAX_S)}))
         return replace(given, pace=self._pace()), age_s
+
+    def take_used(self) -> bool:
+        """Whether the stick was deflected, or the gripper asked for something, since this was last called."""
+        used, self._was_used = self._was_used, False
+        return used
 
     def issue_nonce(self) -> str:
         """A nonce for the driver's page to echo."""
@@ -113,26 +119,9 @@ class PageInputs(InputSource):
             self._same_since_s = self._clock.now_s()
 
     def _used(self, device: str) -> None:
+        self._was_used = True
         if device:
             self.devices.add(device)
-
-
-@final
-class LateStops:
-    """Counts, for one driver, the stops because a page's input was late."""
-
-    def __init__(self) -> None:
-        self.count = 0
-        self._enabled = False
-        self._driver = -1
-
-    def look(self, stopped: Stop | None, driver: int) -> None:
-        """Call once a tick; ``stopped`` is None while the arm is enabled. A new driver restarts the count."""
-        if driver != self._driver:
-            self.count, self._driver = 0, driver
-        if self._enabled and stopped is not None and stopped.code == "input_late":
-            self.count += 1
-        self._enabled = stopped is None
 
 
 def _copilot(paced: Paced | None) -> int | None:

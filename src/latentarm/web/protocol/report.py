@@ -129,7 +129,7 @@ class ArmState(Message):
     guiding: Guiding | None  # None if the arm cannot be guided by hand
     lost: bool  # whether the connection to the arm is lost
     let_go_first: bool  # whether the stick does something else now: it must be let go before it moves the arm
-    late_stops: int  # stops because no input came in time, since this driver began to drive this
+    idle_left_s: int | None  # until it is disabled because nobody gives an input, shortly before; else None
     mode: ModeName
     axes: int  # which pair of the end-effector's axes
     help: HelpLevel | None  # level of help with learned motions; None without help

@@ -50,7 +50,7 @@ from latentarm.web.server.invitations import Invitations
 from latentarm.web.server.learning import Learning
 from latentarm.web.server.loaded_run import LoadedRun, RunList
 from latentarm.web.server.logs import LOGGING
-from latentarm.web.server.pages import PAGES, Pages
+from latentarm.web.server.pages import Pages
 from latentarm.web.server.people_routes import IMPORT, PeopleRoutes
 from latentarm.web.server.pins import Pins
 from latentarm.web.server.pose_book import PoseBook
@@ -58,6 +58,7 @@ from latentarm.web.server.rate_limit import MeteredSocket
 from latentarm.web.server.record_routes import RecordRoutes
 from latentarm.web.server.security import DRIVE, Gate, Keys
 from latentarm.web.server.sessions import Sessions
+from latentarm.web.server.setup_lock import SetupLock
 from latentarm.web.server.states import States
 
 _LOG: Final = logging.getLogger(__name__)
@@ -231,8 +232,9 @@ def build_app(
     learning = Learning(control, states, run_list, records.recordings, spec.out)
     history = History(states, sessions, records, calendar)
     pins = Pins(records.people, wanted=config.pins)
+    lock = SetupLock(records.people, states, on=config.lock_setup)
     poses = PoseBook(records.people, spec.out / FOLDER)
-    drive = DriveSocket(control, states, sessions, learning, records.people, pins, history, poses)
+    drive = DriveSocket(control, states, sessions, learning, records.people, pins, history, poses, lock)
 
     def driven_with(person: PersonRecord) -> bool:
         report = states.report
@@ -249,7 +251,7 @@ def build_app(
 
     assets = Assets()
     camera_names = [] if cameras is None else [source.name for source in cameras.sources]
-    pages = Pages(assets, model_names(), camera_names)
+    pages = Pages(assets, model_names(), camera_names, locked=lock.on)
     camera_routes = None if cameras is None else CameraRoutes(cameras, sessions)
 
     @asynccontextmanager
@@ -282,10 +284,10 @@ def build_app(
         WebSocketRoute(DRIVE, drive.answer),
         Route("/scene.json", describe),
         Route("/mesh/{number}", mesh),
-        *PeopleRoutes(records, history, busy, let_go, pins).routes(),
+        *PeopleRoutes(records, history, busy, let_go, pins, lock).routes(),
         *RecordRoutes(records, history, pins).routes(),
         *([] if camera_routes is None else camera_routes.routes()),
-        *(Route(page.path, pages.answer) for page in PAGES),
+        *(Route(page.path, pages.answer) for page in pages.all),
         Route("/static/{version}/{name:path}", assets.answer),
     ]
     return Starlette(routes=routes, lifespan=lifespan, exception_handlers={HTTPException: _in_json})

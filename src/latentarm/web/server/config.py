@@ -31,6 +31,7 @@ class TeleopConfig:
     keyfile: Path | None = None  # its private key, PEM
     pins: bool = False
     cameras: tuple[CameraSource, ...] = ()
+    lock_setup: bool = False
 
     def __post_init__(self) -> None:
         if not 0 <= self.port <= 65535:

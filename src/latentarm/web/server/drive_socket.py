@@ -22,6 +22,7 @@ from latentarm.web.server.pose_book import PoseBook
 from latentarm.web.server.receiving import ExpiredError, ViolationError, receive
 from latentarm.web.server.security import EXPIRED, EXPIRED_WHY
 from latentarm.web.server.sessions import MOST, Page, Sessions
+from latentarm.web.server.setup_lock import SetupLock
 from latentarm.web.server.states import PageMemory, States
 
 if TYPE_CHECKING:
@@ -62,6 +63,7 @@ class DriveSocket:
         pins: Pins,
         history: History,
         poses: PoseBook,
+        lock: SetupLock,
     ) -> None:
         self._control = control
         self._states = states
@@ -71,6 +73,7 @@ class DriveSocket:
         self._pins = pins
         self._history = history
         self._poses = poses
+        self._lock = lock
         self._server = secrets.token_hex(8)
         self._open = 0
         self._asked: orders.AskedGripper | None = None
@@ -183,7 +186,7 @@ class DriveSocket:
             self._confirmed[page.id] = message.arm_start
         elif isinstance(message, page_messages.TrailClear):
             self._states.clear_trail()
-        elif self._sessions.drives(page):
+        elif self._sessions.drives(page) and not self._lock.refuses(page.person, message):
             self._take_from_driver(page, message)
 
     def _take_from_copilot(self, page: Page, message: AskToCopilot | CopilotPace | EndCopilot) -> None:

@@ -47,6 +47,7 @@ PAGES: Final = (
     Page("/people", "people"),
     Page("/history", "history"),
 )
+LOCKED: Final = ("personalise", "teach")
 
 
 @final
@@ -63,10 +64,14 @@ class ModelChoice:
 class Pages:
     """Every page in every language.
 
-    ``models`` are names in the catalogue, in the order of the Teach page; ``cameras`` names of the cameras.
+    ``models`` are names in the catalogue, in the order of the Teach page; ``cameras`` names of the cameras;
+    ``locked``: whether the host has locked Set up, which leaves out the pages in `LOCKED`.
     """
 
-    def __init__(self, assets: Assets, models: Sequence[str], cameras: Sequence[str] = ()) -> None:
+    def __init__(
+        self, assets: Assets, models: Sequence[str], cameras: Sequence[str] = (), *, locked: bool = False
+    ) -> None:
+        self.all = tuple(page for page in PAGES if not (locked and page.name in LOCKED))
         templates = Environment(
             loader=FileSystemLoader(FOLDER), autoescape=True, undefined=StrictUndefined, trim_blocks=True
         )
@@ -74,7 +79,8 @@ class Pages:
             (page.path, words.language): templates.get_template(page.template)
             .render(
                 page=page,
-                pages=PAGES,
+                pages=self.all,
+                locked=locked,
                 asset=assets.path,
                 cameras=cameras,
                 modules=assets.modules(page.script),
@@ -85,12 +91,12 @@ class Pages:
                 words=words.texts,
             )
             .encode()
-            for page in PAGES
+            for page in self.all
             for words in languages().values()
         }
 
     async def answer(self, request: Request) -> Response:
-        """Serve one of `PAGES` in the visitor's language."""
+        """Serve one of `all` in the visitor's language."""
         words = chosen_language(request.cookies.get(COOKIE, ""), request.headers.get("accept-language", ""))
         html = self._html[request.url.path, words.language]
         headers = {

@@ -28,6 +28,7 @@ from latentarm.web.server.answers import NO_STORE, body_of, guarded_routes, json
 from latentarm.web.server.history import History
 from latentarm.web.server.pins import OPEN_S, Pins, cookie_of
 from latentarm.web.server.security import COOKIE
+from latentarm.web.server.setup_lock import SetupLock
 
 IMPORT: Final = "/records/import"
 """Takes longer bodies than other addresses: see `latentarm.web.records.person_zip.IMPORT_LIMIT`."""
@@ -64,12 +65,14 @@ class PeopleRoutes:
         busy: Callable[[PersonRecord], bool],
         let_go: Callable[[PersonRecord], None],
         pins: Pins,
+        lock: SetupLock,
     ) -> None:
         self._records = records
         self._history = history
         self._busy = busy
         self._let_go = let_go
         self._pins = pins
+        self._lock_of_setup = lock
 
     def routes(self) -> list[Route]:
         """The routes."""
@@ -159,6 +162,8 @@ class PeopleRoutes:
         except ValidationError as error:
             raise NoticeError("request_invalid") from error
         person = self._found(request)
+        if self._lock_of_setup.on:
+            raise NoticeError("setup_locked")
         await asyncio.to_thread(self._records.people.keep_settings, person.id, settings)
         return Response(status_code=204, headers=NO_STORE)
 

@@ -1,7 +1,7 @@
 /** The cameras instead of the drawn arm, as the person likes; loaded only where there are cameras. */
 
 import { byId, setHidden, setText } from "../layout/dom.js";
-import { say, sayNotice } from "../layout/words.js";
+import { sayNotice } from "../layout/words.js";
 import { CameraLink } from "./camera_link.js";
 import { CameraView } from "./camera_view.js";
 import { ServerClock } from "./picture_age.js";
@@ -14,7 +14,7 @@ const LOOK_MS = 50;
 
 /** @param {Settings} settings @param {Connection} connection @param {() => void} draw loads the drawn arm */
 export function attachCameras(settings, connection, draw) {
-  const [cameras, drawn, choice, why] = ["cameras", "views", "picture", "cameras-why"].map((id) => byId(id));
+  const [cameras, drawn, why] = ["cameras", "views", "cameras-why"].map((id) => byId(id));
   const clock = new ServerClock();
   const views = [.../** @type {NodeListOf<HTMLElement>} */ (cameras.querySelectorAll(".camera"))].map((figure) => new CameraView(figure, clock));
   const link = new CameraLink(views.length, clock, {
@@ -35,7 +35,6 @@ export function attachCameras(settings, connection, draw) {
   const choose = () => {
     setHidden(cameras, !chosen());
     setHidden(drawn, chosen());
-    setText(choice, say(chosen() ? "cameras.drawn" : "cameras.show"));
     if (!chosen() && !asked) {
       asked = true;
       draw();
@@ -43,7 +42,6 @@ export function attachCameras(settings, connection, draw) {
     // Hidden pictures are not sent.
     link.want(chosen() && !document.hidden && connection.open ? connection.welcome?.id ?? null : null);
   };
-  choice.addEventListener("click", () => settings.change({ picture: chosen() ? "drawn" : "camera" }));
   settings.addEventListener("change", choose);
   for (const event of ["welcome", "open"]) connection.addEventListener(event, choose);
   document.addEventListener("visibilitychange", choose);

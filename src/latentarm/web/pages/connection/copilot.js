@@ -67,9 +67,11 @@ export function attachCopilot(connection) {
     if (begins) choose(100);
     setHidden(ask, you || driver === null || copilot !== null || copilot_asking !== null);
     setHidden(accept, !you || copilot_asking === null);
+    if (copilot_asking) setText(accept, say("copilot.accept", { name: sayName(copilot_asking.name) }));
     setHidden(end, !(isMe || askedHere || (you && (copilot !== null || copilot_asking !== null))));
     setText(end, say(copilot === null ? (you ? "copilot.refuse" : "copilot.withdraw") : "copilot.end"));
     setHidden(byId("copilot-pace"), !isMe);
+    setHidden(byId("copilot"), copilot === null && copilot_asking === null);
     setText(byId("copilot"), copilotWords(state, welcome.id));
   });
 }

@@ -16,6 +16,8 @@ import { concerns, sayTo } from "./notices.js";
 const SETTLE_MS = 120;
 const SILENT_MS = 400;
 const LOOK_MS = 200;
+/** So often is said how long the arm stays enabled without an input, s: screen readers announce it each time. */
+const IDLE_STEP_S = 5;
 /** How long is said why a press does nothing, ms. */
 const REFUSED_MS = 4000;
 
@@ -70,7 +72,7 @@ export function statusOf({ open, state, silenceMs, engaged, drove, own, welcome 
  * @param {PageState} page
  * @param {Reader} reader
  */
-function driverWords({ phase, note, reason, held_back, zone, returning, bound_for, let_go_first, copilot, guiding, lost }, { canEnable, canConnect, unconfirmed, pushAgain }, reader) {
+function driverWords({ phase, note, reason, held_back, zone, returning, bound_for, let_go_first, copilot, guiding, lost, idle_left_s }, { canEnable, canConnect, unconfirmed, pushAgain }, reader) {
   if (guiding === "on") return say("status.guided");
   if (concerns(note, true)) return sayTo(note, reader);
   const parameters = { reason: reason === null ? "" : sayTo(reason, reader) };
@@ -82,6 +84,7 @@ function driverWords({ phase, note, reason, held_back, zone, returning, bound_fo
   if (pushAgain && (phase === "ready" || phase === "moving")) return say("status.push_again");
   switch (phase) {
     case "ready":
+      if (idle_left_s !== null) return say("status.idle", { seconds: IDLE_STEP_S * Math.ceil(idle_left_s / IDLE_STEP_S) });
       if (copilot?.pace === 0) return say("status.copilot_holds", { name: sayName(copilot.name) });
       return say(let_go_first ? "status.let_go" : "status.ready");
     case "moving": return cause === null ? say("status.moving") : say("status.held_back", { cause });

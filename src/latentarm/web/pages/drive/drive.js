@@ -16,7 +16,7 @@ import { attachKeyboard } from "../inputs/keyboard.js";
 import { attachNeutralFirst } from "../inputs/neutral_first.js";
 import { paced } from "../inputs/paced.js";
 import { attachLatchLimit } from "../inputs/latch_limit.js";
-import { moreChoices } from "../inputs/page_choices.js";
+import { moreChoices, radioChoices } from "../inputs/page_choices.js";
 import { attachScanning, directionChoices } from "../inputs/scanning.js";
 import { modeInput } from "../inputs/shaping.js";
 import { attachRim } from "../inputs/rim.js";
@@ -30,14 +30,13 @@ import { attachPractice } from "../practice/attach_practice.js";
 import { attachViews } from "../views/attach_views.js";
 import { motionWords } from "../views/directions.js";
 import { attachPredictions, personalPaths, personalRing } from "../views/predictions.js";
-import { attachBelief } from "./belief.js";
 import { attachChecklist } from "./checklist.js";
-import { attachLateStops } from "./late_stops.js";
 import { attachHelp } from "./help.js";
 import { attachModes } from "./modes.js";
 import { attachPoses } from "./poses.js";
 import { attachProfileChoice } from "./profile_choice.js";
 import { attachRecording } from "./recording.js";
+import { attachSpeed } from "./speed.js";
 import { attachTask } from "./task_panel.js";
 import { attachToGo, movedPart } from "./to_go.js";
 import { wantedThing } from "./task_words.js";
@@ -95,19 +94,19 @@ const enable = () => {
   else if (!connection.engaged) lease.ask(() => input.enable());
 };
 attachEnableButton(byId("enable"), connection, enable);
-attachLateStops(byId("late-stops"), connection);
 const lostArm = attachLostArm(connection, lease);
 const wayBack = attachWayBack({ button: byId("way-back"), why: byId("way-back-why") }, connection);
 
 const poses = attachPoses({
-  list: byId("poses"), why: byId("poses-why"), name: byId("pose-name", HTMLInputElement), save: byId("pose-save"),
+  panel: byId("poses-panel"), list: byId("poses"), why: byId("poses-why"), name: byId("pose-name", HTMLInputElement), save: byId("pose-save"),
 }, connection);
 
 const modes = attachModes({ mode: byId("mode"), axes: byId("axes") }, connection, settings);
 const inPair = (/** @type {number} */ axes, /** @type {number} */ x, /** @type {number} */ y) =>
   connection.state ? modeInput(settings.values, { ...connection.state, mode: "end_effector", axes }, connection.welcome, x, y) : [0, 0];
-attachToGo(byId("to-go"), connection, inPair);
-const help = attachHelp({ fieldset: byId("help"), text: byId("help-text") }, connection, settings);
+attachToGo(byId("to-go"), byId("axes"), connection, inPair);
+attachSpeed(byId("speed"), settings);
+attachHelp({ fieldset: byId("help"), text: byId("help-text") }, connection, settings);
 attachCopilot(connection);
 attachZones(byId("zones"), connection);
 attachTrialBanner(connection, settings, lease);
@@ -121,7 +120,7 @@ attachRecording({
 }, connection);
 
 const task = attachTask({
-  panel: byId("task"), steps: byId("task-steps"), fills: byId("task-fills"), said: byId("task-said"), time: byId("task-time"), why: byId("task-why"),
+  panel: byId("task"), steps: byId("task-steps"), fills: byId("task-fills"), said: byId("task-said"), time: byId("task-time"), more: byId("task-more", HTMLDetailsElement), why: byId("task-why"),
   chooser: byId("task-chooser"), choice: byId("task-choice", HTMLSelectElement),
   next: byId("task-next", HTMLButtonElement), again: byId("task-again", HTMLButtonElement),
   then: byId("enable"),
@@ -143,7 +142,7 @@ const scanner = attachScanning(input, settings, stop, (stopIt, group) => {
   if (does === "ask") return [{ id: "ask", label: say(label), act: () => connection.send({ type: "ask_to_drive" }) }, stopIt];
   // On the way back any press ends it.
   if (connection.state?.returning || !(connection.driving || does)) return [stopIt];
-  const more = moreChoices(help.choices(), [...wayBack.choices(), ...poses.choices(), ...practice.choices()], group);
+  const more = moreChoices(radioChoices(byId("help"), group), [...radioChoices(byId("speed"), group), ...wayBack.choices(), ...poses.choices(), ...practice.choices()], group);
   if (connection.state?.lost) return [...lostArm.choices(), stopIt, more];
   const unconfirmed = checklist.choices();
   if (unconfirmed.length) return [...unconfirmed, stopIt, more];
@@ -156,10 +155,6 @@ attachGamepad(input, settings, {
 }, (names) => sayUnrested(byId("unrested"), names));
 attachInputChoice(input, settings);
 
-const belief = attachBelief({
-  list: byId("belief"), none: byId("belief-none"), level: byId("help-level"),
-  alpha: byId("alpha"), alphaText: byId("alpha-text"),
-});
 const predictions = attachPredictions(byId("ghosts"));
 byId("trail-clear").addEventListener("click", () => connection.send({ type: "trail_clear" }));
 
@@ -175,7 +170,6 @@ function show() {
   const ring = personalRing(state.ghosts, state.tool, shaped);
   const moved = drawing?.show(state, { paths, ring }, pressed, settings.values, wanted) ?? false;
   rim.toggleAttribute("hidden", !settings.values.showGhosts || shaped(1, 0).length < 2);
-  belief.show(state);
   if (performance.now() - wordsAt < WORDS_MS) return moved;
   wordsAt = performance.now();
   const pair = state.mode === "end_effector" ? welcome.end_effector_modes[state.axes] : null;
@@ -190,18 +184,19 @@ function show() {
 }
 
 function showSettings() {
-  const ghosts = byId("ghosts").parentElement;
-  if (ghosts) ghosts.hidden = !settings.values.showGhosts;
+  const { showGhosts, largeView } = settings.values;
+  byId("ghosts").hidden = !showGhosts;
+  byId("views").dataset.large = largeView;
   show();
 }
 
 settings.addEventListener("change", showSettings);
+byId("view-swap").addEventListener("click", () => settings.change({ largeView: settings.values.largeView === "front" ? "side" : "front" }));
 showSettings();
 
 let placed = "";
 connection.addEventListener("welcome", () => {
-  const { goals, task: todo } = /** @type {Welcome} */ (connection.welcome);
-  belief.name(goals);
+  const { task: todo } = /** @type {Welcome} */ (connection.welcome);
   const now = JSON.stringify([todo.name, todo.seed, todo.choice]);
   // The things about the arm are redrawn when they were placed anew.
   if (placed && placed !== now) void drawing?.renew();

@@ -6,10 +6,6 @@ import { say } from "../layout/words.js";
 /** @import {Connection} from "../connection/connection.js" */
 /** @import {State} from "../connection/messages.js" */
 /** @import {Settings, Values} from "../settings/settings.js" */
-/** @import {Choice} from "../inputs/scanner.js" */
-
-/** @type {Values["help"][]} */
-export const LEVELS = ["off", "low", "medium", "high"];
 
 /** The effect of the current level. @param {Pick<State, "mode" | "help">} state */
 export function helpWords({ mode, help }) {
@@ -70,17 +66,4 @@ export function attachHelp(parts, connection, settings) {
     ask();
     show();
   });
-
-  return {
-    /** The levels to choose from with a switch. @returns {Choice[]} */
-    choices() {
-      const now = connection.state?.help ?? null;
-      if (now === null) return [];
-      return LEVELS.map((level) => ({
-        id: `help-${level}`,
-        label: say(level === now ? "scanning.now" : "scanning.plain", { name: say(`help.${level}`) }),
-        act: () => choose(level),
-      }));
-    },
-  };
 }

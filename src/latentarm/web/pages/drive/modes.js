@@ -56,6 +56,8 @@ export function attachModes(parts, connection, settings) {
     const { end_effector_modes } = connection.welcome;
     const modes = steeringModes(connection.welcome);
     fill(parts.mode, "mode", modes.map((mode) => say(`modes.${mode}`)), (index) => ask({ mode: modes[index], axes: 0 }));
+    // Where there is one alone, nothing is chosen.
+    setHidden(parts.mode, modes.length < 2);
     const axes = end_effector_modes.map((name) => say(/** @type {WordKey} */ (`axes.${name}`)));
     fill(parts.axes, "axes", axes, (index) => ask({ mode: "end_effector", axes: index }));
   });

@@ -30,12 +30,14 @@ export function savesOf({ driving, state }) {
 }
 
 /**
- * @param {{list: HTMLElement, why: HTMLElement, name: HTMLInputElement, save: HTMLElement}} parts
+ * @param {{panel: HTMLElement, list: HTMLElement, why: HTMLElement, name: HTMLInputElement, save: HTMLElement}} parts
  * @param {Connection} connection
  */
 export function attachPoses(parts, connection) {
   const go = (/** @type {string} */ name, /** @type {BuiltInPose | null} */ built_in) => {
-    if (goingOf(connection).goes) connection.send({ type: "to_pose", name, built_in });
+    if (!goingOf(connection).goes) return;
+    connection.send({ type: "to_pose", name, built_in });
+    parts.panel.hidePopover();
   };
   /** Where the arm can go: what it is called, and which one of the robot's own it is. @returns {[string, BuiltInPose | null][]} */
   const all = () => [

@@ -11,7 +11,6 @@ import { awayWords, blockedWords, fillWords, outcomeWords, stepNow, stepWords, s
 
 /** Words that change all the time change no more often than this, ms. */
 const WORDS_MS = 250;
-const MARKS = { done: "✓", now: "▸", later: "○" };
 
 /**
  * @typedef {object} Parts
@@ -20,6 +19,7 @@ const MARKS = { done: "✓", now: "▸", later: "○" };
  * @property {HTMLElement} fills how full cups and bowls are
  * @property {HTMLElement} said live: steps as they are done, why they cannot be done, and the end
  * @property {HTMLElement} time
+ * @property {HTMLDetailsElement} more what another run is begun with
  * @property {HTMLElement} why why nothing can be begun now
  * @property {HTMLElement} chooser around `choice`
  * @property {HTMLSelectElement} choice
@@ -62,10 +62,8 @@ export function attachTask(parts, connection, ended) {
     parts.panel.hidden = task.steps.length === 0;
     parts.steps.replaceChildren(...task.steps.map((step) => {
       const item = create("li");
-      const mark = create("span", { className: "step-mark" });
-      mark.setAttribute("aria-hidden", "true");
       const spoken = create("span", { className: "visually-hidden" });
-      item.append(mark, create("span", { textContent: stepWords(step) }), spoken, create("span", { className: "step-away" }));
+      item.append(create("span", { textContent: stepWords(step) }), spoken, create("span", { className: "step-away" }));
       return item;
     }));
     parts.chooser.hidden = task.choices.length < 2;
@@ -85,8 +83,7 @@ export function attachTask(parts, connection, ended) {
       step.dataset.step = state;
       if (state === "now") step.setAttribute("aria-current", "step");
       else step.removeAttribute("aria-current");
-      setText(step.children[0], MARKS[state]);
-      setText(step.children[2], say("task.step_state", { state: say(`task.state.${state}`) }));
+      setText(step.children[1], say("task.step_state", { state: say(`task.state.${state}`) }));
     });
   };
 
@@ -112,6 +109,8 @@ export function attachTask(parts, connection, ended) {
       setText(parts.said, say("task.step_done", { number, all: welcome.task.steps.length, step }));
     } else if (task.done === 0) setText(parts.said, "");
     if (before !== null && before.outcome === null && task.outcome !== null) ended(task.outcome);
+    const over = task.outcome !== null || stuck(task);
+    if (over !== (before !== null && (before.outcome !== null || stuck(before)))) parts.more.open = over;
     // The remaining way of the current step is announced at once.
     if (before === null || stepNow(task) !== stepNow(before)) wordsAt = -Infinity;
     before = task;
@@ -123,7 +122,7 @@ export function attachTask(parts, connection, ended) {
     wordsAt = performance.now();
     setText(parts.time, say("task.time", { seconds: wholeSeconds(task.time_s) }));
     const away = awayWords(welcome, state);
-    [...parts.steps.children].forEach((item, index) => setText(item.children[3], index === stepNow(task) ? away : ""));
+    [...parts.steps.children].forEach((item, index) => setText(item.children[2], index === stepNow(task) ? away : ""));
     showFills(task.fills);
   });
 

@@ -60,13 +60,14 @@ export function leftToGo(toGo, pair, shaped) {
 }
 
 /**
- * The list under the views.
+ * The list under the task, and the pair to choose next once nothing is left in the one in use.
  *
  * @param {HTMLElement} list
+ * @param {HTMLElement} choice where pairs are chosen
  * @param {Connection} connection
  * @param {(axes: number, x: number, y: number) => number[]} shaped from stick to what is sent in a pair
  */
-export function attachToGo(list, connection, shaped) {
+export function attachToGo(list, choice, connection, shaped) {
   let wordsAt = -Infinity;
   let begun = "";
 
@@ -91,8 +92,14 @@ export function attachToGo(list, connection, shaped) {
     if (now === begun && performance.now() - wordsAt < WORDS_MS) return;
     begun = now;
     wordsAt = performance.now();
+    const ways = welcome.end_effector_modes.map((name, axes) => leftToGo(toGo, name, (x, y) => shaped(axes, x, y)));
+    const next = ways[state.axes].length || toGo.gripper ? -1 : ways.findIndex((left) => left.length > 0);
     welcome.end_effector_modes.forEach((name, axes) => {
-      const left = leftToGo(toGo, name, (x, y) => shaped(axes, x, y));
+      const left = ways[axes];
+      const pair = say(/** @type {WordKey} */ (`axes.${name}`));
+      const label = choice.querySelectorAll("label")[axes];
+      label.dataset.next = String(axes === next);
+      setText(/** @type {Element} */ (label.lastElementChild), axes === next ? say("to_go.next", { pair }) : pair);
       const item = list.children[axes];
       if (axes === state.axes) item.setAttribute("aria-current", "true");
       else item.removeAttribute("aria-current");

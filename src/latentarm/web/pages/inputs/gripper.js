@@ -92,6 +92,9 @@ export function attachGripper(parts, connection, input, refused) {
     const [{ state }, most] = [connection, widest()];
     if (!state || most === null) return;
     setHidden(parts.hold, connection.engaged || !connection.driving);
+    // What the step needs now stands out.
+    const next = state.task.to_go?.gripper ?? null;
+    for (const what of /** @type {("open" | "close")[]} */ (["open", "close"])) parts[what].dataset.next = String(what === next);
     const words = gripperWords(state.gripper, most);
     if (words === wanted) return;
     wanted = words;

@@ -2,13 +2,13 @@
 
 import { byId } from "../layout/dom.js";
 import { say } from "../layout/words.js";
-import { settingChoices } from "../settings/setting_choices.js";
+import { fieldChoice, settingChoices } from "../settings/setting_choices.js";
 
 /** @import {Choice, Group} from "./scanner.js" */
 
 /** Buttons of the page, most wanted first. */
 const BUTTONS = [
-  "copilot-accept", "copilot-end", "trial-keep", "trial-discard", "record", "picture", "trail-clear", "hand-over", "ask", "release",
+  "copilot-accept", "copilot-end", "trial-keep", "trial-discard", "record", "view-swap", "trail-clear", "hand-over", "ask", "release",
 ];
 
 /**
@@ -20,7 +20,13 @@ const BUTTONS = [
 export function buttonChoice(id) {
   const button = document.getElementById(id);
   if (!(button instanceof HTMLButtonElement) || button.disabled || button.closest("[hidden]") !== null) return [];
-  return [{ id: `button-${id}`, label: button.textContent.trim(), act: () => button.click() }];
+  return [{ id: `button-${id}`, label: button.ariaLabel ?? button.textContent.trim(), act: () => button.click() }];
+}
+
+/** One of several, while it can be chosen. @param {HTMLElement} fieldset @param {Group} group @returns {Choice[]} */
+export function radioChoices(fieldset, group) {
+  const radios = fieldset.hidden ? [] : [...fieldset.querySelectorAll("input")].filter(({ disabled }) => !disabled);
+  return radios.map((radio, at) => ({ ...fieldChoice(radio, `${fieldset.id}-${at}`, group), stays: false }));
 }
 
 /** Links that stand on a part of the page, but not to this page. @param {HTMLElement} part @returns {Choice[]} */
@@ -29,10 +35,15 @@ export function linkChoices(part) {
   return links.map((link) => ({ id: `link-${link.pathname}`, label: link.textContent.trim(), act: () => link.click() }));
 }
 
+/** Whether the host has locked the settings. */
+function locked() {
+  return byId("settings-open", HTMLButtonElement).disabled;
+}
+
 /** What every page has: the settings and the other pages, by the names in the row at the top. @param {Group} group @returns {Choice[]} */
 export function commonChoices(group) {
   return [
-    group("settings", say("settings.title"), () => settingChoices(byId("settings-form", HTMLFormElement), group)),
+    ...(locked() ? [] : [group("settings", say("settings.title"), () => settingChoices(byId("settings-form", HTMLFormElement), group))]),
     group("pages", say("scanning.pages"), () => linkChoices(byId("pages"))),
   ];
 }
@@ -45,7 +56,7 @@ export function commonChoices(group) {
  */
 export function moreChoices(help, here, group) {
   return group("more", say("scanning.more"), () => [
-    ...(help.length ? [group("help", say("help.title"), () => help)] : []),
+    ...(help.length && !locked() ? [group("help", say("help.title"), () => help)] : []),
     ...here,
     ...BUTTONS.flatMap(buttonChoice),
     ...commonChoices(group),

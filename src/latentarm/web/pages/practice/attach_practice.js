@@ -59,8 +59,8 @@ export function attachPractice(connection, input, settings) {
   byId("practice-begin").addEventListener("click", begin);
   byId("practice-again").addEventListener("click", begin);
   byId("practice-open").addEventListener("click", () => {
+    byId("settings", HTMLDialogElement).close();
     begin();
-    panel.scrollIntoView({ block: "nearest" });
   });
   byId("practice-skip").addEventListener("click", close);
   settings.addEventListener("change", () => {

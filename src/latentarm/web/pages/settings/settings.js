@@ -32,6 +32,7 @@ import * as storage from "./storage.js";
  * @property {"any" | "0" | "1" | "2" | "3"} gamepadStop button that stops
  * @property {boolean} shortcuts whether letters and digits drive
  * @property {"facing" | "behind"} seat where the person sits
+ * @property {"front" | "side"} largeView which of the two views is the large one
  * @property {"camera" | "drawn"} picture what is seen of the arm where there are cameras
  * @property {boolean} showGhosts
  * @property {boolean} showTrail
@@ -45,7 +46,7 @@ import * as storage from "./storage.js";
 /** @type {Readonly<Values>} */
 export const DEFAULTS = Object.freeze({
   profile: "",
-  sensitivity: 1,
+  sensitivity: 0.5,
   deadZone: 0.1,
   swapAxes: false,
   invertX: false,
@@ -73,6 +74,7 @@ export const DEFAULTS = Object.freeze({
   gamepadStop: "1",
   shortcuts: true,
   seat: "facing",
+  largeView: "front",
   picture: "camera",
   showGhosts: true,
   showTrail: true,
@@ -102,6 +104,7 @@ const CHOICES = {
   help: ["off", "low", "medium", "high"],
   gamepadStop: ["any", "0", "1", "2", "3"],
   seat: ["facing", "behind"],
+  largeView: ["front", "side"],
   picture: ["camera", "drawn"],
   sounds: ["none", "success", "all"],
   theme: ["auto", "light", "dark"],

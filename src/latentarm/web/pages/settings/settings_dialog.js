@@ -75,7 +75,7 @@ export function attachSettingsDialog(dialog, opener, settings) {
     } else if (code === "Enter" || code === "Space") field.click();
   });
   attachLanguage(byId("language", HTMLSelectElement), byId("language-offer"));
-  form.querySelector("#settings-reset")?.addEventListener("click", () => settings.reset());
+  byId("settings-reset").addEventListener("click", () => settings.reset());
   settings.addEventListener("change", show);
 
   return {

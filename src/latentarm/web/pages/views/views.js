@@ -159,14 +159,19 @@ export class Views {
     return { x: ((seen.x + 1) / 2) * view.width, y: ((1 - seen.y) / 2) * view.height };
   }
 
+  /** The views for which the page has room. */
+  get _seen() {
+    return this.views.filter(({ width, height }) => width > 0 && height > 0);
+  }
+
   /** Turn both cameras to the scene, as near as holds all of it. */
   _aim() {
     const points = [...this._scene.extent(), ...this._reached];
     const size = new THREE.Box3().setFromPoints(points).getSize(new THREE.Vector3());
     const flat = size.z < 0.1 * Math.max(size.x, size.y);
     const directions = DIRECTIONS[flat ? "flat" : this.seat];
-    for (const view of this.views) {
-      const aspect = view.width / Math.max(view.height, 1);
+    for (const view of this._seen) {
+      const aspect = view.width / view.height;
       const away = new THREE.Vector3(...directions[view.name]).normalize();
       const right = new THREE.Vector3(0, 0, 1).cross(away).normalize();
       const up = away.clone().cross(right);
@@ -190,7 +195,7 @@ export class Views {
 
   /** Step back where a point would leave a view. @param {THREE.Vector3} point m */
   _keepInView(point) {
-    const seen = this.views.every(({ camera }) => {
+    const seen = this._seen.every(({ camera }) => {
       const { x, y } = point.clone().project(camera);
       return Math.max(Math.abs(x), Math.abs(y)) < EDGE;
     });
@@ -212,7 +217,7 @@ export class Views {
     const gliding = this._scene.advance(performance.now());
     this._keepInView(this._scene.tool);
     for (const call of this.beforeFrame) call();
-    for (const { left, bottom, width, height, camera } of this.views) {
+    for (const { left, bottom, width, height, camera } of this._seen) {
       this._renderer.setViewport(left, bottom, width, height);
       this._renderer.setScissor(left, bottom, width, height);
       this._renderer.render(this._scene.scene, camera);

@@ -1,0 +1,47 @@
+"""Set up, locked by the host: what a person's record says still counts, and nothing else is changed."""
+
+from typing import Final, final
+
+from latentarm.web.arm_process.help import USUAL_HELP
+from latentarm.web.protocol import page_messages
+from latentarm.web.protocol.learning_messages import PickRun, Train
+from latentarm.web.protocol.orders import ChooseHelp, ChooseProfile
+from latentarm.web.protocol.personalise_messages import PersonaliseMessage
+from latentarm.web.records.people import People
+from latentarm.web.server.states import States
+
+_USUAL_SEAT: Final = "facing"  # of a page whose person has not said otherwise
+_NO_PROFILE: Final = "-"  # in the settings of a person who wants none
+
+
+@final
+class SetupLock:
+    """Refuses what changes how the arm behaves.
+
+    Attributes:
+        on: whether the host has locked it.
+    """
+
+    def __init__(self, people: People, states: States, *, on: bool) -> None:
+        self._people = people
+        self._states = states
+        self.on = on
+
+    def refuses(self, person: str | None, message: page_messages.ClientMessage) -> bool:
+        """Whether a message is refused from the page of this person, an id, or None for a guest."""
+        if not self.on:
+            return False
+        known = self._people.find(person)
+        settings = {} if known is None else known.settings
+        match message:
+            case ChooseHelp(level=level):
+                return level != settings.get("help", USUAL_HELP)
+            case ChooseProfile(name=name, seat=seat):
+                report, chosen = self._states.report, settings.get("profile")
+                kept = [] if report is None else [report.profile]
+                kept += [None if chosen == _NO_PROFILE else chosen] if chosen else []
+                return name not in kept or seat not in (None, settings.get("seat", _USUAL_SEAT))
+            case page_messages.SavePose() | page_messages.DeletePose() | PickRun() | Train():
+                return True
+            case _:
+                return isinstance(message, PersonaliseMessage)
