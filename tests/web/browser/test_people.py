@@ -45,7 +45,7 @@ def test_two_people_have_settings_of_their_own_on_every_computer(page, chromium,
 
     other = chromium.new_context().new_page()
     other.goto(served)
-    chooser = settings(other).get_by_label("Who drives")
+    chooser = settings(other).locator("#settings-person")
     for name, swapped in zip(NAMES, (True, False), strict=True):
         expect(chooser.get_by_role("option", name=name)).to_be_attached()
         chooser.select_option(name)
@@ -92,7 +92,7 @@ def test_a_record_with_a_pin_opens_by_keys_or_by_the_digits_on_the_screen(page, 
     context = chromium.new_context()
     other = context.new_page()
     other.goto(served)
-    settings(other).get_by_label("Who drives").select_option("Mina")
+    settings(other).locator("#settings-person").select_option("Mina")
     dialog = other.locator("#pin")
     expect(dialog).to_contain_text("PIN of Mina")
     expect(other).to_have_url(f"{served}/people#{other.url[-16:]}")

@@ -57,7 +57,7 @@ def test_axes_sensitivity_and_name_are_kept(person, arm, held, press_enable, add
     assert added.ok
     dialog.get_by_role("button", name="Done").click()
     dialog = settings(person)
-    dialog.get_by_label("Who drives").select_option("Ada")
+    dialog.locator("#settings-person").select_option("Ada")
     dialog.get_by_label("Swap up and down with left and right").check()
     dialog.get_by_label("How fast a full push moves the arm").fill("0.5")
     dialog.get_by_role("button", name="Done").click()
