@@ -20,9 +20,10 @@ export function recordingWords({ recording, you, phase, guiding }) {
   return episodes ? say("recording.kept", { count: episodes }) : say("recording.none");
 }
 
-/** Open what hides a section, and go there. @param {HTMLElement} section */
+/** Open the dialog that holds a section, and go there. @param {HTMLElement} section */
 function showSection(section) {
-  for (let around = section.closest("details"); around; around = around.parentElement?.closest("details") ?? null) around.open = true;
+  const dialog = section.closest("dialog");
+  if (!dialog?.open) dialog?.showModal();
   section.focus({ preventScroll: true });
   section.scrollIntoView({ block: "center" });
 }
