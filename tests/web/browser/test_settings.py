@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 import pytest
+from playwright.sync_api import expect
 
 from .conftest import control_with
 
@@ -63,7 +64,7 @@ def test_axes_sensitivity_and_name_are_kept(person, arm, held, press_enable, add
     dialog.get_by_role("button", name="Done").click()
     arm.wait(lambda: arm.state["driver"] is None or arm.state["driver_name"] == "Ada")
     person.reload()
-    person.get_by_text("Nobody is driving").wait_for()
+    expect(person.locator("#driver")).to_have_text("Nobody is driving.")
     press_enable(person, arm)
     assert arm.state["driver_name"] == "Ada"
     assert held("ArrowUp")["u"] == [0.5, 0]

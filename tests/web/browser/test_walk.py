@@ -39,7 +39,7 @@ FOCUSED = """() => {
   const group = (other) => other === one || (one.type === "radio" && other.name === one.name);
   const box = (one.closest("label") ?? one).getBoundingClientRect();
   const bar = document.querySelector(".action-bar").getBoundingClientRect();
-  const inBar = one.closest(".action-bar, .page-switch, dialog") !== null;
+  const inBar = one === document.body || one.closest(".action-bar, .page-switch, dialog") !== null;
   const under = box.left < bar.right && box.right > bar.left && box.bottom > bar.top && box.top < bar.bottom;
   return {
     number: window.controls.findIndex(group),
