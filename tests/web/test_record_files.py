@@ -83,7 +83,7 @@ def report(tick, phase, tool, code=None, **changes):
         reason=None if code is None else Notice(code=code), held_back=None, zone=None,
         mode="assisted", axes=0, run=None, own_task=False,
         returning=False, bound_for=None, at_start=False, guiding=None, lost=False, let_go_first=False,
-        late_stops=0, help="medium",
+        idle_left_s=None, help="medium",
         seed=0,
         task=BEGUN,
         profile=None, loading=False,
