@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from wooden_server import wooden_server
 
+from latentarm.arms.address import is_address
 from latentarm.arms.kinematic import KinematicArm
 from latentarm.control.clock import MonotonicClock, SimulatedClock
 from latentarm.robots.panda import panda
@@ -16,6 +17,7 @@ from latentarm.web.arm_process.drive import Drive
 from latentarm.web.arm_process.drive_setup import Spec, load_setup
 from latentarm.web.arm_process.driven import Driven, drive_in_turn
 from latentarm.web.arm_process.episode_writer import EpisodeWriter
+from latentarm.web.arm_process.initial_state import RobotOptions
 from latentarm.web.arm_process.steering import Steering
 from latentarm.web.protocol.channel import new_channel
 from latentarm.web.protocol.orders import BeginTask, ChooseProfile, ChooseRun, Reset
@@ -99,7 +101,8 @@ def test_no_order_ends_an_arms_process(arm, trained, tmp_path):
         reports.append(parse_report(channel.report.read()[1]))
         return next(orders, None)
 
-    setup = load_setup(Spec(arm=arm, out=tmp_path))
+    # A real arm is driven only as a robot that is named.
+    setup = load_setup(Spec(arm=arm, robot=RobotOptions("panda" if is_address(arm) else None), out=tmp_path))
     drive_in_turn(Driven(setup, first_arm(setup, clock), Steering("end_effector")), drive, clock)
     assert len(reports) == len(asked) + 1
     assert {report.phase for report in reports} == {"disengaged"}
