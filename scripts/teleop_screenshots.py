@@ -214,7 +214,7 @@ def refused(visit: Visit) -> None:
 
 
 def learned(visit: Visit) -> None:
-    """What comes of answers by where the tool goes: right along y of the base, up along -x."""
+    """Answers by where the tool goes: right along y of the base, up along -x."""
     told: dict[str, Any] = {}
 
     def hear(text: str | bytes) -> None:

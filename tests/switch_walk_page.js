@@ -1,4 +1,4 @@
-/** What a walk needs in the page: what was lit at each press of a switch, and what the press led to. */
+/** Notes in the page of a walk: what was lit at each press of a switch, and what the press led to. */
 const isSwitch = (code) => (sessionStorage.keys ?? "").split(" ").includes(code);
 const told = (what) => {
   const all = JSON.parse(sessionStorage.told ?? "[]");

@@ -61,7 +61,7 @@ def wider(robot: Robot, by_deg: float = 5.0) -> Robot:
 
 
 def told(robot: Robot, q: FloatArray, flange: int | None) -> OwnPose:
-    """What this robot says of itself, by MuJoCo's own kinematics; ``flange`` is a body before its tool."""
+    """The pose that this robot reports, by MuJoCo's own kinematics; ``flange`` is a body before its tool."""
     model = robot.model()
     data = mujoco.MjData(model)
     for name, position in zip(robot.joint_names, q, strict=True):

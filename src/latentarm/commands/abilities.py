@@ -1,4 +1,4 @@
-"""What an arm can reach, how fast it may be driven and what it can learn with the limits that are stated."""
+"""The abilities of an arm with the limits that are stated: reach, speed, and which models it can train."""
 
 from dataclasses import replace
 from itertools import product
@@ -65,7 +65,7 @@ def _slower(robot: Robot, asked: Speeds) -> Speeds | None:
 
 
 def _quicker(robot: Robot) -> str | None:
-    """What slow driving needs, in words: the least that the stated figures must be multiplied by, or None."""
+    """The least factor of the stated figures that slow driving needs, in words; None if they are enough."""
     limits = robot.limits
     for acceleration, jerk in product(_TIMES, _TIMES):
         quicker = JointLimits(

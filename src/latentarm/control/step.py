@@ -159,7 +159,7 @@ class Step:
 
     @property
     def follows(self) -> bool:
-        """Whether it is for an arm that carries out the commands."""
+        """True for an arm that carries out the commands."""
         return self._follows
 
     @property

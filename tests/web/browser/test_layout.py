@@ -64,7 +64,7 @@ CHOICES = [
 
 
 def parts(page, panel):
-    """What must be wholly on the screen, as this task has it."""
+    """The parts that must be wholly on the screen at this task."""
     shown = [one for one in CHOICES if page.locator(one).is_visible()]
     return [".views:not([hidden])", *ALWAYS, *PANELS[panel], *shown]
 

@@ -1,4 +1,4 @@
-"""Whatever a helper clicks and presses: one choice is lit, and a switch does that and nothing else."""
+"""A helper clicks and presses anything: one choice is lit, and a switch does that and nothing else."""
 
 import httpx
 import pytest

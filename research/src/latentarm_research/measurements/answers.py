@@ -1,4 +1,4 @@
-"""How often directions are learned from simulated people's answers, by the rule that decides what is kept.
+"""The share of simulated people's answers from which directions are learned, by the rule that keeps them.
 
 The motions are those of demonstrations at the table, the decoder is their principal components, and the
 present directions are z = u. Some people answer by the present directions or by others, with noise whose
@@ -32,7 +32,7 @@ SWAPPED: Final = np.array([[0.0, 1.0], [1.0, 0.0]])
 
 
 def measure(options: JudgedAnswers, work: Work) -> Outcome:
-    """What comes of the answers of every kind of person, in percent of all tries."""
+    """The outcomes of the answers of every kind of person, in percent of all tries."""
     rows = []
     for count in COUNTS:
         for kind in (*BLIND, *CONSISTENT):
@@ -45,7 +45,7 @@ def measure(options: JudgedAnswers, work: Work) -> Outcome:
 
 
 def judged(seed: int, kind: str, count: int, number: int) -> str:
-    """What comes of one person's answers: ``kept``, ``agrees`` or ``refused``."""
+    """The outcome of one person's answers: ``kept``, ``agrees`` or ``refused``."""
     scene, model = _scene()
     decoder, chain, candidates = scene.decoder, scene.chain, scene.candidates
     motions = candidates[np.array(order_of_questions(chain, candidates, count))]

@@ -1,4 +1,4 @@
-"""What ROS says of the arm itself: ``/robot_description``, ``/tf`` and ``/tf_static``."""
+"""The arm as ROS describes it: ``/robot_description``, ``/tf`` and ``/tf_static``."""
 
 import math
 import threading
@@ -47,7 +47,7 @@ class OwnModel:
 
     @property
     def told(self) -> bool:
-        """Whether the description has come, and a pose of the tool."""
+        """True once the description and a pose of the tool have come."""
         with self._lock:
             return bool(self._urdf) and self._options.tool_frame in self._frames
 

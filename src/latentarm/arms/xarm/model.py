@@ -1,4 +1,4 @@
-"""What an xArm's controller says of the arm's geometry."""
+"""The geometry of an xArm, as its controller knows it."""
 
 import numpy as np
 from scipy.spatial.transform import Rotation

@@ -65,7 +65,7 @@ class PageInputs(InputSource):
         return replace(given, pace=self._pace()), age_s
 
     def take_used(self) -> bool:
-        """Whether the stick was deflected, or the gripper asked for something, since this was last called."""
+        """True if the stick was deflected, or the gripper asked for something, since the last call."""
         used, self._was_used = self._was_used, False
         return used
 

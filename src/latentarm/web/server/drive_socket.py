@@ -277,7 +277,7 @@ class DriveSocket:
         return self._states.loading or self._learning.personalising.standstill is not None
 
     def _confirmed_by(self, page: Page) -> bool:
-        """Whether this page has confirmed what a real arm needs, since its connection was lost last."""
+        """True if this page has confirmed the checklist since the connection to the arm was last lost."""
         return not self._states.loaded.real or self._confirmed.get(page.id) == self._states.arm_start
 
     def _save_pose(self, page: Page, name: str) -> None:

@@ -145,7 +145,7 @@ class RunList:
         return dict(sorted(found.items()))
 
     def is_first(self, run: Path) -> bool:
-        """Whether the server was started with this run."""
+        """True for the run that the server was started with."""
         return self._first is not None and _same(self._first, run)
 
     def name_of(self, run: Path | None) -> str | None:

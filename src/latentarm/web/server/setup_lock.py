@@ -28,7 +28,7 @@ class SetupLock:
         self.on = on
 
     def refuses(self, person: str | None, message: page_messages.ClientMessage) -> bool:
-        """Whether a message is refused from the page of this person, an id, or None for a guest."""
+        """True if a message is refused from the page of this person, an id, or None for a guest."""
         if not self.on:
             return False
         known = self._people.find(person)

@@ -19,7 +19,7 @@ export function attachChecklist(parts, connection, confirmed) {
   let lost = false;
   /** Which start of the arm the boxes are about. */
   let start = 0;
-  /** Whether the server has yet to hear of this connection what was confirmed. */
+  /** True until this connection has told the server what was confirmed. */
   let untold = true;
   const tell = () => {
     if (connection.welcome?.real && done()) connection.send({ type: "confirm", arm_start: start, stop: true, area: true, payload: true });

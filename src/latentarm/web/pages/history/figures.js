@@ -55,7 +55,7 @@ function isDone({ outcome }) {
   return outcome === "success";
 }
 
-/** Whether the page can see how a drive ends. @param {Drive} drive */
+/** True if the page can see how a drive ends. @param {Drive} drive */
 function isWatched({ steps, outcome }) {
   return steps !== null || outcome !== null;
 }

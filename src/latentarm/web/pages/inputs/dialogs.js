@@ -1,4 +1,4 @@
-/** What is open above the page. Nothing moves behind a dialog: however one opens, the arm stops. */
+/** The dialog or menu above the page. Nothing moves behind a dialog: however one opens, the arm stops. */
 
 /** @import {DriveInput} from "./drive_input.js" */
 

@@ -35,12 +35,12 @@ export function linkChoices(part) {
   return links.map((link) => ({ id: `link-${link.pathname}`, label: link.textContent.trim(), act: () => link.click() }));
 }
 
-/** Whether the host has locked the settings. */
+/** True if the host has locked the settings. */
 function locked() {
   return byId("settings-open", HTMLButtonElement).disabled;
 }
 
-/** What every page has: the settings and the other pages, by the names in the row at the top. @param {Group} group @returns {Choice[]} */
+/** The choices of every page: the settings and the other pages, by the names in the row at the top. @param {Group} group @returns {Choice[]} */
 export function commonChoices(group) {
   return [
     ...(locked() ? [] : [group("settings", say("settings.title"), () => settingChoices(byId("settings-form", HTMLFormElement), group))]),

@@ -55,7 +55,7 @@ function take(event) {
   event.stopImmediatePropagation();
 }
 
-/** Whether keys write into it. @param {EventTarget | null} target */
+/** True if keys write into it. @param {EventTarget | null} target */
 function isText(target) {
   return target instanceof HTMLInputElement && !target.readOnly && target.selectionStart !== null;
 }

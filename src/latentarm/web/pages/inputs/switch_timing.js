@@ -27,7 +27,7 @@ export class SwitchTiming {
     this._accepted = false;
     this._downAt = this._upAt = this._heldSince = -Infinity;
     this._repetitions = 0;
-    /** Whether the press that repeats has counted, or came too early to count. */
+    /** True once the press that repeats has counted, or came too early to count. */
     this._spent = false;
     /** @type {ReturnType<typeof setTimeout> | undefined} */
     this._timer = undefined;

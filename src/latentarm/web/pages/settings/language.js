@@ -9,7 +9,7 @@ function choose(language) {
   document.cookie = `${COOKIE}=${language}; path=/; max-age=${LIFE_S}; samesite=strict${secure}`;
 }
 
-/** Whether none of the languages that a browser asks for is there. @param {readonly string[]} wanted @param {string[]} known codes */
+/** True if the page has none of the languages that a browser asks for. @param {readonly string[]} wanted @param {string[]} known codes */
 export function isForeign(wanted, known) {
   return wanted.length > 0 && !wanted.some((tag) => known.includes(tag.toLowerCase().split("-")[0]));
 }
