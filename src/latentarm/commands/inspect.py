@@ -78,8 +78,13 @@ def _origin_tables(demonstrations: Demonstrations) -> list[Table]:
     if demonstrations.import_record:
         tables.append(import_table(demonstrations.import_record))
     recorded = [episode.provenance for episode in demonstrations.episodes]
-    if any(recorded):
-        names = [field.name for field in fields(Provenance)]
+    # A column in which nothing is told would take the others' room.
+    names = [
+        field.name
+        for field in fields(Provenance)
+        if any(one is not None and getattr(one, field.name) != field.default for one in recorded)
+    ]
+    if names:
         table = Table("episode", title="Recorded", title_justify="left", box=SIMPLE_HEAD, padding=0)
         for name in names:
             table.add_column(name.replace("_", "\n"))

@@ -49,8 +49,9 @@ def _moving(episode: Episode, rate_hz: float) -> Episode | None:
     last = np.searchsorted(moved_s, timestamp + _ROUNDING / rate_hz, side="right") - 1
     extras = {name: episode.extras[name][last] for name in (*OBSERVED, ENVIRONMENT) if name in episode.extras}
     # Where it was recorded matters to learning, and not who recorded it.
-    at = None if episode.provenance is None else Provenance(task_name=episode.provenance.task_name)
-    return Episode(state=state, timestamp=timestamp, task=episode.task, extras=extras, provenance=at)
+    whole = episode.provenance
+    kept = None if whole is None else Provenance(task_name=whole.task_name, shadow=whole.shadow)
+    return Episode(state=state, timestamp=timestamp, task=episode.task, extras=extras, provenance=kept)
 
 
 def _moving_time(state: FloatArray, timestamp: FloatArray) -> FloatArray:
