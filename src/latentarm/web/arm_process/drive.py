@@ -32,6 +32,7 @@ from latentarm.web.protocol.channel import Channel, parse_stop
 from latentarm.web.protocol.notice import Notice, notice_of_stop
 from latentarm.web.protocol.orders import (
     BeginTask,
+    Change,
     ChooseHelp,
     ChooseMode,
     ChooseProfile,
@@ -55,9 +56,6 @@ ENABLE_WAITS_S: Final = 0.3
 
 NOTE_S: Final = 6.0
 """How long a refusal is shown instead of the arm's state, s."""
-
-Change = ChooseProfile | ChooseRun | Reset | BeginTask | Reconnect
-"""Orders that end the loop, to restart it with another setup."""
 
 _HELD_BACK: Final[dict[str, HeldBack]] = {
     "clearance": "clearance",

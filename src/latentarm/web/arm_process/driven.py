@@ -11,11 +11,10 @@ from latentarm.core.errors import UserError
 from latentarm.core.untrusted.terminal import one_line
 from latentarm.runs.folder import read_run
 from latentarm.web.arm_process.arm_lifecycle import next_arm, reconnect
-from latentarm.web.arm_process.drive import Change
 from latentarm.web.arm_process.drive_setup import SEEDS, DriveSetup, Spec, load_setup, with_profile
 from latentarm.web.arm_process.steering import Steering
 from latentarm.web.protocol.notice import Notice, notice_of
-from latentarm.web.protocol.orders import BeginTask, ChooseProfile, ChooseRun, Reconnect, Reset
+from latentarm.web.protocol.orders import BeginTask, Change, ChooseProfile, ChooseRun, Reconnect, Reset
 
 
 @final

@@ -18,7 +18,7 @@ from latentarm.core.errors import UserError
 from latentarm.core.punctuality import ask_for_priority, short_collections
 from latentarm.core.untrusted.terminal import one_line
 from latentarm.web.arm_process.arm_lifecycle import first_arm, from_where_it_stands
-from latentarm.web.arm_process.drive import Change, Drive
+from latentarm.web.arm_process.drive import Drive
 from latentarm.web.arm_process.drive_setup import Spec, load_setup
 from latentarm.web.arm_process.driven import Driven, drive_in_turn
 from latentarm.web.arm_process.episode_writer import EpisodeWriter
@@ -60,7 +60,7 @@ def run_control(spec: Spec, channel: Channel, server: int) -> None:
             raise SystemExit(2) from error
         driven = Driven(from_where_it_stands(setup, arm), arm, steering)
 
-        def drive(driven: Driven, note: Notice | None) -> Change | None:
+        def drive(driven: Driven, note: Notice | None) -> orders.Change | None:
             calls = begin_incident(driven.setup)
             given = (driven.setup, driven.arm, channel, clock, writer, orphaned, driven.steering, note)
             try:

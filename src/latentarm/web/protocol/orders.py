@@ -180,6 +180,9 @@ class BeginTask(Message):
 
 
 DriverOrder = ChooseMode | ChooseHelp | ChooseProfile | KeepGuiding | Reconnect | Reset | BeginTask
+Change = ChooseProfile | ChooseRun | Reset | BeginTask | Reconnect
+"""Orders that end the loop, to restart it with another setup."""
+
 Order = DriverOrder | Enable | ChooseRun | Return | Record | Guide
 _ORDERS: Final[TypeAdapter[Order]] = TypeAdapter(Annotated[Order, Field(discriminator="type")])
 
