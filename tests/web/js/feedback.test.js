@@ -5,7 +5,7 @@ import { beforeEach, test } from "node:test";
 
 import { attachFeedback } from "#pages/feedback/feedback.js";
 import { attachWakeLock } from "#pages/feedback/wake_lock.js";
-import { newBrowser } from "./browser.js";
+import { newBrowser, pass } from "./browser.js";
 
 class FakeConnection extends EventTarget {
   engaged = false;
@@ -80,29 +80,68 @@ test("silence is silence", () => {
   assert.deepEqual(tones, []);
 });
 
-test("the screen stays on while this page drives an enabled arm, and no longer", async () => {
+const settled = () => new Promise((done) => { setImmediate(done); });
+
+function fakeLocks(isRefused = () => false) {
   const locks = [];
   const request = async () => {
-    const lock = { held: true, release: () => { lock.held = false; } };
+    const lock = { released: isRefused(), release: () => { lock.released = true; } };
     locks.push(lock);
+    if (lock.released) throw new Error("refused");
     return lock;
   };
   Object.defineProperty(globalThis.navigator, "wakeLock", { value: { request }, configurable: true });
   attachWakeLock(connection);
+  return locks;
+}
+
+test("the screen stays on while this page drives an enabled arm, and no longer", async () => {
+  const locks = fakeLocks();
+  const held = () => locks.map(({ released }) => !released);
   connection.becomes(true);
-  await Promise.resolve();
-  assert.deepEqual(locks.map(({ held }) => held), [true]);
+  await settled();
+  assert.deepEqual(held(), [true]);
   connection.becomes(false);
-  assert.deepEqual(locks.map(({ held }) => held), [false]);
+  assert.deepEqual(held(), [false]);
   // A stop before the lock has been given.
   connection.becomes(true);
   connection.becomes(false);
-  await Promise.resolve();
-  await Promise.resolve();
-  assert.deepEqual(locks.map(({ held }) => held), [false, false]);
+  await settled();
+  assert.deepEqual(held(), [false, false]);
   // Another page drives.
   connection.driving = false;
   connection.becomes(true);
-  await Promise.resolve();
+  await settled();
   assert.equal(locks.length, 2);
+});
+
+test("a lock that the system takes back while the arm is enabled is taken again, on a page that can be seen", async () => {
+  const locks = fakeLocks();
+  connection.becomes(true);
+  await settled();
+  locks[0].release();
+  globalThis.document.hidden = true;
+  pass(5000);
+  connection.becomes(true);
+  await settled();
+  assert.equal(locks.length, 1);
+  globalThis.document.hidden = false;
+  globalThis.document.dispatchEvent(new Event("visibilitychange"));
+  await settled();
+  assert.deepEqual(locks.map(({ released }) => released), [true, false]);
+  locks[1].release();
+  pass(1000);
+  connection.becomes(true);
+  await settled();
+  assert.deepEqual(locks.map(({ released }) => released), [true, true, false]);
+});
+
+test("a lock that is refused is asked for again, once a second", async () => {
+  const locks = fakeLocks(() => true);
+  for (let passed = 0; passed < 3000; passed += 50) {
+    connection.becomes(true);
+    await settled();
+    pass(50);
+  }
+  assert.equal(locks.length, 3);
 });
