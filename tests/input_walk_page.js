@@ -7,7 +7,7 @@ const all = [];
 window.sockets = all;
 window.WebSocket = class extends WebSocket { constructor(...given) { super(...given); all.push(this); } };
 window.plug = (index, axes) => {
-  window.pads[index] = { index, id: `pad ${index}`, connected: true, axes, buttons: Array.from({ length: 6 }, () => ({ pressed: false })) };
+  window.pads[index] = { index, id: `pad ${index}`, mapping: "standard", connected: true, axes, buttons: Array.from({ length: 6 }, () => ({ pressed: false })) };
 };
 // A hand on a stick is never quite still.
 setInterval(() => {

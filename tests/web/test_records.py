@@ -130,6 +130,34 @@ def test_settings_are_each_person_s_own(ask):
     assert [one["name"] for one in people if one["id"] in (ada, bea)] == ["Ada", "Béa"]
 
 
+MAPPED = {
+    "uses": ["stop", "", "enable"],
+    "axes": 3,
+    "at": [2, 0],
+    "way": [1, -1],
+    "rest": [0.1, 0],
+    "dead": 0.08,
+}
+
+
+def test_how_gamepads_are_used_goes_with_a_person_and_is_bounded(ask):
+    ada, bea = (ask.post("/records/people", json={"name": name}).json()["id"] for name in ("Cem", "Dua"))
+    settings = {"panel": "stick", "pads": {"045e-028e-Pad (x)": MAPPED}}
+    assert ask.put(f"/records/people/{ada}/settings", json=settings).status_code == 204
+    brought = ask.post("/records/import", content=ask.get(f"/records/people/{ada}/export").content).json()
+    for person in (ada, brought["person"]):
+        assert ask.get(f"/records/people/{person}").json()["settings"] == settings
+    for pads in (
+        {"a" * 121: MAPPED},
+        {"a": MAPPED | {"uses": ["stop"] * 65}},
+        {"a": MAPPED | {"uses": [["stop"]]}},
+        {"a": [MAPPED]},
+        {str(number): MAPPED for number in range(11)},
+    ):
+        assert ask.put(f"/records/people/{bea}/settings", json={"pads": pads}).status_code == 400
+    assert ask.get(f"/records/people/{bea}").json()["settings"] == {}
+
+
 @pytest.mark.parametrize(
     ("method", "path", "body"),
     [

@@ -24,7 +24,8 @@ SCANNED_MS = 8000.0
 KEYS = {"up": "ArrowUp", "down": "ArrowDown", "left": "ArrowLeft", "right": "ArrowRight"}
 PUSH = {"up": (0, 1), "down": (0, -1), "left": (-1, 0), "right": (1, 0)}
 GAMEPAD = """
-window.pad = { index: 0, connected: true, axes: [0, 0], buttons: [{ pressed: false }, { pressed: false }] };
+window.pad = { index: 0, id: "pad", mapping: "standard", connected: true, axes: [0, 0],
+  buttons: [{ pressed: false }, { pressed: false }] };
 navigator.getGamepads = () => (window.pad ? [window.pad] : [null]);
 """
 

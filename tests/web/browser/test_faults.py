@@ -5,7 +5,8 @@ import time
 import pytest
 
 GAMEPAD = """
-window.pad = { index: 0, connected: true, axes: [0, 0], buttons: [{ pressed: false }, { pressed: false }] };
+window.pad = { index: 0, id: "pad", mapping: "standard", connected: true, axes: [0, 0],
+  buttons: [{ pressed: false }, { pressed: false }] };
 navigator.getGamepads = () => (window.pad ? [window.pad] : [null]);
 """
 

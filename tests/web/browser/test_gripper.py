@@ -16,7 +16,7 @@ from .conftest import ask_to_drive, control_with, press_switch
 
 GAMEPAD = """
 const buttons = [0, 1, 2, 3].map(() => ({ pressed: false }));
-window.pad = { index: 0, connected: true, axes: [0, 0], buttons };
+window.pad = { index: 0, id: "pad", mapping: "standard", connected: true, axes: [0, 0], buttons };
 navigator.getGamepads = () => [window.pad];
 """
 UP, STILL, DOWN = 1, 0, -1

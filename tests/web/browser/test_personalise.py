@@ -26,7 +26,8 @@ QUESTIONS = 8
 WAY_M = 0.05
 
 GAMEPAD = """
-window.pad = { index: 0, connected: true, axes: [0, 0], buttons: [{ pressed: false }, { pressed: false }] };
+window.pad = { index: 0, id: "pad", mapping: "standard", connected: true, axes: [0, 0],
+  buttons: [{ pressed: false }, { pressed: false }] };
 navigator.getGamepads = () => [window.pad];
 """
 

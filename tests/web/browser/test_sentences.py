@@ -25,7 +25,8 @@ window.WebSocket = class extends Real {
 """A page that can be cut off from its server for good."""
 
 GAMEPAD = """
-window.pad = { index: 0, connected: true, axes: [0, 0], buttons: [{ pressed: false }, { pressed: false }] };
+window.pad = { index: 0, id: "pad", mapping: "standard", connected: true, axes: [0, 0],
+  buttons: [{ pressed: false }, { pressed: false }] };
 navigator.getGamepads = () => [window.pad];
 """
 

@@ -130,7 +130,7 @@ export function newBrowser() {
   FakeSocket.all = [];
   const fakes = {
     window: new EventTarget(),
-    document: Object.assign(new EventTarget(), { hidden: false, getElementById: () => null, getElementsByTagName: () => [], createElement: () => new FakeElement() }),
+    document: Object.assign(new EventTarget(), { hidden: false, getElementById: () => null, querySelector: () => null, getElementsByTagName: () => [], createElement: () => new FakeElement() }),
     localStorage: new FakeStorage(),
     sessionStorage: new FakeStorage(),
     location: { protocol: "https:", host: "arm.local" },

@@ -3,6 +3,8 @@ import { beforeEach, test } from "node:test";
 
 import { Deflection } from "#pages/inputs/deflection.js";
 import { attachGamepad } from "#pages/inputs/gamepad.js";
+import { say } from "#pages/layout/words.js";
+import { mappingOf } from "#pages/settings/pads.js";
 import { Settings } from "#pages/settings/settings.js";
 import { event, newBrowser, pass } from "./browser.js";
 
@@ -12,10 +14,10 @@ let settings;
 let pads;
 let done;
 let scanning;
-let unrested;
+let told;
 
 function appear(index = 0, id = "a") {
-  const pad = { index, id, connected: true, axes: [0, 0], buttons: Array.from({ length: 6 }, () => ({ pressed: false })) };
+  const pad = { index, id, mapping: "standard", connected: true, axes: [0, 0], buttons: Array.from({ length: 6 }, () => ({ pressed: false })) };
   pads[index] = pad;
   return pad;
 }
@@ -53,7 +55,7 @@ beforeEach(() => {
       if (scanning && down) done.push(`switch ${number}`);
       return scanning;
     },
-  }, (names) => (unrested = names));
+  }, (text) => (told = text));
 });
 
 test("the stick moves the arm; up is up", () => {
@@ -93,30 +95,62 @@ test("the button of the person's choice stops, the first enables, on press and n
   assert.deepEqual(done, ["stop", "enable"]);
 });
 
-test("any button can be the one that stops, the first too", () => {
-  settings.change({ gamepadStop: "any" });
-  press(plug(), 0);
-  press(pads[0], 3);
-  assert.deepEqual(done, ["stop", "stop"]);
-});
-
-test("the third button moves the gripper, the fourth where the third stops, and none where any stops", () => {
-  press(plug(), 2);
-  settings.change({ gamepadStop: "2" });
-  press(pads[0], 2);
-  press(pads[0], 3);
-  settings.change({ gamepadStop: "any" });
-  press(pads[0], 2);
-  assert.deepEqual(done, ["gripper", "stop", "gripper", "stop"]);
-});
-
-test("a shoulder button goes on to the next directions, and stops where any button stops", () => {
+test("the third button moves the gripper, and the shoulders go on to the next directions", () => {
   const pad = plug();
-  press(pad, 4);
-  press(pad, 5);
-  settings.change({ gamepadStop: "any" });
-  press(pad, 5);
-  assert.deepEqual(done, ["mode", "mode", "stop"]);
+  for (const number of [2, 3, 4, 5]) press(pad, number);
+  assert.deepEqual(done, ["gripper", "mode", "mode"]);
+});
+
+test("a button does what the person has chosen for it, on the gamepad that they chose it for", () => {
+  const [mine, other] = [plug(0), appear(1, "b")];
+  poll();
+  settings.change({ pads: { a: { ...mappingOf({}, mine), uses: ["stop", "", "", "enable", "gripper", "nextMode"] } } });
+  for (const number of [0, 1, 2, 3, 4, 5]) press(mine, number);
+  press(other, 0);
+  assert.deepEqual(done, ["stop", "enable", "gripper", "mode", "enable"]);
+});
+
+test("every button of a gamepad without the standard layout stops, and the page says so until it is mapped", () => {
+  const pad = plug();
+  pad.mapping = "";
+  for (const number of [0, 3, 5]) press(pad, number);
+  assert.deepEqual(done, ["stop", "stop", "stop"]);
+  assert.equal(told, say("gamepad.unknown", { name: "a" }));
+  settings.change({ pads: { a: mappingOf({}, { ...pad, mapping: "standard" }) } });
+  press(pad, 0);
+  assert.equal(done.pop(), "enable");
+  assert.equal(told, "");
+});
+
+test("behind a dialog a button stops, and does nothing else", () => {
+  fakes.document.querySelector = (wanted) => (wanted.includes("dialog[open]") ? { localName: "dialog" } : null);
+  const pad = plug();
+  for (const number of [0, 1, 2, 4]) press(pad, number);
+  assert.deepEqual(done, ["stop"]);
+});
+
+test("a press that answers the settings is no switch, but Stop stops", () => {
+  scanning = true;
+  fakes.document.querySelector = () => ({ localName: "dialog" });
+  const pad = plug();
+  for (const number of [0, 1]) press(pad, number);
+  assert.deepEqual(done, ["stop"]);
+});
+
+test("a stick that is at rest by one mapping and pushed by another moves nothing until it was let go", () => {
+  const pad = plug();
+  pad.axes = [0, 0, 1, 0];
+  poll();
+  assert.equal(input.source, null);
+  settings.change({ pads: { a: { ...mappingOf({}, pad), at: [2, 3] } } });
+  poll();
+  assert.equal(input.source, null);
+  assert.equal(told, say("gamepad.unrested", { name: "a" }));
+  pad.axes = [0, 0, 0, 0];
+  poll();
+  pad.axes = [0, 0, 1, 0];
+  poll();
+  assert.equal(input.source, "gamepad");
 });
 
 test("where scanning is on, buttons are switches and neither stop nor enable", () => {
@@ -171,10 +205,8 @@ test("a second gamepad does not take over from the first, nor when that is let g
 test("a button that stops does so on every gamepad", () => {
   plug(0);
   press(plug(1), 1);
-  settings.change({ gamepadStop: "any" });
-  press(pads[1], 4);
-  press(pads[0], 0);
-  assert.deepEqual(done, ["stop", "stop", "stop"]);
+  press(pads[0], 1);
+  assert.deepEqual(done, ["stop", "stop"]);
 });
 
 for (const [what, axes] of [["pushed", [0.7, 0]], ["with an axis that rests at -1", [0, -1]]]) {
@@ -184,13 +216,13 @@ for (const [what, axes] of [["pushed", [0.7, 0]], ["with an axis that rests at -
     poll();
     poll();
     assert.equal(input.source, null);
-    assert.deepEqual(unrested, ["a"]);
+    assert.equal(told, say("gamepad.unrested", { name: "a" }));
     input.hold("keyboard", 0, 1);
     assert.equal(input.source, "keyboard");
     input.release("keyboard");
     pad.axes = [0, 0];
     poll();
-    assert.deepEqual(unrested, []);
+    assert.equal(told, "");
     pad.axes = [0.7, 0];
     poll();
     assert.equal(input.source, "gamepad");
@@ -207,7 +239,7 @@ test("a gamepad that is pushed when inputs begin to flow, or when all let go, mo
     begins();
     poll();
     assert.equal(input.source, null);
-    assert.deepEqual(unrested, ["a"]);
+    assert.equal(told, say("gamepad.unrested", { name: "a" }));
     pad.axes = [0, 0];
     poll();
     pad.axes = [0.7, 0];
@@ -259,4 +291,61 @@ test("buttons are noticed within 0.1 s before the arm is enabled, but not on a h
   pad.buttons[1].pressed = true;
   pass(200);
   assert.deepEqual(done, ["enable"]);
+});
+
+/** Time passes with the gamepad as it is; it reports every 10 ms, if at all. */
+function live(pad, ms, reports = true) {
+  for (let passed = 0; passed < ms; passed += 20) {
+    pass(20);
+    if (reports) pad.timestamp = performance.now();
+    poll();
+  }
+}
+
+for (const axes of [[0.7, 0], [0, 0]]) {
+  test(`a gamepad that reports all the time and stands still is gone within 0.12 s, and stops the arm (${axes})`, () => {
+    const pad = plug();
+    pad.timestamp = 1;
+    live(pad, 1000);
+    pad.axes = axes;
+    live(pad, 1000);
+    assert.deepEqual(done, []);
+    live(pad, 120, false);
+    assert.deepEqual(done, ["gamepad_lost"]);
+    live(pad, 5000, false);
+    assert.deepEqual(done, ["gamepad_lost"]);
+    // It is back, still pushed or not: it drives once it has been at rest.
+    input.neutral();
+    pad.axes = [0.7, 0];
+    live(pad, 200);
+    assert.equal(input.source, null);
+    pad.axes = [0, 0];
+    live(pad, 40);
+    pad.axes = [0.7, 0];
+    live(pad, 40);
+    assert.equal(input.source, "gamepad");
+  });
+}
+
+test("a stick that is held goes on where the browser's time moves with changes alone, or not at all", () => {
+  const [changes, none] = [plug(0), plug(1)];
+  for (let turn = 0; turn < 100; turn += 1) {
+    changes.axes = [0.5 + 0.001 * (turn % 2), 0];
+    changes.timestamp = performance.now();
+    live(changes, turn % 10 ? 20 : 400, false);
+    none.axes = [0.5 + 0.001 * (turn % 3), 0];
+  }
+  live(changes, 9000, false);
+  assert.deepEqual(done, []);
+  assert.equal(input.source, "gamepad");
+});
+
+test("a page that hangs for a second takes no gamepad for gone", () => {
+  const pad = plug();
+  pad.timestamp = 1;
+  live(pad, 1000);
+  pass(1000);
+  poll();
+  live(pad, 100);
+  assert.deepEqual(done, []);
 });

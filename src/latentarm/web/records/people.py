@@ -31,7 +31,11 @@ _STAGING: Final = ".adding-"
 PersonId = Annotated[str, Field(pattern=rf"^{ID.pattern}$")]
 SettingName = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9]{0,39}$")]
 SettingText = Annotated[str, Field(max_length=80)]
-Settings = Annotated[dict[SettingName, bool | float | SettingText], Field(max_length=MOST_SETTINGS)]
+MappedPad = dict[SettingName, float | Annotated[tuple[float | SettingText, ...], Field(max_length=64)]]
+MappedPads = Annotated[dict[Annotated[str, Field(max_length=120)], MappedPad], Field(max_length=10)]
+Settings = Annotated[
+    dict[SettingName, bool | float | SettingText | MappedPads], Field(max_length=MOST_SETTINGS)
+]
 """The page defines and checks them; the server only bounds them."""
 
 
@@ -99,7 +103,7 @@ class People:
         """The folder with a person's records."""
         return self._folder / person
 
-    def add(self, name: str, settings: dict[str, bool | float | str] | None = None) -> PersonRecord:
+    def add(self, name: str, settings: Settings | None = None) -> PersonRecord:
         """Add a person. Raises UserError if the name is invalid or taken, or there are too many people."""
         with self._lock:
             if len(self._people) >= MOST_PEOPLE:
@@ -142,7 +146,7 @@ class People:
             known = self.known(person)
             return self._keep(known.model_copy(update={"name": self._free_name(name, person)}))
 
-    def keep_settings(self, person: str, settings: dict[str, bool | float | str]) -> PersonRecord:
+    def keep_settings(self, person: str, settings: Settings) -> PersonRecord:
         """Replace a person's settings."""
         with self._lock:
             return self._keep(self.known(person).model_copy(update={"settings": settings}))

@@ -47,7 +47,7 @@ class _Pinned(Message):
 _BROWSER: Final = "latentarm_browser"
 """Cookie that tells browsers of this machine apart if the gate gives none."""
 
-_SETTINGS: Final[TypeAdapter[dict[str, bool | float | str]]] = TypeAdapter(Settings)
+_SETTINGS: Final[TypeAdapter[Settings]] = TypeAdapter(Settings)
 
 
 @final

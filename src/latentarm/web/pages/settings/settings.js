@@ -1,5 +1,6 @@
 /** Each person's settings, kept in this browser under their id; `person_sync.js` keeps it on the server as well. */
 
+import { EVERY_STOP, validMappings } from "./pads.js";
 import * as storage from "./storage.js";
 
 /**
@@ -29,7 +30,7 @@ import * as storage from "./storage.js";
  * @property {number} speakVolume in [0, 1]
  * @property {string} switchKey key that chooses
  * @property {string} nextKey key that goes on
- * @property {"any" | "0" | "1" | "2" | "3"} gamepadStop button that stops
+ * @property {Record<string, import("./pads.js").Mapping>} pads how gamepads are used, by their ids
  * @property {boolean} shortcuts whether letters and digits drive
  * @property {"facing" | "behind"} seat where the person sits
  * @property {"front" | "side"} largeView which of the two views is the large one
@@ -71,7 +72,7 @@ export const DEFAULTS = Object.freeze({
   speakVolume: 0.8,
   switchKey: "Enter",
   nextKey: "Backspace",
-  gamepadStop: "1",
+  pads: {},
   shortcuts: true,
   seat: "facing",
   largeView: "front",
@@ -102,7 +103,6 @@ const CHOICES = {
   switchMotion: ["latch", "hold"],
   tremor: ["off", "light", "medium", "strong"],
   help: ["off", "low", "medium", "high"],
-  gamepadStop: ["any", "0", "1", "2", "3"],
   seat: ["facing", "behind"],
   largeView: ["front", "side"],
   picture: ["camera", "drawn"],
@@ -206,6 +206,9 @@ function valid(stored) {
     if (typeof mine === typeof value && (CHOICES[key]?.includes(mine) ?? true)) values[key] = mine;
   }
   values.debounced = true;
+  values.pads = validMappings(kept?.pads);
+  // A version before had one setting for all gamepads. Where Stop was elsewhere, every button stops until they are mapped.
+  if (kept?.gamepadStop !== undefined && kept.gamepadStop !== "1") values.pads[""] = EVERY_STOP;
   for (const [key, [low, high]] of Object.entries(LIMITS)) values[key] = Math.min(Math.max(values[key], low), high);
   return values;
 }

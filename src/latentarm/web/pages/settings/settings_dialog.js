@@ -4,6 +4,7 @@ import { byId, create } from "../layout/dom.js";
 import { say, sayNumber, sayPercent } from "../layout/words.js";
 import { keyWords } from "../inputs/keys.js";
 import { attachLanguage } from "./language.js";
+import { attachPadSection } from "./pad_section.js";
 import { attachPersonChoice } from "./person_choice.js";
 import { NO_PROFILE } from "./settings.js";
 
@@ -75,6 +76,7 @@ export function attachSettingsDialog(dialog, opener, settings) {
     } else if (code === "Enter" || code === "Space") field.click();
   });
   attachLanguage(byId("language", HTMLSelectElement), byId("language-offer"));
+  attachPadSection(dialog, settings);
   byId("settings-reset").addEventListener("click", () => settings.reset());
   settings.addEventListener("change", show);
 
