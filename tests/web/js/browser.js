@@ -172,6 +172,14 @@ export function stateOf(fields = {}) {
   return { ...STATE, ...fields };
 }
 
+/** What a page with the control knows. @param {object} [fields] */
+export function pageOf(fields = {}) {
+  return {
+    values: { panel: "stick", press: "hold", switchMotion: "latch" }, halted: null, turnedAway: "", canEnable: true, canConnect: true, unconfirmed: false, dialog: false,
+    refused: false, pushAgain: false, pressed: false, keys: true, practice: null, next: null, late: "connection", absent: false, ...fields,
+  };
+}
+
 /** A welcome as the server says it. @param {object} [fields] */
 export function welcomeOf(fields = {}) {
   return {

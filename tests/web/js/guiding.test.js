@@ -4,10 +4,10 @@ import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 
 import { Connection } from "#pages/connection/connection.js";
-import { statusOf } from "#pages/connection/status.js";
+import { sentenceOf, textOf } from "#pages/connection/sentence.js";
 import { attachStop } from "#pages/connection/stop.js";
 import { attachGuiding, guidingOf } from "#pages/teach/guiding.js";
-import { FakeElement, FakeSocket, event, key, newBrowser, pass, stateOf, welcomeOf } from "./browser.js";
+import { FakeElement, FakeSocket, event, key, newBrowser, pass, pageOf, stateOf, welcomeOf } from "./browser.js";
 
 let fakes;
 let socket;
@@ -85,16 +85,16 @@ test("after a Stop, or what else ends it, nothing asks for it again", () => {
 
 test("an arm that is not connected is not said to need Enable", () => {
   const connection = { open: true, silenceMs: 0, engaged: false, drove: true, own: { has: () => false }, welcome: welcomeOf() };
-  const page = { halted: null, turnedAway: "", canEnable: true, unconfirmed: false, refused: null, late: null };
+  const page = pageOf({ canConnect: false });
   const reason = { code: "arm_off", parameters: {} };
-  const text = (fields) => statusOf({ ...connection, state: stateOf({ lost: true, phase: "disengaged", reason, ...fields }) }, page).text;
+  const text = (fields) => textOf(sentenceOf({ ...connection, state: stateOf({ lost: true, phase: "disengaged", reason, ...fields }) }, page));
   for (const fields of [{ you: true }, { driver: null }]) assert.equal(text(fields), "The arm is not connected.");
 });
 
 test("what it does is said to the person and to those who watch", () => {
   const connection = { open: true, silenceMs: 0, engaged: false, drove: true, own: { has: () => false }, welcome: welcomeOf() };
-  const page = { halted: null, turnedAway: "", canEnable: false, unconfirmed: false, refused: null, late: null };
-  const text = (fields) => statusOf({ ...connection, state: stateOf({ guiding: "on", phase: "disengaged", ...fields }) }, page).text;
+  const page = pageOf({ canEnable: false });
+  const text = (fields) => textOf(sentenceOf({ ...connection, state: stateOf({ guiding: "on", phase: "disengaged", ...fields }) }, page));
   assert.match(text({ you: true }), /moved by hand/);
   assert.match(text({ you: false, driver: "x", driver_name: "Ada" }), /Ada is guiding/);
 });

@@ -3,8 +3,9 @@ import { beforeEach, test } from "node:test";
 
 import { Connection } from "#pages/connection/connection.js";
 import { OwnPages } from "#pages/connection/own_pages.js";
-import { attachStatus, isTrouble, statusOf } from "#pages/connection/status.js";
-import { FakeElement, FakeSocket, newBrowser, pass, stateOf, welcomeOf } from "./browser.js";
+import { sentenceOf, textOf } from "#pages/connection/sentence.js";
+import { attachStatus, isTrouble } from "#pages/connection/status.js";
+import { FakeElement, FakeSocket, newBrowser, pageOf, pass, stateOf, welcomeOf } from "./browser.js";
 
 const ADA = { code: "stop_pressed_by", parameters: { name: "Ada", page: "ada" } };
 
@@ -14,11 +15,11 @@ let text;
 let status;
 
 beforeEach(() => {
-  newBrowser();
+  newBrowser().document.getElementById = (id) => (id === "enable" ? new FakeElement() : null);
   const connection = new Connection(null);
   socket = FakeSocket.newest;
   [line, text] = [new FakeElement(), new FakeElement()];
-  status = attachStatus({ line, text }, connection);
+  status = attachStatus({ line, text }, connection, { values: pageOf().values });
   socket.opens();
 });
 
@@ -88,12 +89,12 @@ test("a watcher of a silent server is not told that the arm stops", () => {
 
 test("why this page stopped the arm is said until the arm is enabled again", () => {
   status.halted("focus_lost");
-  assert.equal(settled({ phase: "disengaged", you: true })[1], "Stopped: this window lost the focus. Press Enable to continue.");
+  assert.equal(settled({ phase: "disengaged", you: true })[1], "Stopped: this window lost the focus. Press Enable to move the arm.");
   assert.equal(settled({ phase: "ready", you: true })[0], "ready");
   // Another drives in between: what this page did is over.
   status.halted("focus_lost");
   settled({ phase: "ready", driver: "ada" });
-  assert.equal(settled({ phase: "disengaged", you: true, reason: ADA })[1], "Ada pressed Stop.");
+  assert.equal(settled({ phase: "disengaged", you: true, reason: ADA })[1], "Ada pressed Stop. Press Enable to move the arm.");
 });
 
 test("what the server refused the page for is said until it is welcome again", () => {
@@ -159,15 +160,21 @@ for (const [who, fields, words, page] of [
   [WATCHER, { reason: ADA, note: note("stop_first") }, "Ada pressed Stop. Ada is driving; you are watching."],
   [WATCHER, { reason: ADA, note: note("let_go_first") }, "Ada pressed Stop. Ada is driving; you are watching."],
   [WATCHER, { phase: "ready", note: note("at_start") }, "The arm is back at the start."],
-  [DRIVER, { reason: ADA }, "The arm is not enabled. Press Enable to continue.", { refused: "halted.not_enabled" }],
-  [NOBODY, { reason: ADA }, "The arm is not enabled. Press Enable to continue.", { refused: "halted.not_enabled" }],
+  [DRIVER, { reason: ADA }, "The arm is not enabled. Press Enable to move the arm.", { refused: true }],
+  [NOBODY, { reason: ADA }, "The arm is not enabled. Nobody is driving. Press Enable to drive.", { refused: true }],
   [DRIVER, { reason: ADA }, "Ada pressed Stop. Confirm the points under “Before a real arm moves”, then press Enable.", { unconfirmed: true }],
   [NOBODY, { reason: ADA }, "Ada pressed Stop. Confirm the points under “Before a real arm moves”, then press Enable.", { unconfirmed: true }],
   [WATCHER, { reason: ADA }, "Ada pressed Stop. Ada is driving; you are watching.", { unconfirmed: true }],
   [DRIVER, { reason: CABLE, lost: true }, "The arm is not connected. Check its cable. Then press “Connect again”.", { unconfirmed: true }],
   [NOBODY, { reason: CABLE, lost: true }, "The arm is not connected. Check its cable. Then press “Connect again”.", { canEnable: false }],
   [DRIVER, { reason: CABLE, lost: true }, "The arm is not connected. Check its cable.", { canConnect: false }],
-  [WATCHER, { phase: "moving" }, "You are watching. Press “Ask to drive” first.", { refused: "halted.not_enabled" }],
+  [WATCHER, { phase: "moving" }, "You are watching. Press “Ask to drive” first.", { refused: true }],
+  [WATCHER, { asking: "bob", asking_name: "Bob" }, "Ada is driving, and Bob has asked to drive already.", { refused: true }],
+  [DRIVER, { phase: "ready", let_go_first: true, idle_left_s: 12 }, "Let go of everything first, then push again. The arm will be disabled in 15 s."],
+  [DRIVER, { phase: "ready" }, "Push the stick to one side, and hold it. The arrow keys do the same.", { practice: "press" }],
+  [DRIVER, { phase: "ready" }, "Push the stick to one side, and hold it.", { practice: "press", keys: false }],
+  [DRIVER, { reason: LATE }, "Your computer was too slow for a moment, so the arm stopped. Press Enable to move the arm.", { practice: "press", late: "page" }],
+  [DRIVER, { phase: "ready" }, "Push Right 16 cm.", { next: { key: "status.go", parameters: { way: "Right 16 cm" } } }],
 ]) {
   const about = who === DRIVER ? "the driver" : who === WATCHER ? "a watcher" : "a page while nobody drives";
   test(`what ${about} reads: ${words}`, () => {
@@ -177,8 +184,7 @@ for (const [who, fields, words, page] of [
     const connection = {
       open: true, silenceMs: 0, engaged: ["ready", "moving"].includes(state.phase), state, drove: who.you, own, welcome: welcomeOf(),
     };
-    const shown = { halted: null, turnedAway: "", canEnable: true, canConnect: true, unconfirmed: false, refused: null, late: "connection", ...page };
-    assert.equal(statusOf(connection, shown).text, words);
+    assert.equal(textOf(sentenceOf(connection, pageOf(page))), words);
   });
 }
 
@@ -192,7 +198,7 @@ test("what somebody must look at the arm for is marked, and an ordinary stop is 
 
 test("a stop for a late input names what was too slow", () => {
   let slow = true;
-  status.watch(() => slow);
+  status.watch(() => pageOf({ slow }));
   settled({ phase: "ready", you: true });
   assert.match(settled({ phase: "disengaged", you: true, reason: LATE })[1], /^Your computer was too slow/);
   // What the page finds out later changes nothing.
@@ -216,6 +222,18 @@ test("a press that cannot move the arm says why, and for a moment only", () => {
   assert.equal(settled({ phase: "moving", driver: "ada", driver_name: "Ada" })[1], "You are watching. Press “Ask to drive” first.");
   for (let passed = 0; passed < 4000; passed += 200) settled({ phase: "moving", driver: "ada", driver_name: "Ada" });
   assert.equal(text.textContent, "Ada is moving the arm.");
+});
+
+test("a stop from before this page was there is nobody's", () => {
+  const before = { phase: "disengaged", you: true, reason: LATE };
+  assert.equal(settled(before)[1], "The arm is not enabled. Press Enable to move the arm.");
+  assert.equal(settled({ ...before, reason: ADA })[1], "Ada pressed Stop. Press Enable to move the arm.");
+  settled({ phase: "ready", you: true });
+  assert.match(settled(before)[1], /^The arm did not hear from you in time/);
+});
+
+test("an arm that cannot be enabled is said to be so, however long ago that began", () => {
+  assert.match(settled({ phase: "disengaged", you: true, reason: note("arm_emergency_stop") })[1], /^The emergency stop on the arm is pressed: release it first.$/);
 });
 
 test("what lasts shorter than 0.12 s is not announced", () => {

@@ -31,6 +31,8 @@ function welcomes(fields = {}) {
   connection.dispatchEvent(new Event("welcome"));
 }
 
+const FAR = { shift_m: [0, 0, -0.2], turn_rad: [0, 0, 0], gripper: null };
+
 /** The server says how far the run has come. */
 function hears(run = {}, fields = {}) {
   connection.state = stateOf({ task: { ...RUN, ...run }, tool: [0.5, 0, 0.3], you: true, ...fields });
@@ -73,11 +75,14 @@ test("steps tick off, and each is said with the next", () => {
 
 test("the distance that is left is told at the step that is to be done", () => {
   welcomes();
-  hears();
+  hears({ to_go: FAR });
   const away = () => parts.steps.children.map((item) => item.children[2].textContent);
   assert.deepEqual(away(), ["20 cm to go", ""]);
-  hears({}, { tool: [0.5, 0, 0.15] });
+  hears({ to_go: { ...FAR, shift_m: [0, 0, -0.05] } });
   assert.deepEqual(away(), ["5 cm to go", ""]);
+  // With straight lines each direction has its own distance in the list, and the step has none.
+  hears({ to_go: FAR }, { mode: "end_effector" });
+  assert.deepEqual(away(), ["", ""]);
 });
 
 test("success is said with its time, and heard once", () => {
@@ -92,10 +97,15 @@ test("success is said with its time, and heard once", () => {
   assert.deepEqual(heard, ["success"]);
 });
 
-test("a page that comes when all is over makes no sound", () => {
+test("a page that comes when all is over makes no sound, and is not told what others did, nor how long that took", () => {
   welcomes();
-  hears({ done: 2, outcome: "success" });
+  hears({ done: 2, outcome: "success", time_s: 12.6 });
   assert.deepEqual(heard, []);
+  assert.equal(parts.said.textContent, "This task is over.");
+  assert.equal(parts.time.textContent, "");
+  hears();
+  hears({ done: 2, outcome: "success", time_s: 8 });
+  assert.equal(parts.time.textContent, "Time: 8 s");
 });
 
 test("failure says what happened", () => {
@@ -108,11 +118,11 @@ test("failure says what happened", () => {
   assert.equal(parts.said.textContent, "");
 });
 
-test("what slipped is said with what to do, its step is to be done again, and then the steps go on", () => {
+test("what slipped is said, its step is to be done again, and then the steps go on", () => {
   welcomes();
   hears({ done: 1 });
-  hears({ done: 2, lost: { thing: MARSHMALLOWS[0], step: 0 } });
-  assert.equal(parts.said.textContent, "The arm no longer holds the left marshmallow. Take it again, or press Again.");
+  hears({ done: 2, lost: { thing: MARSHMALLOWS[0], step: 0 }, to_go: FAR });
+  assert.equal(parts.said.textContent, "The arm no longer holds the left marshmallow.");
   assert.equal(marks(), "▸✓");
   assert.equal(parts.panel.dataset.outcome, "stuck");
   assert.deepEqual(parts.steps.children.map((item) => item.children[2].textContent), ["20 cm to go", ""]);
@@ -123,10 +133,10 @@ test("what slipped is said with what to do, its step is to be done again, and th
   assert.equal(parts.said.textContent, "Step 1 of 2 is done. Now: Stab the left marshmallow and lift it.");
 });
 
-test("too little to pour is said with what to do", () => {
+test("too little to pour is said", () => {
   welcomes();
   hears({ done: 1, short: true });
-  assert.equal(parts.said.textContent, "Too little is left to pour. Press Again to start over.");
+  assert.equal(parts.said.textContent, "Too little is left to pour.");
   assert.deepEqual(task.choices().map(({ id }) => id), ["next", "again"]);
 });
 

@@ -6,7 +6,7 @@ import { beforeEach, test } from "node:test";
 import { DIRECTIONS } from "#pages/inputs/deflection.js";
 import { modeInput } from "#pages/inputs/shaping.js";
 import { awayWords } from "#pages/drive/task_words.js";
-import { leftToGo } from "#pages/drive/to_go.js";
+import { learnedOn, leftToGo, straightOn } from "#pages/drive/to_go.js";
 import { DEFAULTS } from "#pages/settings/settings.js";
 import { newBrowser, stateOf, welcomeOf } from "./browser.js";
 
@@ -37,11 +37,33 @@ test("lengths are in centimetres, turns in degrees, and what is small enough is 
   assert.deepEqual(leftToGo({ ...TO_GO, shift_m: [0, 0, -0.002], turn_rad: [0, 0, -0.04] }, "z-yaw", shaped), []);
 });
 
-test("the step tells the turn apart from the distance, and what the gripper is to do", () => {
-  const step = { kind: "poured", thing: "bowl" };
-  const welcome = welcomeOf({ task: { name: "pour", seed: 0, choices: [], choice: 0, steps: [step] } });
-  const at = (to_go) => awayWords(welcome, stateOf({ task: { choice: 0, done: 0, outcome: null, why: null, time_s: 0, to_go } }));
+test("the step tells the turn apart from the distance", () => {
+  const at = (to_go) => awayWords(stateOf({ task: { outcome: null, to_go } }));
   assert.equal(at({ shift_m: [0.03, 0.04, 0], turn_rad: [0, 0.9, 0], gripper: null }), "5 cm, turn 52°");
   assert.equal(at({ shift_m: [0.03, 0.04, 0], turn_rad: [0, 0.1, 0], gripper: null }), "5 cm to go");
-  assert.equal(at({ ...TO_GO, gripper: "close" }), "Close the gripper now");
+  assert.equal(at({ ...TO_GO, gripper: "close" }), "");
+});
+
+test("along straight lines the sentence has a direction and number of the list: the furthest of the pair, and then another pair", () => {
+  for (let number = 0; number < 200; number += 1) {
+    const [a, b, c, d, e, f] = Array.from({ length: 6 }, (_, at) => Math.sin(7919 * (6 * number + at)) ** 3);
+    const toGo = { shift_m: [a / 2, b / 2, c / 2], turn_rad: [d, e, f], gripper: null };
+    const ways = PAIRS.map((pair, axes) => leftToGo(toGo, pair, (x, y) => modeInput(DEFAULTS, stateOf({ mode: "end_effector", axes }), welcomeOf(), x, y)));
+    PAIRS.forEach((pair, axes) => {
+      const said = straightOn(ways, axes, PAIRS, number % 2 === 1);
+      if (ways[axes].length === 0) assert.ok(said === null || said.key === "status.next_pair");
+      else assert.equal(said.parameters.way, ways[axes].find(({ size }) => size === Math.max(...ways[axes].map((one) => one.size))).text);
+    });
+  }
+  assert.equal(straightOn([[], [], []], 0, PAIRS, false), null);
+});
+
+test("learned motions are named where they lead nearer by more than 1 cm, with the number of the step", () => {
+  const toGo = { shift_m: [0.1, 0, 0], turn_rad: [0, 0, 0], gripper: null };
+  const path = (...end) => [[0, 0, 0], end];
+  const paths = { up: path(0.009, 0, 0), down: path(-0.1, 0, 0), left: null, right: path(0, 0.1, 0) };
+  assert.equal(learnedOn(toGo, paths, false), null);
+  const { key, parameters } = learnedOn(toGo, { ...paths, left: path(0.05, 0.02, 0) }, false);
+  assert.deepEqual([key, parameters], ["status.go", { way: "Left 10 cm" }]);
+  assert.equal(awayWords(stateOf({ task: { outcome: null, to_go: toGo } })), "10 cm to go");
 });

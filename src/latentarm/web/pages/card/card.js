@@ -1,7 +1,9 @@
 /** The card to print: how to move, Enable and Stop, for the input that the person has chosen. */
 
+import { isSwitch } from "../inputs/keys.js";
 import { byId, setText } from "../layout/dom.js";
-import { stepWords } from "../practice/step_words.js";
+import { say } from "../layout/words.js";
+import { stepKey } from "../practice/step_words.js";
 
 /** @import {Connection} from "../connection/connection.js" */
 /** @import {Settings} from "../settings/settings.js" */
@@ -13,8 +15,10 @@ export function attachCard(connection, settings) {
     setText(byId("card-person"), settings.name);
     byId("card-gripper").hidden = typeof connection.welcome?.gripper_width_m !== "number" || settings.values.panel === "switch";
     for (const line of /** @type {NodeListOf<HTMLElement>} */ (byId("card").querySelectorAll("[data-card]"))) {
-      setText(line, stepWords(/** @type {Step} */ (line.dataset.card), settings.values, false));
+      setText(line, say(stepKey(/** @type {Exclude<Step, "watch" | "reach">} */ (line.dataset.card), settings.values)));
     }
+    // Where Space is a switch, it does not stop.
+    setText(byId("card-keys"), say(isSwitch(settings.values, "Space") ? "card.stop_escape" : "card.stop_keys"));
   };
   byId("card-print").addEventListener("click", () => print());
   settings.addEventListener("change", show);

@@ -12,9 +12,8 @@ import { say } from "../layout/words.js";
 /**
  * @param {{panel: HTMLElement, facts: HTMLElement, boxes: HTMLInputElement[], why: HTMLElement}} parts
  * @param {Connection} connection
- * @param {() => void} confirmed is called when nothing is left to confirm
  */
-export function attachChecklist(parts, connection, confirmed) {
+export function attachChecklist(parts, connection) {
   const done = () => !connection.welcome?.real || parts.boxes.every((box) => box.checked);
   let lost = false;
   /** Which start of the arm the boxes are about. */
@@ -35,7 +34,6 @@ export function attachChecklist(parts, connection, confirmed) {
     box.addEventListener("change", () => {
       show();
       tell();
-      if (done()) confirmed();
     });
   }
   const uncheck = () => {

@@ -22,6 +22,7 @@ import { modeInput } from "../inputs/shaping.js";
 import { attachRim } from "../inputs/rim.js";
 import { attachStick } from "../inputs/stick.js";
 import { attachTremor } from "../inputs/tremor.js";
+import { attachWatching } from "../inputs/watching.js";
 import { byId, setHidden, setText } from "../layout/dom.js";
 import { attachPage } from "../layout/page.js";
 import { say } from "../layout/words.js";
@@ -47,6 +48,7 @@ import { attachZones } from "./zones.js";
 /** @import {Direction} from "../inputs/deflection.js" */
 /** @import {Welcome} from "../connection/messages.js" */
 /** @import {Drawing} from "../views/drawing.js" */
+/** @import {Paths} from "../views/predictions.js" */
 
 /** Words next to the views change no more often than this, ms. */
 const WORDS_MS = 250;
@@ -68,7 +70,6 @@ const input = new DriveInput(connection, shaped, attachTremor(settings));
 attachLatchLimit(input, connection, settings, status.asksToPushAgain);
 attachChatterGuard(input);
 input.addEventListener("halted", (event) => status.halted(/** @type {CustomEvent} */ (event).detail));
-status.watch(() => input.lateness.wasSlow);
 attachDialogs(input);
 attachNeutralFirst(connection, input);
 
@@ -78,8 +79,7 @@ attachCard(connection, settings);
 const checklist = attachChecklist({
   panel: byId("checklist"), facts: byId("checklist-facts"), why: byId("checklist-why"),
   boxes: ["stop", "area", "payload"].map((id) => byId(`checklist-${id}`, HTMLInputElement)),
-}, connection, status.allowed);
-status.ask(() => !checklist.done());
+}, connection);
 
 /** This page drives first, if nobody else does, and then enables the arm: one press for both. */
 const enable = () => {
@@ -88,9 +88,8 @@ const enable = () => {
   if (connection.state?.lost) lostArm.again();
   else if (!checklist.done()) {
     checklist.refuse();
-    status.refused("checklist.first");
-  }
-  else if (!connection.driving && connection.state?.driver) status.refused();
+    status.refused();
+  } else if (!connection.driving && connection.state?.driver) status.refused();
   else if (!connection.engaged) lease.ask(() => input.enable());
 };
 attachEnableButton(byId("enable"), connection, enable);
@@ -104,7 +103,13 @@ const poses = attachPoses({
 const modes = attachModes({ mode: byId("mode"), axes: byId("axes") }, connection, settings);
 const inPair = (/** @type {number} */ axes, /** @type {number} */ x, /** @type {number} */ y) =>
   connection.state ? modeInput(settings.values, { ...connection.state, mode: "end_effector", axes }, connection.welcome, x, y) : [0, 0];
-attachToGo(byId("to-go"), byId("axes"), connection, inPair);
+const nextWords = attachToGo(byId("to-go"), byId("axes"), connection, inPair, () => settings.values.panel === "switch");
+/** Where each direction leads, as drawn last. @type {Paths | null} */
+let paths = null;
+status.watch(() => ({
+  slow: input.lateness.wasSlow, unconfirmed: !checklist.done(), dialog: dialogIsOpen(), pressed: input.source !== null,
+  keys: document.documentElement.hasAttribute("data-keys"), practice: practice.step, next: nextWords(paths),
+}));
 attachSpeed(byId("speed"), settings);
 attachHelp({ fieldset: byId("help"), text: byId("help-text") }, connection, settings);
 attachCopilot(connection);
@@ -136,6 +141,7 @@ const gripper = attachGripper({
 attachStick(byId("stick"), byId("stick-value"), input, settings);
 const rim = attachRim(byId("stick"));
 attachDpad(byId("dpad"), byId("dpad-help"), input, settings, status.refused);
+attachWatching([byId("stick"), byId("dpad")], connection, status.refused);
 const scanner = attachScanning(input, settings, stop, (stopIt, group) => {
   const mode = { id: "mode", label: say("scanning.other_mode"), act: modes.next };
   const { label, does } = enableButtonOf(connection);
@@ -165,7 +171,7 @@ function show() {
   const { state, welcome } = connection;
   if (!state || !welcome) return false;
   const { pressed } = input;
-  const paths = personalPaths(state.ghosts, state.tool, shaped);
+  paths = personalPaths(state.ghosts, state.tool, shaped);
   const wanted = wantedThing(welcome, state);
   const ring = personalRing(state.ghosts, state.tool, shaped);
   const moved = drawing?.show(state, { paths, ring }, pressed, settings.values, wanted) ?? false;

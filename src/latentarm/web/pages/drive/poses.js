@@ -58,7 +58,7 @@ export function attachPoses(parts, connection) {
   const show = () => {
     const { goes, why } = goingOf(connection);
     const problem = connection.poses?.problem ?? null;
-    setText(parts.why, problem === null ? say(why) : sayTo(problem, { you: true, own: connection.own, late: null }));
+    setText(parts.why, problem === null ? say(why) : sayTo(problem, { you: true, own: connection.own, late: null, absent: false }));
     for (const button of parts.list.querySelectorAll("[data-go]")) disable(button, !goes);
     for (const button of parts.list.querySelectorAll("[data-delete]")) disable(button, !connection.driving);
     disable(parts.save, !savesOf(connection));

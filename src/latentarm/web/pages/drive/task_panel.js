@@ -37,6 +37,8 @@ export function attachTask(parts, connection, ended) {
   /** @type {TaskState | null} */
   let before = null;
   let wordsAt = -Infinity;
+  /** Whether this page was there when a run began, or the arm was driven in it: before that its time and end were others'. */
+  let there = false;
 
   const blocked = () => (connection.state ? blockedWords(connection.state) : say("status.connecting"));
   const begin = (/** @type {{choice: number | null, anew: boolean}} */ what) => {
@@ -99,9 +101,10 @@ export function attachTask(parts, connection, ended) {
     const { task } = state;
     // A welcome announces a new run first.
     if (task.choice !== welcome.task.choice) return;
+    there ||= task.time_s === 0 || connection.engaged;
     showSteps(task);
     parts.panel.dataset.outcome = task.outcome ?? (stuck(task) ? "stuck" : "");
-    if (task.outcome !== null) setText(parts.said, outcomeWords(task));
+    if (task.outcome !== null) setText(parts.said, there ? outcomeWords(task) : say("task.over"));
     else if (stuck(task)) setText(parts.said, stuckWords(task));
     else if (before !== null && (before.lost || task.done > before.done)) {
       const step = stepWords(welcome.task.steps[task.done]);
@@ -120,8 +123,8 @@ export function attachTask(parts, connection, ended) {
     parts.choice.disabled = why !== "";
     if (performance.now() - wordsAt < WORDS_MS) return;
     wordsAt = performance.now();
-    setText(parts.time, say("task.time", { seconds: wholeSeconds(task.time_s) }));
-    const away = awayWords(welcome, state);
+    setText(parts.time, there ? say("task.time", { seconds: wholeSeconds(task.time_s) }) : "");
+    const away = awayWords(state);
     [...parts.steps.children].forEach((item, index) => setText(item.children[2], index === stepNow(task) ? away : ""));
     showFills(task.fills);
   });

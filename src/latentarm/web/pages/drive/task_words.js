@@ -2,12 +2,9 @@
 
 import { capital, intoThing, theThing, thingWords } from "../layout/thing_words.js";
 import { say, sayPercent } from "../layout/words.js";
-import { degreesToGo } from "./to_go.js";
+import { centimetresToGo } from "./to_go.js";
 
 /** @import {Fill, State, StepToDo, TaskState, Welcome} from "../connection/messages.js" */
-
-/** Steps for which it helps to know how far away the thing is. */
-const FAR = new Set(["approached", "reached", "above", "holding", "stabbed"]);
 
 /** A turn that need not be told, degrees. */
 const SMALL_TURN = 10;
@@ -92,19 +89,13 @@ export function distance(tool, place) {
 }
 
 /**
- * How far the tool has to go in the step that is to be done now, and to turn, in words; or what the gripper is to do.
+ * How far the tool has to go in the step that is to be done now, and to turn. With straight lines the list says it, for each
+ * direction.
  *
- * @param {Welcome} welcome
- * @param {State} state
+ * @param {Pick<State, "mode" | "task">} state
  */
-export function awayWords(welcome, state) {
-  const { outcome, to_go } = state.task;
-  const step = welcome.task.steps[stepNow(state.task)];
-  if (!step || outcome !== null) return "";
-  if (to_go?.gripper) return say(`to_go.gripper_${to_go.gripper}`);
-  const place = FAR.has(step.kind) ? placeOf(step.thing, welcome, state) : null;
-  const far = place ? distance(state.tool, place) : to_go && Math.hypot(...to_go.shift_m);
-  if (far === null) return "";
-  const [centimetres, degrees] = [Math.round(100 * far), to_go ? degreesToGo(to_go) : 0];
+export function awayWords({ mode, task: { outcome, to_go } }) {
+  if (to_go === null || outcome !== null || to_go.gripper || mode === "end_effector") return "";
+  const [centimetres, degrees] = [centimetresToGo(to_go), Math.round((180 * Math.hypot(...to_go.turn_rad)) / Math.PI)];
   return degrees > SMALL_TURN ? say("task.away_turn", { centimetres, degrees }) : say("task.away", { centimetres });
 }

@@ -3,11 +3,14 @@
 import { DIRECTIONS, DIRECTION_NAMES } from "../inputs/deflection.js";
 import { create, setText } from "../layout/dom.js";
 import { say, sayNumber } from "../layout/words.js";
+import { displacement } from "../views/predictions.js";
 
 /** @import {Connection} from "../connection/connection.js" */
 /** @import {ToGo} from "../connection/messages.js" */
 /** @import {Direction} from "../inputs/deflection.js" */
+/** @import {Words} from "../connection/sentence.js" */
 /** @import {WordKey} from "../layout/words.js" */
+/** @import {Paths} from "../views/predictions.js" */
 
 /** @typedef {{of: "shift_m" | "turn_rad", axis: number}} Part one of the six ways in which the tool can move */
 
@@ -23,9 +26,12 @@ const LEAST = { shift_m: 0.003, turn_rad: 0.05 };
 const WHOLE_CM = 10;
 const WORDS_MS = 250;
 
-/** How far the tool has yet to turn, degrees. @param {ToGo} toGo */
-export function degreesToGo({ turn_rad }) {
-  return Math.round((180 * Math.hypot(...turn_rad)) / Math.PI);
+/** A prediction that brings the tool nearer by less is not worth a push, m. */
+const NEARER_M = 0.01;
+
+/** How far the tool has yet to go, cm. @param {ToGo} toGo */
+export function centimetresToGo({ shift_m }) {
+  return Math.round(100 * Math.hypot(...shift_m));
 }
 
 /**
@@ -45,7 +51,7 @@ export function movedPart(pair, sent) {
  * @param {ToGo} toGo
  * @param {string} pair its name
  * @param {(x: number, y: number) => number[]} shaped from stick to what is sent in it
- * @returns {{direction: Direction, text: string}[]}
+ * @returns {{direction: Direction, text: string, size: number}[]} `size`: in multiples of what need not be driven
  */
 export function leftToGo(toGo, pair, shaped) {
   return DIRECTION_NAMES.flatMap((direction) => {
@@ -53,10 +59,48 @@ export function leftToGo(toGo, pair, shaped) {
     const far = way * toGo[part.of][part.axis];
     if (far < LEAST[part.of]) return [];
     const name = say(`directions.${direction}`);
-    if (part.of === "turn_rad") return [{ direction, text: say("to_go.turn", { direction: name, degrees: Math.round((180 * far) / Math.PI) }) }];
+    const size = far / LEAST[part.of];
+    if (part.of === "turn_rad") return [{ direction, size, text: say("to_go.turn", { direction: name, degrees: Math.round((180 * far) / Math.PI) }) }];
     const centimetres = sayNumber(100 * far, 100 * far < WHOLE_CM ? 1 : 0);
-    return [{ direction, text: say("to_go.length", { direction: name, centimetres }) }];
+    return [{ direction, size, text: say("to_go.length", { direction: name, centimetres }) }];
   });
+}
+
+/** What is to be done for a way, as the person drives. @param {string} way @param {boolean} switches @returns {Words} */
+function push(way, switches) {
+  return { key: switches ? "status.go_switch" : "status.go", parameters: { way } };
+}
+
+/**
+ * What brings the tool on along straight lines: the furthest way in the pair in use, or else another pair.
+ *
+ * @param {ReturnType<typeof leftToGo>[]} ways of each pair
+ * @param {number} axes the pair in use
+ * @param {string[]} pairs their names
+ * @param {boolean} switches whether a switch chooses directions
+ * @returns {Words | null} null where nothing is left
+ */
+export function straightOn(ways, axes, pairs, switches) {
+  const [furthest] = [...ways[axes]].sort((one, other) => other.size - one.size);
+  if (furthest) return push(furthest.text, switches);
+  const other = ways.findIndex((left) => left.length > 0);
+  return other < 0 ? null : { key: "status.next_pair", parameters: { pair: say(/** @type {WordKey} */ (`axes.${pairs[other]}`)) } };
+}
+
+/**
+ * What brings the tool on by learned motions: the direction that leads nearest to where it is to be.
+ *
+ * @param {ToGo} toGo
+ * @param {Paths} paths of the tool, for each direction
+ * @param {boolean} switches whether a switch chooses directions
+ * @returns {Words | null} null where none leads nearer
+ */
+export function learnedOn(toGo, paths, switches) {
+  const left = (/** @type {number[][]} */ path) => Math.hypot(...displacement(path).map((moved, axis) => toGo.shift_m[axis] - moved));
+  const known = DIRECTION_NAMES.flatMap((direction) => (paths[direction] ? [{ direction, left: left(paths[direction]) }] : []));
+  const [best] = known.sort((one, other) => one.left - other.left);
+  if (!best || best.left > Math.hypot(...toGo.shift_m) - NEARER_M) return null;
+  return push(say("to_go.length", { direction: say(`directions.${best.direction}`), centimetres: centimetresToGo(toGo) }), switches);
 }
 
 /**
@@ -66,10 +110,14 @@ export function leftToGo(toGo, pair, shaped) {
  * @param {HTMLElement} choice where pairs are chosen
  * @param {Connection} connection
  * @param {(axes: number, x: number, y: number) => number[]} shaped from stick to what is sent in a pair
+ * @param {() => boolean} switches whether a switch chooses directions
+ * @returns {(paths: Paths | null) => Words | null} what brings the task on, in the numbers of the list
  */
-export function attachToGo(list, choice, connection, shaped) {
+export function attachToGo(list, choice, connection, shaped, switches) {
   let wordsAt = -Infinity;
   let begun = "";
+  /** @type {ReturnType<typeof leftToGo>[]} */
+  let ways = [];
 
   connection.addEventListener("welcome", () => {
     const { end_effector_modes } = /** @type {NonNullable<Connection["welcome"]>} */ (connection.welcome);
@@ -92,7 +140,7 @@ export function attachToGo(list, choice, connection, shaped) {
     if (now === begun && performance.now() - wordsAt < WORDS_MS) return;
     begun = now;
     wordsAt = performance.now();
-    const ways = welcome.end_effector_modes.map((name, axes) => leftToGo(toGo, name, (x, y) => shaped(axes, x, y)));
+    ways = welcome.end_effector_modes.map((name, axes) => leftToGo(toGo, name, (x, y) => shaped(axes, x, y)));
     const next = ways[state.axes].length || toGo.gripper ? -1 : ways.findIndex((left) => left.length > 0);
     welcome.end_effector_modes.forEach((name, axes) => {
       const left = ways[axes];
@@ -111,4 +159,12 @@ export function attachToGo(list, choice, connection, shaped) {
       });
     });
   });
+  return (paths) => {
+    const { state, welcome } = connection;
+    const toGo = state?.task.to_go ?? null;
+    if (!state || !welcome || toGo === null || state.task.outcome !== null) return null;
+    if (toGo.gripper) return { key: `to_go.gripper_${toGo.gripper}` };
+    if (state.mode !== "end_effector") return paths && learnedOn(toGo, paths, switches());
+    return ways[state.axes] ? straightOn(ways, state.axes, welcome.end_effector_modes, switches()) : null;
+  };
 }

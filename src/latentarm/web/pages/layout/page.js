@@ -13,6 +13,7 @@ import { Settings } from "../settings/settings.js";
 import { attachSettingsDialog } from "../settings/settings_dialog.js";
 import { attachTheme } from "../settings/theme.js";
 import { byId, setHidden, setText } from "./dom.js";
+import { attachKeysAtHand } from "./keys_at_hand.js";
 import { robotWords } from "./thing_words.js";
 import { attachTooLong } from "./too_long.js";
 import { readWords, say } from "./words.js";
@@ -25,7 +26,7 @@ export function attachPage({ drop = () => {}, repaint = () => {}, runChanged = (
   readWords();
   const settings = new Settings();
   const connection = new Connection(settings.person);
-  const status = attachStatus({ line: byId("status"), text: byId("status-text") }, connection);
+  const status = attachStatus({ line: byId("status"), text: byId("status-text") }, connection, settings);
   const lease = new DriverLease(connection);
   const spaceStops = () => !isSwitch(settings.values, "Space");
   const stop = attachStop(connection, () => {
@@ -41,6 +42,7 @@ export function attachPage({ drop = () => {}, repaint = () => {}, runChanged = (
   const feedback = attachFeedback(connection, settings);
   attachWakeLock(connection);
   attachTooLong();
+  attachKeysAtHand();
   // Pages from which nobody drives have no such panel.
   if (document.getElementById("driver")) {
     attachInvitation();

@@ -208,7 +208,7 @@ connection.addEventListener("state", () => {
   leaving = false;
   location.assign("/");
 });
-setText(byId("stick-help"), say("personalise.stick_help"));
+setText(byId("stick-how"), say("personalise.stick_help"));
 showAnswer();
 show();
 

@@ -3,7 +3,6 @@
 import { byId, create, setText } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 import { Practice, STEPS } from "./steps.js";
-import { stepWords } from "./step_words.js";
 
 /** @import {Connection} from "../connection/connection.js" */
 /** @import {DriveInput} from "../inputs/drive_input.js" */
@@ -30,10 +29,9 @@ export function attachPractice(connection, input, settings) {
     byId("practice-begin").hidden = practice !== null;
     byId("practice-again").hidden = practice === null;
     setText(byId("practice-skip"), say(finished ? "practice.close" : "practice.skip"));
-    list.hidden = practice === null;
-    byId("practice-now").hidden = !running;
+    list.hidden = !running;
     if (practice === null) return;
-    const { done, step } = practice;
+    const { done } = practice;
     list.replaceChildren(...STEPS.map((name, index) => {
       const item = create("li", { textContent: say(`practice.short_${name}`) });
       item.dataset.done = String(index < done);
@@ -41,7 +39,6 @@ export function attachPractice(connection, input, settings) {
       if (index === done) item.setAttribute("aria-current", "step");
       return item;
     }));
-    if (step !== null) setText(byId("practice-now"), stepWords(step, settings.values, Boolean(connection.welcome?.goals.length)));
   };
   const begin = () => {
     practice = new Practice();
@@ -83,6 +80,10 @@ export function attachPractice(connection, input, settings) {
   show();
 
   return {
+    /** The step to do; null where nobody practises. */
+    get step() {
+      return practice?.step ?? null;
+    },
     /** The person has pressed Stop on this page. */
     stopped() {
       if (connection.driving && connection.engaged && practice?.stopped()) show();

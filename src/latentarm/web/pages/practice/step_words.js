@@ -1,19 +1,39 @@
-/** Instructions in words for the input that the person has chosen. */
+/** Instructions for the input that the person has chosen, as keys of the words. */
 
-import { say } from "../layout/words.js";
-
+/** @import {State} from "../connection/messages.js" */
+/** @import {WordKey} from "../layout/words.js" */
 /** @import {Values} from "../settings/settings.js" */
 /** @import {Step} from "./steps.js" */
 
-/** @param {Step} step @param {Values} values @param {boolean} hasGoals @returns {string} */
-export function stepWords(step, values, hasGoals) {
-  const { panel } = values;
+/** @param {Exclude<Step, "watch" | "reach">} step @param {Pick<Values, "panel" | "press" | "switchMotion">} values @returns {WordKey} */
+export function stepKey(step, { panel, press, switchMotion }) {
+  const switches = panel === "switch";
   switch (step) {
-    case "enable": return say(panel === "switch" ? "practice.enable_switch" : "practice.enable");
-    case "press": return say(`practice.press_${panel}`);
-    case "let_go": return panel === "switch" ? say("practice.let_go_switch") : say(`practice.let_go_${values.press}`);
-    case "stop": return say(panel === "switch" ? "practice.stop_switch" : "practice.stop");
-    case "reach": return say(hasGoals ? "practice.reach" : "practice.reach_nothing");
-    default: return say(`practice.${step}`);
+    case "enable": return switches ? "practice.enable_switch" : "practice.enable";
+    case "press": return `practice.press_${panel}`;
+    case "let_go": return switches ? `practice.let_go_switch_${switchMotion}` : `practice.let_go_${press}`;
+    default: return switches ? "practice.stop_switch" : "practice.stop";
+  }
+}
+
+/**
+ * What the practice asks of the person while the arm is enabled; null where the arm's own sentence is enough.
+ *
+ * @param {Step | null} step
+ * @param {State["phase"]} phase
+ * @param {boolean} pressed whether a direction is pressed
+ * @param {Pick<Values, "panel" | "press" | "switchMotion">} values
+ * @param {boolean} hasGoals
+ * @returns {WordKey | null}
+ */
+export function practiceKey(step, phase, pressed, values, hasGoals) {
+  const moving = phase === "moving";
+  switch (step) {
+    case "press": return moving ? null : stepKey(step, values);
+    case "watch": return moving ? "practice.watch" : stepKey("press", values);
+    case "let_go": return moving || pressed ? stepKey(step, values) : null;
+    case "stop": return stepKey(step, values);
+    case "reach": return hasGoals ? "practice.reach" : "practice.reach_nothing";
+    default: return null;
   }
 }

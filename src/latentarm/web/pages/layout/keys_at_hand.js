@@ -1,0 +1,18 @@
+/**
+ * Whether a keyboard is at hand. No browser says so: where something points finely and hovers, as a mouse does, a keyboard is
+ * likely; everywhere else nothing is said of keys before one has been pressed. A touch screen's own keyboard sends no codes.
+ */
+
+/** Marks the page: what carries `about-keys` is shown only where keys are at hand. */
+export function attachKeysAtHand() {
+  const desk = matchMedia("(any-pointer: fine) and (any-hover: hover)");
+  let pressed = false;
+  const show = () => document.documentElement.toggleAttribute("data-keys", pressed || desk.matches);
+  window.addEventListener("keydown", ({ code }) => {
+    if (!code || pressed) return;
+    pressed = true;
+    show();
+  }, { capture: true });
+  desk.addEventListener("change", show);
+  show();
+}
