@@ -123,7 +123,7 @@ def test_stop_is_in_its_corner(opened, name):
 def test_the_practice_leaves_the_arm_the_stick_and_stop_on_the_screen(opened, name):
     page = opened(SIZES[name])
     page.get_by_role("button", name="Practise now").click()
-    assert page.evaluate(CUT_OFF, ["#practice-now"]) == []
+    assert page.evaluate(CUT_OFF, ["#practice", "#status"]) == []
     assert_on_one_screen(page, (name, "stick"))
 
 

@@ -63,7 +63,8 @@ def test_keys_alone_tick_every_step_off(practising, arm, press_enable):
     assert done(page) == 4
     page.keyboard.press("Escape")
     assert ticks(page, 5)
-    assert "close to a food" in page.locator("#practice-now").inner_text()
+    press_enable(page, arm)
+    page.locator("#status-text", has_text="close to a food").wait_for()
     towards_food(page, arm, press_enable, end_s)
     assert ticks(page, 6)
     assert page.locator("#practice-title").inner_text() == "Well done! You can drive the arm."
@@ -78,7 +79,7 @@ def test_keys_alone_tick_every_step_off(practising, arm, press_enable):
     assert not page.locator("#practice").is_visible()
     page.locator("#settings-open").click()
     page.get_by_role("button", name="Practise", exact=True).click()
-    assert page.locator("#practice-now").is_visible()
+    assert page.locator("#practice-steps").is_visible()
 
 
 def towards_food(page, arm, press_enable, end_s):
@@ -109,7 +110,7 @@ def choose(page, choice):
 def test_one_switch_ticks_its_steps_off_in_its_own_words(practising, arm):
     page = practising
     page.locator("input[name=panel][value=switch]").evaluate("one => one.click()")
-    assert "press your switch" in page.locator("#practice-now").inner_text()
+    page.locator("#status-text", has_text="Choose Enable with your switch.").wait_for()
     page.locator("#switch").focus()
 
     end_s = time.monotonic() + WITHIN_S
@@ -139,4 +140,4 @@ def test_a_switch_can_begin_and_skip_the_practice(open_page):
     for choice, shown in (("practice-begin", True), ("practice-skip", False)):
         choose(page, "more")
         choose(page, choice)
-        page.locator("#practice-now").wait_for(state="visible" if shown else "hidden")
+        page.locator("#practice-steps").wait_for(state="visible" if shown else "hidden")

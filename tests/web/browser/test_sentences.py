@@ -134,7 +134,9 @@ def test_the_button_of_a_watcher_says_that_it_asks(page, arm, open_page):
 def test_a_press_of_a_watcher_says_what_to_do(enabled, open_page):
     watcher = open_page()
     control_with(watcher, "Buttons")
-    watcher.get_by_role("button", name="Up", exact=True).click()
+    up = watcher.get_by_role("button", name="Up", exact=True)
+    expect(up).to_be_disabled()
+    up.click(force=True)
     reads(watcher, "^You are watching. Press “Ask to drive” first.$")
 
 
@@ -190,7 +192,7 @@ def test_a_dialog_stops_what_goes_on_by_itself(latched, arm, opens):
         latched.evaluate(opens)
     arm.comes_to_rest()
     arm.stays()
-    reads(latched, "a window opened on this page. Press Enable to continue|too slow for a moment")
+    reads(latched, "a window opened on this page. Close the window|too slow for a moment")
 
 
 def test_nothing_is_enabled_behind_a_dialog(open_page, seat, arm):

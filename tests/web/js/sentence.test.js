@@ -110,6 +110,7 @@ const LAWS = {
   },
   "a watcher is told who drives, and asked for nothing but to ask"({ state, at, heard }, text) {
     if (at.who !== "watcher" || at.silent) return true;
+    if (/Confirm|Let go|You pushed/.test(text)) return false;
     if (/Press “Ask to drive”/.test(text)) return enableButtonOf(heard).does === "ask";
     return /Ada/.test(text) || Boolean(at.note) || state.returning || state.phase === "stopping";
   },

@@ -10,7 +10,7 @@ import { say } from "../layout/words.js";
 /** @import {Choice} from "../inputs/scanner.js" */
 
 /**
- * @param {{panel: HTMLElement, facts: HTMLElement, boxes: HTMLInputElement[], why: HTMLElement}} parts
+ * @param {{panel: HTMLElement, facts: HTMLElement, boxes: HTMLInputElement[]}} parts
  * @param {Connection} connection
  */
 export function attachChecklist(parts, connection) {
@@ -28,7 +28,6 @@ export function attachChecklist(parts, connection) {
     // An arm that is not connected is connected first.
     parts.panel.hidden = done() || lost;
     parts.facts.replaceChildren(...(real?.facts ?? []).flatMap(({ name, value }) => [create("dt", { textContent: name }), create("dd", { textContent: value })]));
-    if (done()) parts.why.hidden = true;
   };
   for (const box of parts.boxes) {
     box.addEventListener("change", () => {
@@ -59,9 +58,8 @@ export function attachChecklist(parts, connection) {
 
   return {
     done,
-    /** Says what is missing, and leads there. */
+    /** Leads to what is missing. */
     refuse() {
-      parts.why.hidden = false;
       parts.boxes.find((box) => !box.checked)?.focus();
     },
     /** The points that are left to confirm, for a switch. @returns {Choice[]} */

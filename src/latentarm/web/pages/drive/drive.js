@@ -77,7 +77,7 @@ const practice = attachPractice(connection, input, settings);
 attachCard(connection, settings);
 
 const checklist = attachChecklist({
-  panel: byId("checklist"), facts: byId("checklist-facts"), why: byId("checklist-why"),
+  panel: byId("checklist"), facts: byId("checklist-facts"),
   boxes: ["stop", "area", "payload"].map((id) => byId(`checklist-${id}`, HTMLInputElement)),
 }, connection);
 

@@ -37,8 +37,8 @@ export function attachTask(parts, connection, ended) {
   /** @type {TaskState | null} */
   let before = null;
   let wordsAt = -Infinity;
-  /** Whether this page was there when a run began, or the arm was driven in it: before that its time and end were others'. */
-  let there = false;
+  /** Whether this page was there when a run began, which counts its time, and when the arm was driven in it. */
+  let [began, there] = [false, false];
 
   const blocked = () => (connection.state ? blockedWords(connection.state) : say("status.connecting"));
   const begin = (/** @type {{choice: number | null, anew: boolean}} */ what) => {
@@ -101,7 +101,8 @@ export function attachTask(parts, connection, ended) {
     const { task } = state;
     // A welcome announces a new run first.
     if (task.choice !== welcome.task.choice) return;
-    there ||= task.time_s === 0 || connection.engaged;
+    began ||= task.time_s === 0;
+    there ||= began || connection.engaged;
     showSteps(task);
     parts.panel.dataset.outcome = task.outcome ?? (stuck(task) ? "stuck" : "");
     if (task.outcome !== null) setText(parts.said, there ? outcomeWords(task) : say("task.over"));
@@ -123,7 +124,7 @@ export function attachTask(parts, connection, ended) {
     parts.choice.disabled = why !== "";
     if (performance.now() - wordsAt < WORDS_MS) return;
     wordsAt = performance.now();
-    setText(parts.time, there ? say("task.time", { seconds: wholeSeconds(task.time_s) }) : "");
+    setText(parts.time, began ? say("task.time", { seconds: wholeSeconds(task.time_s) }) : "");
     const away = awayWords(state);
     [...parts.steps.children].forEach((item, index) => setText(item.children[2], index === stepNow(task) ? away : ""));
     showFills(task.fills);

@@ -66,7 +66,7 @@ export function leftToGo(toGo, pair, shaped) {
   });
 }
 
-/** What is to be done for a way, as the person drives. @param {string} way @param {boolean} switches @returns {Words} */
+/** @param {string} way @param {boolean} switches whether a switch chooses directions @returns {Words} */
 function push(way, switches) {
   return { key: switches ? "status.go_switch" : "status.go", parameters: { way } };
 }
@@ -77,24 +77,16 @@ function push(way, switches) {
  * @param {ReturnType<typeof leftToGo>[]} ways of each pair
  * @param {number} axes the pair in use
  * @param {string[]} pairs their names
- * @param {boolean} switches whether a switch chooses directions
- * @returns {Words | null} null where nothing is left
+ * @param {boolean} switches
  */
 export function straightOn(ways, axes, pairs, switches) {
   const [furthest] = [...ways[axes]].sort((one, other) => other.size - one.size);
   if (furthest) return push(furthest.text, switches);
   const other = ways.findIndex((left) => left.length > 0);
-  return other < 0 ? null : { key: "status.next_pair", parameters: { pair: say(/** @type {WordKey} */ (`axes.${pairs[other]}`)) } };
+  return other < 0 ? null : { key: /** @type {const} */ ("status.next_pair"), parameters: { pair: say(/** @type {WordKey} */ (`axes.${pairs[other]}`)) } };
 }
 
-/**
- * What brings the tool on by learned motions: the direction that leads nearest to where it is to be.
- *
- * @param {ToGo} toGo
- * @param {Paths} paths of the tool, for each direction
- * @param {boolean} switches whether a switch chooses directions
- * @returns {Words | null} null where none leads nearer
- */
+/** By learned motions: the direction that leads nearest to where the tool is to be. @param {ToGo} toGo @param {Paths} paths @param {boolean} switches */
 export function learnedOn(toGo, paths, switches) {
   const left = (/** @type {number[][]} */ path) => Math.hypot(...displacement(path).map((moved, axis) => toGo.shift_m[axis] - moved));
   const known = DIRECTION_NAMES.flatMap((direction) => (paths[direction] ? [{ direction, left: left(paths[direction]) }] : []));
@@ -142,12 +134,9 @@ export function attachToGo(list, choice, connection, shaped, switches) {
     wordsAt = performance.now();
     ways = welcome.end_effector_modes.map((name, axes) => leftToGo(toGo, name, (x, y) => shaped(axes, x, y)));
     const next = ways[state.axes].length || toGo.gripper ? -1 : ways.findIndex((left) => left.length > 0);
-    welcome.end_effector_modes.forEach((name, axes) => {
+    welcome.end_effector_modes.forEach((_, axes) => {
       const left = ways[axes];
-      const pair = say(/** @type {WordKey} */ (`axes.${name}`));
-      const label = choice.querySelectorAll("label")[axes];
-      label.dataset.next = String(axes === next);
-      setText(/** @type {Element} */ (label.lastElementChild), axes === next ? say("to_go.next", { pair }) : pair);
+      choice.querySelectorAll("label")[axes].dataset.next = String(axes === next);
       const item = list.children[axes];
       if (axes === state.axes) item.setAttribute("aria-current", "true");
       else item.removeAttribute("aria-current");

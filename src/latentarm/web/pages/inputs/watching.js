@@ -2,26 +2,17 @@
 
 /** @import {Connection} from "../connection/connection.js" */
 
-/**
- * @param {HTMLElement[]} controls
- * @param {Connection} connection
- * @param {() => void} refused
- */
+/** @param {HTMLElement[]} controls @param {Connection} connection @param {() => void} refused */
 export function attachWatching(controls, connection, refused) {
-  let watching = false;
+  let watching = "false";
   connection.addEventListener("state", () => {
-    const { state } = connection;
-    const now = state !== null && !state.you && state.driver !== null;
-    if (now === watching) return;
-    watching = now;
-    for (const control of controls) control.setAttribute("aria-disabled", String(watching));
+    watching = String(!connection.driving && connection.state?.driver !== null);
+    for (const one of controls) if (one.getAttribute("aria-disabled") !== watching) one.setAttribute("aria-disabled", watching);
   });
-  for (const control of controls) {
-    // Capture: before the control takes the press.
-    control.addEventListener("pointerdown", (event) => {
-      if (!watching) return;
-      event.stopPropagation();
-      refused();
-    }, { capture: true });
-  }
+  // Capture: before the control takes the press.
+  for (const one of controls) one.addEventListener("pointerdown", (event) => {
+    if (watching !== "true") return;
+    event.stopPropagation();
+    refused();
+  }, { capture: true });
 }

@@ -6,13 +6,8 @@
 /** Marks the page: what carries `about-keys` is shown only where keys are at hand. */
 export function attachKeysAtHand() {
   const desk = matchMedia("(any-pointer: fine) and (any-hover: hover)");
-  let pressed = false;
-  const show = () => document.documentElement.toggleAttribute("data-keys", pressed || desk.matches);
-  window.addEventListener("keydown", ({ code }) => {
-    if (!code || pressed) return;
-    pressed = true;
-    show();
-  }, { capture: true });
-  desk.addEventListener("change", show);
-  show();
+  const mark = () => document.documentElement.setAttribute("data-keys", "");
+  if (desk.matches) mark();
+  desk.addEventListener("change", mark);
+  window.addEventListener("keydown", ({ code }) => code && mark(), { capture: true });
 }
