@@ -43,8 +43,6 @@ export function attachStatus(parts, connection, settings) {
   let wasLate = false;
   /** @type {Reader["late"]} */
   let late = "connection";
-  /** Whether this page has heard of the arm before. */
-  let heard = false;
   /** Why the arm was stopped when this page found it, until anything else has been seen. @type {string | null} */
   let found = null;
   let look = () => NO_CONTROL;
@@ -58,9 +56,8 @@ export function attachStatus(parts, connection, settings) {
     const { slow, ...control } = look();
     const isLate = state?.reason?.code === "input_late";
     // Late inputs while this page did not drive were somebody else's.
-    if (isLate && !wasLate) late = !(heard && state?.you) ? null : slow ? "page" : "connection";
+    if (isLate && !wasLate) late = !(found !== null && state?.you) ? null : slow ? "page" : "connection";
     wasLate = isLate;
-    heard = state !== null;
     // This page's actions no longer count once somebody else drives.
     if (state !== null && !state.you) halted = null;
     const why = JSON.stringify(state?.reason ?? null);
