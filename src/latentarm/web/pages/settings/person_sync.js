@@ -1,5 +1,8 @@
 /** Keeps a person's settings on the server, so that they find them on every computer. */
 
+import { UNSENT_KEY } from "./settings.js";
+import * as storage from "./storage.js";
+
 /** @import {Settings} from "./settings.js" */
 
 /** Changes in quick succession are sent once, ms. */
@@ -17,13 +20,15 @@ export function attachPersonSync(settings) {
     if (!waiting) return;
     const { id, values } = waiting;
     waiting = null;
-    // A lost change goes with the next one; until then this browser has it.
-    fetch(`/records/people/${id}/settings`, { method: "PUT", body: values, keepalive: true }).catch(() => {});
+    // A change without an answer counts here, and is sent again when the next page opens.
+    fetch(`/records/people/${id}/settings`, { method: "PUT", body: values, keepalive: true })
+      .then(() => storage.read(UNSENT_KEY + id) === values && storage.remove(UNSENT_KEY + id), () => {});
   };
   const edited = () => {
     if (!settings.person) return;
     if (waiting && waiting.id !== settings.person.id) send();
     waiting = { id: settings.person.id, values: JSON.stringify(settings.values) };
+    storage.write(UNSENT_KEY + waiting.id, waiting.values);
     clearTimeout(timer);
     timer = setTimeout(send, WAIT_MS);
   };
@@ -34,18 +39,19 @@ export function attachPersonSync(settings) {
     before = settings.person?.id;
   };
   const look = async () => {
-    const { person } = settings;
+    const { person, values } = settings;
     if (!person) return;
     const answer = await fetch(`/records/people/${person.id}`, { cache: "no-store" }).catch(() => null);
-    if (settings.person?.id !== person.id || waiting) return;
+    if (settings.person?.id !== person.id || settings.values !== values) return;
     if (answer?.status === 404) settings.forget(person);
     // Their PIN must be given first, on the People page.
     if (answer?.status === 403) settings.become(null);
     if (!answer?.ok) return;
     const known = await answer.json();
     settings.rename(known.name);
-    if (Object.keys(known.settings).length) settings.take(known.settings);
-    else edited();
+    const unsent = storage.read(UNSENT_KEY + person.id) !== null;
+    if (unsent || !Object.keys(known.settings).length) edited();
+    else settings.take(known.settings);
   };
 
   settings.addEventListener("edited", edited);

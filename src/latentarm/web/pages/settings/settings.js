@@ -111,6 +111,8 @@ const CHOICES = {
 };
 const PERSON_KEY = "latentarm.person";
 const SETTINGS_KEY = "latentarm.settings.";
+/** Changes of a person's settings that the server may not have yet. */
+export const UNSENT_KEY = "latentarm.unsent.";
 
 /** @typedef {{id: string, name: string}} Person */
 
@@ -155,7 +157,7 @@ export class Settings extends EventTarget {
 
   /** Nothing of a person stays in this browser. @param {Person} person */
   forget(person) {
-    for (const key of [person.id, person.name]) storage.remove(SETTINGS_KEY + key);
+    for (const key of [SETTINGS_KEY + person.id, SETTINGS_KEY + person.name, UNSENT_KEY + person.id]) storage.remove(key);
     if (this.person?.id === person.id) this.become(null);
   }
 
