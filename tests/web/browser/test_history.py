@@ -7,6 +7,8 @@ import subprocess
 import pytest
 from playwright.sync_api import expect
 
+from .conftest import control_with
+
 NAME = "محمد"
 
 
@@ -37,11 +39,6 @@ def driven(page, served, watch, press_enable, press_until_moving, add_person):
     """A person drives for a moment, stops, and goes on to the history."""
     add_person(page, served, NAME)
     with watch(served) as arm:
-        page.get_by_text("You are driving").or_(
-            page.get_by_role("button", name="Ask to drive")
-        ).first.wait_for()
-        if page.get_by_role("button", name="Ask to drive").is_visible():
-            page.get_by_role("button", name="Ask to drive").click()
         arm.wait(lambda: arm.state["driver_name"] == NAME)
         press_enable(page, arm)
         page.locator("#stick").focus()
@@ -53,7 +50,7 @@ def driven(page, served, watch, press_enable, press_until_moving, add_person):
         arm.comes_to_rest()
         tool = arm.tool
     # The bar of the switches is on every page then; it is not printed.
-    page.get_by_role("radio", name="Switch").check()
+    control_with(page, "Switch")
     page.goto(f"{served}/history")
     page.locator("#page-switch").wait_for()
     page.get_by_role("button", name="Show: Tofu").first.wait_for()
