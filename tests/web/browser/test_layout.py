@@ -110,13 +110,16 @@ def test_nothing_scrolls_in_any_task_at_any_size_with_any_control(
             context.close()
 
 
-@pytest.mark.parametrize("name", SIZES)
-def test_stop_is_in_its_corner(opened, name):
-    width, height = SIZES[name]
-    page = opened((width, height))
-    box = page.locator("#stop").bounding_box()
-    assert box["x"] + box["width"] > width - 16
-    assert box["y"] + box["height"] > height - 16
+@pytest.mark.parametrize("size", [*SIZES.values(), (375, 667), (320, 640), (320, 256)])
+def test_stop_is_in_its_corner(opened, size):
+    width, height = size
+    page = opened(size)
+    for panel in PANELS:
+        page.locator(f"input[name=panel][value={panel}]").evaluate("one => one.click()")
+        page.wait_for_timeout(120)
+        box = page.locator("#stop").bounding_box()
+        assert width - 16 < box["x"] + box["width"] <= width
+        assert height - 16 < box["y"] + box["height"] <= height
 
 
 @pytest.mark.parametrize("name", SIZES)
@@ -144,6 +147,9 @@ def test_a_script_from_right_to_left_breaks_nothing(opened, address, name, path)
         )
         # Left is where the arm goes left, in every script.
         assert left < right
+        if page.locator("#view-side").is_visible():
+            front, side = (page.locator(f"#view-{view}").bounding_box()["x"] for view in ("front", "side"))
+            assert front < side
 
 
 COLOURS = """async (names) => {
@@ -167,6 +173,8 @@ def test_forced_colours_leave_food_table_and_paths_apart(opened, scheme):
         "all => all.slice(0, 2).map((one) => getComputedStyle(one).backgroundColor)"
     )
     assert chosen != other
+    fill = "one => getComputedStyle(one).backgroundColor"
+    assert page.locator("#stop").evaluate(fill) != page.locator("#enable").evaluate(fill)
 
 
 WAKE_LOCK = """

@@ -142,6 +142,7 @@ attachStick(byId("stick"), byId("stick-value"), input, settings);
 const rim = attachRim(byId("stick"));
 attachDpad(byId("dpad"), byId("dpad-help"), input, settings, status.refused);
 attachWatching([byId("stick"), byId("dpad")], connection, status.refused);
+attachInputChoice(input, settings);
 const scanner = attachScanning(input, settings, stop, (stopIt, group) => {
   const mode = { id: "mode", label: say("scanning.other_mode"), act: modes.next };
   const { label, does } = enableButtonOf(connection);
@@ -159,7 +160,6 @@ attachKeyboard(input, settings, { enable, nextMode: modes.next, axes: modes.axes
 attachGamepad(input, settings, {
   enable, stop, gripper: () => gripper.toggle("gamepad"), nextMode: modes.next, press: (number, down) => scanner.press(number, down),
 }, (names) => sayUnrested(byId("unrested"), names));
-attachInputChoice(input, settings);
 
 const predictions = attachPredictions(byId("ghosts"));
 byId("trail-clear").addEventListener("click", () => connection.send({ type: "trail_clear" }));

@@ -15,10 +15,11 @@ export function attachInputChoice(input, settings) {
 
   const show = () => {
     const { panel } = settings.values;
-    if (panel !== shown) input.halt("input_changed");
-    shown = panel;
     for (const name of PANELS) byId(`panel-${name}`).hidden = name !== panel;
     for (const radio of radios) radio.checked = radio.value === panel;
+    // Last: at a halt the switches look for their place, which must be free.
+    if (panel !== shown) input.halt("input_changed");
+    shown = panel;
   };
   for (const radio of radios) {
     radio.addEventListener("change", () => settings.change({ panel: /** @type {Values["panel"]} */ (radio.value) }));

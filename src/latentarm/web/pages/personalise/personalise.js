@@ -52,11 +52,11 @@ function tell(message) {
 
 const stick = attachStick(byId("stick"), byId("stick-value"), input, settings);
 attachDpad(byId("dpad"), byId("dpad-help"), input, settings, () => {});
+attachInputChoice(input, settings);
 const scanner = attachScanning(input, settings, stop, offered);
 attachKeyboard(input, settings, { enable: answer, nextMode: () => {}, axes: () => {}, gripper: () => {} });
 attachGamepad(input, settings, { enable: answer, stop, gripper: () => {}, nextMode: () => {}, press: (number, down) => scanner.press(number, down) },
   (names) => sayUnrested(byId("unrested"), names));
-attachInputChoice(input, settings);
 
 /** A switch's choices at each step: the step's own buttons, and then the pages and settings. @param {Choice} _ @param {Group} group @returns {Choice[]} */
 function offered(_, group) {
