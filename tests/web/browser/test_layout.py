@@ -7,6 +7,8 @@ import pytest
 from latentarm.tasks.catalogue import SCENE_TASKS, TASKS
 from latentarm.web.words.catalogue import COOKIE
 
+from .conftest import ask_to_drive, set_up
+
 SEEN_PX = 90
 """A view that is smaller shows nothing."""
 
@@ -128,6 +130,27 @@ def test_the_practice_leaves_the_arm_the_stick_and_stop_on_the_screen(opened, na
     page.get_by_role("button", name="Practise now").click()
     assert page.evaluate(CUT_OFF, ["#practice", "#status"]) == []
     assert_on_one_screen(page, (name, "stick"))
+
+
+@pytest.mark.parametrize("name", ["a phone", "a phone on its side"])
+def test_a_request_to_drive_and_a_recording_leave_the_stick_and_stop_on_the_screen(
+    opened, open_page, arm, name
+):
+    page = opened(SIZES[name])
+    ask_to_drive(page)
+    with set_up(page) as dialog:
+        dialog.get_by_role("button", name="Start recording").click()
+    open_page().locator("#enable", has_text="Ask to drive").click()
+    asked, recording = page.locator("#hand-over"), page.locator("#record-end")
+    asked.wait_for()
+    for panel in PANELS:
+        page.locator(f"input[name=panel][value={panel}]").evaluate("one => one.click()")
+        assert_on_one_screen(page, (name, panel))
+        assert page.evaluate(CUT_OFF, ["#hand-over", "#record-end"]) == []
+    recording.click()
+    recording.wait_for(state="hidden")
+    asked.click()
+    arm.wait(lambda: not arm.state["recording"]["on"] and arm.state["watchers"] == 2)
 
 
 @pytest.mark.parametrize("path", ["", "personalise", "teach"])

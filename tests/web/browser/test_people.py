@@ -111,3 +111,11 @@ def test_a_record_with_a_pin_opens_by_keys_or_by_the_digits_on_the_screen(page, 
     other.get_by_role("button", name="Delete Mina").click()
     expect(dialog).to_contain_text("PIN of Mina")
     context.close()
+
+
+def test_a_name_that_is_too_long_is_refused_in_words(page):
+    field = page.locator("#add input")
+    field.focus()
+    page.keyboard.insert_text("x" * 200)
+    expect(field).to_have_value("")
+    assert "40 characters" in field.evaluate("field => field.validationMessage")

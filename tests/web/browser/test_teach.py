@@ -145,3 +145,11 @@ def test_what_cannot_be_trained_is_said(open_page, arm):
     for size in ((1280, 800), (390, 844), (320, 640)):
         page.set_viewport_size({"width": size[0], "height": size[1]})
         assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+
+
+def test_teach_leads_to_the_recorder(open_page):
+    page = open_page()
+    page.get_by_role("link", name="Teach").click()
+    page.get_by_role("link", name="Record on the Drive page").click()
+    expect(page.locator("#recording")).to_be_focused()
+    expect(page.get_by_role("button", name="Start recording")).to_be_in_viewport()

@@ -117,11 +117,8 @@ attachZones(byId("zones"), connection);
 attachTrialBanner(connection, settings, lease);
 attachProfileChoice(connection, settings);
 attachRecording({
-  section: byId("recording"),
-  button: byId("record", HTMLButtonElement),
-  task: byId("record-task", HTMLInputElement),
-  text: byId("record-text"),
-  teach: byId("record-teach"),
+  section: byId("recording"), button: byId("record", HTMLButtonElement), end: byId("record-end"),
+  task: byId("record-task", HTMLInputElement), text: byId("record-text"), teach: byId("record-teach"),
 }, connection);
 
 const task = attachTask({
@@ -132,11 +129,8 @@ const task = attachTask({
 }, connection, feedback.tell);
 
 const gripper = attachGripper({
-  panel: byId("gripper"),
-  open: byId("gripper-open", HTMLButtonElement),
-  close: byId("gripper-close", HTMLButtonElement),
-  state: byId("gripper-state"),
-  hold: byId("gripper-hold"),
+  panel: byId("gripper"), open: byId("gripper-open", HTMLButtonElement), close: byId("gripper-close", HTMLButtonElement),
+  state: byId("gripper-state"), hold: byId("gripper-hold"),
 }, connection, input, status.refused);
 attachStick(byId("stick"), byId("stick-value"), input, settings);
 const rim = attachRim(byId("stick"));

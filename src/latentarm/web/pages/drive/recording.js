@@ -20,27 +20,23 @@ export function recordingWords({ recording, you, phase, guiding }) {
   return episodes ? say("recording.kept", { count: episodes }) : say("recording.none");
 }
 
-/** Open the dialog that holds a section, and go there. @param {HTMLElement} section */
-function showSection(section) {
-  const dialog = section.closest("dialog");
-  if (!dialog?.open) dialog?.showModal();
-  section.focus({ preventScroll: true });
-  section.scrollIntoView({ block: "center" });
-}
-
 /**
- * The page Teach links to the section by its id; what is drawn later would push it off the screen again.
- *
- * @param {{section: HTMLElement, button: HTMLButtonElement, task: HTMLInputElement, text: HTMLElement, teach: HTMLElement}} parts
+ * The page Teach links to the section by its id: its dialog opens there.
+ * @param {{section: HTMLElement, button: HTMLButtonElement, end: HTMLElement, task: HTMLInputElement, text: HTMLElement, teach: HTMLElement}} parts
  * @param {Connection} connection
  */
 export function attachRecording(parts, connection) {
-  parts.button.addEventListener("click", () => {
+  const press = () => {
     const on = !connection.state?.recording?.on;
     const task = parts.task.value.trim();
     connection.send(on && task ? { type: "record", on, task } : { type: "record", on });
-  });
-  if (location.hash === `#${parts.section.id}`) connection.addEventListener("state", () => showSection(parts.section), { once: true });
+  };
+  for (const button of [parts.button, parts.end]) button.addEventListener("click", press);
+  if (location.hash === `#${parts.section.id}`) connection.addEventListener("state", () => {
+    parts.section.closest("dialog")?.showModal();
+    parts.section.focus({ preventScroll: true });
+    parts.section.scrollIntoView({ block: "center" });
+  }, { once: true });
   connection.addEventListener("state", () => {
     const { state } = connection;
     if (!state) return;
@@ -48,6 +44,7 @@ export function attachRecording(parts, connection) {
     parts.button.disabled = !state.you;
     parts.button.setAttribute("aria-pressed", String(on));
     setText(parts.button, say(on ? "recording.stop" : "recording.start"));
+    setHidden(parts.end, !(on && state.you));
     setHidden(parts.teach, on || !state.recording?.episodes);
     setText(parts.text, recordingWords(state));
   });
