@@ -28,13 +28,14 @@ def locked(serve, trained, folder, ada):
 
 
 def test_a_guest_changes_neither_help_nor_directions_nor_poses_nor_what_is_learned(locked):
+    chosen = {"file": "1.journal", "episode": 1}
     with locked.page() as guest:
         guest.send(type="ask_to_drive")
         guest.wait(lambda state: state["you"])
         guest.send(type="help", level="high")
         guest.send(type="profile", name="mia", seat="behind")
         guest.send(type="save_pose", name="Here")
-        guest.send(type="train", name="mine", model="pca", latent_dim=2, episodes=[1])
+        guest.send(type="train", name="mine", model="pca", latent_dim=2, episodes=[chosen])
         guest.send(type="personalise", name="mia", questions=5)
         # What the stick moves now is no part of Set up.
         guest.send(type="mode", mode="end_effector", axes=1)
