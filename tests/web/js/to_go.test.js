@@ -58,12 +58,12 @@ test("along straight lines the sentence has a direction and number of the list: 
   assert.equal(straightOn([[], [], []], 0, PAIRS, false), null);
 });
 
-test("learned motions are named where they lead nearer by more than 1 cm, with the number of the step", () => {
+test("learned motions are named where they lead nearer by more than 1 cm, without the distance of a straight line", () => {
   const toGo = { shift_m: [0.1, 0, 0], turn_rad: [0, 0, 0], gripper: null };
   const path = (...end) => [[0, 0, 0], end];
   const paths = { up: path(0.009, 0, 0), down: path(-0.1, 0, 0), left: null, right: path(0, 0.1, 0) };
   assert.equal(learnedOn(toGo, paths, false), null);
   const { key, parameters } = learnedOn(toGo, { ...paths, left: path(0.05, 0.02, 0) }, false);
-  assert.deepEqual([key, parameters], ["status.go", { way: "Left 10 cm" }]);
+  assert.deepEqual([key, parameters], ["status.go", { way: "Left" }]);
   assert.equal(awayWords(stateOf({ task: { outcome: null, to_go: toGo } })), "10 cm to go");
 });

@@ -92,7 +92,8 @@ export function learnedOn(toGo, paths, switches) {
   const known = DIRECTION_NAMES.flatMap((direction) => (paths[direction] ? [{ direction, left: left(paths[direction]) }] : []));
   const [best] = known.sort((one, other) => one.left - other.left);
   if (!best || best.left > Math.hypot(...toGo.shift_m) - NEARER_M) return null;
-  return push(say("to_go.length", { direction: say(`directions.${best.direction}`), centimetres: centimetresToGo(toGo) }), switches);
+  // How far is said above the view: the arm goes there on a curve, and not this far this way.
+  return push(say(`directions.${best.direction}`), switches);
 }
 
 /**
