@@ -119,6 +119,18 @@ def test_architecture_names_every_package() -> None:
     assert [name for name in packages if f"`{name}`" not in text] == []
 
 
+def test_every_test_that_shows_what_is_expected_of_the_page_is_there() -> None:
+    text = (ROOT / "docs/evidence/page_expectations.md").read_text()
+    named = re.findall(r"`((?:web|alignment)/[\w/.]+)(?:::(\w+))?`", text)
+    assert len(named) >= 30
+    for path, test in named:
+        assert (
+            f"def {test}(" in (ROOT / "tests" / path).read_text()
+            if test
+            else (ROOT / "tests" / path).exists()
+        ), path
+
+
 def test_pages_written_by_hand_have_at_most_45000_words() -> None:
     by_hand = [page for page in (ROOT / "docs").rglob("*.md") if "evidence" not in page.parts]
     assert sum(len(page.read_text().split()) for page in by_hand) <= 45_000

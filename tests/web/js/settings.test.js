@@ -34,6 +34,12 @@ test("each person has their own, and somebody new has the defaults", () => {
   assert.equal(settings.values.panel, "dpad");
 });
 
+test("somebody new drives slowly, the first of the speeds that the page has, and a speed that was chosen stays", () => {
+  assert.equal(new Settings().values.sensitivity, 0.5);
+  keep("", { sensitivity: 1 });
+  assert.equal(new Settings().values.sensitivity, 1);
+});
+
 test("what is kept is taken only as far as it makes sense", () => {
   keep("", { sensitivity: 7, deadZone: -1, stepS: "long", panel: "joystick", press: "latch", shortcuts: 1, unknown: true });
   const { values } = new Settings();
