@@ -39,7 +39,7 @@ class ArmSpec:
 @final
 @dataclass(frozen=True)
 class ArmStatus:
-    """Whether an arm can move, and if not, why."""
+    """The state of an arm: ready to move, or why not."""
 
     # *off*: not connected. *disabled*: connected, takes no commands. *guided*: disabled, and moved by a
     # person's hand (`latentarm.arms.real.GuidableArm`). *ready*: enabled, at rest. *moving*: enabled, in

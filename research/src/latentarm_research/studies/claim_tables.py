@@ -22,7 +22,7 @@ def columns_table(columns: Columns) -> str:
 
 
 def verdict_columns(verdicts: Sequence[Verdict]) -> Columns:
-    """What became of each hypothesis."""
+    """The verdict on each hypothesis, column by column."""
     return {
         "": [one.hypothesis.name for one in verdicts],
         "hypothesis": [one.hypothesis.text for one in verdicts],
@@ -64,7 +64,7 @@ def claim_table(tested: Sequence[Tested]) -> str:
 
 
 def judged_parts(hypotheses: Iterable[Hypothesis], tested: Sequence[Tested]) -> dict[str, Any]:
-    """What the page of a simulation shows of its hypotheses, by the names in its template."""
+    """The hypotheses of a simulation for its page, by the names in the template."""
     return {
         "verdicts": columns_table(verdict_columns(verdicts_by_task(hypotheses, tested))),
         "tests": tested,
@@ -87,7 +87,7 @@ def verdicts_by_task(hypotheses: Iterable[Hypothesis], tested: Sequence[Tested])
 
 
 def name_of(name: str) -> str:
-    """What pages of simulations call a model, a condition or a task."""
+    """The label of a model, a condition or a task on the pages of simulations."""
     return look_of(name).label
 
 

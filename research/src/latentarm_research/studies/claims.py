@@ -75,7 +75,7 @@ class Hypothesis:
 @final
 @dataclass(frozen=True, kw_only=True)
 class Tested:
-    """What became of one claim."""
+    """The result of testing one claim."""
 
     hypothesis: str  # that it belongs to
     claim: Claim  # what is claimed
@@ -110,7 +110,7 @@ class Tested:
 
     @property
     def says(self) -> Said:
-        """Whether the claim held."""
+        """The verdict: held, not held, or could not be tested."""
         if self.p_holm is None or self.mean is None or self.mean_against is None:
             return "could not be tested"
         direction = self.claim.direction
@@ -126,7 +126,7 @@ class Tested:
 @final
 @dataclass(frozen=True)
 class Verdict:
-    """What became of a hypothesis."""
+    """The verdict on a hypothesis."""
 
     hypothesis: Hypothesis  # the hypothesis
     says: Said  # held where all claims held; not held where one did not; else it could not be tested
@@ -157,7 +157,7 @@ _FAILED: Final[Mapping[Said, str]] = {
 
 
 def verdict_on(hypothesis: Hypothesis, tested: Sequence[Tested], measure: Label, name: Label) -> Verdict:
-    """What its claims say of a hypothesis; see `Claim.worded` for the labels."""
+    """The verdict on a hypothesis from its tested claims; see `Claim.worded` for the labels."""
     if not tested:
         return Verdict(hypothesis, "could not be tested", "no measure of the study is about it")
     for says, words in _FAILED.items():

@@ -170,11 +170,11 @@ class Definition:
         return next(condition for condition in self.conditions if condition.name == name)
 
     def label(self, measure: str) -> str:
-        """What tables call a scale of the questionnaire, or the measure's own label."""
+        """The label of a scale of the questionnaire, or of a measure, in tables."""
         return next((scale.label for scale in self.questionnaire if scale.name == measure), label_of(measure))
 
     def task_label(self, name: str) -> str:
-        """What tables call a task; any other name as it is."""
+        """The label of a task in tables; any other name as it is."""
         return next((task.label for task in self.tasks if task.name == name), name)
 
     def as_json(self) -> dict[str, object]:

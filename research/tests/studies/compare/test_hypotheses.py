@@ -1,7 +1,7 @@
 import numpy as np
 
 from latentarm_research.studies.compare.cell import FoldResult, Place
-from latentarm_research.studies.compare.hypotheses import ENCODINGS, compared, said
+from latentarm_research.studies.compare.hypotheses import ENCODINGS, compared, h1_sentences
 
 
 def cells(model: str, errors: tuple[float, ...]) -> list[FoldResult]:
@@ -28,14 +28,16 @@ def test_each_way_of_encoding_is_tested_paired_over_folds() -> None:
     assert [one.family for one in tests] == ["encoder network", "nearest input"]
     assert [(one.mean, one.mean_against, one.n) for one in tests] == [(30.5, 42.0, 4)] * 2
     assert all((one.says, one.method) == ("held", "paired t") for one in tests)
-    assert all("lower mean error in 1 of 1 comparisons, significantly in 1" in one for one in said(tests))
-    assert all(one.endswith("H1 is supported.") for one in said(tests))
+    assert all(
+        "lower mean error in 1 of 1 comparisons, significantly in 1" in one for one in h1_sentences(tests)
+    )
+    assert all(one.endswith("H1 is supported.") for one in h1_sentences(tests))
 
 
 def test_a_context_that_does_not_help_is_said_plainly() -> None:
     tests = compared([*BLIND, *cells("cae", (50.0, 47.0, 52.0, 49.0))])
     assert {one.says for one in tests} == {"not held"}
-    assert all("in 0 of 1 comparisons" in one and "not supported" in one for one in said(tests))
+    assert all("in 0 of 1 comparisons" in one and "not supported" in one for one in h1_sentences(tests))
 
 
 def test_without_both_models_nothing_is_tested() -> None:

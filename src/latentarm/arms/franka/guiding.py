@@ -38,7 +38,7 @@ class Guiding:
             self.phase = "ending"
 
     def ended(self, link: Link) -> bool:
-        """Whether the arm has ended guiding by itself, and rests; raises what of franky has ended it."""
+        """True once the arm has ended guiding by itself and rests. Raises what franky raised meanwhile."""
         if self.phase == "no" or not link.arm.join_motion(timeout=0.0):
             return False
         by_itself, self.phase = self.phase == "on", "no"

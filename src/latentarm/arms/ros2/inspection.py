@@ -52,7 +52,7 @@ def inspect(link: Link, session: Session, feed: JointFeed, options: Ros2Options,
             f"The round trip to {options.where} takes {1e3 * trip_s:.0f} ms, more than"
             f" {1e3 * LONGEST_TRIP_S:.0f} ms: use a cable or a faster network.",
         )
-    _wait(lambda: own.told, listens_until_s - time.monotonic())
+    _wait(lambda: own.complete, listens_until_s - time.monotonic())
     own.end()
     poses, limits = (), None
     if feed.newest is not None and np.abs(feed.newest[0].dq).max() > 5.0 * STILL_RAD_S:

@@ -46,7 +46,7 @@ class OwnModel:
             link.subscribe(topic, kind, self._heard_urdf if topic == DESCRIPTION else self._heard_frames)
 
     @property
-    def told(self) -> bool:
+    def complete(self) -> bool:
         """True once the description and a pose of the tool have come."""
         with self._lock:
             return bool(self._urdf) and self._options.tool_frame in self._frames

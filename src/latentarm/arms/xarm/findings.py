@@ -77,7 +77,7 @@ def find_out(sdk: Sdk, session: Session, robot: Robot, *, bare: bool) -> Finding
     # An arm that moves is elsewhere in every report.
     poses = own_poses(session, robot) if _rests(session) else ()
     refusals = (*refusals, *misfits(poses, robot))
-    facts = (*_facts(sdk, session, robot), *_told(session, robot, poses))
+    facts = (*_facts(sdk, session, robot), *_tool_facts(session, robot, poses))
     facts = (*facts, *_timing(session, median_s, worst_s, rate_hz))
     return Findings(facts, refusals, own_limits(sdk, session, robot))
 
@@ -185,7 +185,7 @@ def _facts(sdk: Sdk, session: Session, robot: Robot) -> tuple[Fact, ...]:
     return tuple(facts)
 
 
-def _told(session: Session, robot: Robot, poses: tuple[OwnPose, ...]) -> tuple[Fact, ...]:
+def _tool_facts(session: Session, robot: Robot, poses: tuple[OwnPose, ...]) -> tuple[Fact, ...]:
     *place, roll, pitch, yaw = session.status.tool_offset
     turned = ", ".join(f"{math.degrees(one):.1f}" for one in (roll, pitch, yaw))
     tool = f"({', '.join(f'{one:.0f}' for one in place)}) mm, roll, pitch, yaw ({turned})° from its flange"

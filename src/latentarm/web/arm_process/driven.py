@@ -67,6 +67,8 @@ def drive_in_turn(
                 before.let_go(driven)
             before, driven = driven, after
     finally:
+        if before is not None:
+            before.let_go(driven)
         driven.arm.close()
 
 

@@ -120,7 +120,7 @@ def drive_parts(
         of_model = [one for one in tests if one.family == result.cell.model]
         parts[result.cell.model] = {
             "table": _table(result),
-            "said": _said(of_model),
+            "said": _sentences(of_model),
             "tests": claim_table(of_model),
         }
     return parts
@@ -163,7 +163,7 @@ def _misses(off_m: FloatArray) -> str:
     return ABSENT if along is None else f"{along:.0f}, {across:.0f}"
 
 
-def _said(tests: Sequence[Tested]) -> list[str]:
+def _sentences(tests: Sequence[Tested]) -> list[str]:
     """The results of one model's tests, one sentence each."""
     words = {REACHED: "reaches more goals than", TIME: "is faster than"}
     return [

@@ -62,8 +62,8 @@ def _over_folds(
     )
 
 
-def said(tests: Sequence[Tested]) -> list[str]:
-    """Which way it goes, one sentence per way of encoding."""
+def h1_sentences(tests: Sequence[Tested]) -> list[str]:
+    """The direction of the difference, one sentence for each way of encoding."""
     sentences: list[str] = []
     for family in dict.fromkeys(one.family for one in tests):
         here = [one for one in tests if one.family == family]

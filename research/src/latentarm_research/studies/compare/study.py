@@ -30,7 +30,7 @@ from latentarm_research.studies.compare.drives import (
     rows_of_drives,
 )
 from latentarm_research.studies.compare.figures import FILLS, fewer_figure, pareto_figure, turning_figure
-from latentarm_research.studies.compare.hypotheses import compared, said, verdicts
+from latentarm_research.studies.compare.hypotheses import compared, h1_sentences, verdicts
 from latentarm_research.studies.compare.measures import TABLES, meaning_of, without_planning
 from latentarm_research.studies.compare.preset import (
     BASELINE,
@@ -244,7 +244,7 @@ def _page(
             for name in names
             for noise_rad in preset.noises_rad
         },
-        h1=said(tests),
+        h1=h1_sentences(tests),
         h1_table=claim_table(tests) if tests else "",
         fewer=_given_fewer(asked),
         counts=counts,

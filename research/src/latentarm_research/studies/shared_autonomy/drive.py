@@ -67,7 +67,7 @@ class Moment:
 
 @dataclass(frozen=True, eq=False)
 class Drives:
-    """What became of P drives over T steps."""
+    """The results of P drives over T steps."""
 
     moments: Moment  # with a further axis after the drives, (P, T, ...)
     state: FloatArray  # (P, n), at the end, rad
