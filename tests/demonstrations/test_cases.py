@@ -1,6 +1,7 @@
 """Recordings as people have them: they wrap, pause, change their rate, and come in any dialect and folder."""
 
 import gzip
+import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
@@ -344,9 +345,20 @@ def test_without_rosbags_a_bag_says_how_to_get_it(
     tmp_path: Path, spinner: Robot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     bag = joint_state_bag(tmp_path / "a.bag", list(JOINTS), WAY.tolist())
-    monkeypatch.setitem(__import__("sys").modules, "rosbags", None)
+    monkeypatch.setitem(sys.modules, "rosbags", None)
     with pytest.raises(UserError, match=r"pip install 'latentarm\[bags\]'"):
         import_demonstrations(bag, spinner)
+
+
+def test_without_h5py_an_hdf5_file_says_how_to_get_it(
+    tmp_path: Path, spinner: Robot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    h5py.File(tmp_path / "demo.hdf5", "w").close()
+    for module in ("aloha", "robomimic", "hdf5_tables"):
+        monkeypatch.delitem(sys.modules, f"latentarm.demonstrations.{module}", raising=False)
+    monkeypatch.setitem(sys.modules, "h5py", None)
+    with pytest.raises(UserError, match=r"pip install 'latentarm\[hdf5\]'"):
+        import_demonstrations(tmp_path / "demo.hdf5", spinner)
 
 
 turns = st.lists(st.integers(-50, 50), min_size=2, max_size=2)

@@ -9,7 +9,6 @@ from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations, StrPath
 from latentarm.core.untrusted.memory import bounded_memory
 from latentarm.core.untrusted.opening import is_missing, opened
-from latentarm.demonstrations.aloha import is_aloha, read_aloha
 from latentarm.demonstrations.bag_file import MCAP, ROS1, read_bag
 from latentarm.demonstrations.bounds import MAX_FILE_BYTES
 from latentarm.demonstrations.csv_file import read_csv
@@ -21,7 +20,6 @@ from latentarm.demonstrations.info import INFO_PATH
 from latentarm.demonstrations.lerobot import read_lerobot
 from latentarm.demonstrations.npz_file import read_npz
 from latentarm.demonstrations.plausibility import check_rate, speed_warning
-from latentarm.demonstrations.robomimic import read_robomimic
 from latentarm.demonstrations.robot_names import is_so_arm
 from latentarm.demonstrations.source import SourceData, join_files
 from latentarm.demonstrations.timing import check_one_rate, resampled, split_at_gaps
@@ -133,14 +131,23 @@ def _read_file(source: Path, start: bytes, robot: Robot | None, options: ImportO
     if start.startswith(b"PK"):
         return SourceData(read_npz(source, rate_hz, task), "NumPy archive", in_rad=True)
     if start.startswith(b"\x89HDF\r\n\x1a\n"):
-        if is_aloha(source):
-            return read_aloha(source, rate_hz, task)
-        known = options.actions != "joint_velocity"
-        return read_robomimic(source, rate_hz, task, "known" if known else "joint_velocity")
+        return _read_hdf5(source, options)
     if source.suffix.lower() in {".npz", ".hdf5", ".h5"}:
         raise UserError(f"{source} does not hold what its name says; it is truncated or damaged.")
     names = () if robot is None or options.joints else robot.joint_names
     return read_csv(source, names, rate_hz, task, options.time_unit)
+
+
+def _read_hdf5(source: Path, options: ImportOptions) -> SourceData:
+    try:
+        from latentarm.demonstrations.aloha import is_aloha, read_aloha
+        from latentarm.demonstrations.robomimic import read_robomimic
+    except ModuleNotFoundError as error:
+        raise UserError(f"{source} is an HDF5 file: pip install 'latentarm[hdf5]' to read it.") from error
+    if is_aloha(source):
+        return read_aloha(source, options.rate_hz, options.instruction)
+    known = "joint_velocity" if options.actions == "joint_velocity" else "known"
+    return read_robomimic(source, options.rate_hz, options.instruction, known)
 
 
 def _read_folder(source: Path, robot: Robot | None, options: ImportOptions) -> SourceData:
