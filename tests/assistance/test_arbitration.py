@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from latentarm.assistance.blending import ConfidenceAlpha, FixedAlpha, Unprompted, confidence
+from latentarm.assistance.blending import ConfidenceAlpha, FixedAlpha, confidence
 from latentarm.core.errors import UserError
 
 FULL = np.array([1.0, 0.0])
@@ -14,7 +14,6 @@ arbitrations = st.one_of(
         ConfidenceAlpha, most=st.floats(0, 1), unsure_below=st.floats(0, 0.5), sure_above=st.floats(0.51, 1)
     ),
 )
-all_arbitrations = arbitrations | st.builds(Unprompted, arbitrations)
 weights = st.integers(1, 6).flatmap(lambda count: hnp.arrays(float, count, elements=st.floats(0.01, 1)))
 
 
@@ -25,7 +24,7 @@ def certainty(most, goals):
     return belief
 
 
-@given(all_arbitrations, hnp.arrays(float, 2, elements=st.floats()), weights)
+@given(arbitrations, hnp.arrays(float, 2, elements=st.floats()), weights)
 def test_alpha_is_a_share_for_any_input(arbitration, u, weight):
     alpha = arbitration.alpha(u, weight / weight.sum())
     assert 0.0 <= float(alpha) <= 1.0
@@ -33,18 +32,10 @@ def test_alpha_is_a_share_for_any_input(arbitration, u, weight):
         assert alpha == 0.0
 
 
-@given(all_arbitrations, weights)
-def test_only_who_asks_for_it_is_helped_at_rest(arbitration, weight):
-    at_rest = arbitration.alpha(np.zeros(2), weight / weight.sum())
-    assert arbitration.acts_at_rest == isinstance(arbitration, Unprompted)
-    if not arbitration.acts_at_rest:
-        assert at_rest == 0.0
-
-
-@given(arbitrations, weights, hnp.arrays(float, 2, elements=st.floats(-1, 1)))
-def test_unprompted_help_is_as_strong_as_at_full_input(arbitration, weight, u):
-    belief = weight / weight.sum()
-    assert Unprompted(arbitration).alpha(u, belief) == arbitration.alpha(FULL, belief)
+@given(arbitrations, weights)
+def test_an_arm_whose_person_lets_go_stands_still(arbitration, weight):
+    assert not arbitration.acts_at_rest
+    assert arbitration.alpha(np.zeros(2), weight / weight.sum()) == 0.0
 
 
 @given(arbitrations, weights, st.lists(st.floats(0, 1), min_size=2, max_size=2))
@@ -86,7 +77,7 @@ def test_between_unsure_and_sure_help_grows_in_proportion():
     assert arbitration.alpha(FULL / 4, beliefs[2]) == pytest.approx(0.2)
 
 
-@given(all_arbitrations)
+@given(arbitrations)
 def test_many_at_once_are_as_each_alone(arbitration):
     rng = np.random.default_rng(0)
     u, belief = rng.uniform(-1, 1, (3, 4, 2)), rng.dirichlet(np.ones(3), size=(3, 4))

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from latentarm.assistance.belief import Belief
-from latentarm.assistance.blending import FixedAlpha, Unprompted
+from latentarm.assistance.blending import Arbitration, FixedAlpha
 from latentarm.assistance.boltzmann import BoltzmannBelief
 from latentarm.assistance.catalogue import BELIEFS
 from latentarm.assistance.goal_blending import GoalBlending
@@ -33,7 +33,18 @@ now_s = itertools.count(step=0.01).__next__
 NEUTRAL = Input(np.zeros(2))
 PUSH = Input(np.array([1.0, 0.0]))
 MATRIX = np.stack([np.full(7, 0.1), np.linspace(-0.2, 0.2, 7)])
-UNPROMPTED = Unprompted(FixedAlpha(0.5))
+
+
+class HelpsAtRest(Arbitration):
+    """Half of the motion is the robot's, also without an input."""
+
+    acts_at_rest = True
+
+    def alpha(self, u, belief):
+        return 0.5
+
+
+UNPROMPTED = HelpsAtRest()
 
 
 def goals_of(arm, *shifts):
@@ -216,7 +227,7 @@ class TestHelpAtRest:
         assert not np.any([record.command.velocity for record in records])
 
     def test_an_arbitration_that_fails_at_rest_stops_the_arm(self, make, arm):
-        class Broken(FixedAlpha.__base__):
+        class Broken(Arbitration):
             acts_at_rest = True
 
             def alpha(self, u, belief):

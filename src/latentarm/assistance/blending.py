@@ -112,23 +112,6 @@ class ConfidenceAlpha(Arbitration):
         return self.most * np.minimum(np.maximum(sure, 0.0), 1.0) * _fade(u, self.full_at)
 
 
-@final
-@dataclass(frozen=True)
-class Unprompted(Arbitration):
-    """Help even without an input, for people who ask for it: the arm then moves by itself."""
-
-    inner: Arbitration
-
-    @property
-    def acts_at_rest(self) -> bool:
-        """Yes."""
-        return True
-
-    def alpha(self, u: FloatArray, belief: FloatArray) -> FloatArray:
-        """The alpha of ``inner`` for a full input; see `Arbitration.alpha`."""
-        return np.isfinite(u).all(axis=-1) * self.inner.alpha(np.ones_like(u), belief)
-
-
 def confidence(belief: FloatArray) -> FloatArray:
     """How sure the robot is, ``(max b - 1/G) / (1 - 1/G)`` (...,); 1 where there is one goal only."""
     count = belief.shape[-1]
