@@ -9,15 +9,8 @@ from starlette.applications import Starlette
 from starlette.responses import PlainTextResponse
 from starlette.routing import Route, WebSocketRoute
 
-from latentarm.web.server.security import (
-    COOKIE,
-    EXPIRED,
-    EXPIRED_WHY,
-    LIFE_S,
-    MOST_REQUESTS,
-    Gate,
-    Keys,
-)
+from latentarm.web.server.keys import LIFE_S, Keys
+from latentarm.web.server.security import COOKIE, EXPIRED, EXPIRED_WHY, MOST_REQUESTS, Gate
 
 HOST = "arm.example:8460"
 ORIGIN = "https://arm.example:8460"

@@ -28,6 +28,14 @@ def teleop(
     seat: Seated = None,
     certfile: Annotated[Path | None, arg(metavar="PEM", help="Certificate for TLS.")] = None,
     keyfile: Annotated[Path | None, arg(metavar="PEM", help="Its private key.")] = None,
+    public_url: Annotated[
+        str | None,
+        arg(
+            metavar="URL",
+            help="The address that people open where a proxy serves the page, such as https://arm.example;"
+            " see docs/deploy.md.",
+        ),
+    ] = None,
     arm: AnyArm = None,
     robot: Annotated[
         str | None,
@@ -135,6 +143,6 @@ def teleop(
         shadow=shadow,
         idle_s=idle_s_of(idle_minutes),
     )
-    config = TeleopConfig(spec, host, port, certfile, keyfile, pin, cameras, lock_setup)
+    config = TeleopConfig(spec, host, port, certfile, keyfile, pin, cameras, lock_setup, public_url)
     serve(config, partial(say, json=json), ready, draws=draws_blocks())
     return 0

@@ -42,11 +42,12 @@ from latentarm.web.records.record_files import SYSTEM_CALENDAR, Calendar
 from latentarm.web.records.records import FOLDER, Records
 from latentarm.web.server.assets import Assets
 from latentarm.web.server.camera_routes import CameraRoutes
-from latentarm.web.server.config import TeleopConfig, check_certificate, listen, origin
+from latentarm.web.server.config import TeleopConfig, check_certificate, listen
 from latentarm.web.server.connections import HEAD_LIMIT, ConnectionLimits, Connections, limits_here
 from latentarm.web.server.drive_socket import DriveSocket
 from latentarm.web.server.history import History
 from latentarm.web.server.invitations import Invitations
+from latentarm.web.server.keys import Keys
 from latentarm.web.server.learning import Learning
 from latentarm.web.server.loaded_run import LoadedRun, RunList
 from latentarm.web.server.logs import LOGGING
@@ -56,7 +57,7 @@ from latentarm.web.server.pins import Pins
 from latentarm.web.server.pose_book import PoseBook
 from latentarm.web.server.rate_limit import MeteredSocket
 from latentarm.web.server.record_routes import RecordRoutes
-from latentarm.web.server.security import DRIVE, Gate, Keys
+from latentarm.web.server.security import DRIVE, Gate
 from latentarm.web.server.sessions import Sessions
 from latentarm.web.server.setup_lock import SetupLock
 from latentarm.web.server.states import States
@@ -65,6 +66,7 @@ _LOG: Final = logging.getLogger(__name__)
 
 _LOOK_S: Final = 1.0
 _LOCK: Final = ".teleop.lock"  # locked in the output folder while a server runs
+_COOKIES: Final = ".teleop-cookies.json"  # in the output folder: who may come back after a restart
 _STARTED_S: Final = 0.01
 
 
@@ -104,8 +106,8 @@ def _serve_alone(
     listening = listen(config)
     cameras = _cameras(config, listening)
     port = int(listening.getsockname()[1])
-    base = origin(config.scheme, config.host, port)
-    keys = None if config.loopback else Keys()
+    base = config.origins(port)[0]
+    keys = None if config.private else Keys(store=config.spec.out / _COOKIES)
     invitations = None if keys is None else Invitations(keys.new_link, base, say, draws)
 
     for sentence in notices(setup.task.robot):
@@ -136,8 +138,11 @@ def _serve_alone(
             if invitations is not None:
                 invitations.draw(first)
                 say("This link works once; when it is used the next one is printed.")
-                if config.scheme == "http":
-                    say("Without --certfile and --keyfile the network can read and change what is sent.")
+                if not config.encrypted:
+                    say(
+                        "Without --certfile and --keyfile, or an https --public-url, the network can read and"
+                        " change what is sent."
+                    )
             ready(first)
             if config.spec.run is None:
                 say(
@@ -307,15 +312,14 @@ def gated(
     invite: Callable[[], str],
 ) -> Gate:
     """The application behind its gate. ``keys`` is None on the loopback."""
-    names = ["127.0.0.1", "localhost", config.host] if config.loopback else [config.host]
-    origins = frozenset(origin(config.scheme, name, port) for name in names)
+    origins = frozenset(config.origins(port))
     hosts = frozenset(origin.split("//")[1] for origin in origins)
     return Gate(
         app,
         hosts,
         origins,
         keys,
-        secure=config.scheme == "https",
+        secure=config.encrypted,
         stop=lambda: control.stop(Notice(code="stop_pressed")),
         invite=invite,
         long_bodies={IMPORT: IMPORT_LIMIT},

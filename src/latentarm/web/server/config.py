@@ -1,6 +1,7 @@
 """The address and port on which a page is served."""
 
 import ipaddress
+import re
 import socket
 import ssl
 from dataclasses import dataclass
@@ -13,7 +14,8 @@ from latentarm.web.cameras.sources import CameraSource
 
 _BACKLOG: Final = 2048
 
-_OWN_PORTS: Final = {"http": 80, "https": 443}
+_OWN_PORTS: Final = {"http": ":80", "https": ":443"}
+_ORIGIN: Final = re.compile(r"https?://([\w.-]+|\[[0-9a-fA-F:]+\])(:[0-9]{1,5})?")
 
 
 @final
@@ -32,6 +34,7 @@ class TeleopConfig:
     pins: bool = False
     cameras: tuple[CameraSource, ...] = ()
     lock_setup: bool = False
+    public_url: str | None = None  # the page's origin where a proxy serves it, such as https://arm.example
 
     def __post_init__(self) -> None:
         if not 0 <= self.port <= 65535:
@@ -43,15 +46,33 @@ class TeleopConfig:
                 f"The page must know the address that people open, and {self.host} is not one: name this"
                 " machine's own address or name with --host."
             )
+        if self.public_url is not None and not _ORIGIN.fullmatch(self.public_url):
+            raise UserError(
+                f"--public-url {self.public_url} is not an address such as https://arm.example or"
+                " https://arm.example:8443, without a path."
+            )
 
     @property
-    def scheme(self) -> str:
-        """The URL scheme: ``https`` with a certificate."""
-        return "http" if self.certfile is None else "https"
+    def encrypted(self) -> bool:
+        """Whether people reach the page over TLS alone."""
+        return self.certfile is not None if self.public_url is None else self.public_url.startswith("https:")
 
     @property
-    def loopback(self) -> bool:
+    def private(self) -> bool:
         """Whether only this machine can reach the page."""
+        return self.public_url is None and self._loopback
+
+    def origins(self, port: int) -> list[str]:
+        """The page's web origins, the first of them for links; ``port`` is the one that is listened on."""
+        if self.public_url is not None:
+            return [_without_own_port(self.public_url.lower())]
+        names = [self.host, "127.0.0.1", "localhost"] if self._loopback else [self.host]
+        scheme = "http" if self.certfile is None else "https"
+        found = [f"{scheme}://{f'[{name}]' if ':' in name else name.lower()}:{port}" for name in names]
+        return [_without_own_port(one) for one in dict.fromkeys(found)]
+
+    @property
+    def _loopback(self) -> bool:
         try:
             return ipaddress.ip_address(self.host).is_loopback
         except ValueError:
@@ -94,10 +115,10 @@ def check_certificate(config: TeleopConfig) -> None:
         ) from error
 
 
-def origin(scheme: str, host: str, port: int) -> str:
-    """The page's web origin."""
-    name = f"[{host}]" if ":" in host else host.lower()
-    return f"{scheme}://{name}" if port == _OWN_PORTS[scheme] else f"{scheme}://{name}:{port}"
+def _without_own_port(origin: str) -> str:
+    """As browsers write it: without the port that is the scheme's own."""
+    scheme = origin.partition(":")[0]
+    return origin.removesuffix(_OWN_PORTS[scheme])
 
 
 def _is_anywhere(host: str) -> bool:

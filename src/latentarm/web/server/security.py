@@ -1,9 +1,6 @@
 """Access to the server: exact hosts and origins, a cookie off the loopback, strict headers."""
 
 import asyncio
-import hashlib
-import hmac
-import secrets
 import time
 from collections.abc import Callable, Mapping
 from contextlib import suppress
@@ -18,11 +15,9 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from latentarm.web.server.invitations import ENTRY, INVITATION
 from latentarm.web.server.invitations import answer as invitation_answer
+from latentarm.web.server.keys import LIFE_S, Keys
 
 COOKIE: Final = "latentarm"
-LIFE_S: Final = 8 * 3600
-"""Validity of a cookie, s."""
-
 BODY_LIMIT: Final = 1 << 16
 """The longest request body, bytes."""
 
@@ -41,7 +36,6 @@ EXPIRED_WHY: Final = "expired"
 STOP: Final = "/stop"
 """Needs no cookie: anyone who can reach the page may stop the arm."""
 
-_MOST_VISITORS: Final = 64
 _MOST_DIGITS: Final = 20
 _READING: Final = ("GET", "HEAD")
 
@@ -64,57 +58,6 @@ _WELCOME: Final = (
     '<meta http-equiv="refresh" content="0; url=/"></head>'
     '<body><p><a href="/">Open the page</a></p></body></html>'
 )
-
-
-@final
-class Keys:
-    """One-time links, and the cookies that they are exchanged for; only hashes are kept."""
-
-    def __init__(self, now_s: Callable[[], float] = time.monotonic) -> None:
-        self._now_s = now_s
-        self._link: bytes | None = None
-        self._cookies: dict[bytes, float] = {}
-        self._host: bytes | None = None
-
-    def new_link(self) -> str:
-        """A key for the next visitor, 256 random bits; voids the previous one."""
-        key = secrets.token_urlsafe(32)
-        self._link = _hash(key)
-        return key
-
-    def redeem(self, key: str) -> str | None:
-        """A cookie in exchange for an unused key, or None."""
-        self._forget()
-        if self._link is None or not hmac.compare_digest(self._link, _hash(key)):
-            return None
-        if len(self._cookies) >= _MOST_VISITORS:
-            return None
-        self._link = None
-        cookie = secrets.token_urlsafe(32)
-        self._cookies[_hash(cookie)] = self._now_s() + LIFE_S
-        if self._host is None:
-            self._host = _hash(cookie)
-        return cookie
-
-    def is_host(self, cookie: str) -> bool:
-        """Whether this is the first cookie given: that of the person who started the server."""
-        if self._host is None or self.opens_for(cookie) is None:
-            return False
-        return hmac.compare_digest(self._host, _hash(cookie))
-
-    def opens_for(self, cookie: str) -> float | None:
-        """How much longer a cookie is valid, s; None if it is unknown or expired."""
-        self._forget()
-        given = _hash(cookie)
-        found: float | None = None
-        for known, until_s in self._cookies.items():
-            if hmac.compare_digest(known, given):
-                found = until_s - self._now_s()
-        return found
-
-    def _forget(self) -> None:
-        now_s = self._now_s()
-        self._cookies = {known: until_s for known, until_s in self._cookies.items() if now_s < until_s}
 
 
 @final
@@ -293,7 +236,3 @@ def _cookie(headers: Headers) -> str:
     except CookieError:
         return ""
     return "" if found is None else found.value
-
-
-def _hash(text: str) -> bytes:
-    return hashlib.sha256(text.encode()).digest()
