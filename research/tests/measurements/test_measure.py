@@ -33,7 +33,7 @@ def required(name: str, tmp_path: Path) -> list[object]:
     return []
 
 
-SLOW = {"clearance", "zones", "help", "published-help", "way-back", "calibration"}
+SLOW = {"clearance", "zones", "help", "way-back", "calibration"}
 # One needs a trained run and a Chromium (tests/web/browser/test_fault_times.py), one a log that is not ours.
 ELSEWHERE = {"page-stops", "people"}
 

@@ -12,7 +12,6 @@ from typing import Annotated, Any, Final
 from tyro.conf import arg
 
 from latentarm_research.measurements.measurement import Measurement, Outcome, Work
-from latentarm_research.people.names import OperatorName
 
 Names = tuple[str, ...]
 Numbers = tuple[float, ...]
@@ -23,14 +22,6 @@ class Clearance:
     """Options of ``clearance``."""
 
     drives: Annotated[int, arg(help="How many, over all arms.")] = 2000
-
-
-@dataclass(frozen=True)
-class JudgedAnswers:
-    """Options of ``answers``."""
-
-    tries: Annotated[int, arg(help="Of each kind of answers without a look at the motions.")] = 200
-    people: Annotated[int, arg(help="Of each kind who answer by directions of their own.")] = 50
 
 
 @dataclass(frozen=True)
@@ -84,29 +75,6 @@ class Help:
 
 
 @dataclass(frozen=True)
-class StepHelp:
-    """Options of ``step-help``."""
-
-    tasks: Annotated[Names, arg(help="With things that are goals.")] = ("dessert", "entree")
-    people: Annotated[tuple[OperatorName, ...], arg(help="Simulated people.")] = ("greedy", "unsteady")
-    drives: Annotated[int, arg(help="By each person in each condition.")] = 3
-    limit_s: Annotated[float, arg(help="Longest time of a drive, s.")] = 180.0
-    episodes: Annotated[int, arg(help="Demonstrations that the models learn from.")] = 40
-    epochs: Annotated[int | None, arg(help="Of training; by default the model's.")] = None
-
-
-@dataclass(frozen=True)
-class PublishedHelp:
-    """Options of ``published-help``."""
-
-    drives: Annotated[int, arg(help="To each marshmallow.")] = 10
-    beta: Annotated[Numbers, arg(help="Rationality of equation 24, 1/m².")] = (50.0, 200.0, 1000.0)
-    kinds: Annotated[
-        Names, arg(help="Kinds of help, of `latentarm drive --assistance`; by default all.")
-    ] = ()
-
-
-@dataclass(frozen=True)
 class WayBack:
     """Options of ``way-back``."""
 
@@ -123,13 +91,6 @@ class Calibrating:
     repeats: Annotated[int, arg(help="Of each movement by each person.")] = 1
     tasks: Annotated[Names, arg(help="Driven for the share of mode switches.")] = ("marshmallows", "avoid")
     distances_m: Annotated[Numbers, arg(help="Of movements, m.")] = (0.03, 0.06, 0.12)
-
-
-@dataclass(frozen=True)
-class NullChecks:
-    """Options of ``null-checks``."""
-
-    studies: Annotated[int, arg(help="Studies drawn for each check.")] = 500
 
 
 @dataclass(frozen=True)
@@ -151,11 +112,6 @@ class People:
 
 
 MEASUREMENTS: Final[Mapping[str, Measurement]] = {
-    "answers": Measurement(
-        "Measure how often directions are learned from answers that mean something, and from others.",
-        JudgedAnswers,
-        {"tries": 1, "people": 1},
-    ),
     "clearance": Measurement(
         "Push arms at things and at themselves; MuJoCo measures the distances that they keep.",
         Clearance,
@@ -191,23 +147,6 @@ MEASUREMENTS: Final[Mapping[str, Measurement]] = {
         Help,
         {"drives": 1, "episodes": 2, "epochs": 1, "limit_s": 1.0},
     ),
-    "step-help": Measurement(
-        "Measure what help is worth at the steps of a task, with a way back and without, in physics.",
-        StepHelp,
-        {
-            "tasks": ("entree",),
-            "people": ("greedy",),
-            "drives": 1,
-            "limit_s": 0.5,
-            "episodes": 2,
-            "epochs": 1,
-        },
-    ),
-    "published-help": Measurement(
-        "Measure what published kinds of help are worth to simulated people at marshmallows, in physics.",
-        PublishedHelp,
-        {"drives": 1, "beta": (1000.0,), "kinds": ("hindsight",)},
-    ),
     "way-back": Measurement(
         "Measure how far an adversary leads the tool off demonstrations, with a way back and without.",
         WayBack,
@@ -222,11 +161,6 @@ MEASUREMENTS: Final[Mapping[str, Measurement]] = {
         "Fit the simulated people to half of a public study's persons, and predict the other half.",
         People,
         {"people": 1},
-    ),
-    "null-checks": Measurement(
-        "Measure how often the analysis of user studies finds what is not there, and what is.",
-        NullChecks,
-        {"studies": 2},
     ),
     "torque": Measurement(
         "Measure what share of the motors' torque gravity and a stop take, by a model and a limits file.",

@@ -1,6 +1,5 @@
-"""The tasks that studies are driven at, by name, and such a task adapted."""
+"""The tasks that studies are driven at, by name, and such a task with less time."""
 
-from collections.abc import Callable
 from typing import Final, final
 
 import numpy as np
@@ -26,15 +25,14 @@ def scene_of(
 
 @final
 class AdaptedTask(SceneTask):
-    """Another task, whose time limit may be shorter and whose beginnings may be changed."""
+    """Another task, whose time limit may be shorter."""
 
     def __init__(
         self,
         task: SceneTask,
         time_limit_s: float,  # a run that takes longer has failed, s
-        change: Callable[[Beginning], Beginning] | None = None,  # of how each run begins
     ) -> None:
-        self._task, self._change = task, change
+        self._task = task
         self._time_limit_s = min(time_limit_s, task.time_limit_s)
 
     @property
@@ -63,6 +61,5 @@ class AdaptedTask(SceneTask):
         return self._time_limit_s
 
     def begin(self, choice: int, rng: np.random.Generator) -> Beginning:
-        """One run of the task, changed."""
-        begun = self._task.begin(choice, rng)
-        return begun if self._change is None else self._change(begun)
+        """One run of the task."""
+        return self._task.begin(choice, rng)
