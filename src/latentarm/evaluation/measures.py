@@ -108,14 +108,6 @@ MEASURES: Final[dict[str, Measure]] = {
     "controllability_state_error": Measure(
         "rad", "joint error then", "lower", "‖s − s_goal‖ over all joints at that moment", PROPERTIES
     ),
-    "planned_reach_m": Measure(
-        "m",
-        "reaches goals to, planning",
-        "lower",
-        "the same asked of a solver that plans all 6 s at once, in pieces of half a second, for some of the"
-        " pairs and seeds; never worse than greedy on the same pairs",
-        PROPERTIES,
-    ),
     "start_distance_m": Measure(
         "m",
         "distance at the start",
@@ -200,13 +192,6 @@ MEASURES: Final[dict[str, Measure]] = {
     ),
     "tool_turn": Measure("1", "tool's turn per stick's", "lower", "the same of the tool's velocity"),
     "tool_turn_p95": Measure("1", "tool's turn per stick's, 95 %", "lower", "95th percentile of these"),
-    "nonlinearity": Measure(
-        "1",
-        "not linear in z",
-        None,
-        "share of the motion's variance, over 36 pushes of the stick, that is not linear in z; the motion at"
-        " rest does not count",
-    ),
     "findings": Measure("1", "findings", "lower", "how many thresholds of the verdict the model misses"),
     "relative_alignment_error": Measure(
         "1",

@@ -27,7 +27,7 @@ def compare(
         int | None, arg(help="Starts and goals per fold for the greedy operator; 40 by default.")
     ] = None,
     ours: Annotated[
-        str | None, arg(metavar="MODEL", help="The model that is compared with the targets and driven.")
+        str | None, arg(metavar="MODEL", help="The model that is driven, beside mode switching and the cVAE.")
     ] = None,
     preset: Annotated[
         Literal["paper", "smoke"], arg(help="Whole sizes, or small ones that only show that it runs.")

@@ -21,8 +21,6 @@ def tiny() -> Preset:
         epochs=1,
         searched_pairs=20,
         reach_pairs=2,
-        planned_pairs=1,
-        planned_seeds=1,
         turned_states=3,
         demonstrations=(1,),
         drives=1,

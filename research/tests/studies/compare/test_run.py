@@ -49,7 +49,7 @@ def test_every_model_has_every_measure_under_every_noise(done: tuple[list[Row], 
             model: {row.measure for row in rows if (row.model, row.condition) == (model, noise)}
             for model in ("pca", "cae")
         }
-        assert by_model["pca"] == by_model["cae"] >= {"reversal", "planned_reach_m", "motion_turn_p95"}
+        assert by_model["pca"] == by_model["cae"] >= {"reversal", "controllability_m", "motion_turn_p95"}
 
 
 def test_the_noisy_error_is_the_noise_free_one_without_noise(done: tuple[list[Row], Path]) -> None:
@@ -114,9 +114,3 @@ def test_recorded_demonstrations_are_compared_on(tmp_path: Path, tiny: Preset) -
     at = {(row.model, row.measure): row.mean for row in rows if row.condition == "noise 0.01 rad"}
     assert at["pca", "search_error_percent_of_pca"] == pytest.approx(100.0, abs=5.0)
     assert at["scl", "drift"] == pytest.approx(0.0, abs=1e-9)
-    assert "No targets are judged" in (tmp_path / "out" / "results.md").read_text()
-
-
-def test_only_models_that_were_compared_have_a_table_of_targets(done: tuple[list[Row], Path]) -> None:
-    headings = [line for line in (done[1] / "results.md").read_text().splitlines() if "Targets of" in line]
-    assert headings == ["### Targets of cAE"]

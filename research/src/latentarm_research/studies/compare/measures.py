@@ -1,8 +1,6 @@
 """What is measured of one model on one fold."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from time import perf_counter
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
@@ -11,12 +9,10 @@ from latentarm.core.types import Demonstrations, FloatArray
 from latentarm.evaluation.controllability import ReachConfig
 from latentarm.evaluation.evaluation import EvaluationConfig, measure
 from latentarm.evaluation.measures import MEASURES
-from latentarm.evaluation.samples import moving_episodes, spread_contexts, start_goal_pairs
+from latentarm.evaluation.samples import moving_episodes, spread_contexts
 from latentarm.evaluation.turning import turning
 from latentarm.models.model import LatentActionModel
 from latentarm.robots.robot import Robot
-from latentarm_research.metrics.nonlinearity import nonlinearity
-from latentarm_research.metrics.shooting import ShootingConfig, planned_reach
 from latentarm_research.studies.compare.preset import Preset
 
 JUMPY: Final = 95.0  # the percentile of turning that is reported with the mean
@@ -40,12 +36,10 @@ BEHAVIOUR: Final = (
     "disentanglement_deg",
     "controllability_m",
     "controllability_state_error",
-    "planned_reach_m",
     "motion_turn",
     "motion_turn_p95",
     "tool_turn",
     "tool_turn_p95",
-    "nonlinearity",
 )
 """How the decoder behaves; no encoder is asked."""
 
@@ -65,16 +59,6 @@ def meaning_of(name: str) -> str:
     return f"as for axis {axis}" if axis not in ("", "0") and base else MEASURES[base or name].definition
 
 
-@dataclass(frozen=True)
-class MeasuredDecoder:
-    """What was measured."""
-
-    # measure -> (S,), in the order of `MEASURED`; the planned one for its first seeds alone
-    figures: Mapping[str, FloatArray]
-    measure_s: float  # how long it took without planning, s
-    plan_s: float  # how long planning took for one decoder, s
-
-
 def measure_model(
     model: LatentActionModel,
     demonstrations: Demonstrations,
@@ -82,7 +66,7 @@ def measure_model(
     robot: Robot,
     preset: Preset,
     rng: np.random.Generator,
-) -> MeasuredDecoder:
+) -> dict[str, FloatArray]:
     """Measure every seed of a model on held-out episodes.
 
     Args:
@@ -93,33 +77,17 @@ def measure_model(
         robot: the arm.
         preset: sizes.
         rng: for the noise on held-out states.
+
+    Returns:
+        Measure -> (S,), in the order of `MEASURED`.
     """
-    began = perf_counter()
     reach = ReachConfig(pairs=preset.reach_pairs)
     config = EvaluationConfig(reach=reach, latents=preset.searched_pairs)
     measured = measure(model, demonstrations, held_out, robot, rng=rng, config=config)
     figures = dict(measured.per_seed)
     episodes = moving_episodes(demonstrations, held_out)
     figures |= _around_the_stick(model, spread_contexts(episodes, "state", preset.turned_states), robot)
-    measure_s = perf_counter() - began
-
-    began = perf_counter()
-    seeds = min(preset.planned_seeds, model.seeds)
-    if preset.planned_pairs:
-        pairs = start_goal_pairs(
-            episodes, "state", separation_s=reach.separation_s, count=preset.planned_pairs
-        )
-        planned = planned_reach(
-            [model.decoder(seed) for seed in range(seeds)],
-            [model.torch_decoder(seed) for seed in range(seeds)],
-            pairs,
-            robot.chain,
-            1.0 / demonstrations.rate_hz,
-            ShootingConfig(),
-        )
-        figures["planned_reach_m"] = planned.mean(axis=1)
-    plan_s = (perf_counter() - began) / max(seeds, 1)
-    return MeasuredDecoder({name: figures[name] for name in MEASURED if name in figures}, measure_s, plan_s)
+    return {name: figures[name] for name in MEASURED if name in figures}
 
 
 def _around_the_stick(model: LatentActionModel, contexts: FloatArray, robot: Robot) -> dict[str, FloatArray]:
@@ -130,10 +98,4 @@ def _around_the_stick(model: LatentActionModel, contexts: FloatArray, robot: Rob
         flat = values.reshape(len(values), -1)
         figures[name] = np.nanmean(flat, axis=1)
         figures[f"{name}_p95"] = np.nanpercentile(flat, JUMPY, axis=1)
-    figures["nonlinearity"] = np.nanmean(nonlinearity(decoders, contexts), axis=1)
     return figures
-
-
-def without_planning(preset: Preset) -> Preset:
-    """The same sizes without the operator who plans."""
-    return replace(preset, planned_pairs=0)

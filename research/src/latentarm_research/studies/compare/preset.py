@@ -8,14 +8,8 @@ from latentarm.core.errors import UserError
 from latentarm.models.catalogue import KINDS
 from latentarm.runs.checks import check_count
 
-OURS: Final = "homogeneous"  # the model that is judged against the targets by default
-REFERENCE: Final = "cae"  # the paper's model, to which reach and error are compared
-
-BASELINE: Final = "homogeneous"
-"""The best model so far, which a new one has to match in error and to undercut in time."""
-
-RAISED: Final = ("low_turning", "odd_cae")
-"""Models that were made for these targets; where they are compared they are judged too, each by itself."""
+OURS: Final = "homogeneous"  # the model that is driven by default
+REFERENCE: Final = "cae"  # the paper's model
 
 CHOSEN_ON: Final = "pour_coffee"
 """Ending of the name of the recording that hyper-parameters were chosen on; frozen for the others."""
@@ -36,8 +30,6 @@ class Preset:
     hidden: tuple[int, ...] = (64, 64)  # units of each hidden layer, for every model
     searched_pairs: int = 500  # held-out pairs per fold, spread evenly, whose nearest inputs are searched for
     reach_pairs: int = 40  # pairs of start and goal per fold for the greedy operator
-    planned_pairs: int = 12  # of these, how many the operator who plans is asked; 0 asks none
-    planned_seeds: int = 2  # of the seeds, for how many
     turned_states: int = 100  # states in which the stick is led around
     # numbers of training demonstrations for the curves with fewer, each below what a fold leaves; that one is
     # added
@@ -64,8 +56,6 @@ PRESETS: Final[dict[str, Preset]] = {
         epochs=3,
         searched_pairs=100,
         reach_pairs=4,
-        planned_pairs=2,
-        planned_seeds=1,
         turned_states=10,
         demonstrations=(1,),
         drives=1,

@@ -30,14 +30,12 @@ from latentarm_research.studies.compare.drives import (
     rows_of_drives,
 )
 from latentarm_research.studies.compare.figures import FILLS, fewer_figure, pareto_figure, turning_figure
-from latentarm_research.studies.compare.hypotheses import compared, h1_sentences, verdicts
-from latentarm_research.studies.compare.measures import TABLES, meaning_of, without_planning
+from latentarm_research.studies.compare.hypotheses import compared, h1_sentences
+from latentarm_research.studies.compare.measures import TABLES, meaning_of
 from latentarm_research.studies.compare.preset import (
-    BASELINE,
     CHOSEN_ON,
     OURS,
     PRESETS,
-    RAISED,
     REFERENCE,
     Preset,
 )
@@ -54,7 +52,7 @@ class Asked:
 
     demonstrations: tuple[Path, ...]  # folders of native datasets, all of one robot
     preset: Preset  # models, noises, folds and all sizes
-    ours: str  # the model that is judged against the targets
+    ours: str  # the model that is driven
     seed: int  # of everything random
     datasets: tuple[Dataset, ...] = ()  # that the folders hold, with their folds
 
@@ -151,7 +149,7 @@ def _cells(asked: Asked) -> list[FoldCell]:
         for model in preset.models
         for fold in dataset.folds
     ] + [
-        FoldCell(dataset, noise_rad, model, fold.with_only(count), without_planning(preset), asked.seed)
+        FoldCell(dataset, noise_rad, model, fold.with_only(count), preset, asked.seed)
         for dataset in asked.datasets
         for noise_rad in preset.noises_rad
         for model in _given_fewer(asked)
@@ -191,7 +189,7 @@ def _report(asked: Asked, request: Request[Preset], measured: CompareResults) ->
         figures["fewer"] = fewer_figure(fewer, names, preset.noises_rad, counts)
     return Report(
         rows=[*main, *fewer, *driven],
-        page=_page(asked, measured.whole, main, tests, driven, counts),
+        page=_page(asked, main, tests, driven, counts),
         figures=figures,
         tests=tests,
         documents={
@@ -205,18 +203,12 @@ def _report(asked: Asked, request: Request[Preset], measured: CompareResults) ->
 
 def _page(
     asked: Asked,
-    whole: Sequence[FoldResult],
     main: Sequence[Row],
     tests: Sequence[Tested],
     driven: Sequence[Row],
     counts: Sequence[int],
 ) -> str:
     preset, names = asked.preset, [one.name for one in asked.datasets]
-    found = {
-        model: judged
-        for model in dict.fromkeys((asked.ours, *RAISED))
-        if (judged := verdicts(main, model, names, preset.noises_rad, tables.fit_times(whole)))
-    }
     return render_page(
         "compare/page.md",
         command=_command(asked),
@@ -226,12 +218,7 @@ def _page(
         few=FEW,
         corner=tables.CORNER,
         seed=asked.seed,
-        ours=asked.ours,
-        reference=REFERENCE,
-        baseline=BASELINE,
         chosen_on=[name for name in names if name.endswith(CHOSEN_ON)],
-        verdicts=found,
-        target_tables={model: tables.target_table(judged) for model, judged in found.items()},
         meanings={
             heading: {label_of(name): meaning_of(name) for name in measures}
             for heading, measures in TABLES.items()
@@ -262,7 +249,6 @@ def _timings(results: Sequence[FoldResult], drives: Sequence[DriveResult]) -> di
                 **asdict(one.place),
                 "fit_s": one.fit_s,
                 "measure_s": one.measure_s,
-                "plan_one_decoder_s": one.plan_s,
             }
             for one in results
         ],

@@ -15,7 +15,6 @@ from latentarm.evaluation.table import format_figure, measure_name, rich_figures
 from latentarm_research.studies.compare.cell import FoldResult
 from latentarm_research.studies.compare.measures import TABLES
 from latentarm_research.studies.tables import grid_table
-from latentarm_research.studies.targets import Target
 
 STUDY: Final = "compare"
 
@@ -61,13 +60,6 @@ def rows_of_fewer(results: Sequence[FoldResult], all_of: Mapping[str, int]) -> l
                 for measure, values in _stacked(cells).items()
             ]
     return rows
-
-
-def fit_times(results: Sequence[FoldResult]) -> dict[tuple[str, float, str], float]:
-    """Dataset, noise and model -> processor time of a fit of all seeds, mean over folds, s."""
-    return {
-        place: float(np.mean([cell.fit_s for cell in cells])) for place, cells in _grouped(results).items()
-    }
 
 
 def seeds_of(results: Sequence[FoldResult]) -> list[dict[str, object]]:
@@ -140,12 +132,6 @@ def terminal_tables(
 def page_table(rows: Sequence[Row], dataset: str, noise_rad: float, of: Sequence[str]) -> str:
     """The same for a page, of some measures."""
     return _grid(CORNER, _arranged(rows, dataset, noise_rad, of)[2])
-
-
-def target_table(found: Sequence[Target]) -> str:
-    """Targets down, datasets and noises across."""
-    words = {True: "met", False: "**missed**"}
-    return _grid("", {(one.name, one.where[0]): f"{words[one.met]}: {one.figures}" for one in found})
 
 
 def drive_table(rows: Sequence[Row], dataset: str) -> str:
