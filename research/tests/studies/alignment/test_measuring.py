@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 from functools import cache
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -32,8 +31,6 @@ from latentarm_research.studies.alignment.preset import (
 )
 from latentarm_research.studies.alignment.rows import time_alignment
 from latentarm_research.studies.alignment.scene import AlignmentCell, DecoderCell, learn_decoder, scene_of
-from latentarm_research.studies.alignment.turning import person
-from latentarm_research.tasks.pouring.tasks import FAR_LEFT_M, NEAR_RIGHT_M
 
 TINY = Preset(
     "tiny",
@@ -177,19 +174,6 @@ def test_four_chosen_questions_hold_both_parts_of_reach_and_pour():
     asked = order_of_questions(scene.chain, scene.shown, 4)
     there = scene.preference.is_there(scene.chain.forward(scene.shown.start[asked]).position)
     assert there.sum() == 2
-
-
-def test_the_axes_of_some_people_turn_by_as_much_either_way(scene):
-    """By hand: at the middle of the table, and at its two ends along the way in which they turn."""
-    one = replace(person(scene, 0), axes=SimpleNamespace(inputs=lambda motions: np.tile([0.5, 0.0], (3, 1))))
-    low, high = np.array(NEAR_RIGHT_M), np.array(FAR_LEFT_M)
-    reach = np.sign(one.along) * (high - low) / 2
-    places = (low + high) / 2 + np.array([[0.0], [1.0], [-1.0]]) * reach
-    seen = SimpleNamespace(forward=lambda state: SimpleNamespace(position=np.pad(places, ((0, 0), (0, 1)))))
-    u = replace(one, chain=seen).inputs(SimpleNamespace(start=None))
-    angles = np.arctan2(u[:, 1], u[:, 0]) - one.middle_rad
-    np.testing.assert_allclose(np.exp(1j * angles), np.exp(1j * one.turn_rad * np.array([0, 1, -1])))
-    np.testing.assert_allclose(np.linalg.norm(u, axis=1), 0.5)
 
 
 def test_the_times_of_learning_and_of_a_call_are_taken():

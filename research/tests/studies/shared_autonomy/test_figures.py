@@ -16,13 +16,10 @@ from latentarm_research.studies.shared_autonomy.figures import (
     changes_figure,
     expertise_figure,
     learners_figure,
-    models_figure,
     slopes_figure,
     task_figure,
-    weights_figure,
 )
 from latentarm_research.studies.shared_autonomy.preset import PRESETS, Preset
-from latentarm_research.studies.shared_autonomy.rows import figures
 from latentarm_research.studies.shared_autonomy.study import MODELS, cells_of
 from latentarm_research.studies.study import Request
 
@@ -66,7 +63,7 @@ def test_no_interval_is_cut_at_the_top(tmp_path):
     results = results_of(tmp_path, preset)
     for outcome in results[-1].outcomes:
         outcome.figures["final_state_error"][0] += 5.0
-    for draw in (expertise_figure, changes_figure, models_figure, slopes_figure):
+    for draw in (expertise_figure, changes_figure, slopes_figure):
         figure = draw(results, preset, tuple(TASKS))
         for axes in figure.axes:
             tops = [
@@ -89,7 +86,6 @@ def test_every_figure_fits_its_column_and_names_the_methods(tmp_path, preset, ta
         expertise_figure(results, preset, tasks): COLUMN_MM,
         changes_figure(results, preset, tasks): TWO_COLUMNS_MM,
         learners_figure(results, preset, tasks): TWO_COLUMNS_MM,
-        models_figure(results, preset, tasks): TWO_COLUMNS_MM,
         slopes_figure(results, preset, tasks): TWO_COLUMNS_MM,
     }
     for figure, width_mm in drawings.items():
@@ -98,16 +94,6 @@ def test_every_figure_fits_its_column_and_names_the_methods(tmp_path, preset, ta
         assert set(METHODS) <= words
         for task in TASKS:
             assert any(look_of(task).label in word for word in words) == (task in tasks)
-
-
-def test_the_weight_of_the_entropy_is_drawn_for_each_arm(tmp_path):
-    preset = PRESETS["paper"]
-    found = figures(results_of(tmp_path, preset))
-    figure = weights_figure(found, preset.ablation, preset.latest_change.label, tuple(TASKS))
-    assert_well_drawn(figure, COLUMN_MM)
-    assert {look_of(task).label for task in TASKS} <= words_of(figure)
-    lines = [line for axes in figure.axes for line in axes.lines if len(line.get_xdata()) > 2]
-    assert {len(line.get_xdata()) for line in lines} == {len(preset.ablation.weights)}
 
 
 @pytest.mark.parametrize("task", TASKS)

@@ -43,7 +43,6 @@ def test_the_page_has_every_part(tasks):
     assert f"latentarm reproduce shared-autonomy --preset paper{only} --seed 3" in page
     assert "**simulated**" in page
     assert re.findall(r"^## (.*)", page, flags=re.MULTILINE) == [
-        "Targets",
         "In short",
         *(["Planar, 5 joints"] if "planar_two_cups" in tasks else []),
         "Panda, 7 joints",
@@ -57,7 +56,7 @@ def test_the_page_has_every_part(tasks):
         assert page.count(f"\n| {hypothesis} | {text} |") == 2 * len(tasks)  # once for each model
     assert f"All {len(report.tests)} tests" in page
     assert page.count("<details>") == page.count("</details>") == 2 * len(tasks) + 1
-    assert page.index(f"({tasks[0]}.png)") < page.index("## In short") < page.index("(models.png)")
+    assert page.index(f"({tasks[0]}.png)") < page.index("## In short") < page.index("(learners.png)")
     for variant in ("lambda_2 0.3", "kappa 4", LETTER, "contexts any belief"):
         assert page.count(f"| {variant} |") == len(tasks)
     assert set(report.figures) == set(STUDY.figures) - (set(TASKS) - set(tasks))

@@ -3,7 +3,6 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from enum import IntEnum
-from math import pi
 from typing import Final
 
 from latentarm_research.alignment.priors import NO_PRIORS, Priors
@@ -18,17 +17,6 @@ class Curves:
     # those of them at which it is also taken of All Priors, which takes longer
     networks: tuple[int, ...] = (2, 4, 10)
     candidates: int = 100  # motions that may be asked about
-
-
-@dataclass(frozen=True)
-class Turning:
-    """People whose axes turn over the table."""
-
-    people: int = 20  # simulated; each answers about other motions
-    noises: tuple[float, ...] = (0.0, 0.5)  # coefficients of variation of their answers
-    # by how much their axes are turned at the far ends of the table, one way and the other, rad
-    turn_rad: float = pi / 3
-    ideal_people: int = 6  # the first of them, for whom Ideal Align is learned
 
 
 @dataclass(frozen=True)
@@ -71,7 +59,6 @@ class Preset:
     ideal_held_out: float = 0.1  # share of its answers that decide which weights are kept
     surroundings: int = 1000  # demonstrated motions that say which directions a place has
     curves: Curves = field(default_factory=Curves)  # how error falls with the number of answers
-    turning: Turning = field(default_factory=Turning)  # people whose axes turn
     drives: Drives = field(default_factory=Drives)  # drives to the goals of the demo
 
 
@@ -92,7 +79,6 @@ PRESETS: Final[dict[str, Preset]] = {
         ideal_runs=2,
         surroundings=300,
         curves=Curves(noises=(0.0,), answers=(1, 2, 4), networks=(2, 4), candidates=30),
-        turning=Turning(people=3, noises=(0.0,), ideal_people=2),
         drives=Drives(
             models=("cvae",), seeds=1, episodes=12, epochs=2, answers=4, to_each_goal=1, limit_s=3.0
         ),
@@ -115,8 +101,6 @@ class Stream(IntEnum):
     CANDIDATES = 9
     CANDIDATE_ANSWERS = 10
     ENSEMBLES = 11
-    PEOPLE = 12
-    PEOPLE_QUESTIONS = 13
     SURROUNDINGS = 14
 
 

@@ -15,7 +15,6 @@ from latentarm_research.studies.alignment.curves import CurveResult
 from latentarm_research.studies.alignment.drives import DrivesResult
 from latentarm_research.studies.alignment.preset import ALL_PRIORS, CHOSEN, CONDITIONS, LEARNED, Stream, under
 from latentarm_research.studies.alignment.scene import LearnedDecoder, scene_of
-from latentarm_research.studies.alignment.turning import TurningResult
 from latentarm_research.studies.series import Series
 
 STUDY: Final = "alignment"
@@ -37,12 +36,11 @@ class AlignmentResults:
     decoders: Sequence[LearnedDecoder]  # that the alignments stand on
     results: Sequence[AlignmentErrors]  # the cells of the table, by task, model and noise
     curves: Sequence[CurveResult]  # by noise, model and task
-    turning: Sequence[TurningResult]  # people whose axes turn, by noise
     drives: Sequence[DrivesResult]  # one for each kind of model that was driven with
 
 
 def series_of(measured: AlignmentResults) -> list[Series]:
-    """The errors of every run: the tables, then the curves, then people whose axes turn."""
+    """The errors of every run: the tables, then the curves."""
     found: list[Series] = []
     for task, model in dict.fromkeys((one.cell.task, one.cell.model) for one in measured.results):
         here = [one for one in measured.results if (one.cell.task, one.cell.model) == (task, model)]
@@ -61,12 +59,6 @@ def series_of(measured: AlignmentResults) -> list[Series]:
         ]
         found.append(Series(cell.task, cell.model, stopped, ANSWERS, one.stopped_after))
         found.append(Series(cell.task, cell.model, stopped, ERROR, one.stopped_at))
-    for one in measured.turning:
-        cell = one.cell
-        found += [
-            Series(cell.task, cell.model, under(f"axes turn, {name}", cell.noise), ERROR, values)
-            for name, values in one.errors.items()
-        ]
     return found
 
 

@@ -68,7 +68,7 @@ class LearnedDecoder:
 class AlignmentCell:
     """What is to be measured with a decoder."""
 
-    kind: Literal["conditions", "curve", "turning"]  # of the measurement
+    kind: Literal["conditions", "curve"]  # of the measurement
     learned: LearnedDecoder  # task and decoder
     noise: float  # coefficient of variation of the answers
 

@@ -1,7 +1,6 @@
 """`latentarm reproduce alignment`: learning what simulated people mean by their stick (section 8.3)."""
 
 from collections.abc import Sequence
-from dataclasses import asdict
 from math import degrees, exp
 from typing import TYPE_CHECKING, Final
 
@@ -24,7 +23,6 @@ from latentarm_research.studies.alignment.hypotheses import (
     NEAR,
     PAPER_MODEL,
     compare_conditions,
-    targets,
 )
 from latentarm_research.studies.alignment.preset import PRESETS, Preset
 from latentarm_research.studies.alignment.rows import STUDY as NAME
@@ -40,13 +38,10 @@ from latentarm_research.studies.alignment.scene import (
     LearnedDecoder,
     learn_decoder,
 )
-from latentarm_research.studies.alignment.turning import TASK as TURNING_TASK
-from latentarm_research.studies.alignment.turning import TurningResult, measure_turning
 from latentarm_research.studies.claim_tables import judged_parts
 from latentarm_research.studies.claims import Tested
 from latentarm_research.studies.page import render_page
 from latentarm_research.studies.study import Grid, Report, Request, Study, again
-from latentarm_research.studies.targets import Target, target_table
 from latentarm_research.tasks.pouring.tasks import AT_BOWL_M, BOWL_M, POURING_TASKS
 from latentarm_research.tasks.pouring.tool_path import RATE_HZ, SPEED_M_S, TURN_RAD_S
 
@@ -55,9 +50,9 @@ if TYPE_CHECKING:
 
 TASKS: Final = (*POURING_TASKS, TASK)  # the paper's tasks, and the demo's table, where goals are driven to
 AnyCell = AlignmentCell | AlignedDriveCell
-AnyResult = AlignmentErrors | CurveResult | TurningResult | DrivesResult
+AnyResult = AlignmentErrors | CurveResult | DrivesResult
 
-MEASURES: Final = {"conditions": measure_cell, "curve": measure_curve, "turning": measure_turning}
+MEASURES: Final = {"conditions": measure_cell, "curve": measure_curve}
 
 
 def _measure(request: Request[Preset], grid: Grid) -> AlignmentResults:
@@ -74,7 +69,6 @@ def _measure(request: Request[Preset], grid: Grid) -> AlignmentResults:
         decoders,
         results=sorted((one for one in found if isinstance(one, AlignmentErrors)), key=_place),
         curves=[one for one in found if isinstance(one, CurveResult)],
-        turning=[one for one in found if isinstance(one, TurningResult)],
         drives=[one for one in found if isinstance(one, DrivesResult)],
     )
 
@@ -88,10 +82,8 @@ def _cells(request: Request[Preset], decoders: Sequence[LearnedDecoder]) -> list
     """The second grid, its longest cells first."""
     preset = request.preset
     papers = [one for one in decoders if one.cell.model == PAPER_MODEL]
-    turning = [one for one in papers if one.cell.task == TURNING_TASK]
     return [
         *(drive_cells(preset, request.seed) if TASK in request.tasks else []),
-        *(AlignmentCell("turning", one, noise) for one in turning for noise in preset.turning.noises),
         *(AlignmentCell("curve", one, noise) for noise in preset.curves.noises for one in papers),
         *(AlignmentCell("conditions", one, noise) for one in decoders for noise in preset.noises),
     ]
@@ -113,19 +105,15 @@ def _report(request: Request[Preset], measured: AlignmentResults) -> Report:
     series = series_of(measured)
     rows = [*(one.row(NAME) for one in series), *drives_tables.drives_rows(measured.drives)]
     tests, drive_tests = compare_conditions(measured.results), drives_tables.compare_drives(measured.drives)
-    reached = targets(measured.results, measured.curves, measured.turning)
     figures = _figures(measured)
     # While nothing else runs.
     alone = [time_alignment(one) for one in measured.decoders if one.cell.model == PAPER_MODEL]
     return Report(
         rows=rows,
-        page=_page(request, measured, tests, drive_tests, reached, figures),
+        page=_page(request, measured, tests, drive_tests, figures),
         figures=figures,
         tests=[*tests, *drive_tests],
-        documents={
-            "targets.json": [asdict(one) for one in reached],
-            "runs.json": [one.as_json() for one in series],
-        },
+        documents={"runs.json": [one.as_json() for one in series]},
         timings={"one_alignment": alone, **timings(measured)},
         tables=tables.summary_tables(rows, request.preset),
     )
@@ -155,7 +143,6 @@ def _page(
     measured: AlignmentResults,
     tests: Sequence[Tested],
     drive_tests: Sequence[Tested],
-    reached: Sequence[Target],
     figures: "dict[str, Figure]",
 ) -> str:
     by_task: dict[str, dict[str, list[AlignmentErrors]]] = {}
@@ -180,7 +167,6 @@ def _page(
         conditions=conditions,
         choices=curves,
         **judged_parts(HYPOTHESES, tests),
-        target_table=target_table(reached),
         condition_tables={
             task: {model: tables.condition_table(cells) for model, cells in of_task.items()}
             for task, of_task in by_task.items()
@@ -188,9 +174,6 @@ def _page(
         settings=posterior,
         queries=queries,
         tool_space=tool_space,
-        turning=measured.turning,
-        turning_deg=degrees(request.preset.turning.turn_rad),
-        turning_table=tables.turning_table(measured.turning) if measured.turning else "",
         stopping_table=tables.stopping_table(measured.curves),
         curve_tables={_curve_name(curve): tables.curve_table(curve) for curve in measured.curves},
         drives=measured.drives,
@@ -220,5 +203,5 @@ STUDY: Final = Study(
     measure=_measure,
     report=_report,
     figures=("conditions", "conditions_other_models", "curves", "drives"),
-    documents=("runs.json", "targets.json"),
+    documents=("runs.json",),
 )

@@ -14,7 +14,6 @@ from latentarm_research.studies.alignment.drives_tables import REACHED, TIME
 from latentarm_research.studies.alignment.hypotheses import PAPER_MODEL
 from latentarm_research.studies.alignment.preset import CONDITIONS, Preset, under
 from latentarm_research.studies.alignment.rows import ENCODED, ERROR
-from latentarm_research.studies.alignment.turning import TURNING, TurningResult
 from latentarm_research.studies.tables import grid_table, markdown_table, mean_and_sd, terminal_table
 
 if TYPE_CHECKING:
@@ -58,13 +57,6 @@ def stopping_table(curves: Sequence[CurveResult]) -> str:
         for one in curves
     ]
     return markdown_table(["", "model", "noise", "answers", "relative error"], lines)
-
-
-def turning_table(results: Sequence[TurningResult]) -> str:
-    """Errors with people whose axes turn: conditions down, noises across."""
-    names = {f"{name} ({len(results[0].errors[name])} people)": name for name in TURNING}
-    noises = {f"noise {one.cell.noise:g}": one for one in results}
-    return grid_table(CORNER, names, noises, lambda name, one: mean_and_sd(one.errors[name]))
 
 
 def summary_tables(rows: Sequence[Row], preset: Preset) -> "list[Table]":

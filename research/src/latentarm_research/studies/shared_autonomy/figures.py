@@ -1,7 +1,6 @@
-"""The study's figures: those of the paper, its models, the weight of the entropy, and the tasks."""
+"""The study's figures: those of the paper, learners by slope, and the tasks."""
 
-from collections.abc import Callable, Iterable, Sequence
-from functools import partial
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -19,12 +18,10 @@ from latentarm_research.studies.shared_autonomy.cell import METHODS, AutonomyRes
 from latentarm_research.studies.shared_autonomy.drive import STEP_S
 from latentarm_research.studies.shared_autonomy.hypotheses import MEASURE
 from latentarm_research.studies.shared_autonomy.preset import (
-    Ablation,
     Preset,
     changing,
     learner,
     of_fixed_expertise,
-    weight_label,
 )
 from latentarm_research.tasks.two_cups import BEARING_RAD, Place, PlanarTwoCups, TwoCups
 
@@ -37,11 +34,9 @@ EXPERTISE_MM: Final = 88.0
 CHANGES_ROW_MM: Final = 46.0
 ROW_MM: Final = 44.0
 FRAME_MM: Final = 14.0
-WEIGHTS_MM: Final = 58.0
 TASK_MM: Final = 74.0
 
 NUDGE: Final = 0.015  # offset between methods as a share of the axis' width, so that no bar hides another
-WEIGHT_NUDGE: Final = 0.08  # the same for arms, as a share of the distance between two weights
 EXPERTISE_MEASURES: Final = {"final_state_error": "final state error", "time_s": "time to the goal (s)"}
 COURSES: Final = {"error": "state error", "belief": "belief in the true goal"}
 RATIONALITIES: Final = {1000.0: "$10^3$", 10000.0: "$10^4$"}  # numbers that would be too long for an axis
@@ -128,70 +123,25 @@ def learners_figure(results: Sequence[AutonomyResult], preset: Preset, tasks: Se
 
 def slopes_figure(results: Sequence[AutonomyResult], preset: Preset, tasks: Sequence[str]) -> "Drawing":
     """Final error over the slope of learning, a row per arm and a column per model."""
-    people = preset.by_slope
-
-    def draw(axes: "Axes", outcomes: Outcomes) -> None:
-        draw_over(axes, outcomes, [person.label for person in people.values()], MEASURE)
-        axes.set_xticks(np.arange(len(people)), [f"{slope:.3g}" for slope in people])
-        tidy(axes)
-
     heading = (
         "Learners, β = m t, by slope with each model, mean with 95 % interval; people and arms simulated"
     )
-    return _by_model(results, tasks, heading, draw, "slope m (1/m² per s)")
-
-
-def models_figure(results: Sequence[AutonomyResult], preset: Preset, tasks: Sequence[str]) -> "Drawing":
-    """Final error over the time of the change, a row per arm and a column per model."""
-    heading = "A change of mind with each model, mean with 95 % interval; people and arms simulated"
-    draw = partial(_draw_changes, preset=preset)
-    return _by_model(results, tasks, heading, draw, "change after (s)")
-
-
-def _by_model(
-    results: Sequence[AutonomyResult],
-    tasks: Sequence[str],
-    heading: str,
-    draw: "Callable[[Axes, Outcomes], None]",
-    x: str,
-) -> "Drawing":
-    """Final errors, a row per arm and a column per model."""
+    people = preset.by_slope
     models = list(dict.fromkeys(result.cell.model for result in results))
     figure, panels = drawing.panel_grid(
         heading, len(tasks), len(models), ROW_MM, FRAME_MM, sharex=True, sharey=True
     )
     for line, task in zip(panels, tasks, strict=True):
         for axes, model in zip(line, models, strict=True):
-            draw(axes, outcomes_of(results, task, model))
+            outcomes = outcomes_of(results, task, model)
+            draw_over(axes, outcomes, [person.label for person in people.values()], MEASURE)
+            axes.set_xticks(np.arange(len(people)), [f"{slope:.3g}" for slope in people])
+            tidy(axes)
             drawing.title(axes, f"{look_of(model).label}, {look_of(task).label}")
     _from_zero(panels.flat)
     drawing.label_axes(panels[:, 0], y="final state error")
-    drawing.label_axes(panels[-1], x=x)
+    drawing.label_axes(panels[-1], x="slope m (1/m² per s)")
     drawing.name_series(figure, panels[0, 0])
-    return figure
-
-
-def weights_figure(
-    found: Sequence[rows.Figure], ablation: Ablation, person: str, tasks: Sequence[str]
-) -> "Drawing":
-    """Reconstruction and a person's final error over lambda_2, a line per arm."""
-    heading = "Weight of the entropy, mean with 95 % interval; simulated"
-    figure, ((one, other),) = drawing.panel_grid(heading, 1, 2, 0.0, WEIGHTS_MM, width_mm=COLUMN_MM)
-    labels = [weight_label(weight) for weight in ablation.weights]
-    known = {(each.task, each.condition, each.measure): each.interval for each in found}
-    for axes, name, measure, label, conditions in (
-        (one, "reconstruction", rows.RECONSTRUCTION, "test error (% of PCA)", labels),
-        (other, person, "final_state_error", "final state error", [f"{label}, {person}" for label in labels]),
-    ):
-        for index, task in enumerate(tasks):
-            places = np.arange(len(labels), dtype=np.float64) + WEIGHT_NUDGE * (index - (len(tasks) - 1) / 2)
-            _draw_series(axes, task, places, [known[task, condition, measure] for condition in conditions])
-        drawing.title(axes, name)
-        axes.set_ylim(bottom=0.0)
-        axes.set_xticks(range(len(labels)), [f"{weight:g}" for weight in ablation.weights])
-        drawing.label_axes([axes], "weight $\\lambda_2$", label)
-        tidy(axes)
-    drawing.name_series(figure, one)
     return figure
 
 

@@ -11,8 +11,6 @@ H3: people who learn, slowly or quickly, end nearer with entropy than without.
 All tests are one-sided at `LEVEL` after Holm's correction over all tests of one hypothesis with one model.
 Two methods are compared seed by seed (paired t): the same demonstrations, starts and chances, and the same
 initial weights. H1 also asks that their 95 % intervals are apart.
-
-Targets compare means and intervals of the same errors.
 """
 
 from collections.abc import Mapping, Sequence
@@ -22,7 +20,6 @@ from typing import Final
 import numpy as np
 
 from latentarm.core.types import FloatArray
-from latentarm.evaluation.looks import look_of
 from latentarm_research.studies.claims import Claim, Direction, Hypothesis, Tested, corrected_by_family
 from latentarm_research.studies.shared_autonomy.cell import (
     WITH_ENTROPY,
@@ -32,9 +29,8 @@ from latentarm_research.studies.shared_autonomy.cell import (
 )
 from latentarm_research.studies.shared_autonomy.measures import ARRIVED
 from latentarm_research.studies.shared_autonomy.preset import Person, Preset, learner, of_fixed_expertise
-from latentarm_research.studies.shared_autonomy.rows import Figure, Interval, interval
+from latentarm_research.studies.shared_autonomy.rows import interval
 from latentarm_research.studies.statistics import one_sample, paired
-from latentarm_research.studies.targets import Target
 
 MEASURE: Final = "final_state_error"
 
@@ -114,36 +110,3 @@ def _test(
     tested = one.of(values, other.mean(axis=1), paired(values, other.mean(axis=1), direction))
     apart = interval(own).high < interval(other).low
     return replace(tested, apart=apart) if hypothesis == "H1" else tested
-
-
-AT_LEAST: Final = 0.9
-"""Final state error without entropy after the latest change of mind: people are trapped at the other cup."""
-
-AT_MOST: Final = 0.1  # the same with entropy: they are at theirs
-
-
-def targets(found: Sequence[Figure], preset: Preset) -> list[Target]:
-    """Every target, by what is asked for, then by arm and model."""
-    errors = {(one.task, one.model, one.condition): one.interval for one in found if one.measure == MEASURE}
-    latest = preset.latest_change.label
-    judged: list[Target] = []
-    for task, model in dict.fromkeys((task, model) for task, model, _ in errors):
-        where = look_of(task).label, look_of(model).label
-        helped, opened = (errors[task, model, f"{method}, {latest}"] for method in (WITH_HELP, WITH_ENTROPY))
-        trapped = f"{latest}: {WITH_HELP} at least {AT_LEAST:g}"
-        free = f"{latest}: {WITH_ENTROPY} at most {AT_MOST:g}"
-        judged.append(Target(trapped, helped.mean >= AT_LEAST, _written(helped), where))
-        judged.append(Target(free, opened.mean <= AT_MOST, _written(opened), where))
-        for name, slope in preset.learners.items():
-            person = learner(name, slope).label
-            helped, opened = (
-                errors[task, model, f"{method}, {person}"] for method in (WITH_HELP, WITH_ENTROPY)
-            )
-            figures = f"{_written(helped)} and {_written(opened)}"
-            judged.append(Target(f"{person}: intervals apart", opened.high < helped.low, figures, where))
-    order = list(dict.fromkeys(one.name for one in judged))
-    return sorted(judged, key=lambda one: order.index(one.name))
-
-
-def _written(error: Interval) -> str:
-    return f"{error.mean:.3f} ± {error.half_width:.3f}"

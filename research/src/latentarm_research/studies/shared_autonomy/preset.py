@@ -130,12 +130,6 @@ class Preset:
         return tuple(dict.fromkeys((times[max(len(times) // 2 - 1, 0)], times[-1])))
 
     @property
-    def drawn_people(self) -> tuple[Person, ...]:
-        """The people whose drives are drawn over time."""
-        learners = (learner(name, slope) for name, slope in self.learners.items())
-        return (*learners, *(changing(after_s) for after_s in self.drawn_changes_s))
-
-    @property
     def varied_people(self) -> tuple[Person, ...]:
         """Who drives in the ablation: near-optimal people, of a constant mind and with the latest change."""
         return of_fixed_expertise(NEAR_OPTIMAL), self.latest_change

@@ -22,10 +22,8 @@ from latentarm_research.studies.shared_autonomy.figures import (
     changes_figure,
     expertise_figure,
     learners_figure,
-    models_figure,
     slopes_figure,
     task_figure,
-    weights_figure,
 )
 from latentarm_research.studies.shared_autonomy.measures import ARRIVED
 from latentarm_research.studies.shared_autonomy.preset import PRESETS, Entropy, Preset, variants
@@ -33,14 +31,12 @@ from latentarm_research.studies.shared_autonomy.rows import (
     FEWEST_SEEDS,
     MODEL,
     Figure,
-    band,
     figures,
     rows_of,
 )
 from latentarm_research.studies.shared_autonomy.rows import STUDY as NAME
 from latentarm_research.studies.shared_autonomy.tables import Tables, summary_tables
 from latentarm_research.studies.study import Grid, Report, Request, Study, again
-from latentarm_research.studies.targets import target_table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Drawing
@@ -108,7 +104,7 @@ def _label(cell: AutonomyCell) -> str:
 def _report(request: Request[Preset], results: list[AutonomyResult]) -> Report:
     found = figures(results)
     rows, tests = rows_of(found), hypotheses.compare_methods(results, request.preset)
-    drawings = _drawings(request, results, found)
+    drawings = _drawings(request, results)
     return Report(
         rows=rows,
         page=_page(request, found, tests, drawings),
@@ -116,7 +112,6 @@ def _report(request: Request[Preset], results: list[AutonomyResult]) -> Report:
         tests=tests,
         documents={
             "seeds.json": [_by_seed(figure) for figure in found],
-            "courses.json": _courses(results, request.preset),
         },
         timings={
             "cells": [
@@ -127,19 +122,14 @@ def _report(request: Request[Preset], results: list[AutonomyResult]) -> Report:
     )
 
 
-def _drawings(
-    request: Request[Preset], results: Sequence[AutonomyResult], found: Sequence[Figure]
-) -> "dict[str, Drawing]":
+def _drawings(request: Request[Preset], results: Sequence[AutonomyResult]) -> "dict[str, Drawing]":
     preset, tasks = request.preset, request.tasks
     drawings = {
         "fixed_expertise": expertise_figure(results, preset, tasks),
         "change_of_mind": changes_figure(results, preset, tasks),
         "learners": learners_figure(results, preset, tasks),
         "learner_slopes": slopes_figure(results, preset, tasks),
-        "models": models_figure(results, preset, tasks),
     }
-    if preset.ablation is not None:
-        drawings["entropy_weight"] = weights_figure(found, preset.ablation, preset.latest_change.label, tasks)
     return drawings | {task: task_figure(TASKS[task]()) for task in tasks}
 
 
@@ -170,7 +160,6 @@ def _page(
         arrived=ARRIVED,
         reached=hypotheses.REACHED,
         trapped=hypotheses.TRAPPED,
-        target_table=target_table(hypotheses.targets(found, preset), ("arm", "model")),
         choice=choice,
         measures_of=measures_of,
         belief=drive.RULE.keywords,
@@ -192,27 +181,6 @@ def _by_seed(figure: Figure) -> dict[str, Any]:
     }
 
 
-def _courses(results: Sequence[AutonomyResult], preset: Preset) -> list[dict[str, Any]]:
-    """What the figures show over time: state error and belief of the paper's model, mean and interval."""
-    shown = {person.label for person in preset.drawn_people}
-    return [
-        {
-            "task": result.cell.task,
-            "method": outcome.method,
-            "person": outcome.person.label,
-            **{
-                f"{what}_{part}": values.round(5).tolist()
-                for what, course in (("error", outcome.error), ("belief", outcome.belief))
-                for part, values in zip(("mean", "low_95", "high_95"), band(course), strict=True)
-            },
-        }
-        for result in results
-        if result.cell.model == MODEL and result.cell.variant is None
-        for outcome in result.outcomes
-        if outcome.person.label in shown
-    ]
-
-
 STUDY: Final = Study(
     name=NAME,
     command="reproduce shared-autonomy",
@@ -226,9 +194,7 @@ STUDY: Final = Study(
         "change_of_mind",
         "learners",
         "learner_slopes",
-        "models",
-        "entropy_weight",
         *TASKS,
     ),
-    documents=("seeds.json", "courses.json"),
+    documents=("seeds.json",),
 )
