@@ -34,7 +34,6 @@ STUDIES: Final[Mapping[str, Entry]] = {
         {
             "paper": _PAPER,
             "noise": "noise on the states as well",
-            "sweep": "other designs of the tasks, smaller",
             "smoke": _SMOKE,
         },
     ),

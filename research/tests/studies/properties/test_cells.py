@@ -1,4 +1,4 @@
-"""How the cells of the paper's table compare, and how many in each design."""
+"""How the cells of the paper's table compare."""
 
 from dataclasses import replace
 
@@ -11,10 +11,8 @@ from latentarm_research.studies.properties.cells import (
     count,
     judge,
     paper_cells,
-    sweep_table,
 )
 from latentarm_research.studies.properties.paper import OF_MEANS, PAPER
-from latentarm_research.studies.properties.preset import AS_CHOSEN, PRESETS, designs
 
 FAVOUR, WITHIN, MISSED = PaperVerdict.IN_FAVOUR, PaperVerdict.WITHIN, PaperVerdict.MISSED
 
@@ -78,28 +76,3 @@ def test_means_are_judged_where_asked_for_and_other_conditions_never():
     assert len(paper_cells(of_means)) == 0
     assert len(paper_cells(of_means, means=True)) == 16
     assert paper_cells(rows_of_the_paper("noise 0.1 rad")) == []
-
-
-def test_the_sweep_counts_the_cells_of_each_design_and_names_those_missed():
-    rows = rows_of_the_paper("good") + [
-        replace(row, mean=34.0) if (row.task, row.model) == ("sine", "ae") else row
-        for row in rows_of_the_paper("bad")
-    ]
-    table = [
-        [cell.strip() for cell in line.strip("|").split("|")]
-        for line in sweep_table(rows, ["good", "bad"]).splitlines()
-    ]
-    assert [line[:2] for line in table[2:]] == [["good", "27, 0, 0"], ["bad", "25, 0, 2"]]
-    assert table[2][3] == "–"
-    assert table[3][3].count("AE 34.0") == 2
-
-
-def test_only_a_sweep_has_further_designs_and_each_differs_from_the_studys():
-    assert list(designs(PRESETS["paper"])) == [AS_CHOSEN]
-    swept = designs(PRESETS["sweep"])
-    first = swept.pop(AS_CHOSEN)
-    assert len(swept) > 5
-    assert all(preset != first for preset in swept.values())
-    assert len({repr(preset) for preset in swept.values()}) == len(swept)
-    few = swept["a tenth of the demonstrations, ten times the pairs of each"]
-    assert few.episodes * few.design.samples == first.episodes * first.design.samples

@@ -12,8 +12,6 @@ from latentarm_research.studies.properties.paper import with_paper
 from latentarm_research.studies.properties.preset import PRESETS
 from latentarm_research.studies.properties.study import STUDY
 from latentarm_research.studies.properties.tables import (
-    OURS,
-    as_good_as_paper,
     noise_table,
     paper_table,
 )
@@ -50,33 +48,7 @@ def test_a_length_of_the_paper_is_marked():
     assert lines(paper_table(rows, "sine"))[2][1] == "0.0200 (paper: 0.05 ± 0.01 †)"
 
 
-@pytest.mark.parametrize(
-    ("measure", "ours", "text"),
-    [
-        (ERROR, 1.0, "yes"),
-        (ERROR, 2.0, "yes"),
-        (ERROR, 3.0, "no (cAE 2.00)"),
-        ("r2", 7.0, "yes"),
-        ("r2", 3.0, "no (AE 7.00)"),
-        ("path_length", 3.0, "–"),
-        (ERROR, None, "–"),
-    ],
-)
-def test_our_model_is_held_against_the_papers_best(measure, ours, text):
-    rows = [
-        row("ae", 7.0, measure),
-        row("cae", 2.0, measure),
-        row("scl", 0.0, measure),
-        row(OURS, ours, measure),
-    ]
-    head, _, figures = lines(paper_table(rows, "sine"))
-    assert head[-1].endswith("at least as good as the paper's best")
-    assert figures[-1] == text
-    counted = text != "–"
-    assert as_good_as_paper(rows, "sine") == (int(text == "yes"), int(counted))
-
-
-def test_the_sweep_has_a_line_for_each_noise():
+def test_the_table_of_noise_has_a_line_for_each():
     rows = [
         row(model, mean + noise, condition=f"noise {noise:g} rad")
         for noise in (0.0, 0.1)

@@ -57,17 +57,17 @@ def test_no_demonstration_is_refused(motion, episodes):
         motion.demonstrate(episodes, np.random.default_rng(0))
 
 
-def posture_told_by_place(motion, **design):
+def posture_told_by_place(motion):
     """Largest correlation of a free joint with a coordinate of the task where demonstrations begin."""
-    shown = type(motion)(Design(least_conditioning=0.1, **design)).demonstrate(80, np.random.default_rng(5))
+    shown = type(motion)(Design(least_conditioning=0.1)).demonstrate(80, np.random.default_rng(5))
     first = np.array([episode.state[0] for episode in shown.episodes])
     free = np.setdiff1d(np.arange(motion.robot.dof), motion.closing)
     place = motion.constraint.coordinates(first)
     return np.abs(np.corrcoef(first[:, free].T, place.T)[: len(free), len(free) :]).max()
 
 
-def test_the_place_tells_nothing_of_the_free_joints_unless_they_begin_nearest_to_it(motion):
-    assert posture_told_by_place(motion) < 0.4 < posture_told_by_place(motion, placed="nearest")
+def test_the_place_tells_nothing_of_the_free_joints(motion):
+    assert posture_told_by_place(motion) < 0.4
 
 
 def test_ill_conditioned_postures_are_drawn_anew(motion):

@@ -15,7 +15,7 @@ from latentarm.models.decoder import Decoder
 from latentarm.models.model import LatentActionModel
 from latentarm_research.studies.fitting import fit_each, validation_episodes
 from latentarm_research.studies.properties import measures
-from latentarm_research.studies.properties.preset import AS_CHOSEN, Preset
+from latentarm_research.studies.properties.preset import Preset
 from latentarm_research.studies.streams import generator, integer, sequence
 from latentarm_research.tasks.planar.catalogue import MOTIONS
 from latentarm_research.tasks.planar.motion import Design, PlanarMotion
@@ -45,7 +45,6 @@ class PropertiesCell:
     noise_rad: float  # SD of the noise on states, in training and in the noisy error, rad
     preset: Preset  # sizes of the study
     seed: int  # of the whole study; the same demonstrations come from it for every kind of model and noise
-    design: str = AS_CHOSEN  # what the preset's design is called in a sweep
 
 
 def condition(noise_rad: float) -> str:

@@ -64,7 +64,7 @@ def paper_cells(rows: Iterable[Row], *, means: bool = False) -> list[PaperCell]:
     percent of its own) is no cell.
 
     Args:
-        rows: of the study; those under noise or of a further design are passed over.
+        rows: of the study; those under noise are passed over.
         means: judge means over pairs where the study has medians over episodes.
     """
     ours = {(row.task, row.model, row.measure): row for row in rows if row.condition is None}
@@ -109,22 +109,3 @@ def cells_table(cells: Sequence[PaperCell]) -> str:
 def _printed(row: Row) -> str:
     """What the paper prints, with its SD where it has one."""
     return f"{row.paper_mean:.3g}" + ("" if row.paper_sd is None else f" ± {row.paper_sd:.2g}")
-
-
-def sweep_table(rows: Sequence[Row], designs: Sequence[str]) -> str:
-    """How many cells have each verdict in each design, and which are missed."""
-    lines: list[list[str]] = []
-    for design in designs:
-        here = [replace(row, condition=None) for row in rows if row.condition == design]
-        cells = paper_cells(here)
-        by_median = ", ".join(map(str, count(cells)))
-        by_mean = ", ".join(map(str, count(paper_cells(here, means=True))))
-        missed = [
-            f"{cell.row.task} {measure_name(cell.row)} {look_of(cell.row.model or '').label}"
-            f" {format_figure(cell.row.mean, None)} ({cell.row.paper_mean:.3g})"
-            for cell in cells
-            if cell.verdict is PaperVerdict.MISSED
-        ]
-        lines.append([design, by_median, by_mean, "; ".join(missed) or ABSENT])
-    header = ["design", "within one SD, in favour, missed", "by means", "missed: ours (the paper's)"]
-    return markdown_table(header, lines)

@@ -1,7 +1,6 @@
 """`latentarm reproduce properties`: every model on every task (section 8.1)."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 from itertools import product
 from typing import TYPE_CHECKING, Final
 
@@ -16,7 +15,7 @@ from latentarm_research.studies.properties.cell import (
     condition,
     measure_cell,
 )
-from latentarm_research.studies.properties.cells import cells_table, count, paper_cells, sweep_table
+from latentarm_research.studies.properties.cells import cells_table, count, paper_cells
 from latentarm_research.studies.properties.figures import (
     beside_paper_figure,
     controllability_figure,
@@ -25,7 +24,7 @@ from latentarm_research.studies.properties.figures import (
 from latentarm_research.studies.properties.hypotheses import HYPOTHESES, LINEAR, MARK, compare_models
 from latentarm_research.studies.properties.motion_figures.catalogue import TASK_FIGURES
 from latentarm_research.studies.properties.paper import with_paper
-from latentarm_research.studies.properties.preset import AS_CHOSEN, PRESETS, Preset, designs
+from latentarm_research.studies.properties.preset import PRESETS, Preset
 from latentarm_research.studies.series import Series
 from latentarm_research.studies.study import Grid, Report, Request, Study, again
 from latentarm_research.tasks.planar.catalogue import MOTIONS
@@ -39,36 +38,28 @@ def _measure(request: Request[Preset], grid: Grid) -> list[PropertiesResult]:
     # Without noise most is measured: these take longest, and begin first. The models of a task stand
     # together, so that one process demonstrates once for all of them.
     cells = [
-        PropertiesCell(task, model, noise_rad, preset, request.seed, design)
-        for (design, preset), noise_rad in product(designs(request.preset).items(), request.preset.noises_rad)
+        PropertiesCell(task, model, noise_rad, request.preset, request.seed)
+        for noise_rad in request.preset.noises_rad
         for task, model in product(request.tasks, request.preset.models)
     ]
     return grid.run("Models on tasks", measure_cell, cells, _label)
 
 
 def _label(cell: PropertiesCell) -> str:
-    design = [cell.design] if cell.design != AS_CHOSEN else []
-    return ", ".join([cell.task, cell.model, condition(cell.noise_rad), *design])
+    return f"{cell.task}, {cell.model}, {condition(cell.noise_rad)}"
 
 
 def _report(request: Request[Preset], results: list[PropertiesResult]) -> Report:
-    proper = [result for result in results if result.cell.design == AS_CHOSEN]
-    rows = with_paper([row for task in request.tasks for row in _rows(proper, task)])
-    tests = compare_models(proper)
-    figures = _figures(proper, rows, request.tasks)
-    swept = _swept(request, results)
+    rows = with_paper([row for task in request.tasks for row in _rows(results, task)])
+    tests = compare_models(results)
+    figures = _figures(results, rows, request.tasks)
     cells = [
-        {
-            "task": cell.task,
-            "model": cell.model,
-            "condition": condition(cell.noise_rad),
-            "design": cell.design,
-        }
+        {"task": cell.task, "model": cell.model, "condition": condition(cell.noise_rad)}
         for cell in (result.cell for result in results)
     ]
     return Report(
-        rows=rows + swept,
-        page=_page(request, rows, swept, tests, figures),
+        rows=rows,
+        page=_page(request, rows, tests, figures),
         figures=figures,
         tests=tests,
         documents={
@@ -86,19 +77,6 @@ def _series(result: PropertiesResult, under: str | None = None) -> list[Series]:
     """The figures of a cell, under the condition by which rows name it."""
     cell = result.cell
     return [Series(cell.task, cell.model, under, *figures) for figures in result.figures.items()]
-
-
-def _swept(request: Request[Preset], results: Sequence[PropertiesResult]) -> list[Row]:
-    """Rows of every design, with its name as their condition; none where there is one design."""
-    names = designs(request.preset)
-    if len(names) < 2:
-        return []
-    found: list[Row] = []
-    for name in names:
-        own = [one for one in results if one.cell.design == name]
-        rows = with_paper([row for task in request.tasks for row in _rows(own, task)])
-        found += [replace(row, condition=name) for row in rows if row.condition is None]
-    return found
 
 
 def _rows(results: Sequence[PropertiesResult], task: str) -> list[Row]:
@@ -132,11 +110,9 @@ def _figures(
 def _page(
     request: Request[Preset],
     rows: Sequence[Row],
-    swept: Sequence[Row],
     tests: Sequence[Tested],
     figures: "dict[str, Figure]",
 ) -> str:
-    as_good = {task: tables.as_good_as_paper(rows, task) for task in request.tasks}
     cells = paper_cells(rows)
     return render_page(
         "properties/page.md",
@@ -147,10 +123,7 @@ def _page(
         cells_found=count(cells),
         cells_found_by_means=count(paper_cells(rows, means=True)),
         cells_table=cells_table(cells),
-        sweep_table=sweep_table(swept, list(designs(request.preset))) if swept else "",
         **judged_parts(HYPOTHESES, tests),
-        ours=tables.OURS,
-        as_good={task: counts for task, counts in as_good.items() if counts[1]},
         figures=list(figures),
         paper_tables={task: tables.paper_table(rows, task) for task in request.tasks},
         noise_tables={task: tables.noise_table(rows, task) for task in request.tasks if "noise" in figures},

@@ -2,7 +2,7 @@
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import Final, Literal, final
+from typing import Final, final
 
 import numpy as np
 
@@ -18,9 +18,6 @@ DEMONSTRATION_S: Final = 4.0
 DRAWS: Final = 20
 """How often postures are drawn, at most, before too few pass."""
 
-Places = Literal["freely", "nearest"]
-Pace = Literal["normal", "swing"]
-
 
 @dataclass(frozen=True)
 class Design:
@@ -28,23 +25,17 @@ class Design:
 
     Attributes:
         spread_rad: SD of a demonstration's first posture about the nominal one: the arm has more joints than
-            the task needs, and nobody begins twice in the same posture.
-        placed: ``freely``: the joints that the task leaves free are drawn whatever the place, and the others
-            bring the tool there, so that the place says nothing about the posture. ``nearest``: all joints
-            are drawn and then move by the least to the place, so that the place says much about it.
+            the task needs, and nobody begins twice in the same posture. The joints that the task leaves
+            free are drawn whatever the place, and the others bring the tool there, so that the place says
+            nothing about the posture.
         least_conditioning: a demonstration in which the smallest singular value of the task's Jacobian falls
             below this share of its value in the nominal posture is drawn anew: there the joints would have to
             race, and a few such pairs would make up all of a mean.
-        pace: of the two tasks with one axis along a path. ``normal``: each stroke has its own joint speed,
-            normal about zero, so that speed tells neither place nor posture. ``swing``: the tool swings along
-            the path, fastest in the middle.
         samples: state-action pairs of a demonstration, spread evenly over its duration.
     """
 
     spread_rad: float = 0.05
-    placed: Places = "freely"
     least_conditioning: float = 2 / 3
-    pace: Pace = "normal"
     samples: int = 10
 
 
@@ -148,10 +139,8 @@ class PlanarMotion(ABC):
         """Some demonstrations, those among them that are to be drawn anew not yet left out."""
         path = self.paths(count, rng)
         posture = self.nominal + rng.normal(0.0, self.design.spread_rad, (count, self.robot.dof))
-        moved = np.arange(self.robot.dof)
-        if self.design.placed == "freely":
-            moved = np.array(self.closing)
-            posture[:, moved] = self.nominal[moved]
+        moved = np.array(self.closing)
+        posture[:, moved] = self.nominal[moved]
         start = settle(posture, path.now, self.constraint, moved)
         recording = follow(self.constraint, start, path, self.design.samples, self.duration_s)
         return recording.judged(self._sound(recording.states))

@@ -102,21 +102,3 @@ def least_norm(jacobian: FloatArray, rate: FloatArray) -> FloatArray:
     """``J^+ x``: (..., k, n) and (..., k) to (..., n), for Jacobians of full rank."""
     transposed = jacobian.mT
     return (transposed @ np.linalg.solve(jacobian @ transposed, rate[..., None]))[..., 0]
-
-
-def swings(
-    count: int, half: float, frequency_rad_s: tuple[float, float], rng: np.random.Generator
-) -> Callable[[float], FloatArray]:
-    """Swings over parts of an interval, from time, s, to (E,): fastest in the middle of the part.
-
-    Args:
-        count: E, how many.
-        half: the interval is [-half, half].
-        frequency_rad_s: slowest and fastest angular frequency.
-        rng: draws parts, frequencies and phases.
-    """
-    reach = rng.uniform(0.4, 1.0, count) * half
-    middle = rng.uniform(-1.0, 1.0, count) * (half - reach)
-    frequency = rng.uniform(*frequency_rad_s, count)
-    phase = rng.uniform(0.0, 2 * np.pi, count)
-    return lambda time: middle + reach * np.sin(frequency * time + phase)

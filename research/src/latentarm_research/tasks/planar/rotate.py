@@ -14,7 +14,7 @@ from latentarm.core.types import FloatArray, Pose
 from latentarm.robots.planar import planar
 from latentarm.robots.robot import Robot
 from latentarm_research.tasks.planar.motion import DEMONSTRATION_S, DESIGN, Design, PlanarMotion, outline
-from latentarm_research.tasks.planar.paths import Paced, Path, Timed, swings
+from latentarm_research.tasks.planar.paths import Paced, Path
 from latentarm_research.tasks.planar.resolved_rate import Constraint
 
 BOX_WIDTH_M: Final = 0.2
@@ -25,8 +25,6 @@ PLACE_SPREAD_M: Final = 0.05
 LARGEST_TURN_RAD: Final = 0.5
 SPEED_RAD_S: Final = 1.2
 """SD of the joint speed."""
-SWING_RAD_S: Final = (1.2, 2.4)
-"""Slowest and fastest angular frequency of the back-and-forth at the pace ``swing``."""
 LEFT_POSTURE_RAD: Final = (-0.67, -0.62, 0.73, 0.82, -0.27)
 """Nominal posture of the left arm; the right arm's is its mirror image."""
 
@@ -83,12 +81,9 @@ class Rotate(PlanarMotion):
     def paths(self, count: int, rng: np.random.Generator) -> Path:
         """Turns of the box about its middle, back and forth, somewhere near its nominal place."""
         middle = np.array(PLACE_M) + rng.uniform(-PLACE_SPREAD_M, PLACE_SPREAD_M, (count, 2))
-        if self.design.pace == "normal":
-            begin = rng.uniform(-LARGEST_TURN_RAD, LARGEST_TURN_RAD, count)
-            ends = (-LARGEST_TURN_RAD, LARGEST_TURN_RAD)
-            return Paced(lambda turn: _grips(middle, turn), begin, ends, SPEED_RAD_S, DEMONSTRATION_S, rng)
-        swing = swings(count, LARGEST_TURN_RAD, SWING_RAD_S, rng)
-        return Timed(lambda time: _grips(middle, swing(time)))
+        begin = rng.uniform(-LARGEST_TURN_RAD, LARGEST_TURN_RAD, count)
+        ends = (-LARGEST_TURN_RAD, LARGEST_TURN_RAD)
+        return Paced(lambda turn: _grips(middle, turn), begin, ends, SPEED_RAD_S, DEMONSTRATION_S, rng)
 
 
 @final

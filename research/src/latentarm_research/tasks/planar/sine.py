@@ -12,7 +12,7 @@ import numpy as np
 from latentarm.core.types import FloatArray
 from latentarm_research.tasks.planar.motion import DEMONSTRATION_S
 from latentarm_research.tasks.planar.one_arm import OneArm
-from latentarm_research.tasks.planar.paths import Paced, Path, Timed, swings
+from latentarm_research.tasks.planar.paths import Paced, Path
 from latentarm_research.tasks.planar.resolved_rate import curled, plane_point
 
 AMPLITUDE_M: Final = 0.01
@@ -20,8 +20,6 @@ WAVELENGTH_M: Final = 0.2
 HALF_LENGTH_M: Final = 0.15
 SPEED_RAD_S: Final = 0.4
 """SD of the joint speed."""
-SWING_RAD_S: Final = (1.2, 2.4)
-"""Slowest and fastest angular frequency of the back-and-forth at the pace ``swing``."""
 
 
 @final
@@ -54,10 +52,6 @@ class Sine(OneArm):
         return "move along the sine wave"
 
     def paths(self, count: int, rng: np.random.Generator) -> Path:
-        """Back and forth over the wave, or at the pace ``swing`` over a part of it."""
-        if self.design.pace == "normal":
-            begin = rng.uniform(-HALF_LENGTH_M, HALF_LENGTH_M, count)
-            ends = (-HALF_LENGTH_M, HALF_LENGTH_M)
-            return Paced(self.curve, begin, ends, SPEED_RAD_S, DEMONSTRATION_S, rng)
-        swing = swings(count, HALF_LENGTH_M, SWING_RAD_S, rng)
-        return Timed(lambda time: self.curve(swing(time)))
+        """Back and forth over the wave: each stroke has its own joint speed, so that it tells no place."""
+        begin = rng.uniform(-HALF_LENGTH_M, HALF_LENGTH_M, count)
+        return Paced(self.curve, begin, (-HALF_LENGTH_M, HALF_LENGTH_M), SPEED_RAD_S, DEMONSTRATION_S, rng)

@@ -13,8 +13,7 @@ from latentarm.evaluation.effects import axis_grid
 from latentarm.evaluation.looks import look_of
 from latentarm.evaluation.table import format_figure
 from latentarm_research.studies.drawing import View, note, plane, row_of_panels, title
-from latentarm_research.studies.properties.figures import draw_losses, points
-from latentarm_research.studies.properties.tables import OURS
+from latentarm_research.studies.properties.figures import OURS, draw_losses, points
 from latentarm_research.tasks.planar.motion import PlanarMotion
 from latentarm_research.tasks.planar.paths import STEP_S
 
