@@ -112,13 +112,14 @@ def certified(
 
 
 def certified_along(
+    # (...,), upper bound of ``-w·phi(z, c)`` over all inputs (`Enclosure.furthest` of -w)
     most_against: FloatArray,
-    direction: FloatArray,
-    state: FloatArray,
-    belief: FloatArray,
-    goals: FloatArray,
-    alpha: ArrayLike,
-    gain_per_s: ArrayLike = 1.0,
+    direction: FloatArray,  # (..., n), w
+    state: FloatArray,  # (..., n), rad
+    belief: FloatArray,  # (..., G), probability over goals
+    goals: FloatArray,  # (..., G, n), configurations, rad
+    alpha: ArrayLike,  # (...,), in [0, 1]
+    gain_per_s: ArrayLike = 1.0,  # (...,), k, 1/s, positive
 ) -> BoolArray:
     """Where the distance to ``g*`` shrinks whatever the person does, with decoder and help known.
 
@@ -133,15 +134,6 @@ def certified_along(
     which is below zero wherever this certifies. It is also the tightest: up to the slack of ``most_against``,
     wherever it does not certify some input makes ``dV/dt >= 0``. For M = 1 it certifies whatever `known_help`
     does, because ``sup_z (-e·phi) <= ‖e‖ sigma_h``.
-
-    Args:
-        most_against: (...,), upper bound of ``-w·phi(z, c)`` over all inputs (`Enclosure.furthest` of -w).
-        direction: (..., n), w.
-        state: (..., n), rad.
-        belief: (..., G), probability over goals.
-        goals: (..., G, n), configurations, rad.
-        alpha: (...,), in [0, 1].
-        gain_per_s: (...,), k, 1/s, positive.
 
     Returns:
         (...,); false where alpha is zero or a number is not finite.

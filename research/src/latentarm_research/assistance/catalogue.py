@@ -27,18 +27,10 @@ def published_assistance(name: AssistanceName, robot: Robot) -> AssistanceRule:
     """A published kind of help, made for `HindsightBelief`.
 
     Hindsight optimisation, HARMONIC's levels, or policy blending. HARMONIC's No Assist is no assistance.
-
-    Args:
-        name: which.
-        robot: the arm.
     """
     return partial(_PUBLISHED[name], robot=robot)
 
 
 def published_belief(robot: Robot) -> Rule:
-    """The belief that `published_assistance` was published with.
-
-    Args:
-        robot: the arm.
-    """
+    """The belief that `published_assistance` was published with."""
     return cast(Rule, partial(HindsightBelief, robot=robot))

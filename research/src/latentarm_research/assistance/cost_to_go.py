@@ -33,22 +33,14 @@ class HuberCost:
                   weight (slope + constant)             beyond
         V(d)    = weight (slope d² / (2 near) + constant d)                  for d <= near
                   weight ((slope + constant) d - slope near / 2)             beyond
-
-    Attributes:
-        slope: of the linear part.
-        near: distance up to which the cost is quadratic, m or rad.
-        constant: added to the slope everywhere.
-        weight: of the whole cost.
-        price: what the robot's own motion costs it; its speed is the slope of V divided by this.
-        soft: distance below which the robot slows down in proportion, m or rad.
     """
 
-    slope: float
-    near: float
-    constant: float
-    weight: float
-    price: float
-    soft: float
+    slope: float  # of the linear part
+    near: float  # distance up to which the cost is quadratic, m or rad
+    constant: float  # added to the slope everywhere
+    weight: float  # of the whole cost
+    price: float  # what the robot's own motion costs it; its speed is the slope of V divided by this
+    soft: float  # distance below which the robot slows down in proportion, m or rad
 
     def rate(self, distance: FloatArray) -> FloatArray:
         """Cost of a second at distances (...), which is also the slope of `value`."""

@@ -20,11 +20,6 @@ class ExpectedHelp(Assistance):
     The twist is at most 0.06 m/s and 0.29 rad/s, below the gains of 0.2 m/s and 0.4 rad/s that the published
     system gave the person. Joint velocities follow by resolved rates.
 
-    Args:
-        goals: (G, n), rad.
-        robot: the arm; its first tool is moved.
-        poses_of: at which poses a goal is reached.
-
     Raises:
         UserError: a goal has too many poses.
     """

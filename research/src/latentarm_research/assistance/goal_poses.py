@@ -19,11 +19,7 @@ def that_pose(pose: Pose) -> tuple[Pose, ...]:
 
 
 def turned_about_vertical(count: int = MOST_POSES) -> PosesOf:
-    """The same place, turned about the vertical by even parts of a whole turn: for things that are round.
-
-    Args:
-        count: how many poses.
-    """
+    """The same place, turned about the vertical by even parts of a whole turn: for things that are round."""
     return partial(_turned, count=count)
 
 
@@ -37,11 +33,6 @@ def _turned(pose: Pose, count: int) -> tuple[Pose, ...]:
 
 def goal_poses(goals: FloatArray, robot: Robot, poses_of: PosesOf) -> GoalPoses:
     """The poses of goals that are given as configurations.
-
-    Args:
-        goals: (G, n), rad.
-        robot: the arm; its first tool is meant.
-        poses_of: see `PosesOf`.
 
     Raises:
         UserError: a goal has too many poses.

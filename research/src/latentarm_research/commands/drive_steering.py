@@ -75,9 +75,6 @@ class Steering:
     def about(self, time_limit_s: float) -> dict[str, object]:
         """What the figures depend on.
 
-        Args:
-            time_limit_s: after which a drive has failed, s.
-
         Raises:
             UserError: the run has no model.
         """

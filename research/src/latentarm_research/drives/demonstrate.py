@@ -43,47 +43,29 @@ DEMONSTRATION_STREAM: Final = 11
 @final
 @dataclass(frozen=True, eq=False)
 class Demonstration:
-    """One run of the scripted demonstrator.
+    """One run of the scripted demonstrator."""
 
-    Attributes:
-        episode: the recorded samples.
-        progress: how far it came.
-        seconds: how long it took, s.
-        states: how things stood at every kept sample.
-        objects: names of the things whose poses the episode holds.
-        begun: how it began.
-        moves: how the goals moved, by the index of the sample from which they had.
-    """
-
-    episode: Episode
-    progress: Progress
-    seconds: float
-    states: tuple[SceneState, ...]
-    objects: tuple[str, ...]
-    begun: Beginning
-    moves: Mapping[int, GoalMove]
+    episode: Episode  # the recorded samples
+    progress: Progress  # how far it came
+    seconds: float  # how long it took, s
+    states: tuple[SceneState, ...]  # how things stood at every kept sample
+    objects: tuple[str, ...]  # names of the things whose poses the episode holds
+    begun: Beginning  # how it began
+    moves: Mapping[int, GoalMove]  # how the goals moved, by the index of the sample from which they had
 
 
 def demonstrate_once(
-    task: SceneTask,
-    choice: int,
-    rng: np.random.Generator,
-    hand: GuidingHand | None = None,
-    arm: str = "mujoco",
-    watch: Callable[[SceneArm], None] | None = None,
+    task: SceneTask,  # what is done
+    choice: int,  # index into the task's choices
+    rng: np.random.Generator,  # source of all variation
+    hand: GuidingHand | None = None,  # how the simulated person moves
+    arm: str = "mujoco",  # a simulated arm of the catalogue that can have things about it
+    watch: Callable[[SceneArm], None] | None = None,  # sees the arm at every period, such as a camera
 ) -> Demonstration:
     """Guide an arm through one run of a task.
 
     Nothing but the arm itself stands between the person's hand and the joints: as in a real kinesthetic
     demonstration there is no stick, no `Step` and no safety filter.
-
-    Args:
-        task: what is done.
-        choice: index into the task's choices.
-        rng: source of all variation.
-        hand: how the simulated person moves.
-        arm: a simulated arm of the catalogue that can have things about it.
-        watch: sees the arm at every period, such as a camera.
 
     Raises:
         UserError: the arm cannot be used.
@@ -124,13 +106,6 @@ def demonstrate(
 ) -> tuple[Demonstrations, list[Demonstration]]:
     """Demonstrations of a task, its choices in turn, in processes side by side.
 
-    Args:
-        task: what is demonstrated.
-        episodes: how many.
-        seed: of the things' places and of the simulated person.
-        jobs: processes; -1 is one per core.
-        bars: show on standard error how many are done.
-
     Returns:
         Those that succeeded, as a dataset; and all.
 
@@ -144,13 +119,7 @@ def demonstrate(
 
 
 def dataset_of(task: SceneTask, episodes: Sequence[Episode], objects: tuple[str, ...]) -> Demonstrations:
-    """Demonstrations of a task as a dataset.
-
-    Args:
-        task: what was demonstrated.
-        episodes: of the dataset.
-        objects: see `Demonstration`.
-    """
+    """Demonstrations of a task as a dataset."""
     robot = task.robot
     return Demonstrations(
         episodes=tuple(episodes),

@@ -48,42 +48,30 @@ Record = Callable[[Beginning], Callable[[StepRecord], None]]
 @final
 @dataclass(frozen=True, eq=False)
 class Setup:
-    """Everything that stays the same from drive to drive.
+    """Everything that stays the same from drive to drive."""
 
-    Attributes:
-        task: what is to be done; `GoalTask` at goals.
-        controller: what the simulated operator steers with.
-        person: the simulated person who drives.
-        assistance: how the robot helps towards its belief over the goals; None never helps.
-        arm: what moves, a simulated arm of `latentarm.arms.catalogue`; by default
-            `PHYSICAL_ARM` with things and `DEFAULT_ARM` without.
-        rule: how inputs change the belief; without help too, for a decoder may look at it.
-    """
-
-    task: SceneTask
-    controller: Controller
-    person: Person
+    task: SceneTask  # what is to be done; `GoalTask` at goals
+    controller: Controller  # what the simulated operator steers with
+    person: Person  # the simulated person who drives
+    # how the robot helps towards its belief over the goals; None never helps
     assistance: AssistanceRule | None = None
+    # what moves, a simulated arm of `latentarm.arms.catalogue`; by default `PHYSICAL_ARM` with things and
+    # `DEFAULT_ARM` without
     arm: str | None = None
+    # how inputs change the belief; without help too, for a decoder may look at it
     rule: Rule = BoltzmannBelief
 
 
 def drive(
-    setup: Setup,
-    choice: int,
-    rng: np.random.Generator,
-    watch: Callable[[Arm], None] | None = None,
+    setup: Setup,  # who drives what, and how
+    choice: int,  # index into the task's choices
+    rng: np.random.Generator,  # of the start, of the things' places and of the simulated operator
+    watch: Callable[[Arm], None] | None = None,  # sees the arm at every tick, such as a camera
+    # is told how the drive begins, and gives what is told every step, with where all things of the scene are,
+    # in its order
     record: Record | None = None,
 ) -> Trace:
     """Drive once, until the task is done, has failed, or the time is over.
-
-    Args:
-        setup: who drives what, and how.
-        choice: index into the task's choices.
-        rng: of the start, of the things' places and of the simulated operator.
-        watch: sees the arm at every tick, such as a camera.
-        record: is told how the drive begins, and gives what is told every step, with where all things of the
-            scene are, in its order.
 
     Raises:
         UserError: the task is done where the arm starts, or the arm cannot be used.

@@ -31,17 +31,11 @@ TICKS: Final = 3
 @final
 @dataclass(frozen=True, eq=False)
 class Mark:
-    """Where a drive led to, or was to.
+    """Where a drive led to, or was to."""
 
-    Attributes:
-        name: for the legend, where it stands once.
-        goal: index of what it was for, which decides the colour.
-        position: (3,), m.
-    """
-
-    name: str
-    goal: int
-    position: FloatArray
+    name: str  # for the legend, where it stands once
+    goal: int  # index of what it was for, which decides the colour
+    position: FloatArray  # (3,), m
 
 
 def marks_of_goals(goals: Sequence[Goal]) -> list[Mark]:
@@ -56,11 +50,6 @@ def marks_of_first_steps(traces: Sequence[Trace]) -> list[Mark]:
 
 def draw_drives(traces: Mapping[str, Sequence[Trace]], marks: Sequence[Mark], path: Path) -> None:
     """Draw where the tool went, from above and from the side, one column per condition.
-
-    Args:
-        traces: drives by condition.
-        marks: what to mark in every panel.
-        path: the PNG to write.
 
     Raises:
         UserError: the file cannot be written.
@@ -121,10 +110,6 @@ def draw_inputs(traces: Mapping[str, Sequence[Trace]], path: Path) -> None:
     """Draw the typical drive of each condition over time: what the person did, and when they changed modes.
 
     Typical is the drive that takes the median time.
-
-    Args:
-        traces: drives by condition.
-        path: the PNG to write.
 
     Raises:
         UserError: the file cannot be written.

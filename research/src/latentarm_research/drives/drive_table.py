@@ -52,14 +52,7 @@ A figure that a drive does not have, such as a force where nothing can be touche
 def drive_entries(
     planned: Sequence[Planned], traces: Sequence[Trace], *, controller: str, operator: str
 ) -> list[dict[str, object]]:
-    """One mapping per drive, with the keys of `COLUMNS` in that order.
-
-    Args:
-        planned: the drives, in order.
-        traces: what came of them.
-        controller: what drove.
-        operator: who gave inputs.
-    """
+    """One mapping per drive, with the keys of `COLUMNS` in that order."""
     return [
         {name: None if isinstance(value, float) and isnan(value) else value for name, value in entry.items()}
         for entry in (
@@ -106,10 +99,6 @@ def _entry(number: int, plan: Planned, trace: Trace, controller: str, operator: 
 
 def write_drives_csv(path: Path, entries: Sequence[Mapping[str, object]]) -> None:
     """Write one line per drive under a line of column names, whole or not at all.
-
-    Args:
-        path: the file.
-        entries: of the drives, at least one; all have the same keys.
 
     Raises:
         UserError: the file cannot be written.

@@ -24,18 +24,12 @@ class Planned:
 
     Its randomness depends on the seed, the choice and its number alone, so that every controller meets the
     same starts and things, and the number of processes changes nothing.
-
-    Attributes:
-        setup: who drives what.
-        choice: index into the task's choices.
-        repeat: number of the drive for this choice.
-        seed: of the start, of the things' places and of the simulated operator.
     """
 
-    setup: Setup
-    choice: int
-    repeat: int
-    seed: int
+    setup: Setup  # who drives what
+    choice: int  # index into the task's choices
+    repeat: int  # number of the drive for this choice
+    seed: int  # of the start, of the things' places and of the simulated operator
 
     def drive(self, watch: Callable[[Arm], None] | None = None, record: Record | None = None) -> Trace:
         """Drive; see `latentarm_research.drives.drive.drive`.
@@ -67,11 +61,6 @@ def plan_drives(setups: Sequence[Sequence[Setup]], drives: int, seed: int) -> li
 
 def drive_all(conditions: Sequence[Sequence[Planned]], jobs: int, *, bars: bool = False) -> list[list[Trace]]:
     """Drive in each condition, processes side by side.
-
-    Args:
-        conditions: the drives of each.
-        jobs: processes; -1 is one per core.
-        bars: show on standard error how many drives are done.
 
     Raises:
         UserError: the task is done where an arm starts, or an arm cannot be used.

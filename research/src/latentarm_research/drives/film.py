@@ -46,23 +46,15 @@ Image = NDArray[np.uint8]
 @final
 @dataclass(frozen=True)
 class Camera:
-    """From where pictures are taken, and their size.
+    """From where pictures are taken, and their size."""
 
-    Attributes:
-        look_at: (3,), what is in the middle, in the base frame of the arm, m.
-        distance_m: from there, m.
-        azimuth_deg: in which direction it looks, from x towards y.
-        elevation_deg: how far up it looks; below 0 it looks down.
-        width: pixels.
-        height: pixels.
-    """
-
+    # (3,), what is in the middle, in the base frame of the arm, m
     look_at: tuple[float, float, float] = (0.5, 0.0, 0.15)
-    distance_m: float = 0.64
-    azimuth_deg: float = 155.0
-    elevation_deg: float = -36.0
-    width: int = 480
-    height: int = 360
+    distance_m: float = 0.64  # from there, m
+    azimuth_deg: float = 155.0  # in which direction it looks, from x towards y
+    elevation_deg: float = -36.0  # how far up it looks; below 0 it looks down
+    width: int = 480  # pixels
+    height: int = 360  # pixels
 
 
 @final
@@ -94,10 +86,6 @@ class Film:
     def frames(self, camera: Camera, count: int = FRAMES) -> tuple[list[float], list[Image]]:
         """Moments of the drive, evenly spaced from its beginning to its end.
 
-        Args:
-            camera: from where.
-            count: how many.
-
         Returns:
             When each was, s, and the pictures.
 
@@ -112,14 +100,7 @@ class Film:
 
 
 def strip(heading: str, time_s: Sequence[float], pictures: Sequence[Image], trace: "Trace") -> "Figure":
-    """Pictures of a drive in rows, each with the time and the step that is under way.
-
-    Args:
-        heading: over all of them.
-        time_s: of each picture, s.
-        pictures: of the drive.
-        trace: of the drive.
-    """
+    """Pictures of a drive in rows, each with the time and the step that is under way."""
     down = -(-len(pictures) // ACROSS)
     figure = new_figure(ROW_MM * down + HEAD_MM, TWO_COLUMNS_MM)
     figure.suptitle(heading, fontsize=FONT_SIZE)

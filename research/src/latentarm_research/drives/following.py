@@ -25,11 +25,7 @@ STATES_EVERY: Final = 10
 
 @final
 class Following:
-    """Follows a drive.
-
-    Args:
-        begun: how it begins.
-    """
+    """Follows a drive."""
 
     def __init__(self, begun: Beginning) -> None:
         self.progress = Progress(begun.steps, begun.failures)
@@ -73,13 +69,7 @@ class Following:
                 self.ending = Ending("operator_stuck", NOT_NEARER)
 
     def trace(self, choice: int, chain: PlacesTool, stops: int) -> Trace:
-        """The drive so far.
-
-        Args:
-            choice: index into the task's choices.
-            chain: the robot's forward kinematics.
-            stops: how often the arm was stopped.
-        """
+        """The drive so far."""
         begun, records, newest = self._begun, self.records, self._newest
         if begun.scene.names:
             kept = self._tool[: len(records)]

@@ -29,40 +29,21 @@ _PEAK: Final = 1.875
 @final
 @dataclass(frozen=True)
 class GuidingHand:
-    """How the simulated person moves the tool; all values are assumptions.
+    """How the simulated person moves the tool; all values are assumptions."""
 
-    Attributes:
-        tool_speed: fastest that the tool moves, m/s.
-        turn_speed: fastest that it turns, rad/s.
-        joint_speed: fastest that any joint moves, rad/s.
-        slowest: a movement peaks at this share of those speeds, or more.
-        sway: SD of how far a movement leaves the straight line, as a share of its length.
-        miss_m: SD of where a movement ends, along each axis, m.
-        miss_rad: SD of how the tool is turned there, about each axis, rad.
-        pause_s: longest rest between movements, s.
-    """
-
-    tool_speed: float = 0.2
-    turn_speed: float = 1.0
-    joint_speed: float = 1.0
-    slowest: float = 0.7
-    sway: float = 0.04
-    miss_m: float = 0.002
-    miss_rad: float = 0.02
-    pause_s: float = 0.3
+    tool_speed: float = 0.2  # fastest that the tool moves, m/s
+    turn_speed: float = 1.0  # fastest that it turns, rad/s
+    joint_speed: float = 1.0  # fastest that any joint moves, rad/s
+    slowest: float = 0.7  # a movement peaks at this share of those speeds, or more
+    sway: float = 0.04  # SD of how far a movement leaves the straight line, as a share of its length
+    miss_m: float = 0.002  # SD of where a movement ends, along each axis, m
+    miss_rad: float = 0.02  # SD of how the tool is turned there, about each axis, rad
+    pause_s: float = 0.3  # longest rest between movements, s
 
 
 @final
 class Movement:
-    """One movement of the tool from a pose to another: of minimum jerk, a little off the straight line.
-
-    Args:
-        start: where it begins.
-        end: where it is meant to end.
-        hand: how the person moves.
-        speed: share of their usual speed, in (0, 1].
-        rng: source of all variation.
-    """
+    """One movement of the tool from a pose to another: of minimum jerk, a little off the straight line."""
 
     def __init__(
         self, start: Pose, end: Pose, hand: GuidingHand, speed: float, rng: np.random.Generator
@@ -84,11 +65,7 @@ class Movement:
         return self._duration_s + self._pause_s
 
     def at(self, time_s: float) -> Pose:
-        """Where the tool is meant to be.
-
-        Args:
-            time_s: since the movement began, s.
-        """
+        """Where the tool is meant to be."""
         share = min(max(time_s / self._duration_s, 0.0), 1.0)
         done = share**3 * (10.0 - 15.0 * share + 6.0 * share**2)
         position = self._start.position + done * self._way[:3] + np.sin(np.pi * done) ** 2 * self._sway

@@ -29,17 +29,11 @@ GIVES_UP_S: Final = 15.0
 @final
 @dataclass(frozen=True)
 class Pointing:
-    """One movement along an axis of the base frame.
+    """One movement along an axis of the base frame."""
 
-    Attributes:
-        axis: 0 to 2, for x, y and z.
-        distance_m: from the start to the middle of the target, along the axis; negative is the other way.
-        width_m: of the target.
-    """
-
-    axis: int
-    distance_m: float
-    width_m: float
+    axis: int  # 0 to 2, for x, y and z
+    distance_m: float  # from the start to the middle of the target, along the axis; negative is the other way
+    width_m: float  # of the target
 
     @property
     def difficulty(self) -> float:
@@ -49,12 +43,7 @@ class Pointing:
 
 @final
 class OneMode(Controller):
-    """One mode of a controller, with no other to switch to.
-
-    Args:
-        controller: whose.
-        mode: index into its modes.
-    """
+    """One mode of a controller, with no other to switch to."""
 
     def __init__(self, controller: Controller, mode: int) -> None:
         self._controller = controller
@@ -87,13 +76,6 @@ def point(
     robot: Robot, controller: Controller, person: Person, pointing: Pointing, rng: np.random.Generator
 ) -> float:
     """Move once from the arm's home, in physics, through Algorithm 1 and its filters.
-
-    Args:
-        robot: the arm; its first tool is moved.
-        controller: what the person steers with, in its only mode.
-        person: who moves.
-        pointing: where to.
-        rng: of the person.
 
     Returns:
         Time from the start until the tool came into the target to stay for `DWELL_S`, s; infinity where that
@@ -133,25 +115,14 @@ def point(
 @final
 @dataclass(frozen=True)
 class FittsLaw:
-    """``time = intercept + slope difficulty``, fitted by least squares.
+    """``time = intercept + slope difficulty``, fitted by least squares."""
 
-    Attributes:
-        slope_s_per_bit: s/bit.
-        intercept_s: s.
-        r2: share of the variance that it explains.
-    """
-
-    slope_s_per_bit: float
-    intercept_s: float
-    r2: float
+    slope_s_per_bit: float  # s/bit
+    intercept_s: float  # s
+    r2: float  # share of the variance that it explains
 
     @classmethod
     def fitted(cls, difficulty: Sequence[float], time_s: Sequence[float]) -> "FittsLaw":
-        """The law of some movements.
-
-        Args:
-            difficulty: of each, bits.
-            time_s: that each took, finite, s.
-        """
+        """The law of some movements."""
         slope, intercept = np.polyfit(difficulty, time_s, 1)
         return cls(float(slope), float(intercept), float(np.corrcoef(difficulty, time_s)[0, 1]) ** 2)

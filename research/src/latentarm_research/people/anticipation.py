@@ -24,11 +24,6 @@ class Anticipation:
     People act on a prediction of where their hand, or what it drives, is now, made from a copy of their own
     commands, as in a Smith predictor (Miall, Weir, Wolpert and Stein, J. Motor Behav. 25:203, 1993). This
     person predicts with the controller itself. Whatever else moves or stops the arm they see late.
-
-    Args:
-        chain: the arm, whose first tool holds things.
-        limits: what the loop makes of inputs.
-        period_s: time between calls, s.
     """
 
     def __init__(self, chain: Chain, limits: LoopLimits, period_s: float) -> None:

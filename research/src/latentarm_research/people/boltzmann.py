@@ -143,11 +143,6 @@ class OneStep(Decision):
     counts as the best input of the present mode, and to switch as the best input of the best other one with
     ``switch_cost`` added to the distance that it leaves, so that a switch is worth a gain of more than that.
 
-    Args:
-        config: how the simulated person thinks.
-        period_s: time between calls of `decide`, s.
-        dead_zone: length of an input up to which the loop takes it for rest, in [0, 1).
-
     Raises:
         UserError: the period is not positive and finite.
     """

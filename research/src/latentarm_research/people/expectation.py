@@ -46,9 +46,6 @@ class Expectation:
         The first axis is where ``(cos, sin)`` of the angle was; the second, a quarter turn clockwise of it,
         is mirrored.
 
-        Args:
-            angle_rad: rad.
-
         Raises:
             UserError: the stick has not two axes.
         """

@@ -64,10 +64,6 @@ class Hand:
     The noise of a push is in proportion to it (Harris and Wolpert, Nature 394:780, 1998). The next pushes
     correct what comes of it: the more of them, the narrower the target (Crossman and Goodeve 1963).
 
-    Args:
-        config: how late and how unsteady.
-        period_s: time between calls, s.
-
     Raises:
         UserError: calls are too rare for the tremor's band.
     """

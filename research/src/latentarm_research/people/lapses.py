@@ -40,11 +40,6 @@ class Lapsing(Decision):
 
     Lapses begin at random (a Poisson process in the time between them). In a lapse there is no new decision:
     the stick stays where it was last meant to be, and nothing is asked for.
-
-    Args:
-        decision: how they decide with attention.
-        config: how often and for how long they do not.
-        period_s: time between calls of `decide`, s.
     """
 
     def __init__(self, decision: Decision, config: LapseConfig, period_s: float) -> None:

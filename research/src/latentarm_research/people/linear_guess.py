@@ -95,11 +95,6 @@ class LinearGuess(Imagination):
     drawn from what they believe (Thompson sampling, 1933): at first they try all sorts of pushes, and later
     those that they have seen to work.
 
-    Args:
-        chain: the arm; its first tool is looked at.
-        config: how they learn.
-        period_s: time between calls of `saw`, s.
-
     Raises:
         UserError: in a drive, where they expect something of another number of axes.
     """

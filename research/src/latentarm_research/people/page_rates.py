@@ -79,10 +79,6 @@ class Wire:
 
     The page sends the stick's deflection every so often, and at once when the stick is pushed or let go, and
     when another mode is asked for.
-
-    Args:
-        rates: of the page.
-        period_s: time between calls, s.
     """
 
     def __init__(self, rates: PageRates, period_s: float) -> None:

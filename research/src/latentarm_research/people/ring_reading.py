@@ -53,11 +53,6 @@ class RingReading(Imagination):
     What they read is the ring, turned as a whole by an error that is drawn anew for each reading. It is one
     shape, of connected lines: who misjudges its depth misjudges neighbouring directions alike. Errors of
     their own for 32 directions would tear it apart, and the best of them would be chosen for its error.
-
-    Args:
-        chain: the arm; only its first tool counts.
-        config: how they read.
-        limits: how the loop slows the arm down, which the ring shows too.
     """
 
     def __init__(self, chain: Chain, config: RingReadingConfig, limits: LoopLimits) -> None:

@@ -49,12 +49,7 @@ class Claim:
             raise UserError(f"The margin of {self.measure} must be positive and finite, not {self.margin}.")
 
     def worded(self, measure: Label, name: Label) -> str:
-        """The claim in words, such as ``time: LA+SA < R``.
-
-        Args:
-            measure: what a page calls the measure.
-            name: the same of conditions and tasks.
-        """
+        """The claim in words, such as ``time: LA+SA < R``."""
         sign = {"less": "<", "greater": ">", "equal": "="}[self.direction]
         margin = f" ± {self.margin:g}" if self.margin is not None else ""
         where = f" ({', '.join(map(name, self.tasks))})" if self.tasks else ""

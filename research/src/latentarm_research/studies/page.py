@@ -32,11 +32,6 @@ def render_page(template: str, preset: Any, **content: Any) -> str:
     Templates have the filters ``label`` (of a model, a condition or a task), ``literal`` (as code),
     ``listed`` (``A, B and C``), ``g`` (a number without trailing zeros), ``image`` (a figure by its name) and
     ``plain`` (see `plain`); ``table`` is `plain_table`.
-
-    Args:
-        template: path below `STUDIES`, such as ``properties/page.md``, or below the package.
-        preset: of the study.
-        content: what the template names.
     """
     # Markdown, not HTML: nothing is to be escaped.
     environment = Environment(  # noqa: S701

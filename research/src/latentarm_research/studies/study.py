@@ -99,23 +99,17 @@ class Grid:
 
     def run(
         self,
-        what: str,
-        function: Callable[[Cell], Result],
-        cells: Sequence[Cell],
-        label: Callable[[Cell], str],
+        what: str,  # the grid in a few words
+        function: Callable[[Cell], Result],  # measures one cell
+        cells: Sequence[Cell],  # all of them, the longest first
+        label: Callable[[Cell], str],  # what a cell is called when it fails or warns
+        # where results are kept; those that are there are not measured again
         keep: Keep[Cell, Result] | None = None,
     ) -> list[Result]:
         """Measure cells side by side; see `latentarm.core.parallel.run_grid`.
 
         Linear algebra and torch have one thread each, since more of them add up in another order: figures are
         the same to the last bit in whatever process a cell is measured.
-
-        Args:
-            what: the grid in a few words.
-            function: measures one cell.
-            cells: all of them, the longest first.
-            label: what a cell is called when it fails or warns.
-            keep: where results are kept; those that are there are not measured again.
         """
         out = self._request.out
         found = [None if keep is None else keep.read(out, cell) for cell in cells]

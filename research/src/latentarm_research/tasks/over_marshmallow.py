@@ -17,12 +17,9 @@ class OverMarshmallow(ForkTask):
 
     A person's trial in HARMONIC, and in the paper's first study, ends with the fork there. Help that takes a
     fork there keeps it there, so what comes after must not be part of such a task.
-
-    Attributes:
-        whole: the task that this is the first step of.
     """
 
-    whole: Marshmallows = field(default_factory=Marshmallows)
+    whole: Marshmallows = field(default_factory=Marshmallows)  # the task that this is the first step of
 
     @property
     def name(self) -> str:

@@ -32,15 +32,7 @@ ANGULAR_RAD_S: Final = 0.4
 def setup_of(
     condition: Condition, task: SceneTask, person: Person, trained: Trained | None, number: int
 ) -> Setup:
-    """Everything that a trial of a condition is driven with.
-
-    Args:
-        condition: of the study.
-        task: what is done.
-        person: who drives.
-        trained: models of the task; None for conditions without.
-        number: of the person among those that were asked.
-    """
+    """Everything that a trial of a condition is driven with."""
     return Setup(
         task,
         controller_of(condition, task.robot, trained, number),
@@ -52,12 +44,6 @@ def setup_of(
 
 def controller_of(condition: Condition, robot: Robot, trained: Trained | None, number: int) -> Controller:
     """What turns a person's input into motion.
-
-    Args:
-        condition: of the study.
-        robot: the arm.
-        trained: models of the task; None for conditions without.
-        number: of the person among those that were asked.
 
     Raises:
         ValueError: a condition with latent actions has no model.
@@ -77,22 +63,12 @@ def controller_of(condition: Condition, robot: Robot, trained: Trained | None, n
 
 
 def belief_of(condition: Condition, robot: Robot) -> Rule:
-    """How inputs change the belief over goals: as the condition's help was published with.
-
-    Args:
-        condition: of the study.
-        robot: the arm.
-    """
+    """How inputs change the belief over goals: as the condition's help was published with."""
     return published_belief(robot) if condition.assists == "interpolation" else BoltzmannBelief
 
 
 def assistance_of(condition: Condition, robot: Robot) -> AssistanceRule | None:
-    """How the robot helps; None never helps.
-
-    Args:
-        condition: of the study.
-        robot: the arm.
-    """
+    """How the robot helps; None never helps."""
     if condition.assists == "blending":
         return blending(FixedAlpha())
     if condition.assists == "interpolation" and condition.weight:

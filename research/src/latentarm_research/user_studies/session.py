@@ -102,11 +102,7 @@ def choices_of(task: StudyTask, person: int, number: int) -> tuple[int, ...]:
 
 
 def in_the_end(attempts: Sequence[dict[str, float]]) -> dict[str, float]:
-    """The figures of one or more attempts at the same: how far the person came in the end, and what it took.
-
-    Args:
-        attempts: figures of each, by name, in order.
-    """
+    """The figures of one or more attempts at the same: how far they came in the end, and what it took."""
     best = {name: max(one[name] for one in attempts) for name in ("success_rate", "steps_done")}
     return {**together(attempts), **best, "attempts": float(len(attempts))}
 

@@ -35,41 +35,26 @@ ModelKey = tuple[str, tuple[str, ...]]
 @final
 @dataclass(frozen=True, eq=False)
 class TrainingCell:
-    """The models of one task.
+    """The models of one task."""
 
-    Attributes:
-        definition: of the study.
-        task: that is demonstrated.
-        people: who will drive, in order: where a condition aligns, they are asked what they mean.
-        sizes: of the run.
-        seed: of the run.
-    """
-
-    definition: Definition
-    task: StudyTask
+    definition: Definition  # of the study
+    task: StudyTask  # that is demonstrated
+    # who will drive, in order: where a condition aligns, they are asked what they mean
     people: tuple[Traits, ...]
-    sizes: Sizes
-    seed: int
+    sizes: Sizes  # of the run
+    seed: int  # of the run
 
 
 @final
 @dataclass(frozen=True, eq=False)
 class Trained:
-    """The result of a `TrainingCell`.
+    """The result of a `TrainingCell`."""
 
-    Attributes:
-        task: name of the task.
-        models: by kind and context.
-        aligned: what was learned of the people; None where no condition aligns.
-        episodes: demonstrations that were learned from.
-        seconds: how long these took together, s.
-    """
-
-    task: str
-    models: Mapping[ModelKey, TrainedModel]
-    aligned: Aligned | None
-    episodes: int
-    seconds: float
+    task: str  # name of the task
+    models: Mapping[ModelKey, TrainedModel]  # by kind and context
+    aligned: Aligned | None  # what was learned of the people; None where no condition aligns
+    episodes: int  # demonstrations that were learned from
+    seconds: float  # how long these took together, s
 
     def decoder(self, condition: Condition) -> Decoder:
         """What a condition drives with."""

@@ -134,14 +134,7 @@ MEASURES: Final = {
 def fewer_figure(
     rows: Sequence[Row], datasets: Sequence[str], noises_rad: Sequence[float], counts: Sequence[int]
 ) -> "Figure":
-    """Measures over the number of training demonstrations, a column per dataset.
-
-    Args:
-        rows: see `rows_of_fewer`.
-        datasets: names.
-        noises_rad: rad; the first has filled markers and a solid line, further ones open and dashed.
-        counts: numbers of demonstrations, rising.
-    """
+    """Measures over the number of training demonstrations, a column per dataset."""
     levels = ", ".join(f"{noise_rad:g} rad" for noise_rad in noises_rad)
     dashed = " (the latter open and dashed)" if len(noises_rad) > 1 else ""
     heading = f"Fewer training demonstrations, mean ± SD over seeds; noise on states {levels}{dashed}"

@@ -60,23 +60,16 @@ def meaning_of(name: str) -> str:
 
 
 def measure_model(
-    model: LatentActionModel,
+    model: LatentActionModel,  # fitted, with contexts that are states
+    # the whole dataset; PCA, of whose error others are percentages, is fitted to all of it that is not held
+    # out, also where the model was trained on less
     demonstrations: Demonstrations,
-    held_out: Sequence[int],
-    robot: Robot,
-    preset: Preset,
-    rng: np.random.Generator,
+    held_out: Sequence[int],  # indices of the episodes that it has not seen
+    robot: Robot,  # the arm
+    preset: Preset,  # sizes
+    rng: np.random.Generator,  # for the noise on held-out states
 ) -> dict[str, FloatArray]:
     """Measure every seed of a model on held-out episodes.
-
-    Args:
-        model: fitted, with contexts that are states.
-        demonstrations: the whole dataset; PCA, of whose error others are percentages, is fitted to all of it
-            that is not held out, also where the model was trained on less.
-        held_out: indices of the episodes that it has not seen.
-        robot: the arm.
-        preset: sizes.
-        rng: for the noise on held-out states.
 
     Returns:
         Measure -> (S,), in the order of `MEASURED`.

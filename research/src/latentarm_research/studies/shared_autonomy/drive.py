@@ -76,25 +76,16 @@ class Drives:
 
 
 def drive(
-    decoder: DecodesActions,
-    scene: Scene,
-    people: Sequence[Person],
-    help_by: Arbitration,
-    start: FloatArray,
-    target: IntArray,
+    decoder: DecodesActions,  # sees the context ``c = (s, b)``
+    scene: Scene,  # the arm and the goals
+    people: Sequence[Person],  # P, how they decide and when they change their mind
+    help_by: Arbitration,  # how much the robot helps
+    start: FloatArray,  # (P, n), rad
+    target: IntArray,  # (P,), index of the goal that each of them has in the end
+    # (P, T'), uniform in [0, 1), for at least as many steps as there are: what they choose
     chances: FloatArray,
 ) -> Drives:
-    """Let P simulated people drive, all for the same time.
-
-    Args:
-        decoder: sees the context ``c = (s, b)``.
-        scene: the arm and the goals.
-        people: P, how they decide and when they change their mind.
-        help_by: how much the robot helps.
-        start: (P, n), rad.
-        target: (P,), index of the goal that each of them has in the end.
-        chances: (P, T'), uniform in [0, 1), for at least as many steps as there are: what they choose.
-    """
+    """Let P simulated people drive, all for the same time."""
     state, belief = start, np.broadcast_to(scene.belief.initial(), (len(start), len(scene.goals)))
     places = scene.chain.forward(scene.goals).position
     changes_at_s = np.array([person.changes_at_s for person in people])

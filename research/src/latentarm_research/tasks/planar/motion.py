@@ -21,22 +21,18 @@ DRAWS: Final = 20
 
 @dataclass(frozen=True)
 class Design:
-    """How a simulated person holds and moves the arm: the same on all tasks. The paper leaves all of it open.
+    """How a simulated person holds and moves the arm, the same on all tasks: the paper leaves it open."""
 
-    Attributes:
-        spread_rad: SD of a demonstration's first posture about the nominal one: the arm has more joints than
-            the task needs, and nobody begins twice in the same posture. The joints that the task leaves
-            free are drawn whatever the place, and the others bring the tool there, so that the place says
-            nothing about the posture.
-        least_conditioning: a demonstration in which the smallest singular value of the task's Jacobian falls
-            below this share of its value in the nominal posture is drawn anew: there the joints would have to
-            race, and a few such pairs would make up all of a mean.
-        samples: state-action pairs of a demonstration, spread evenly over its duration.
-    """
-
+    # SD of a demonstration's first posture about the nominal one: the arm has more joints than the task
+    # needs, and nobody begins twice in the same posture. The joints that the task leaves free are drawn
+    # whatever the place, and the others bring the tool there, so that the place says nothing about the
+    # posture
     spread_rad: float = 0.05
+    # a demonstration in which the smallest singular value of the task's Jacobian falls below this share of
+    # its value in the nominal posture is drawn anew: there the joints would have to race, and a few such
+    # pairs would make up all of a mean
     least_conditioning: float = 2 / 3
-    samples: int = 10
+    samples: int = 10  # state-action pairs of a demonstration, spread evenly over its duration
 
 
 DESIGN: Final = Design()
@@ -107,10 +103,6 @@ class PlanarMotion(ABC):
     @final
     def demonstrate(self, episodes: int, rng: np.random.Generator) -> Demonstrations:
         """Demonstrations by a simulated person: in each ``design.samples`` states with the actions there.
-
-        Args:
-            episodes: how many.
-            rng: source of all variation.
 
         Raises:
             UserError: fewer than one episode is asked for, or nearly every posture is ill-conditioned.

@@ -21,13 +21,9 @@ DIFFERENCE: Final = 1e-5
 
 
 class Path(ABC):
-    """The paths of E demonstrations, which advance together.
+    """The paths of E demonstrations, which advance together."""
 
-    Attributes:
-        now: (E, k), where the task coordinates should be now, m and rad.
-    """
-
-    now: FloatArray
+    now: FloatArray  # (E, k), where the task coordinates should be now, m and rad
 
     @abstractmethod
     def advance(self, jacobian: FloatArray) -> None:
@@ -59,24 +55,16 @@ class Paced(Path):
     The joint speeds are normal about zero and independent of everything else. So at every place and in every
     posture all of them occur alike, forth and back, and an action's size does not tell its direction. That
     is what keeps a decoder that sees z alone from guessing the place.
-
-    Args:
-        curve: from parameters (E,) to task coordinates (E, k).
-        begin: (E,), the parameters at the start.
-        ends: least and largest parameter.
-        speed_rad_s: SD of the joint speed ‖a‖.
-        duration_s: how long the paths are.
-        rng: draws the speeds.
     """
 
     def __init__(
         self,
-        curve: Callable[[FloatArray], FloatArray],
-        begin: FloatArray,
-        ends: tuple[float, float],
-        speed_rad_s: float,
-        duration_s: float,
-        rng: np.random.Generator,
+        curve: Callable[[FloatArray], FloatArray],  # from parameters (E,) to task coordinates (E, k)
+        begin: FloatArray,  # (E,), the parameters at the start
+        ends: tuple[float, float],  # least and largest parameter
+        speed_rad_s: float,  # SD of the joint speed ‖a‖
+        duration_s: float,  # how long the paths are
+        rng: np.random.Generator,  # draws the speeds
     ) -> None:
         strokes = int(np.ceil(duration_s / STROKE_S)) + 1
         self._speed = rng.normal(0.0, speed_rad_s, (strokes, len(begin)))

@@ -65,17 +65,11 @@ class ToolPlace(Constraint):
 @final
 @dataclass(frozen=True, eq=False)
 class Recording:
-    """E demonstrations in arrays.
+    """E demonstrations in arrays."""
 
-    Attributes:
-        states: (E, T, n), rad.
-        actions: (E, T, n), rad/s.
-        sound: (E,), whether a person would have gone through with it.
-    """
-
-    states: FloatArray
-    actions: FloatArray
-    sound: BoolArray
+    states: FloatArray  # (E, T, n), rad
+    actions: FloatArray  # (E, T, n), rad/s
+    sound: BoolArray  # (E,), whether a person would have gone through with it
 
     def of(self, rows: IntArray) -> "Recording":
         """Only some of the demonstrations."""

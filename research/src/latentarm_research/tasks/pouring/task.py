@@ -44,10 +44,6 @@ class PouringTask(ABC):
     def demonstrate(self, episodes: int, rng: np.random.Generator) -> Demonstrations:
         """Demonstrations by a simulated person, states alone, as from a hand on the arm.
 
-        Args:
-            episodes: how many.
-            rng: source of all variation.
-
         Raises:
             UserError: fewer than one episode is asked for.
         """

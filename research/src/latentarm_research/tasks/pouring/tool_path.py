@@ -35,15 +35,10 @@ STEPS_PER_SAMPLE: Final = 2
 @final
 @dataclass(frozen=True, eq=False)
 class ToolPath:
-    """Where a hand that points down is at each sample, and how far it is tilted about the base's x axis.
+    """Where a hand that points down is at each sample, and how far it is tilted about the base's x axis."""
 
-    Attributes:
-        position: (T, 3), m.
-        tilt: (T,), rad.
-    """
-
-    position: FloatArray
-    tilt: FloatArray
+    position: FloatArray  # (T, 3), m
+    tilt: FloatArray  # (T,), rad
 
     def __len__(self) -> int:
         """T."""
