@@ -93,7 +93,6 @@ def page(
         "![Inputs over time](inputs.png)\n\n"
         "## The latent spaces, on held-out episodes\n\n"
         f"Mean ± SD over {seeds} seeds.\n\n{markdown_table(properties)}\n"
-        "![The properties of the latent spaces](properties.png)\n\n"
         "![The task, with the marshmallows where they lie in one run](task.png)\n"
     )
 

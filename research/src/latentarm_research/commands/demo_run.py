@@ -20,13 +20,12 @@ from latentarm.core.context import JOINTS, OBJECTS_IN_TOOL
 from latentarm.core.errors import UserError
 from latentarm.core.files import write_text
 from latentarm.core.parallel import run_grid
-from latentarm.core.style import save_figure
 from latentarm.core.types import Row
 from latentarm.core.untrusted.console import VisibleConsole
 from latentarm.demonstrations.dataset import write_dataset
 from latentarm.evaluation.looks import look_of
 from latentarm.evaluation.results import write_results
-from latentarm.evaluation.summary import Subject, headline
+from latentarm.evaluation.summary import Subject
 from latentarm.models.catalogue import DEFAULT_MODEL
 from latentarm.models.saving import load_decoder
 from latentarm.runs.evaluating import evaluate_run
@@ -42,7 +41,6 @@ from latentarm_research.drives.drive import Setup
 from latentarm_research.drives.drive_figures import draw_drives, draw_inputs, marks_of_first_steps
 from latentarm_research.drives.drives import Planned, drive_all, plan_drives
 from latentarm_research.drives.trace import Trace
-from latentarm_research.metrics.comparison_figure import comparison_figure
 from latentarm_research.metrics.drives import drive_rows
 from latentarm_research.people.catalogue import PEOPLE
 from latentarm_research.people.names import OperatorName
@@ -69,7 +67,7 @@ SHOWN: Final[OperatorName] = "greedy"
 DRIVERS: Final[tuple[OperatorName, ...]] = tuple(person for person in PEOPLE if person != "planning")
 """Who drives: everybody but the person who plans, each of whose drives takes 20 s and more to compute."""
 
-MADE = ("results.json", "results.md", "paths.png", "inputs.png", "properties.png", "task.png", FILM)
+MADE = ("results.json", "results.md", "paths.png", "inputs.png", "task.png", FILM)
 """Every file of the folder except its options, the dataset and the runs."""
 
 
@@ -128,7 +126,7 @@ def run_demo(config: "DemoOptions", sizes: Sizes = USUAL) -> Shown:
     shown = [(one, traces) for one, traces in zip(conditions, driven, strict=True) if one.person == SHOWN]
     held = held_in_words({condition.name: traces for condition, traces in shown})
     filmed = film(config.out, MODELS[0], shown[0][0].planned, shown[0][1])
-    _draw({str(one.subject.condition): traces for one, traces in shown if one.drawn}, properties, config.out)
+    _draw({str(one.subject.condition): traces for one, traces in shown if one.drawn}, config.out)
     text = page(
         task,
         tables,
@@ -152,12 +150,11 @@ def _place(task: Marshmallows, seed: int) -> ScenePlace:
     return ScenePlace(task.robot, begun.goals, task.obstacles)
 
 
-def _draw(shown: Mapping[str, Sequence[Trace]], properties: Sequence[Row], out: Path) -> None:
-    """Draw drives by condition, and the properties of the latent spaces."""
+def _draw(shown: Mapping[str, Sequence[Trace]], out: Path) -> None:
+    """Draw drives by condition."""
     marks = marks_of_first_steps(next(iter(shown.values())))
     draw_drives(shown, marks, out / "paths.png")
     draw_inputs(shown, out / "inputs.png")
-    save_figure(comparison_figure(headline(properties)), out / "properties.png")
 
 
 @final

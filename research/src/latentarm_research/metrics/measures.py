@@ -53,12 +53,6 @@ MEASURES.update(
             "lower",
             "length of the tool's path over that of the straight line",
         ),
-        "undone_share": Measure(
-            "1", "share of the path undone", "lower", "share of the tool's path that was gone back over"
-        ),
-        "demonstrated_undone_share": Measure(
-            "1", "the same of the demonstration", None, "the same of the demonstrated episode itself"
-        ),
         "progress": Measure(
             "1", "share of the waypoints reached", "higher", "share of the waypoints that were reached"
         ),

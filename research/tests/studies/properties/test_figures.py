@@ -15,9 +15,7 @@ from latentarm_research.studies.drawing import arm_line
 from latentarm_research.studies.properties.cell import PropertiesCell, PropertiesResult, condition
 from latentarm_research.studies.properties.figures import (
     beside_paper_figure,
-    controllability_figure,
     in_mm,
-    noise_figure,
     points,
 )
 from latentarm_research.studies.properties.motion_figures.catalogue import TASK_FIGURES
@@ -120,13 +118,9 @@ def test_a_task_is_drawn_with_the_models_that_there_are(task, models):
 @pytest.mark.parametrize(("n", "tasks"), [(3, list(MOTIONS)), (1, ["circle"])])
 def test_figures_over_tasks_are_well_drawn(n, tasks):
     rows = rows_of(MOTIONS, (*MODELS, OURS), n)
-    for figure in (
-        beside_paper_figure(rows, tasks),
-        controllability_figure(rows, tasks),
-        noise_figure(rows, tasks, NOISES_RAD),
-    ):
-        assert_well_drawn(figure)
-        assert len(tasks) > 1 or not {"Sine", "Rotate", "Reach"} & words_of(figure)
+    figure = beside_paper_figure(rows, tasks)
+    assert_well_drawn(figure)
+    assert len(tasks) > 1 or not {"Sine", "Rotate", "Reach"} & words_of(figure)
 
 
 def test_only_models_that_the_paper_has_and_ours_stand_beside_it():
@@ -141,22 +135,6 @@ def test_lengths_stand_in_millimetres_without_the_papers_which_has_no_unit():
     assert lengths["cvae"].paper is not None
     assert in_mm(lengths)["cvae"].paper is None
     assert in_mm(lengths)["pca"].mean == pytest.approx(10.0)
-
-
-def test_distances_that_are_rounding_are_said_to_be_small_and_not_drawn():
-    rows = [
-        Row("properties", measure, "m", mean, mean, 3, "circle", model)
-        for model, distance in {"pca": 0.0, "cae": 7e-9, "scl": 0.002}.items()
-        for measure, mean in {"controllability_m": distance, "start_distance_m": 0.13}.items()
-    ]
-    figure = controllability_figure(rows, ["circle"])
-    assert_well_drawn(figure)
-    (axes,) = figure.axes
-    assert axes.get_xlim()[0] >= 0.001  # mm
-    assert [text.get_text() for text in axes.texts] == ["< 0.001", "< 0.001", "2.0 ± 2.0"]
-    drawn = [line for line in axes.lines if line.get_marker() == look_of("scl").marker]
-    assert [line.get_xdata()[0] for line in drawn] == [2.0]
-    assert len([line for line in axes.lines if line.get_marker() not in ("", "None", None)]) == 1
 
 
 def test_models_that_differ_in_the_sign_of_z_alone_look_the_same():

@@ -113,7 +113,7 @@ def test_the_page_has_every_part(report):
         r"^\| H1 \| only latent action models .* \| sine \| held \| all \d+ claims hold \|$", page, re.M
     )
     assert re.search(r"^\| H2 \| conditioned models ", page, re.M)
-    assert page.index("(noise.png)") < page.index("## Sine") < page.index("(sine.png)")
+    assert page.index("(beside_paper.png)") < page.index("## Sine") < page.index("(sine.png)")
     assert page.count("(sine.png)") == 1
     assert claim_table(report.tests) in page
     assert len(lines(claim_table(report.tests))) == 2 + len(report.tests)

@@ -68,7 +68,7 @@ def test_the_paper_stands_beside_what_it_prints(done):
 def test_the_folder_holds_what_is_promised(done):
     _, out = done
     made = {path.name for path in out.iterdir()}
-    assert {"reach.png", "noise.png", "results.md", "results.json", "timings.json", CONFIG} <= made
+    assert {"reach.png", "results.md", "results.json", "timings.json", CONFIG} <= made
     assert made <= {CONFIG, *ALWAYS_MADE, *STUDY.documents, *(f"{name}.png" for name in STUDY.figures)}
     assert json.loads((out / CONFIG).read_text())["preset"]["name"] == "tiny"
     values = json.loads((out / "seeds.json").read_text())

@@ -25,7 +25,6 @@ from latentarm.tasks.replay import Replay, routes_of
 from latentarm_research.drives.drive import Setup, drive
 from latentarm_research.metrics.drives import Drive, drive_rows
 from latentarm_research.metrics.ending import Ending
-from latentarm_research.metrics.undone import undone_share
 from latentarm_research.people.catalogue import PEOPLE, usual_operator
 from latentarm_research.studies.compare.cell import FoldResult
 from latentarm_research.studies.compare.datasets import Dataset
@@ -58,8 +57,6 @@ class DriveResult:
     figures: Drive  # of the drive
     progress: float  # share of the waypoints that were reached
     ending: Ending  # why it ended
-    undone: float  # share of the tool's path that was gone back over
-    demonstrated_undone: float  # the same of the episode itself
     took_s: float  # computing time, s
 
 
@@ -105,7 +102,6 @@ def measure_drive_cell(cell: ModelDriveCell) -> DriveResult:
     )
     streams = sequence(cell.seed, cell.dataset.name, Stream.DRIVES, cell.episode)
     trace = drive(setup, 0, np.random.default_rng(streams))
-    shown = robot.chain.forward(cell.dataset.demonstrations.episodes[cell.episode].state)
     return DriveResult(
         dataset=cell.dataset.name,
         controller=cell.controller,
@@ -113,8 +109,6 @@ def measure_drive_cell(cell: ModelDriveCell) -> DriveResult:
         figures=trace.figures,
         progress=trace.figures.steps_done,
         ending=trace.ending,
-        undone=undone_share(trace.position),
-        demonstrated_undone=undone_share(shown.position),
         took_s=perf_counter() - began,
     )
 
@@ -131,9 +125,5 @@ def rows_of_drives(study: str, condition: str, results: Sequence[DriveResult]) -
         here = [one for one in results if (one.dataset, one.controller) == (dataset, controller)]
         subject = Subject(study, task=dataset, model=controller, condition=condition)
         rows += drive_rows(subject, [one.figures for one in here])
-        rows += [
-            summarise(subject, "progress", [one.progress for one in here]),
-            summarise(subject, "undone_share", [one.undone for one in here]),
-            summarise(subject, "demonstrated_undone_share", [one.demonstrated_undone for one in here]),
-        ]
+        rows.append(summarise(subject, "progress", [one.progress for one in here]))
     return rows

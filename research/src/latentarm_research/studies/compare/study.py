@@ -15,7 +15,6 @@ from latentarm.evaluation.measures import label_of
 from latentarm.models.estimators import MODELS
 from latentarm.runs.checks import check_seed
 from latentarm.runs.folder import fingerprint
-from latentarm_research.metrics.undone import NEAR_M
 from latentarm_research.studies.claim_tables import claim_table
 from latentarm_research.studies.claims import Tested
 from latentarm_research.studies.compare import tables
@@ -237,7 +236,6 @@ def _page(
         counts=counts,
         driven=list(dict.fromkeys(row.model or "" for row in driven)),
         driven_noise=tables.condition(preset.noises_rad[0]),
-        near_mm=1e3 * NEAR_M,
         drive_tables={name: tables.drive_table(driven, name) for name in names},
     )
 

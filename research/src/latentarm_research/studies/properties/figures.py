@@ -1,14 +1,13 @@
-"""Figures over the models: the paper's next to ours, controllability, noise."""
+"""The paper's figures next to ours, and what the figures of the tasks draw of the rows."""
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Final, NamedTuple
 
-from latentarm.core.style import FONT_SIZE, SMALL_FONT_SIZE, tidy
+from latentarm.core.style import SMALL_FONT_SIZE, tidy
 from latentarm.core.types import Row
 from latentarm.evaluation.looks import look_of
 from latentarm.evaluation.table import format_figure
-from latentarm_research.studies.drawing import draw_series, first_panels, name_series, panel_grid, title
-from latentarm_research.studies.properties.cell import condition
+from latentarm_research.studies.drawing import first_panels, panel_grid, title
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -48,7 +47,7 @@ DECADES: Final = 50.0  # ratio of a logarithmic axis' ends above which powers of
 PAPER_SIGN: Final = "($\\diamond$: the paper)"
 
 
-def log_axis(axes: "Axes", figures: Collection[Point], least: float = 0.0) -> float:
+def log_axis(axes: "Axes", figures: Collection[Point]) -> float:
     """Make the x axis logarithmic, around all figures and the paper's.
 
     Returns:
@@ -59,7 +58,7 @@ def log_axis(axes: "Axes", figures: Collection[Point], least: float = 0.0) -> fl
     axes.set_xscale("log")
     spans = [(figure.mean, figure.mean + figure.sd) for figure in figures]
     spans += [(figure.paper, figure.paper) for figure in figures if figure.paper is not None]
-    left = max(0.5 * min((low for low, _ in spans if low > 0), default=1.0), least)
+    left = 0.5 * min((low for low, _ in spans if low > 0), default=1.0)
     right = 1.6 * max((high for _, high in spans), default=1.0)
     axes.set_xlim(left, max(right, 2 * left))
     between = (1.0,) if right > DECADES * left else (1.0, 2.0, 5.0)
@@ -73,7 +72,6 @@ def draw_points(
     axes: "Axes",  # where to draw; its scale is already set
     figures: Mapping[str, Point],
     left: float,
-    least: float = 0.0,
 ) -> None:
     """Draw points with their SD, named on the left and with their figures on the right.
 
@@ -81,17 +79,6 @@ def draw_points(
     Points and not bars, because a bar's length means nothing on a logarithmic axis.
     """
     for place, (model, figure) in enumerate(figures.items()):
-        if figure.mean < least:
-            axes.annotate(
-                f"< {least:g}",
-                (left, place),
-                (2.0, 0.0),
-                textcoords="offset points",
-                fontsize=SMALL_FONT_SIZE,
-                verticalalignment="center_baseline",
-                bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.8},  # no grid line through them
-            )
-            continue
         look = look_of(model)
         draw_spread(axes, place, figure.mean, figure.sd, left)
         axes.plot(figure.mean, place, look.marker, color=look.colour, markersize=5.5, zorder=7)
@@ -191,90 +178,3 @@ def _draw_measure(axes: "Axes", figures: dict[str, Point], models: Sequence[str]
         draw_spread(axes, place - APART, figure.mean, figure.sd, left)
         axes.plot(figure.mean, place - APART, look.marker, color=look.colour, markersize=5.5, zorder=7)
         draw_paper(axes, place + APART, figure, left)
-
-
-ROW_MM: Final = 52.0
-COLUMNS: Final = 2
-
-LEAST_MM: Final = 0.001
-"""A distance below this is rounding: with as many latent axes as the plane has, any model comes so near."""
-
-
-def measure_of(task: str) -> str:
-    """The measure that says so: on the reach task goals are places, elsewhere states."""
-    return "final_distance" if task == "reach" else "controllability_m"
-
-
-def controllability_figure(rows: Sequence[Row], tasks: Sequence[str]) -> "Figure":
-    """Least distance of the tool from its goal, one panel per task, with the distance at the start."""
-    heading = "How near simulated arms come to their goals by latent actions alone, mean ± SD over seeds"
-    figure, grid = panel_grid(heading, -(-len(tasks) // COLUMNS), COLUMNS, ROW_MM, 6.0)
-    panels = first_panels(grid, len(tasks))
-    for axes, task in zip(panels, tasks, strict=True):
-        distances = in_mm(points(rows, task, measure_of(task)))
-        starts = in_mm(points(rows, task, "start_distance_m"))
-        left = log_axis(axes, [*distances.values(), *starts.values()], LEAST_MM)
-        draw_points(axes, distances, left, LEAST_MM)
-        for start in list(starts.values())[:1]:  # the same pairs for all models
-            axes.axvline(
-                start.mean, color="black", linestyle=":", linewidth=1.0, zorder=1, label="at the start"
-            )
-        title(axes, task.capitalize())
-        axes.set_xlabel("tool from goal (mm)")
-    name_series(figure, panels[0], handle_length=2.0)
-    return figure
-
-
-NOISE_MM: Final = 98.0
-NOISE_MEASURES: Final = {
-    "error_percent_of_pca": "noisy states",
-    "noise_free_error_percent_of_pca": "noise-free states",
-}
-"""What the models are tested on; they are trained on noisy states in both."""
-
-
-def noise_figure(
-    rows: Sequence[Row],
-    tasks: Sequence[str],
-    noises_rad: Sequence[float],  # SDs of the noise on states, rad, rising
-) -> "Figure":
-    """Loss over noise, a line per model; tested with the noise (above) and without it (below)."""
-    heading = "Models trained with noise on the joint positions of simulated arms, mean ± SD over seeds"
-    size = len(NOISE_MEASURES), len(tasks), 0.0, NOISE_MM
-    figure, panels = panel_grid(heading, *size, sharex=True, sharey=True)
-    for line, (measure, where) in zip(panels, NOISE_MEASURES.items(), strict=True):
-        for axes, task in zip(line, tasks, strict=True):
-            _draw_sweep(axes, rows, task, measure, noises_rad)
-            tidy(axes)
-        line[0].set_ylabel(f"loss on {where}\n(% of PCA)", fontsize=FONT_SIZE)
-    lowest = min((row.mean for row in rows if row.measure in NOISE_MEASURES and row.mean), default=1.0)
-    panels[0, 0].set_ylim(bottom=lowest / 2.0)
-    for axes, task in zip(panels[0], tasks, strict=True):
-        title(axes, task.capitalize())
-    for axes in panels[-1]:
-        axes.set_xlabel("noise (rad)", fontsize=FONT_SIZE)
-        axes.set_xticks(range(len(noises_rad)), [f"{noise:g}" for noise in noises_rad])
-    name_series(figure, panels[0, 0], handle_length=4.0)
-    return figure
-
-
-def _draw_sweep(
-    axes: "Axes", rows: Sequence[Row], task: str, measure: str, noises_rad: Sequence[float]
-) -> None:
-    """One line per model; series are offset a little, so that their bars do not hide each other."""
-    sweep = [points(rows, task, measure, condition(noise)) for noise in noises_rad]
-    models = list(dict.fromkeys(model for figures in sweep for model in figures))
-    for index, model in enumerate(models):
-        shift = 0.03 * (index - (len(models) - 1) / 2)
-        known = [(place, figures[model]) for place, figures in enumerate(sweep) if model in figures]
-        draw_series(
-            axes,
-            model,
-            [place + shift for place, _ in known],
-            [figure.mean for _, figure in known],
-            [figure.sd for _, figure in known],
-            markersize=4.5,
-        )
-    # An SD that reaches zero leaves the panel at its foot.
-    axes.set_yscale("log", nonpositive="clip")
-    axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}")

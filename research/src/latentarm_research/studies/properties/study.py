@@ -18,8 +18,6 @@ from latentarm_research.studies.properties.cell import (
 from latentarm_research.studies.properties.cells import cells_table, count, paper_cells
 from latentarm_research.studies.properties.figures import (
     beside_paper_figure,
-    controllability_figure,
-    noise_figure,
 )
 from latentarm_research.studies.properties.hypotheses import HYPOTHESES, LINEAR, MARK, compare_models
 from latentarm_research.studies.properties.motion_figures.catalogue import TASK_FIGURES
@@ -94,13 +92,7 @@ def _figures(
     results: Sequence[PropertiesResult], rows: Sequence[Row], tasks: Sequence[str]
 ) -> "dict[str, Figure]":
     """Those over all tasks, and one for each task."""
-    noises_rad = sorted({result.cell.noise_rad for result in results})
-    figures = {
-        "beside_paper": beside_paper_figure(rows, tasks),
-        "controllability": controllability_figure(rows, tasks),
-    }
-    if len(noises_rad) > 1:
-        figures["noise"] = noise_figure(rows, tasks, noises_rad)
+    figures = {"beside_paper": beside_paper_figure(rows, tasks)}
     for task in tasks:
         here = [one for one in results if (one.cell.task, one.cell.noise_rad) == (task, 0.0)]
         figures[task] = TASK_FIGURES[task]({one.cell.model: one.decoder for one in here}, rows)
@@ -126,7 +118,11 @@ def _page(
         **judged_parts(HYPOTHESES, tests),
         figures=list(figures),
         paper_tables={task: tables.paper_table(rows, task) for task in request.tasks},
-        noise_tables={task: tables.noise_table(rows, task) for task in request.tasks if "noise" in figures},
+        noise_tables={
+            task: tables.noise_table(rows, task)
+            for task in request.tasks
+            if len(request.preset.noises_rad) > 1
+        },
         unit_not_stated=tables.UNIT_NOT_STATED,
         compared_measures=", ".join(
             claim.measure for one in HYPOTHESES for claim in one.claims if claim.against != MARK
@@ -143,6 +139,6 @@ STUDY: Final = Study(
     simulated=("arms",),
     measure=_measure,
     report=_report,
-    figures=("beside_paper", "controllability", "noise", *TASK_FIGURES),
+    figures=("beside_paper", *TASK_FIGURES),
     documents=("seeds.json",),
 )
