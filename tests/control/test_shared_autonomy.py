@@ -23,8 +23,8 @@ from latentarm.core.errors import UserError
 from latentarm.core.types import Context, Goal, Input
 from latentarm.safety.config import SafetyConfig
 from latentarm_research.assistance.bound import radius
-from latentarm_research.assistance.hindsight import HindsightOptimisation
 from latentarm_research.assistance.hindsight_belief import HindsightBelief
+from latentarm_research.assistance.published_help import HindsightOptimisation
 from stepping import stepped
 
 now_s = itertools.count(step=0.01).__next__

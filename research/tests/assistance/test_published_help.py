@@ -9,11 +9,15 @@ from hypothesis import strategies as st
 from latentarm.core.errors import UserError
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.kinematics.resolved_rates import Damping
-from latentarm_research.assistance.catalogue import published_assistance, published_belief
-from latentarm_research.assistance.hindsight import HindsightOptimisation
 from latentarm_research.assistance.hindsight_belief import TICK_S, HindsightBelief
-from latentarm_research.assistance.interpolation import WEIGHTS, Interpolation
-from latentarm_research.assistance.policy_blending import PolicyBlending
+from latentarm_research.assistance.published_help import (
+    WEIGHTS,
+    HindsightOptimisation,
+    Interpolation,
+    PolicyBlending,
+    published_assistance,
+    published_belief,
+)
 
 PANDA = load_robot("panda")
 GOALS = PANDA.home + np.array(

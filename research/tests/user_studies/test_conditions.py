@@ -3,7 +3,7 @@ import pytest
 from latentarm.assistance.boltzmann import BoltzmannBelief
 from latentarm.assistance.controllers.end_effector import EndEffectorController
 from latentarm.assistance.goal_blending import GoalBlending
-from latentarm_research.assistance.interpolation import Interpolation
+from latentarm_research.assistance.published_help import Interpolation
 from latentarm_research.baselines.retargeting import RetargetingController
 from latentarm_research.user_studies.catalogue import NAMES, load_definition
 from latentarm_research.user_studies.conditions import assistance_of, belief_of, controller_of

@@ -5,18 +5,13 @@ teleoperation and teaming", 2018. The paper gives the form; the constants are th
 implementation.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final, final
 
 import numpy as np
 
-from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray, Pose
 from latentarm.robots.kinematics.rotations import rotation_vector
-
-MOST_POSES: Final = 30
-"""Of a goal, as published."""
 
 LOOK_AHEAD_S: Final = 0.1
 """For how long an input is held where it is asked what it leaves to be done, s."""
@@ -70,82 +65,37 @@ ROTATION: Final = HuberCost(
 
 @final
 class GoalPoses:
-    """The poses at which each goal is reached. The one with the least cost-to-go counts.
+    """The poses (G, ...) of the tool at the goals, and what it costs to get there."""
 
-    Args:
-        poses: of each of G goals, up to `MOST_POSES`, in the base frame.
-
-    Raises:
-        UserError: there is no goal, or one has no pose or too many.
-    """
-
-    def __init__(self, poses: Sequence[Sequence[Pose]]) -> None:
-        most = max((len(one) for one in poses), default=0)
-        if not poses or not all(poses) or most > MOST_POSES:
-            raise UserError(f"Every goal needs 1 to {MOST_POSES} poses, and there must be a goal.")
-        # A pose that is there twice changes nothing.
-        full = [[*one, *[one[0]] * (most - len(one))] for one in poses]
-        self._position = np.array([[pose.position for pose in one] for one in full], dtype=np.float64)
-        self._rotation = np.array([[pose.rotation for pose in one] for one in full], dtype=np.float64)
-
-    def __len__(self) -> int:
-        return len(self._position)
-
-    def value(self, at: Pose) -> FloatArray:
-        """``V_g`` of tool poses (...), (..., G)."""
-        return self._values(at).min(axis=-1)
+    def __init__(self, goals: Pose) -> None:
+        self._goals = goals
 
     def advantage(self, at: Pose, after: Pose) -> FloatArray:
-        """``Q_g - V_g`` of inputs, each held for `LOOK_AHEAD_S`.
-
-        Args:
-            at: tool poses (...).
-            after: where the inputs would take them, (...).
+        """``Q_g - V_g`` of inputs that lead from tool poses (...) to others, held for `LOOK_AHEAD_S`.
 
         Returns:
             (..., G): what the way to ``after`` costs, and by how much the cost-to-go is more there than at
             ``at``.
         """
-        there, shift_at, turn_at = self._nearest(at)
-        shift, turn = _away(there, after)
+        (shift_at, turn_at), (shift, turn) = _away(self._goals, at), _away(self._goals, after)
         far_at, turned_at = _length(shift_at), _length(turn_at)
         far, turned = _length(shift), _length(turn)
         cost = LOOK_AHEAD_S * (TRANSLATION.rate(far_at) + ROTATION.rate(turned_at))
         gain = TRANSLATION.value(far) + ROTATION.value(turned)
         return cost + gain - TRANSLATION.value(far_at) - ROTATION.value(turned_at)
 
-    def twists(self, at: Pose, after: Pose) -> FloatArray:
-        """The robot's best action towards each goal: down the slope of Q, where the person's input leads.
-
-        Args:
-            at: tool poses (...), which say which pose of each goal counts.
-            after: where the person's input would take them in `LOOK_AHEAD_S`, (...).
+    def twists(self, after: Pose) -> FloatArray:
+        """The robot's best action towards each goal: down the slope of Q, from where an input leads.
 
         Returns:
             (..., G, 6), m/s and rad/s, in the base frame.
         """
-        there, _, _ = self._nearest(at)
-        shift, turn = _away(there, after)
+        shift, turn = _away(self._goals, after)
         return np.concatenate([_towards(shift, TRANSLATION), _towards(turn, ROTATION)], axis=-1)
-
-    def _values(self, at: Pose) -> FloatArray:
-        """Of every pose, (..., G, P)."""
-        shift, turn = _away(
-            Pose(self._position, self._rotation),
-            Pose(at.position[..., None, :], at.rotation[..., None, :, :]),
-        )
-        return TRANSLATION.value(_length(shift)) + ROTATION.value(_length(turn))
-
-    def _nearest(self, at: Pose) -> tuple[Pose, FloatArray, FloatArray]:
-        """The pose of each goal that counts, (..., G), and how far it is away, both (..., G, 3)."""
-        index = self._values(at).argmin(axis=-1)
-        goals = np.arange(len(self))
-        there = Pose(self._position[goals, index], self._rotation[goals, index])
-        return there, *_away(there, at)
 
 
 def _away(there: Pose, at: Pose) -> tuple[FloatArray, FloatArray]:
-    """From tool poses (...) to goals' poses (..., K), both (..., K, 3): a shift, m, and a turn, rad."""
+    """From tool poses (...) to goals' poses (G, ...), both (..., G, 3): a shift, m, and a turn, rad."""
     turn = there.rotation @ at.rotation[..., None, :, :].mT
     return there.position - at.position[..., None, :], rotation_vector(turn)
 

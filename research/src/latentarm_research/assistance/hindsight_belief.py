@@ -5,8 +5,7 @@ from typing import Final, Self, Unpack, final
 from latentarm.assistance.belief import Belief, BeliefOptions
 from latentarm.core.types import FloatArray
 from latentarm.robots.robot import Robot
-from latentarm_research.assistance.cost_to_go import LOOK_AHEAD_S
-from latentarm_research.assistance.goal_poses import PosesOf, goal_poses, that_pose
+from latentarm_research.assistance.cost_to_go import LOOK_AHEAD_S, GoalPoses
 
 TICK_S: Final = 1.0 / 40.0
 """How often the published belief is updated, s."""
@@ -29,27 +28,24 @@ class HindsightBelief(Belief):
 
     Args:
         goals: (G, n), the goals' configurations, rad.
-        robot: the arm.
-        poses_of: at which poses a goal is reached.
+        robot: the arm; its first tool is looked at.
         options: see `Belief`; the period is 1/40 s, the floor 0 and the most 0.99 where they are not given.
 
     Raises:
         UserError: a parameter is not finite or out of its range.
     """
 
-    def __init__(
-        self, goals: FloatArray, robot: Robot, poses_of: PosesOf = that_pose, **options: Unpack[BeliefOptions]
-    ) -> None:
+    def __init__(self, goals: FloatArray, robot: Robot, **options: Unpack[BeliefOptions]) -> None:
         published: BeliefOptions = {"period_s": TICK_S, "floor": 0.0, "most": MOST_CERTAIN}
         # The horizon of the base class is how long one full piece of evidence takes.
         super().__init__(goals, TICK_S, **(published | options))
-        self._robot, self._poses_of = robot, poses_of
-        self._poses = goal_poses(goals, robot, poses_of)
+        self._robot = robot
+        self._poses = GoalPoses(robot.chain.forward(self.goals))
 
     def over(self, goals: FloatArray) -> Self:
         """See `Belief.over`."""
         moved = super().over(goals)
-        moved._poses = goal_poses(goals, self._robot, self._poses_of)
+        moved._poses = GoalPoses(self._robot.chain.forward(moved.goals))
         return moved
 
     def log_likelihood(self, state: FloatArray, actions: FloatArray) -> FloatArray:

@@ -13,7 +13,7 @@ from latentarm.core.errors import UserError
 from latentarm.core.types import Row
 from latentarm.runs.checks import check_count, check_positive, check_seed
 from latentarm.runs.options import BeliefName, EndEffector, Jobs, Json, MovedDataset, Seed, TaskName
-from latentarm_research.assistance.catalogue import AssistanceName
+from latentarm_research.assistance.published_help import AssistanceName
 from latentarm_research.people.names import OperatorName
 
 ControllerName = Literal["latent", "latent_assist", "end_effector", "two_sticks", "retargeting"]

@@ -16,7 +16,7 @@ from latentarm.core.errors import UserError
 from latentarm.robots.robot import Robot
 from latentarm.runs.folder import Run, weights_fingerprint
 from latentarm.runs.tasks import usual_arm
-from latentarm_research.assistance.catalogue import published_assistance, published_belief
+from latentarm_research.assistance.published_help import published_assistance, published_belief
 from latentarm_research.baselines.retargeting import RetargetingController
 from latentarm_research.commands.drive_options import MODE_SWITCHED, DriveOptions
 from latentarm_research.people.catalogue import PEOPLE, usual_operator

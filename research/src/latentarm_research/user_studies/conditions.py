@@ -15,8 +15,7 @@ from latentarm.assistance.controllers.latent import LatentController
 from latentarm.assistance.goal_blending import blending
 from latentarm.robots.robot import Robot
 from latentarm.tasks.scene_task import SceneTask
-from latentarm_research.assistance.catalogue import published_belief
-from latentarm_research.assistance.interpolation import Interpolation
+from latentarm_research.assistance.published_help import Interpolation, published_belief
 from latentarm_research.baselines.retargeting import RetargetingController
 from latentarm_research.drives.drive import Setup
 from latentarm_research.people.person import Person

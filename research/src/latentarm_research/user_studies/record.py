@@ -44,26 +44,17 @@ class UnlabelledTrial:
 
 
 def read_trial(entry: object, where: str) -> Trial:
-    """A trial from JSON. Raises a `UserError` where a field is missing or is not what it should be."""
-    if not isinstance(entry, dict):
-        raise UserError(f"{where} is no trial: it must be an object.")
-    fields = cast(dict[str, Any], entry)
-    for name, kind in (("person", int), ("condition", str), ("task", str), ("order", int), ("trial", int)):
-        if not isinstance(fields.get(name), kind) or isinstance(fields.get(name), bool):
-            raise UserError(f"{where}: {name} must be {'a whole number' if kind is int else 'text'}.")
-    measures = fields.get("measures")
-    if not isinstance(measures, dict):
-        raise UserError(f"{where}: measures must be an object.")
-    known: dict[str, float] = {}
-    for name, value in cast(dict[str, object], measures).items():
-        if value is None:
-            continue
-        if isinstance(value, bool) or not isinstance(value, int | float) or not isfinite(value):
-            raise UserError(f"{where}: the measure {name} must be a finite number or null.")
-        known[name] = float(value)
-    return Trial(
-        fields["person"], fields["condition"], fields["task"], fields["order"], fields["trial"], known
-    )
+    """A trial from JSON, whose measures that are null are absent.
+
+    Raises a `UserError` where a field is missing or is not what it should be.
+    """
+    from latentarm_research.user_studies.own.records import read_record  # pydantic, which help does not need
+
+    fields = cast(dict[str, Any], entry) if isinstance(entry, dict) else {}
+    if isinstance(fields.get("measures"), dict):
+        known = {name: value for name, value in fields["measures"].items() if value is not None}
+        return read_record(Trial, {**fields, "measures": known}, where)
+    return read_record(Trial, entry, where)
 
 
 def read_listed(
