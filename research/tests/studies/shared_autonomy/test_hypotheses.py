@@ -12,13 +12,13 @@ from latentarm_research.studies.shared_autonomy.hypotheses import (
     TRAPPED,
     compare_methods,
 )
-from latentarm_research.studies.shared_autonomy.preset import Entropy, Preset
+from latentarm_research.studies.shared_autonomy.preset import Preset
 
 PRESET = Preset("tiny", betas=(0.0, 75.0, 1e4), learners={"slow": 10.0}, changes_s=(0.0, 8.0))
 TASK = "panda_two_cups"
 
 
-def results_of(errors, task=TASK, model="cae", variant=None):
+def results_of(errors, task=TASK, model="cae"):
     """Cells whose drives have the errors of (method, person), one per seed; 0.5 for all others."""
 
     def outcome(method, person, seeds=4):
@@ -26,16 +26,15 @@ def results_of(errors, task=TASK, model="cae", variant=None):
         course = np.zeros((len(values), 3))
         return Outcome(method, person, {"final_state_error": values[:, None]}, course, course)
 
-    parts = {None: ("LA", "LA+SA"), Entropy(2.0): ("LA+SA+Entropy",)}
     return [
         AutonomyResult(
-            AutonomyCell(task, model, entropy, variant, methods, PRESET.people, 4, 1, PRESET, 0),
-            tuple(outcome(method, person) for method in methods for person in PRESET.people),
+            cell,
+            tuple(outcome(method, person) for method in cell.methods for person in PRESET.people),
             np.ones(4),
             0.0,
             0.0,
         )
-        for entropy, methods in parts.items()
+        for cell in (AutonomyCell(task, model, entropy, PRESET, 0) for entropy in (False, True))
     ]
 
 
@@ -125,8 +124,8 @@ def test_few_seeds(seeds):
     json.dumps([test.as_json() for test in tests], allow_nan=False)
 
 
-def test_models_are_families_of_their_own_and_ablations_no_part_of_it():
-    both = results_of({}) + results_of({}, model="cvae") + results_of({}, variant="lambda_2 5")
+def test_models_are_families_of_their_own():
+    both = results_of({}) + results_of({}, model="cvae")
     tests = compare_methods(both, PRESET)
     assert {test.family for test in tests} == {"cae", "cvae"}
     assert len(tests) == 2 * len(compare_methods(results_of({}), PRESET))

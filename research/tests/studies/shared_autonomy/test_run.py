@@ -8,9 +8,9 @@ from latentarm.core.errors import UserError
 from latentarm.evaluation.measures import MEASURES
 from latentarm_research.studies.page import PDF
 from latentarm_research.studies.results_folder import CONFIG
-from latentarm_research.studies.shared_autonomy.cell import METHODS, TASKS, measure_cell
-from latentarm_research.studies.shared_autonomy.preset import PRESETS, Ablation, Entropy, Preset, variants
-from latentarm_research.studies.shared_autonomy.study import MODELS, STUDY, cells_of
+from latentarm_research.studies.shared_autonomy.cell import METHODS, TASKS
+from latentarm_research.studies.shared_autonomy.preset import PRESETS, Preset
+from latentarm_research.studies.shared_autonomy.study import MODELS, STUDY
 from latentarm_research.studies.study import ALWAYS_MADE, Request, run_study
 
 TINY = Preset(
@@ -25,10 +25,7 @@ TINY = Preset(
     learners={"slow": 10.0},
     slopes=(),
     changes_s=(1.0,),
-    entropy=Entropy(weight=2.0, sharpness=8.0),
-    ablation=Ablation(
-        seeds=1, drives=2, weights=(0.0, 2.0), sharpness=(), contexts=("demonstrated",), without_no_goal=False
-    ),
+    entropy_weight=2.0,
 )
 TASK = "planar_two_cups"
 
@@ -71,40 +68,6 @@ def test_without_help_nothing_is_certified(done):
     assert all(row.mean == 0.0 for row in shares if (row.condition or "").startswith("LA, "))
 
 
-def test_every_variant_of_the_entropy_has_its_rows(done):
-    rows, _ = done
-    known = {(row.condition, row.measure) for row in rows if row.model == "cae"}
-    every = replace(TINY.ablation, sharpness=(4.0,), without_no_goal=True)
-    assert list(variants(every, TINY.entropy)) == [
-        "lambda_2 0",
-        "lambda_2 2",
-        "kappa 4",
-        "equation 15 to the letter",
-        "progress of the joints alone",
-        "contexts demonstrated",
-    ]
-    names = variants(TINY.ablation, TINY.entropy)
-    assert names["lambda_2 0"] is None
-    assert names["lambda_2 2"] == TINY.entropy
-    for name in names:
-        assert (name, "noise_free_error_percent_of_pca") in known
-        assert {(f"{name}, {person.label}", "final_state_error") for person in TINY.varied_people} <= known
-
-
-def test_what_is_varied_by_nothing_is_the_study_itself(tmp_path):
-    """One of the three seeds, and its first drives: the same model, starts and chances."""
-    whole = cells_of(tiny(tmp_path))
-    proper = next(cell for cell in whole if (cell.model, cell.entropy) == ("cae", TINY.entropy))
-    varied = next(cell for cell in whole if cell.variant == "lambda_2 2")
-    latest = TINY.latest_change.label
-    one, other = (
-        next(outcome for outcome in measure_cell(cell).outcomes if outcome.person.label == latest)
-        for cell in (replace(proper, drives=4), varied)
-    )
-    few = one.figures["final_state_error"][: TINY.ablation.seeds, : TINY.ablation.drives]
-    assert other.figures["final_state_error"] == pytest.approx(few, rel=1e-3)
-
-
 def test_rows_stand_in_one_order_wherever_they_were_measured(done):
     rows, _ = done
     proper = [row.model for row in rows if row.condition in ("without entropy", "with entropy")]
@@ -126,7 +89,7 @@ def test_the_folder_holds_what_is_promised(done):
     seeds = json.loads((out / "seeds.json").read_text())
     rows = json.loads((out / "results.json").read_text())["rows"]
     assert [entry["mean"] for entry in seeds] == [row["mean"] for row in rows]
-    assert {entry["over"] for entry in seeds} == {"seeds", "drives"}
+    assert {entry["over"] for entry in seeds} == {"seeds"}
 
 
 def test_sizes_that_make_no_sense_name_the_cell(tmp_path):

@@ -27,7 +27,7 @@ from latentarm_research.studies.shared_autonomy.drive import (
     steps_of,
 )
 from latentarm_research.studies.shared_autonomy.measures import measure, state_error, true_belief
-from latentarm_research.studies.shared_autonomy.preset import Entropy, Person, Preset
+from latentarm_research.studies.shared_autonomy.preset import Person, Preset
 from latentarm_research.studies.streams import generator, integer, sequence
 from latentarm_research.tasks.two_cups import TWO_CUPS, TwoCups
 
@@ -61,15 +61,15 @@ class AutonomyCell:
 
     task: str  # a name of `TASKS`
     model: str  # a name of `MODELS`
-    entropy: Entropy | None  # term that is added to the model's own loss, or None for that alone
-    variant: str | None  # what an ablation calls it; None in the study proper
-    methods: tuple[str, ...]  # names of `METHODS` that it is driven by
-    people: tuple[Person, ...]  # who drives
-    seeds: int  # models of the kind
-    drives: int  # drives with each of them and each person
-    preset: Preset  # sizes of the training
+    entropy: bool  # whether the entropy over goals is added to the model's own loss
+    preset: Preset  # sizes of the study
     # of the whole study; demonstrations, starts and chances come from it and are the same for every model
     seed: int
+
+    @property
+    def methods(self) -> tuple[str, ...]:
+        """Names of `METHODS` that it is driven by."""
+        return (WITH_ENTROPY,) if self.entropy else (WITHOUT_HELP, WITH_HELP)
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,28 +149,21 @@ def _fit(cell: AutonomyCell, task: TwoCups, training: Demonstrations) -> LatentA
         actions="recorded",
         state_noise_rad=preset.state_noise_rad,
         data_seed=integer(sequence(cell.seed, cell.task, Stream.STATE_NOISE)),
-        seeds=cell.seeds,
+        seeds=preset.seeds,
         seed=integer(sequence(cell.seed, cell.task, Stream.NETWORKS)),
         hidden=preset.hidden,
         epochs=preset.epochs,
         batch_size=preset.batch_size,
         patience=preset.epochs,
         kl_weight=preset.kl_weight,
-        fit={"chain": task.robot.chain, "term": _term(cell.entropy, task)},
+        fit={"chain": task.robot.chain, "term": _term(preset, task) if cell.entropy else None},
     )
 
 
-def _term(entropy: Entropy | None, task: TwoCups) -> GoalEntropy | None:
-    if entropy is None:
-        return None
+def _term(preset: Preset, task: TwoCups) -> GoalEntropy:
     goals = np.stack([goal.configuration for goal in task.goals])
     return GoalEntropy(
-        goals,
-        weight=entropy.weight,
-        sharpness=entropy.sharpness,
-        least_progress=entropy.least_progress,
-        where=entropy.where,
-        chain=task.robot.chain if entropy.sees_tool else None,
+        goals, weight=preset.entropy_weight, sharpness=preset.sharpness, chain=task.robot.chain
     )
 
 
@@ -185,10 +178,10 @@ def _reconstruction(model: LatentActionModel, fitted: Pairs, pairs: Pairs) -> Fl
 def _together(cell: AutonomyCell) -> list[list[Person]]:
     """The cell's people in groups that drive in one go: for the same time, and about `ROWS` drives."""
     groups: list[list[Person]] = []
-    for person in cell.people:
+    for person in cell.preset.people:
         last = groups[-1] if groups else []
         alike = bool(last) and last[0].drive_s == person.drive_s
-        if alike and (len(last) + 1) * cell.drives <= ROWS:
+        if alike and (len(last) + 1) * cell.preset.drives <= ROWS:
             last.append(person)
         else:
             groups.append([person])
@@ -204,10 +197,10 @@ def _outcomes(
     people: Sequence[Person],
 ) -> list[Outcome]:
     """Results of people who drive in one batch."""
-    target = np.arange(cell.drives) % len(scene.goals)
+    target = np.arange(cell.preset.drives) % len(scene.goals)
     figures: list[dict[str, FloatArray]] = []
     courses: list[tuple[FloatArray, FloatArray]] = []
-    for seed in range(cell.seeds):
+    for seed in range(cell.preset.seeds):
         starts = generator(cell.seed, cell.task, Stream.STARTS, seed)
         start = np.stack([task.sample_start(int(goal), starts) for goal in target])
         decoder = model.decoder(seed)
@@ -224,7 +217,7 @@ def _outcomes(
         courses.append((state_error(drives, scene), true_belief(drives)))
     outcomes: list[Outcome] = []
     for index, person in enumerate(people):
-        own = slice(index * cell.drives, (index + 1) * cell.drives)
+        own = slice(index * cell.preset.drives, (index + 1) * cell.preset.drives)
         own_figures = {name: np.stack([one[name][own] for one in figures]) for name in figures[0]}
         error, belief = (
             np.stack([course[own].mean(axis=0) for course in of_seeds])
@@ -237,4 +230,4 @@ def _outcomes(
 def _chances(cell: AutonomyCell, seed: int, person: Person) -> FloatArray:
     """Random numbers (P, T) for one person's drives with one seed, independent of who else drives."""
     chances = generator(cell.seed, cell.task, Stream.CHANCES, seed, int.from_bytes(person.label.encode()))
-    return chances.random((cell.drives, steps_of(person)))
+    return chances.random((cell.preset.drives, steps_of(person)))

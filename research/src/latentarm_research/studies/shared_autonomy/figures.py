@@ -200,11 +200,11 @@ def _draw_paths(axes: "Axes", task: TwoCups, paths: list[FloatArray], led_to: li
 
 
 def outcomes_of(results: Sequence[AutonomyResult], task: str, model: str) -> Outcomes:
-    """Outcomes of the study proper."""
+    """Outcomes with one model on one arm."""
     return {
         (one.method, one.person.label): one
         for result in results
-        if (result.cell.task, result.cell.model, result.cell.variant) == (task, model, None)
+        if (result.cell.task, result.cell.model) == (task, model)
         for one in result.outcomes
     }
 

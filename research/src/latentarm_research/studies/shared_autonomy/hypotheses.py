@@ -77,12 +77,11 @@ def people_of(preset: Preset) -> dict[str, list[Person]]:
 
 
 def compare_methods(results: Sequence[AutonomyResult], preset: Preset) -> list[Tested]:
-    """Every claim that the results of the study proper allow, by hypothesis, then by model, then by task."""
+    """Every claim that the results allow, by hypothesis, then by model, then by task."""
     found: dict[tuple[str, str], dict[tuple[str, str], FloatArray]] = {}
     for result in results:
-        if result.cell.variant is None:
-            here = found.setdefault((result.cell.model, result.cell.task), {})
-            here |= {(one.method, one.person.label): one.figures[MEASURE] for one in result.outcomes}
+        here = found.setdefault((result.cell.model, result.cell.task), {})
+        here |= {(one.method, one.person.label): one.figures[MEASURE] for one in result.outcomes}
     models = list(dict.fromkeys(model for model, _ in found))
     ordered = sorted(found, key=lambda place: models.index(place[0]))
     people = people_of(preset)

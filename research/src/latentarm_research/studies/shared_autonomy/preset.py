@@ -1,11 +1,8 @@
-"""How large the study is, the simulated people of section 8.2, and what is varied about the entropy."""
+"""How large the study is, and the simulated people of section 8.2."""
 
-import math
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Final
-
-from latentarm.assistance.entropy import GoalEntropy, Where
 
 NEAR_OPTIMAL: Final = 1000.0
 """Rationality of people who change their mind, 1/m²: the paper calls them near-optimal."""
@@ -52,31 +49,6 @@ def changing(after_s: float) -> Person:
 
 
 @dataclass(frozen=True)
-class Entropy:
-    """How the entropy over goals is trained; see `GoalEntropy`."""
-
-    weight: float  # lambda_2
-    sharpness: float = GoalEntropy.sharpness  # kappa
-    least_progress: float = GoalEntropy.least_progress  # rho_0; -inf is equation 15 to the letter
-    where: Where = GoalEntropy.where  # contexts that it is taken in
-    sees_tool: bool = True  # whether progress is the tool's as well, or the joints' alone
-
-
-@dataclass(frozen=True)
-class Ablation:
-    """What is varied about the entropy, one thing at a time, with the cAE."""
-
-    seeds: int = 3  # models of each kind
-    drives: int = 20  # drives with each of them and each person
-    weights: tuple[float, ...] = (0.0, 0.3, 3.0, 10.0)  # values of lambda_2
-    sharpness: tuple[float, ...] = (1.0, 4.0, 16.0)  # values of kappa
-    contexts: tuple[Where, ...] = ("demonstrated", "any_belief", "anywhere")  # where the entropy is taken
-    # whether to take equation 15 to the letter as well, without an outcome that no goal is conveyed
-    without_no_goal: bool = True
-    joints_alone: bool = True  # whether to take progress by the joints alone as well, without the tool
-
-
-@dataclass(frozen=True)
 class Preset:
     """Sizes of the study."""
 
@@ -92,7 +64,8 @@ class Preset:
     # the decoder has to do what was demonstrated at the cup
     state_noise_rad: float = 0.05
     kl_weight: float = 0.05  # lambda_1 of equation 16, for the cVAE
-    entropy: Entropy = Entropy(weight=3.0, sharpness=8.0)  # of equation 16, with lambda_2 and kappa
+    entropy_weight: float = 3.0  # lambda_2 of equation 16
+    sharpness: float = 8.0  # kappa of the entropy over goals, see `GoalEntropy`
     # rationalities of people of fixed expertise, 1/m²; the first and the last are the extremes
     betas: tuple[float, ...] = (0.0, 10.0, 30.0, 75.0, 1000.0, 10000.0)
     # how fast people learn, 1/m² per s, by name: the slowest and the fastest slope of a sweep at which help
@@ -100,7 +73,6 @@ class Preset:
     learners: Mapping[str, float] = field(default_factory=lambda: {"slow": 2.5, "fast": 25.0})
     slopes: tuple[float, ...] = (0.5, 8.0, 80.0, 250.0)  # of further learners, for the sweep, 1/m² per s
     changes_s: tuple[float, ...] = (0.0, 2.0, 4.0, 8.0)  # after how long people change their mind, s
-    ablation: Ablation | None = field(default_factory=Ablation)  # what is varied about the entropy, or None
 
     @property
     def people(self) -> tuple[Person, ...]:
@@ -129,11 +101,6 @@ class Preset:
         times = sorted(self.changes_s)
         return tuple(dict.fromkeys((times[max(len(times) // 2 - 1, 0)], times[-1])))
 
-    @property
-    def varied_people(self) -> tuple[Person, ...]:
-        """Who drives in the ablation: near-optimal people, of a constant mind and with the latest change."""
-        return of_fixed_expertise(NEAR_OPTIMAL), self.latest_change
-
 
 PRESETS: Final[dict[str, Preset]] = {
     "paper": Preset("paper"),
@@ -147,35 +114,5 @@ PRESETS: Final[dict[str, Preset]] = {
         betas=(0.0, 75.0, 10000.0),
         slopes=(),
         changes_s=(2.0, 8.0),
-        ablation=None,
     ),
 }
-
-
-LETTER = "equation 15 to the letter"  # the variant without an outcome that no goal is conveyed
-JOINTS_ALONE = "progress of the joints alone"  # the variant that does not look at the tool
-
-
-def weight_label(weight: float) -> str:
-    """What a variant with this lambda_2 is called."""
-    return f"lambda_2 {weight:g}"
-
-
-def variants(ablation: Ablation, proper: Entropy) -> dict[str, Entropy | None]:
-    """Every variant by what it is called, each once."""
-    found: dict[str, Entropy | None] = {
-        weight_label(one): replace(proper, weight=one) if one else None for one in ablation.weights
-    }
-    found |= {name: entropy for name, entropy in _others(ablation, proper) if entropy != proper}
-    return found
-
-
-def _others(ablation: Ablation, proper: Entropy) -> Iterator[tuple[str, Entropy]]:
-    for sharpness in ablation.sharpness:
-        yield f"kappa {sharpness:g}", replace(proper, sharpness=sharpness)
-    if ablation.without_no_goal:
-        yield LETTER, replace(proper, least_progress=-math.inf)
-    if ablation.joints_alone:
-        yield JOINTS_ALONE, replace(proper, sees_tool=False)
-    for where in ablation.contexts:
-        yield f"contexts {where.replace('_', ' ')}", replace(proper, where=where)

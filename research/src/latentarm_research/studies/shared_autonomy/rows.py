@@ -106,7 +106,7 @@ class Figure(NamedTuple):
 
     task: str
     model: str
-    condition: str  # what was varied: method and person, or variant
+    condition: str  # method and person
     measure: str  # what was measured
     values: FloatArray  # (S, P), of each drive with each seed's model; (S, 1) where it is the model's own
 
@@ -117,9 +117,8 @@ class Figure(NamedTuple):
 
 
 def figures(results: Sequence[AutonomyResult]) -> list[Figure]:
-    """Every figure: the study proper in its order, then the ablations."""
-    ordered = sorted(results, key=lambda one: one.cell.variant is not None)
-    return [figure for result in ordered for figure in _figures(result)]
+    """Every figure, in the order of the results."""
+    return [figure for result in results for figure in _figures(result)]
 
 
 def rows_of(found: Iterable[Figure]) -> list[Row]:
@@ -146,16 +145,14 @@ def rows_of(found: Iterable[Figure]) -> list[Row]:
 
 
 def _figures(result: AutonomyResult) -> Iterator[Figure]:
-    """Of one cell; those of an ablation name the variant and not the method."""
     cell = result.cell
-    trained = cell.variant or ("without entropy" if cell.entropy is None else "with entropy")
+    trained = "with entropy" if cell.entropy else "without entropy"
     yield Figure(cell.task, cell.model, trained, RECONSTRUCTION, result.reconstruction[:, None])
     for outcome in result.outcomes:
-        condition = f"{cell.variant or outcome.method}, {outcome.person.label}"
+        condition = f"{outcome.method}, {outcome.person.label}"
         for measure, values in outcome.figures.items():
             yield Figure(cell.task, cell.model, condition, measure, values)
-    if cell.variant is None:
-        yield from _extra_times(result)
+    yield from _extra_times(result)
 
 
 def _extra_times(result: AutonomyResult) -> Iterator[Figure]:

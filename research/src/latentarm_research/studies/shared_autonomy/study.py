@@ -11,8 +11,6 @@ from latentarm_research.studies.shared_autonomy import measures as measures_of
 from latentarm_research.studies.shared_autonomy import preset as people
 from latentarm_research.studies.shared_autonomy.cell import (
     TASKS,
-    WITH_ENTROPY,
-    WITH_HELP,
     WITHOUT_HELP,
     AutonomyCell,
     AutonomyResult,
@@ -26,7 +24,7 @@ from latentarm_research.studies.shared_autonomy.figures import (
     task_figure,
 )
 from latentarm_research.studies.shared_autonomy.measures import ARRIVED
-from latentarm_research.studies.shared_autonomy.preset import PRESETS, Entropy, Preset, variants
+from latentarm_research.studies.shared_autonomy.preset import PRESETS, Preset
 from latentarm_research.studies.shared_autonomy.rows import (
     FEWEST_SEEDS,
     MODEL,
@@ -48,57 +46,28 @@ MAIN: Final = (hypotheses.MEASURE, "time_s")
 
 
 def cells_of(request: Request[Preset]) -> list[AutonomyCell]:
-    """The study proper, its longest cells first, and the ablations."""
-    preset, ablation = request.preset, request.preset.ablation
-
-    def cell(task: str, model: str, entropy: Entropy | None, variant: str | None) -> AutonomyCell:
-        alone = (WITHOUT_HELP, WITH_HELP) if variant is None else (WITH_HELP,)
-        sizes = preset if variant is None or ablation is None else ablation
-        return AutonomyCell(
-            task=task,
-            model=model,
-            entropy=entropy,
-            variant=variant,
-            methods=alone if entropy is None else (WITH_ENTROPY,),
-            people=preset.people if variant is None else preset.varied_people,
-            seeds=sizes.seeds,
-            drives=sizes.drives,
-            preset=preset,
-            seed=request.seed,
-        )
-
-    varied = {} if ablation is None else variants(ablation, preset.entropy)
+    """Every model on every arm, the longest cells first."""
     return [
-        *(
-            cell(task, model, entropy, None)
-            for model in reversed(MODELS)
-            for entropy in (None, preset.entropy)
-            for task in request.tasks
-        ),
-        *(cell(task, MODEL, entropy, name) for task in request.tasks for name, entropy in varied.items()),
+        AutonomyCell(task, model, entropy, request.preset, request.seed)
+        for model in reversed(MODELS)
+        for entropy in (False, True)
+        for task in request.tasks
     ]
 
 
 def _measure(request: Request[Preset], grid: Grid) -> list[AutonomyResult]:
     measured = grid.run("Models, with entropy and without", measure_cell, cells_of(request), _label)
 
-    def place(result: AutonomyResult) -> tuple[int, int, bool, bool]:
-        """By arm, model, the study before its ablations, without entropy first."""
+    def place(result: AutonomyResult) -> tuple[int, int, bool]:
+        """By arm, model, without entropy first."""
         cell = result.cell
-        proper = cell.variant is None
-        return (
-            request.tasks.index(cell.task),
-            MODELS.index(cell.model),
-            not proper,
-            proper and cell.entropy is not None,
-        )
+        return request.tasks.index(cell.task), MODELS.index(cell.model), cell.entropy
 
     return sorted(measured, key=place)
 
 
 def _label(cell: AutonomyCell) -> str:
-    trained = "with entropy" if cell.entropy else "without entropy"
-    return f"{cell.task}, {cell.model}, {cell.variant or trained}"
+    return f"{cell.task}, {cell.model}, {'with' if cell.entropy else 'without'} entropy"
 
 
 def _report(request: Request[Preset], results: list[AutonomyResult]) -> Report:

@@ -8,7 +8,7 @@ from latentarm.evaluation.looks import look_of
 from latentarm.evaluation.table import ABSENT, format_figure
 from latentarm_research.studies.shared_autonomy.cell import METHODS
 from latentarm_research.studies.shared_autonomy.hypotheses import MEASURE
-from latentarm_research.studies.shared_autonomy.preset import Preset, variants
+from latentarm_research.studies.shared_autonomy.preset import Preset
 from latentarm_research.studies.shared_autonomy.rows import EXTRA_TIME, MODEL, PAPER, RECONSTRUCTION, Figure
 from latentarm_research.studies.tables import grid_table, heading, terminal_table
 
@@ -22,7 +22,6 @@ class Tables:
 
     def __init__(self, found: Sequence[Figure], preset: Preset) -> None:
         self._found = {(one.task, one.model, one.condition, one.measure): one for one in found}
-        self._preset = preset
         self._people = {person.label: person.label for person in preset.people}
         self._models = list(dict.fromkeys(one.model for one in found))
 
@@ -57,19 +56,6 @@ class Tables:
             {look_of(task).label: task for task in tasks},
             columns,
             lambda task, column: self._figure(task, *column, RECONSTRUCTION),
-        )
-
-    def ablation(self, task: str) -> str:
-        """What is varied about the entropy: variants down, reconstruction and final errors across."""
-        if self._preset.ablation is None:
-            return ""
-        names = {name: name for name in variants(self._preset.ablation, self._preset.entropy)}
-        people = {f"{heading(MEASURE)}, {one.label}": f", {one.label}" for one in self._preset.varied_people}
-        return grid_table(
-            "",
-            names,
-            {heading(RECONSTRUCTION): "", **people},
-            lambda name, who: self._figure(task, MODEL, name + who, MEASURE if who else RECONSTRUCTION),
         )
 
     def _figure(self, task: str, model: str, condition: str, measure: str) -> str:
