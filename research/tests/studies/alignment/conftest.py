@@ -14,11 +14,11 @@ AS_IN_THE_PAPER = (3.0, 2.0, 1.0, 0.4, 0.35, 0.4, 0.11, 0.1, 0.1, 0.1)
 """Means of the conditions, in their order."""
 
 
-def decoder(task="plane", model="cae", preset=PRESETS["smoke"]):
-    return LearnedDecoder(DecoderCell(task, model, preset, 0), SimpleNamespace(), 1.0)
+def decoder(task="plane", preset=PRESETS["smoke"]):
+    return LearnedDecoder(DecoderCell(task, preset, 0), SimpleNamespace(), 1.0)
 
 
-def make_result(means=AS_IN_THE_PAPER, task="plane", model="cae", noise=0.0, runs=6, spread=0.02):
+def make_result(means=AS_IN_THE_PAPER, task="plane", noise=0.0, runs=6, spread=0.02):
     """Runs that spread about the means by a share of them, the same way in every condition."""
     about = 1 + spread * np.linspace(-1, 1, runs)
     errors = {
@@ -26,7 +26,7 @@ def make_result(means=AS_IN_THE_PAPER, task="plane", model="cae", noise=0.0, run
         for name, mean in zip(CONDITIONS, means, strict=True)
     }
     return AlignmentErrors(
-        AlignmentCell("conditions", decoder(task, model), noise),
+        AlignmentCell("conditions", decoder(task), noise),
         errors,
         0.05,
         dict.fromkeys(CONDITIONS[2:], 1.0),

@@ -55,7 +55,7 @@ TINY = Preset(
 @cache
 def learned_at(task):
     """Several tests look at the same decoder."""
-    return learn_decoder(DecoderCell(task, "cae", TINY, 0))
+    return learn_decoder(DecoderCell(task, TINY, 0))
 
 
 @cache
@@ -170,7 +170,7 @@ def test_a_curve_is_the_same_again(curve):
 
 def test_four_chosen_questions_hold_both_parts_of_reach_and_pour():
     """Where two things are meant in two places, each is asked about more than once."""
-    scene = scene_of(learn_decoder(DecoderCell("reach_and_pour", "pca", TINY, 0)))
+    scene = scene_of(learn_decoder(DecoderCell("reach_and_pour", TINY, 0)))
     asked = order_of_questions(scene.chain, scene.shown, 4)
     there = scene.preference.is_there(scene.chain.forward(scene.shown.start[asked]).position)
     assert there.sum() == 2

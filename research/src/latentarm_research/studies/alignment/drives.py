@@ -8,7 +8,6 @@ operator of the demo. That is the best this decoder can do.
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from time import perf_counter
 from typing import Final
 
 import numpy as np
@@ -30,7 +29,6 @@ from latentarm_research.studies.alignment.preset import (
     NO_ALIGN,
     TOOL_SPACE,
     WITHOUT_PRIORS,
-    Preset,
 )
 
 HELPED: Final = f"{TOOL_SPACE}, shared autonomy"
@@ -54,7 +52,7 @@ class AlignedDrive:
 
 @dataclass(frozen=True, eq=False)
 class DrivesResult:
-    """What was measured with one kind of model."""
+    """What was measured."""
 
     cell: AlignedDriveCell
     # condition -> all drives, from the same starts in the same order everywhere
@@ -62,20 +60,11 @@ class DrivesResult:
     errors: Mapping[str, FloatArray]  # condition -> (S,), see `Learned`
     directions: FloatArray  # (2, 3), that the person expects of the stick, in the base frame
     speed_m_s: float  # of the tool, that they expect of a full push along one axis, m/s
-    fit_s: float  # how long the fit of all models took, s
-    align_s: float  # how long asking and learning took, all models together, s
-    drive_s: float  # how long the drives took, s
-
-
-def drive_cells(preset: Preset, seed: int) -> list[AlignedDriveCell]:
-    """One cell per kind of model."""
-    return [AlignedDriveCell(model, preset, seed) for model in preset.drives.models]
 
 
 def measure_drives(cell: AlignedDriveCell) -> DrivesResult:
     """Learn, and drive in every condition. Raises a `UserError` where the preset's sizes make no sense."""
     learned = learn(cell)
-    began = perf_counter()
     drives = {condition: drive_all(cell, learned, condition) for condition in DRIVEN}
     return DrivesResult(
         cell=cell,
@@ -83,9 +72,6 @@ def measure_drives(cell: AlignedDriveCell) -> DrivesResult:
         errors=learned.errors,
         directions=learned.person.directions,
         speed_m_s=learned.person.speed_m_s,
-        fit_s=learned.fit_s,
-        align_s=learned.align_s,
-        drive_s=perf_counter() - began,
     )
 
 

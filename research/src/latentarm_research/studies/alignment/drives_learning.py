@@ -8,7 +8,6 @@ turned by `TURN_RAD` and mirrored.
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import pi
-from time import perf_counter
 from typing import Final
 
 import numpy as np
@@ -45,7 +44,6 @@ EVERY: Final = 10**9  # more than the number of motions
 class AlignedDriveCell:
     """What is to be measured."""
 
-    model: str  # a name of `MODELS`
     preset: ways.Preset  # sizes of the study
     seed: int  # of the study
 
@@ -54,13 +52,11 @@ class AlignedDriveCell:
 class Learned:
     """What is driven with."""
 
-    model: LatentActionModel  # the S models of a kind
+    model: LatentActionModel  # S models of one kind
     alignments: tuple[Mapping[str, Alignment], ...]  # S times, condition -> alignment
     person: Expectation  # who was asked
     # condition -> (S,), relative alignment errors on motions that trained nothing
     errors: Mapping[str, FloatArray]
-    fit_s: float  # how long the fit of all models took, s
-    align_s: float  # how long asking and learning took, all models together, s
 
 
 def learn(cell: AlignedDriveCell) -> Learned:
@@ -77,17 +73,14 @@ def learn(cell: AlignedDriveCell) -> Learned:
     motions = demonstrated_motions(training, EVERY, _generator(cell, ways.Stream.SHOWN))
     person = turned_person(motions, chain)
     many = motions[np.arange(min(preset.ideal_answers, len(motions)))]
-    began = perf_counter()
     model = _fit(cell, training, chain)
-    fitted = perf_counter()
     ideal = Answers(many, person.inputs(many))
     alignments = tuple(
         _alignments(cell, model, seed, training, person, ideal) for seed in range(preset.drives.seeds)
     )
-    align_s = perf_counter() - fitted
     tested = demonstrated_motions(held_out, preset.test_motions, _generator(cell, ways.Stream.TEST_MOTIONS))
     errors = _errors(model, alignments, chain, Answers(tested, person.inputs(tested)))
-    return Learned(model, alignments, person, errors, fitted - began, align_s)
+    return Learned(model, alignments, person, errors)
 
 
 def turned_person(motions: Motions, chain: Chain) -> Expectation:
@@ -105,7 +98,7 @@ def turned_person(motions: Motions, chain: Chain) -> Expectation:
 def _fit(cell: AlignedDriveCell, training: Demonstrations, chain: Chain) -> LatentActionModel:
     """The models, as the demo trains them."""
     return fit_model(
-        cell.model,
+        ways.DRIVEN_MODEL,
         training,
         latent_dim=2,
         state_noise_rad=STATE_NOISE_RAD,
@@ -166,7 +159,7 @@ def _errors(
 
 
 def _generator(cell: AlignedDriveCell, *use: int) -> np.random.Generator:
-    """The same for every kind of model."""
+    """One of the study's streams."""
     return generator(cell.seed, TASK, *use)
 
 

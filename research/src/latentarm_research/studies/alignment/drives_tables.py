@@ -1,12 +1,5 @@
-"""Figures of the drives, tests of what alignment does for them, and the tables of both.
+"""Figures of the drives, and their table."""
 
-Tool Space is compared with No Align, No Priors and All Priors, drive by drive: each pair has the same model,
-goal, start and chances. Whether the goal is reached is tested by McNemar's exact test, the time by a paired t
-test; both are one-sided, and corrected by Holm's method over all tests with one kind of model.
-"""
-
-from collections.abc import Sequence
-from itertools import product
 from typing import Final
 
 import numpy as np
@@ -17,18 +10,13 @@ from latentarm.tasks.table_top import TableTop
 from latentarm_research.studies.alignment import preset as ways
 from latentarm_research.studies.alignment.drives import DRIVEN, HELPED, KNOWS, DrivesResult
 from latentarm_research.studies.alignment.drives_learning import TASK
-from latentarm_research.studies.claim_tables import claim_table
-from latentarm_research.studies.claims import Claim, Tested, corrected_by_family
 from latentarm_research.studies.series import Series
-from latentarm_research.studies.statistics import Statistic, format_p, paired
 from latentarm_research.studies.tables import heading, markdown_table, mean_and_sd
 
 REACHED: Final = "arrival_rate"
 TIME: Final = "time_s"
 DONE: Final = "success_rate"
 ERROR: Final = "relative_alignment_error"
-
-AGAINST: Final = (ways.NO_ALIGN, ways.WITHOUT_PRIORS, ways.ALL_PRIORS)  # what Tool Space is compared with
 
 
 def drive_figures(result: DrivesResult, condition: str) -> dict[str, FloatArray]:
@@ -58,42 +46,17 @@ def misses(result: DrivesResult, condition: str) -> FloatArray:
     return np.stack([np.linalg.norm(along, axis=1), np.linalg.norm(across, axis=1)], axis=1)
 
 
-def drives_rows(results: Sequence[DrivesResult]) -> list[Row]:
+def drives_rows(result: DrivesResult) -> list[Row]:
     """Mean and SD of every figure: of drives over drives, of alignments over models."""
     rows: list[Row] = []
-    for result in results:
-        for condition in DRIVEN:
-            errors = {ERROR: result.errors[condition]} if condition in result.errors else {}
-            figures = {**errors, **drive_figures(result, condition)}
-            rows += [
-                Series(TASK, result.cell.model, condition, measure, values).row("alignment")
-                for measure, values in figures.items()
-            ]
+    for condition in DRIVEN:
+        errors = {ERROR: result.errors[condition]} if condition in result.errors else {}
+        figures = {**errors, **drive_figures(result, condition)}
+        rows += [
+            Series(TASK, ways.DRIVEN_MODEL, condition, measure, values).row("alignment")
+            for measure, values in figures.items()
+        ]
     return rows
-
-
-def compare_drives(results: Sequence[DrivesResult]) -> list[Tested]:
-    """Every claim, model by model."""
-    tested: list[Tested] = []
-    for result in results:
-        figures = {name: drive_figures(result, name) for name in (ways.TOOL_SPACE, *AGAINST)}
-        for measure, against in product((REACHED, TIME), AGAINST):
-            own, other = figures[ways.TOOL_SPACE][measure], figures[against][measure]
-            more = measure == REACHED
-            claim = Claim(measure, (ways.TOOL_SPACE,), (against,), "greater" if more else "less", (TASK,))
-            one = Tested(hypothesis="drives", claim=claim, family=result.cell.model)
-            tested.append(one.of(own, other, _mcnemar(own, other) if more else paired(own, other, "less")))
-    return corrected_by_family(tested)
-
-
-def _mcnemar(own: FloatArray, other: FloatArray) -> Statistic:
-    """Whether more drives reach the goal: p of those that differ, by the binomial distribution."""
-    from scipy.stats import binomtest  # takes a second, and only a finished study needs it
-
-    better, worse = int((own > other).sum()), int((own < other).sum())
-    if better + worse == 0:
-        return Statistic("", why_not="no drive differs")
-    return Statistic("McNemar", p=float(binomtest(better, better + worse, alternative="greater").pvalue))
 
 
 WORDS: Final = {
@@ -111,21 +74,6 @@ WORDS: Final = {
 MISSED: Final = "the others end off, along and across (mm)"
 
 
-def drive_parts(
-    results: Sequence[DrivesResult], tests: Sequence[Tested]
-) -> dict[str, dict[str, str | list[str]]]:
-    """For each kind of model: the table, one sentence per test result, and the tests."""
-    parts: dict[str, dict[str, str | list[str]]] = {}
-    for result in results:
-        of_model = [one for one in tests if one.family == result.cell.model]
-        parts[result.cell.model] = {
-            "table": _table(result),
-            "said": _sentences(of_model),
-            "tests": claim_table(of_model),
-        }
-    return parts
-
-
 def axes_in_words(result: DrivesResult) -> list[str]:
     """What each axis of the stick means to the person."""
     return [
@@ -134,7 +82,7 @@ def axes_in_words(result: DrivesResult) -> list[str]:
     ]
 
 
-def _table(result: DrivesResult) -> str:
+def drive_table(result: DrivesResult) -> str:
     """Conditions down, figures across."""
     names = {REACHED: "reaches the goal", TIME: "time to the goal", DONE: "stabs or scoops, too"}
     reached, time, done = (heading(measure, name) for measure, name in names.items())
@@ -161,17 +109,3 @@ def _share(happened: FloatArray) -> str:
 def _misses(off_m: FloatArray) -> str:
     along, across = 1000 * off_m.mean(axis=0) if len(off_m) else (None, None)
     return ABSENT if along is None else f"{along:.0f}, {across:.0f}"
-
-
-def _sentences(tests: Sequence[Tested]) -> list[str]:
-    """The results of one model's tests, one sentence each."""
-    words = {REACHED: "reaches more goals than", TIME: "is faster than"}
-    return [
-        f"{ways.TOOL_SPACE} {words[one.claim.measure]} {one.claim.against[0]}: "
-        + ("supported" if one.says == "held" else f"**not supported**{_why(one)}")
-        for one in tests
-    ]
-
-
-def _why(test: Tested) -> str:
-    return f" ({test.why_not})" if test.p is None else f" (p = {format_p(test.p_holm)})"

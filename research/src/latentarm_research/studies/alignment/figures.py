@@ -15,7 +15,7 @@ from latentarm_research.studies.alignment.cell import AlignmentErrors
 from latentarm_research.studies.alignment.curves import CHOICES, PRIORS_AT_RANDOM, CurveResult
 from latentarm_research.studies.alignment.drives import DRIVEN, AlignedDrive, DrivesResult
 from latentarm_research.studies.alignment.hypotheses import RANDOM_ANSWERS
-from latentarm_research.studies.alignment.preset import CHOSEN, CONDITIONS
+from latentarm_research.studies.alignment.preset import CHOSEN, CONDITIONS, DRIVEN_MODEL, PAPER_MODEL
 from latentarm_research.studies.alignment.rows import ENCODED
 from latentarm_research.studies.statistics import bootstrap_interval, reach_of_interval
 
@@ -34,31 +34,26 @@ ROOM: Final = 1.6  # free room below and above everything on the logarithmic axi
 
 def conditions_figure(
     results: Sequence[AlignmentErrors],
-    models: Sequence[str],
     tasks: Sequence[str],
     noises: Sequence[float],  # coefficients of variation of the answers
 ) -> "Figure":
-    """Means with 95 % intervals, a panel per task, a row per model, grouped by noise."""
-    size = len(models), len(tasks), CONDITIONS_ROW_MM, CONDITIONS_FRAME_MM
-    figure, panels = drawing.panel_grid(HEADING, *size, sharex=True, sharey="row")
-    for line, model in zip(panels, models, strict=True):
-        for axes, task in zip(line, tasks, strict=True):
-            here = [result for result in results if (result.cell.model, result.cell.task) == (model, task)]
-            _draw_conditions(axes, here)
-            beside = "" if len(models) == 1 else f", {look_of(model).label}"
-            drawing.title(axes, look_of(task).label + beside)
-        _log_axis(line[0], [result for result in results if result.cell.model == model])
-    for axes in panels[-1]:
+    """Means with 95 % intervals, a panel per task, grouped by noise."""
+    size = 1, len(tasks), CONDITIONS_ROW_MM, CONDITIONS_FRAME_MM
+    figure, (line,) = drawing.panel_grid(HEADING, *size, sharex=True, sharey="row")
+    for axes, task in zip(line, tasks, strict=True):
+        _draw_conditions(axes, [result for result in results if result.cell.task == task])
+        drawing.title(axes, look_of(task).label)
         axes.set_xticks(range(len(noises)), [f"{noise:g}" for noise in noises])
-    drawing.label_axes(panels[:, 0], y="relative error")
-    drawing.label_axes(panels[-1], x="coefficient of variation of answers")
-    (line, *points), (encoded, *names) = panels[0, 0].get_legend_handles_labels()
-    legend_below(figure, [*points, line], [*names, encoded])
+    _log_axis(line[0], results)
+    drawing.label_axes(line[:1], y="relative error")
+    drawing.label_axes(line, x="coefficient of variation of answers")
+    (dotted, *points), (encoded, *names) = line[0].get_legend_handles_labels()
+    legend_below(figure, [*points, dotted], [*names, encoded])
     return figure
 
 
 def _draw_conditions(axes: "Axes", results: Sequence[AlignmentErrors]) -> None:
-    """All conditions of one task and model, one group per noise, and the encoder's own choice."""
+    """All conditions of one task, one group per noise, and the encoder's own choice."""
     width = GROUP / len(CONDITIONS)
     groups = np.arange(len(results))
     for index, name in enumerate(CONDITIONS):
@@ -97,15 +92,15 @@ NUDGE: Final = 0.16  # how far choices stand from each other, in answers, so tha
 
 
 def curves_figure(curves: Sequence[CurveResult], tasks: Sequence[str]) -> "Figure":
-    """Means with 95 % intervals over the number of answers, a panel per task, a row per model and noise."""
-    known = {(one.cell.model, one.cell.noise, one.cell.task): one for one in curves}
-    places = list(dict.fromkeys((model, noise) for model, noise, _ in known))
-    size = len(places), len(tasks), CURVES_ROW_MM, CURVES_FRAME_MM
+    """Means with 95 % intervals over the number of answers, a panel per task, a row per noise."""
+    known = {(one.cell.noise, one.cell.task): one for one in curves}
+    noises = list(dict.fromkeys(noise for noise, _ in known))
+    size = len(noises), len(tasks), CURVES_ROW_MM, CURVES_FRAME_MM
     figure, panels = drawing.panel_grid(HEADING, *size, sharex=True)
-    for line, (model, noise) in zip(panels, places, strict=True):
+    for line, noise in zip(panels, noises, strict=True):
         for axes, task in zip(line, tasks, strict=True):
-            _draw_curves(axes, known[model, noise, task])
-            drawing.title(axes, f"{look_of(task).label}, {look_of(model).label}, noise {noise:g}")
+            _draw_curves(axes, known[noise, task])
+            drawing.title(axes, f"{look_of(task).label}, {look_of(PAPER_MODEL).label}, noise {noise:g}")
     drawing.label_axes(panels[:, 0], y="relative error")
     drawing.label_axes(panels[-1], x="answers")
     drawing.name_series(figure, panels[0, 0], handle_length=2.6)
@@ -159,29 +154,25 @@ DRIVES_LEGEND_MM: Final = 18.0
 VIEW: Final = ((-0.6, 0.6), (-0.2, 0.85))  # what is shown, y from and to, x from and to, m
 
 
-def drives_figure(results: Sequence[DrivesResult]) -> "Figure":
-    """All paths until the goal from above: a panel for each condition, one model after the other."""
+def drives_figure(result: DrivesResult) -> "Figure":
+    """All paths until the goal from above: a panel for each condition."""
     goals, rows_each = TableTop().goals, -(-len(DRIVEN) // DRIVES_ACROSS)
-    name = "Simulated drives from above, and how many reach their goal"
-    size = rows_each * len(results), DRIVES_ACROSS, DRIVES_ROW_MM, DRIVES_LEGEND_MM
-    figure, panels = drawing.panel_grid(name, *size, sharex=True, sharey=True)
+    heading = "Simulated drives from above, and how many reach their goal"
+    size = rows_each, DRIVES_ACROSS, DRIVES_ROW_MM, DRIVES_LEGEND_MM
+    figure, grid = drawing.panel_grid(heading, *size, sharex=True, sharey=True)
     figure.set_layout_engine("compressed")  # panels keep their shape; without it the rest of a row is blank
-    for result, own in zip(results, panels.reshape(len(results), -1), strict=True):
-        for axes, condition in zip(own, DRIVEN, strict=False):
-            drives = result.drives[condition]
-            _draw_drives(axes, drives, goals)
-            name = condition.replace(", ", ",\n")
-            drawing.title(
-                axes, f"{name}\n{sum(one.reached_s is not None for one in drives)} of {len(drives)}"
-            )
-        for axes in own[len(DRIVEN) :]:
-            axes.remove()
-        for axes in own[len(DRIVEN) - DRIVES_ACROSS : len(DRIVEN)]:
-            axes.set_xlabel("y (m)")
-            axes.tick_params(labelbottom=True)
-        for axes in own[::DRIVES_ACROSS]:
-            axes.set_ylabel(f"{look_of(result.cell.model).label}: x (m)")
-    handles, labels = panels[0, 0].get_legend_handles_labels()
+    panels = drawing.first_panels(grid, len(DRIVEN))
+    for axes, condition in zip(panels, DRIVEN, strict=True):
+        drives = result.drives[condition]
+        _draw_drives(axes, drives, goals)
+        name = condition.replace(", ", ",\n")
+        drawing.title(axes, f"{name}\n{sum(one.reached_s is not None for one in drives)} of {len(drives)}")
+    for axes in panels[-DRIVES_ACROSS:]:
+        axes.set_xlabel("y (m)")
+        axes.tick_params(labelbottom=True)
+    for axes in panels[::DRIVES_ACROSS]:
+        axes.set_ylabel(f"{look_of(DRIVEN_MODEL).label}: x (m)")
+    handles, labels = panels[0].get_legend_handles_labels()
     legend_below(figure, [*handles, *outcome_lines()], [*labels, *OUTCOMES])
     return figure
 

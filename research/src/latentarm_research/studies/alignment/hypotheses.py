@@ -24,6 +24,7 @@ from latentarm_research.studies.alignment.preset import (
     IDEAL,
     MANUAL,
     NO_ALIGN,
+    PAPER_MODEL,
     SINGLE_PRIORS,
     TOOL_SPACE,
     WITHOUT_PRIORS,
@@ -65,7 +66,7 @@ HYPOTHESES: Final = (
 
 
 def compare_conditions(results: Sequence[AlignmentErrors]) -> list[Tested]:
-    """Every claim, by hypothesis, then by model, then in the order of the results."""
+    """Every claim, by hypothesis, then in the order of the results."""
     return corrected_by_family(
         [
             _test(hypothesis.name, claim, result)
@@ -83,10 +84,9 @@ def _test(hypothesis: str, claim: Claim, result: AlignmentErrors) -> Tested:
     return Tested(
         hypothesis=hypothesis,
         claim=replace(claim, tasks=(result.cell.task,)),
-        family=result.cell.model,
+        family=PAPER_MODEL,
         where=f"noise {result.cell.noise:g}",
     ).of(values, reference, compare_means(values, reference, "less"))
 
 
-PAPER_MODEL: Final = "cae"  # the model of the paper's study
 RANDOM_ANSWERS: Final = 10  # answers at random, whose error with All Priors the curves are drawn beside

@@ -7,6 +7,9 @@ from typing import Final
 
 from latentarm_research.alignment.priors import NO_PRIORS, Priors
 
+PAPER_MODEL: Final = "cae"  # the model of the paper's study
+DRIVEN_MODEL: Final = "cvae"  # that the goals of the demo's table are driven to with
+
 
 @dataclass(frozen=True)
 class Curves:
@@ -23,8 +26,7 @@ class Curves:
 class Drives:
     """Drives to the goals of the demo's table by a simulated person with their own expectation."""
 
-    models: tuple[str, ...] = ("cvae",)  # kinds that are driven with
-    seeds: int = 3  # models of each kind, used in turn
+    seeds: int = 3  # models, used in turn
     episodes: int = 60  # demonstrations, of which a fifth trains no model: alignments are judged on it
     epochs: int = 16  # passes over the training pairs, at most
     answers: int = 10  # that an alignment is learned from, asked for as `latentarm align` does
@@ -37,8 +39,6 @@ class Preset:
     """Sizes of the study; where the paper gives a number, this is it."""
 
     name: str  # what it is called on the command line
-    # whose decoders alignments are learned for; the paper's alone where time counts
-    models: tuple[str, ...] = ("cae",)
     # demonstrations that train the decoder and that questions are about; a fifth of them is for validation
     # and decides which epoch is best
     episodes: int = 40
@@ -79,9 +79,7 @@ PRESETS: Final[dict[str, Preset]] = {
         ideal_runs=2,
         surroundings=300,
         curves=Curves(noises=(0.0,), answers=(1, 2, 4), networks=(2, 4), candidates=30),
-        drives=Drives(
-            models=("cvae",), seeds=1, episodes=12, epochs=2, answers=4, to_each_goal=1, limit_s=3.0
-        ),
+        drives=Drives(seeds=1, episodes=12, epochs=2, answers=4, to_each_goal=1, limit_s=3.0),
     ),
 }
 

@@ -13,7 +13,15 @@ from latentarm_research.alignment.training import FitConfig
 from latentarm_research.studies.alignment.cell import AlignmentErrors
 from latentarm_research.studies.alignment.curves import CurveResult
 from latentarm_research.studies.alignment.drives import DrivesResult
-from latentarm_research.studies.alignment.preset import ALL_PRIORS, CHOSEN, CONDITIONS, LEARNED, Stream, under
+from latentarm_research.studies.alignment.preset import (
+    ALL_PRIORS,
+    CHOSEN,
+    CONDITIONS,
+    LEARNED,
+    PAPER_MODEL,
+    Stream,
+    under,
+)
 from latentarm_research.studies.alignment.scene import LearnedDecoder, scene_of
 from latentarm_research.studies.series import Series
 
@@ -34,31 +42,31 @@ class AlignmentResults:
     """All results, in the order of the tables."""
 
     decoders: Sequence[LearnedDecoder]  # that the alignments stand on
-    results: Sequence[AlignmentErrors]  # the cells of the table, by task, model and noise
-    curves: Sequence[CurveResult]  # by noise, model and task
-    drives: Sequence[DrivesResult]  # one for each kind of model that was driven with
+    results: Sequence[AlignmentErrors]  # the cells of the table, by task and noise
+    curves: Sequence[CurveResult]  # by noise and task
+    drives: DrivesResult | None  # at the demo's table, where it was driven at
 
 
 def series_of(measured: AlignmentResults) -> list[Series]:
     """The errors of every run: the tables, then the curves."""
     found: list[Series] = []
-    for task, model in dict.fromkeys((one.cell.task, one.cell.model) for one in measured.results):
-        here = [one for one in measured.results if (one.cell.task, one.cell.model) == (task, model)]
-        found.append(Series(task, model, ENCODED, ERROR, np.array([here[0].encoded])))
+    for task in dict.fromkeys(one.cell.task for one in measured.results):
+        here = [one for one in measured.results if one.cell.task == task]
+        found.append(Series(task, PAPER_MODEL, ENCODED, ERROR, np.array([here[0].encoded])))
         found += [
-            Series(task, model, under(name, one.cell.noise), ERROR, one.errors[name])
+            Series(task, PAPER_MODEL, under(name, one.cell.noise), ERROR, one.errors[name])
             for one in here
             for name in CONDITIONS
         ]
     for one in measured.curves:
         cell, stopped = one.cell, under(f"{CHOSEN}, stopped", one.cell.noise)
         found += [
-            Series(cell.task, cell.model, under(_asked(choice, count), cell.noise), ERROR, values)
+            Series(cell.task, PAPER_MODEL, under(_asked(choice, count), cell.noise), ERROR, values)
             for choice, errors in one.errors.items()
             for count, values in errors.items()
         ]
-        found.append(Series(cell.task, cell.model, stopped, ANSWERS, one.stopped_after))
-        found.append(Series(cell.task, cell.model, stopped, ERROR, one.stopped_at))
+        found.append(Series(cell.task, PAPER_MODEL, stopped, ANSWERS, one.stopped_after))
+        found.append(Series(cell.task, PAPER_MODEL, stopped, ERROR, one.stopped_at))
     return found
 
 
@@ -70,26 +78,10 @@ def _asked(choice: str, count: int) -> str:
 def timings(measured: AlignmentResults) -> dict[str, object]:
     """How long everything took, s; cells ran side by side."""
     return {
-        "decoders": [
-            {"task": one.cell.task, "model": one.cell.model, "fit_s": one.fit_s} for one in measured.decoders
-        ],
+        "decoders": [{"task": one.cell.task, "fit_s": one.fit_s} for one in measured.decoders],
         "alignments": [
-            {
-                "task": one.cell.task,
-                "model": one.cell.model,
-                "noise": one.cell.noise,
-                "learn_s": dict(one.learn_s),
-            }
+            {"task": one.cell.task, "noise": one.cell.noise, "learn_s": dict(one.learn_s)}
             for one in measured.results
-        ],
-        "drives": [
-            {
-                "model": one.cell.model,
-                "fit_s": one.fit_s,
-                "align_s": one.align_s,
-                "drive_s": one.drive_s,
-            }
-            for one in measured.drives
         ],
     }
 
@@ -109,7 +101,6 @@ def time_alignment(learned: LearnedDecoder) -> dict[str, object]:
         calls = timeit.repeat(lambda: alignment(u, context), number=1, repeat=CALLS)
     return {
         "task": learned.cell.task,
-        "model": learned.cell.model,
         "answers": preset.answers,
         "steps": preset.steps,
         "all_priors_s": priors_s,

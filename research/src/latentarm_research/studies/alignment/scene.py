@@ -23,7 +23,7 @@ from latentarm.models.model import LatentActionModel
 from latentarm.robots.kinematics.chain import Chain
 from latentarm_research.alignment.preferences import ByPlace, HeightAndTilt, Imprecise
 from latentarm_research.alignment.training import FitConfig, FittedAlignments, fit_alignments
-from latentarm_research.studies.alignment.preset import Preset, Stream
+from latentarm_research.studies.alignment.preset import PAPER_MODEL, Preset, Stream
 from latentarm_research.studies.fitting import fit_model, validation_episodes
 from latentarm_research.studies.streams import generator, integer, sequence
 from latentarm_research.tasks.pouring.tasks import POURING_TASKS, at_bowl
@@ -49,9 +49,8 @@ class DecoderCell:
     """A decoder to be learned."""
 
     task: str  # a name of `POURING_TASKS`
-    model: str  # a name of `MODELS`
     preset: Preset  # sizes of the study
-    seed: int  # of the whole study; the same demonstrations come from it for every model
+    seed: int  # of the whole study
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,11 +75,6 @@ class AlignmentCell:
     def task(self) -> str:
         """Name of the task."""
         return self.learned.cell.task
-
-    @property
-    def model(self) -> str:
-        """Name of the decoder's model."""
-        return self.learned.cell.model
 
     @property
     def preset(self) -> Preset:
@@ -114,7 +108,7 @@ def demonstrate(cell: DecoderCell, stream: Stream) -> Demonstrations:
 def _fit(cell: DecoderCell, demonstrations: Demonstrations) -> LatentActionModel:
     preset = cell.preset
     return fit_model(
-        cell.model,
+        PAPER_MODEL,
         demonstrations,
         validation=validation_episodes(demonstrations),
         latent_dim=2,

@@ -15,13 +15,12 @@ from latentarm_research.studies.alignment import curves, drives, drives_tables, 
 from latentarm_research.studies.alignment import preset as conditions
 from latentarm_research.studies.alignment.cell import AlignmentErrors, measure_cell
 from latentarm_research.studies.alignment.curves import CurveResult, measure_curve
-from latentarm_research.studies.alignment.drives import DrivesResult, drive_cells, measure_drives
+from latentarm_research.studies.alignment.drives import DrivesResult, measure_drives
 from latentarm_research.studies.alignment.drives_learning import TASK, TURN_RAD, AlignedDriveCell
 from latentarm_research.studies.alignment.figures import conditions_figure, curves_figure, drives_figure
 from latentarm_research.studies.alignment.hypotheses import (
     HYPOTHESES,
     NEAR,
-    PAPER_MODEL,
     compare_conditions,
 )
 from latentarm_research.studies.alignment.preset import PRESETS, Preset
@@ -57,19 +56,16 @@ MEASURES: Final = {"conditions": measure_cell, "curve": measure_curve}
 
 def _measure(request: Request[Preset], grid: Grid) -> AlignmentResults:
     wanted = [
-        DecoderCell(task, model, request.preset, request.seed)
-        for model in request.preset.models
-        for task in request.tasks
-        if task in POURING_TASKS
+        DecoderCell(task, request.preset, request.seed) for task in request.tasks if task in POURING_TASKS
     ]
-    decoders = grid.run("Decoders", learn_decoder, wanted, lambda cell: f"{cell.task}, {cell.model}, decoder")
+    decoders = grid.run("Decoders", learn_decoder, wanted, lambda cell: f"{cell.task}, decoder")
     cells = _cells(request, decoders)
     found = grid.run("Alignments, learning curves and drives", measure, cells, _label)
     return AlignmentResults(
         decoders,
         results=sorted((one for one in found if isinstance(one, AlignmentErrors)), key=_place),
         curves=[one for one in found if isinstance(one, CurveResult)],
-        drives=[one for one in found if isinstance(one, DrivesResult)],
+        drives=next((one for one in found if isinstance(one, DrivesResult)), None),
     )
 
 
@@ -81,38 +77,37 @@ def measure(cell: AnyCell) -> AnyResult:
 def _cells(request: Request[Preset], decoders: Sequence[LearnedDecoder]) -> list[AnyCell]:
     """The second grid, its longest cells first."""
     preset = request.preset
-    papers = [one for one in decoders if one.cell.model == PAPER_MODEL]
     return [
-        *(drive_cells(preset, request.seed) if TASK in request.tasks else []),
-        *(AlignmentCell("curve", one, noise) for noise in preset.curves.noises for one in papers),
+        *([AlignedDriveCell(preset, request.seed)] if TASK in request.tasks else []),
+        *(AlignmentCell("curve", one, noise) for noise in preset.curves.noises for one in decoders),
         *(AlignmentCell("conditions", one, noise) for one in decoders for noise in preset.noises),
     ]
 
 
-def _place(result: AlignmentErrors) -> tuple[int, int, float]:
+def _place(result: AlignmentErrors) -> tuple[int, float]:
     """Where a cell stands in tables."""
-    cell = result.cell
-    return TASKS.index(cell.task), cell.preset.models.index(cell.model), cell.noise
+    return TASKS.index(result.cell.task), result.cell.noise
 
 
 def _label(cell: AnyCell) -> str:
     if isinstance(cell, AlignedDriveCell):
-        return f"{TASK}, {cell.model}, drives"
-    return f"{cell.task}, {cell.model}, noise {cell.noise:g}, {cell.kind}"
+        return f"{TASK}, drives"
+    return f"{cell.task}, noise {cell.noise:g}, {cell.kind}"
 
 
 def _report(request: Request[Preset], measured: AlignmentResults) -> Report:
     series = series_of(measured)
-    rows = [*(one.row(NAME) for one in series), *drives_tables.drives_rows(measured.drives)]
-    tests, drive_tests = compare_conditions(measured.results), drives_tables.compare_drives(measured.drives)
+    driven = [] if measured.drives is None else drives_tables.drives_rows(measured.drives)
+    rows = [*(one.row(NAME) for one in series), *driven]
+    tests = compare_conditions(measured.results)
     figures = _figures(measured)
     # While nothing else runs.
-    alone = [time_alignment(one) for one in measured.decoders if one.cell.model == PAPER_MODEL]
+    alone = [time_alignment(one) for one in measured.decoders]
     return Report(
         rows=rows,
-        page=_page(request, measured, tests, drive_tests, figures),
+        page=_page(request, measured, tests, figures),
         figures=figures,
-        tests=[*tests, *drive_tests],
+        tests=tests,
         documents={"runs.json": [one.as_json() for one in series]},
         timings={"one_alignment": alone, **timings(measured)},
         tables=tables.summary_tables(rows, request.preset),
@@ -124,16 +119,11 @@ def _figures(measured: AlignmentResults) -> "dict[str, Figure]":
     results, figures = measured.results, dict[str, "Figure"]()
     tasks = list(dict.fromkeys(result.cell.task for result in results))
     noises = list(dict.fromkeys(result.cell.noise for result in results))
-    models = list(dict.fromkeys(result.cell.model for result in results))
-    for name, shown in (
-        ("conditions", [model for model in models if model == PAPER_MODEL]),
-        ("conditions_other_models", [model for model in models if model != PAPER_MODEL]),
-    ):
-        if shown:
-            figures[name] = conditions_figure(results, shown, tasks, noises)
+    if results:
+        figures["conditions"] = conditions_figure(results, tasks, noises)
     if measured.curves:
         figures["curves"] = curves_figure(measured.curves, tasks)
-    if measured.drives:
+    if measured.drives is not None:
         figures["drives"] = drives_figure(measured.drives)
     return figures
 
@@ -142,18 +132,17 @@ def _page(
     request: Request[Preset],
     measured: AlignmentResults,
     tests: Sequence[Tested],
-    drive_tests: Sequence[Tested],
     figures: "dict[str, Figure]",
 ) -> str:
-    by_task: dict[str, dict[str, list[AlignmentErrors]]] = {}
+    by_task: dict[str, list[AlignmentErrors]] = {}
     for result in measured.results:
-        by_task.setdefault(result.cell.task, {}).setdefault(result.cell.model, []).append(result)
+        by_task.setdefault(result.cell.task, []).append(result)
     return render_page(
         "alignment/page.md",
         command=again(STUDY, request),
         preset=request.preset,
         tasks=list(by_task),
-        paper_model=PAPER_MODEL,
+        paper_model=conditions.PAPER_MODEL,
         figures=figures,
         speed_m_s=SPEED_M_S,
         turn_rad_s=TURN_RAD_S,
@@ -167,21 +156,19 @@ def _page(
         conditions=conditions,
         choices=curves,
         **judged_parts(HYPOTHESES, tests),
-        condition_tables={
-            task: {model: tables.condition_table(cells) for model, cells in of_task.items()}
-            for task, of_task in by_task.items()
-        },
+        condition_tables={task: tables.condition_table(cells) for task, cells in by_task.items()},
         settings=posterior,
         queries=queries,
         tool_space=tool_space,
         stopping_table=tables.stopping_table(measured.curves),
         curve_tables={_curve_name(curve): tables.curve_table(curve) for curve in measured.curves},
         drives=measured.drives,
+        driven_model=conditions.DRIVEN_MODEL,
         drive_conditions=drives,
         drive_words=drives_tables.WORDS,
-        drive_parts=drives_tables.drive_parts(measured.drives, drive_tests),
-        ways=drives_tables.axes_in_words(measured.drives[0]) if measured.drives else [],
-        goals=[goal.name for goal in TableTop().goals] if measured.drives else [],
+        drive_table=drives_tables.drive_table(measured.drives) if measured.drives else "",
+        ways=drives_tables.axes_in_words(measured.drives) if measured.drives else [],
+        goals=[goal.name for goal in TableTop().goals],
         reached_m=REACHED_DISTANCE,
         reached_deg=degrees(REACHED_ANGLE),
         turn_deg=degrees(TURN_RAD),
@@ -191,7 +178,7 @@ def _page(
 
 def _curve_name(curve: CurveResult) -> str:
     cell = curve.cell
-    return f"{look_of(cell.task).label}, {look_of(cell.model).label}, noise {cell.noise:g}"
+    return f"{look_of(cell.task).label}, noise {cell.noise:g}"
 
 
 STUDY: Final = Study(
@@ -202,6 +189,6 @@ STUDY: Final = Study(
     simulated=("arms", "people"),
     measure=_measure,
     report=_report,
-    figures=("conditions", "conditions_other_models", "curves", "drives"),
+    figures=("conditions", "curves", "drives"),
     documents=("runs.json",),
 )

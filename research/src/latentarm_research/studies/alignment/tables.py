@@ -11,8 +11,7 @@ from latentarm_research.studies.alignment.curves import CHOICES, CurveResult
 from latentarm_research.studies.alignment.drives import DRIVEN
 from latentarm_research.studies.alignment.drives_learning import TASK
 from latentarm_research.studies.alignment.drives_tables import REACHED, TIME
-from latentarm_research.studies.alignment.hypotheses import PAPER_MODEL
-from latentarm_research.studies.alignment.preset import CONDITIONS, Preset, under
+from latentarm_research.studies.alignment.preset import CONDITIONS, DRIVEN_MODEL, PAPER_MODEL, Preset, under
 from latentarm_research.studies.alignment.rows import ENCODED, ERROR
 from latentarm_research.studies.tables import grid_table, markdown_table, mean_and_sd, terminal_table
 
@@ -23,7 +22,7 @@ CORNER = "relative error, simulated"
 
 
 def condition_table(results: Sequence[AlignmentErrors]) -> str:
-    """The relative errors of one task and model: conditions down, noises across."""
+    """The relative errors of one task: conditions down, noises across."""
 
     def text(name: str, one: AlignmentErrors) -> str:
         return format_figure(one.encoded, None) if name == ENCODED else mean_and_sd(one.errors[name])
@@ -33,7 +32,7 @@ def condition_table(results: Sequence[AlignmentErrors]) -> str:
 
 
 def curve_table(curve: CurveResult) -> str:
-    """One task, model and noise: numbers of answers down, choices of questions across."""
+    """One task and noise: numbers of answers down, choices of questions across."""
 
     def text(count: int, choice: str) -> str | None:
         return mean_and_sd(curve.errors[choice][count]) if count in curve.errors[choice] else None
@@ -49,18 +48,17 @@ def stopping_table(curves: Sequence[CurveResult]) -> str:
     lines = [
         [
             look_of(one.cell.task).label,
-            look_of(one.cell.model).label,
             f"{one.cell.noise:g}",
             mean_and_sd(one.stopped_after),
             mean_and_sd(one.stopped_at),
         ]
         for one in curves
     ]
-    return markdown_table(["", "model", "noise", "answers", "relative error"], lines)
+    return markdown_table(["", "noise", "answers", "relative error"], lines)
 
 
 def summary_tables(rows: Sequence[Row], preset: Preset) -> "list[Table]":
-    """A table per task with the paper's model, conditions down, noises across, and one per driven model."""
+    """A table per task with the paper's model, conditions down, noises across, and one of the drives."""
     found = {(row.task, row.model, row.measure, row.condition): row for row in rows}
 
     def text(*place: str) -> str:
@@ -78,9 +76,9 @@ def summary_tables(rows: Sequence[Row], preset: Preset) -> "list[Table]":
         )
         for task in dict.fromkeys(str(row.task) for row in rows if row.task != TASK)
     ]
-    for model in dict.fromkeys(str(row.model) for row in rows if row.task == TASK):
-        measures = [measure_name(found[TASK, model, name, DRIVEN[0]]) for name in (REACHED, TIME)]
-        lines = [[name, text(TASK, model, REACHED, name), text(TASK, model, TIME, name)] for name in DRIVEN]
-        title = f"Drives at the table, {look_of(model).label}, simulated"
+    if (TASK, DRIVEN_MODEL, REACHED, DRIVEN[0]) in found:
+        measures = [measure_name(found[TASK, DRIVEN_MODEL, name, DRIVEN[0]]) for name in (REACHED, TIME)]
+        lines = [[name, *(text(TASK, DRIVEN_MODEL, one, name) for one in (REACHED, TIME))] for name in DRIVEN]
+        title = f"Drives at the table, {look_of(DRIVEN_MODEL).label}, simulated"
         tables.append(terminal_table(title, ["mean ± SD", *measures], lines))
     return tables
