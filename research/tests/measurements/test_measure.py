@@ -34,8 +34,8 @@ def required(name: str, tmp_path: Path) -> list[object]:
 
 
 SLOW = {"clearance", "zones", "help", "way-back", "calibration"}
-# One needs a trained run and a Chromium (tests/web/browser/test_fault_times.py), one a log that is not ours.
-ELSEWHERE = {"page-stops", "people"}
+# Two need a trained run and a Chromium (tests/web/browser/test_fault_times.py), one a log that is not ours.
+ELSEWHERE = {"page-stops", "page-latency", "people"}
 
 
 @pytest.mark.parametrize(

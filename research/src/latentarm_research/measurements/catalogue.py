@@ -65,6 +65,14 @@ class PageStops:
 
 
 @dataclass(frozen=True)
+class PageLatency:
+    """Options of ``page-latency``."""
+
+    run: Annotated[Path, arg(help="A trained run, which `latentarm teleop` serves.")]
+    presses: Annotated[int, arg(help="Of arrow keys.")] = 500
+
+
+@dataclass(frozen=True)
 class Help:
     """Options of ``help``."""
 
@@ -141,6 +149,11 @@ MEASUREMENTS: Final[Mapping[str, Measurement]] = {
         "Measure how fast the page stops the arm when browser, network or server fail.",
         PageStops,
         {"tries": 1, "faults": ("page closed",)},
+    ),
+    "page-latency": Measurement(
+        "Measure how long after a key press the page shows the push and the arm's response.",
+        PageLatency,
+        {"presses": 4},
     ),
     "help": Measurement(
         "Measure what each level of help on the page is worth to simulated people, and what it costs.",

@@ -44,6 +44,8 @@ MOVING_S: Final = 0.4
 START_S: Final = 60.0
 MOST_STARTS: Final = 10
 
+DRAWN: Final = "document.querySelector('.label') && document.querySelector('#status[data-phase=disengaged]')"
+
 DRIVE_SOCKET: Final = """{
   const Socket = window.WebSocket;
   window.WebSocket = class extends Socket {
@@ -155,9 +157,7 @@ def served(run: Path, out: Path) -> "Generator[tuple[subprocess.Popen[bytes], st
 
 def hold_stick(tab: Tab) -> None:
     """Enable the arm, and push the stick until it has moved for a while; an episode is recorded of it."""
-    if not tab.wait(
-        "document.querySelector('.label') && document.querySelector('#status[data-phase=disengaged]')", 30.0
-    ):
+    if not tab.wait(DRAWN, 30.0):
         raise UserError("The page does not come up: " + str(tab.evaluate("document.body.innerText"))[:500])
     send(tab, "ask_to_drive")
     send(tab, "reset")
