@@ -13,7 +13,7 @@ import { say } from "../layout/words.js";
  * @param {string} [where] address of the scene; that of what is driven now if left out
  */
 export async function attachViews(settings, without, loaded, where = "") {
-  const caption = /** @type {HTMLElement} */ (byId("view-front").querySelector("figcaption"));
+  const caption = /** @type {HTMLElement} */ (byId("view-front").querySelector("figcaption span"));
   const name = () => setText(caption, say(settings.values.seat === "facing" ? "views.front" : "views.shoulder"));
   settings.addEventListener("change", name);
   name();

@@ -105,6 +105,7 @@ export class Drawing {
     this._ghosts.show(predicted.paths, pressed, wanted.showGhosts, clear);
     this._ring.show(predicted.ring, wanted.showGhosts, clear);
     this._lookFrom(wanted.seat);
+    this._approach(tool, thing, predicted.paths);
     if (moved) this._views.invalidate();
     else this._views.invalidateSoon(turned);
     return moved;
@@ -219,17 +220,30 @@ export class Drawing {
   /** How much of arrows and ring is to be seen with the tool there. @param {THREE.Vector3} tool @param {string | null} thing */
   _clearOf(tool, thing) {
     const places = this._scene.goals.map((_, index) => this._scene.markers.placeOf(index));
-    const wanted = thing === null ? null : this._scene.things.placeOf(thing);
+    const wanted = this._placeOf(thing);
     const nearest = Math.min(...[...places, ...(wanted ? [wanted] : [])].map((place) => place.distanceTo(tool)));
     const [faded, clear] = FADE_M;
     return FADED + (1 - FADED) * Math.min(Math.max((nearest - faded) / (clear - faded), 0), 1);
   }
 
+  /** Where a thing or a goal of the task is, m. @param {string | null} name */
+  _placeOf(name) {
+    const goal = this._scene.goals.findIndex((one) => one.name === name);
+    return goal < 0 ? name === null ? null : this._scene.things.placeOf(name) : this._scene.markers.placeOf(goal);
+  }
+
+  /** Show from close by what the tool is near, with its arrows. @param {THREE.Vector3} tool @param {string | null} thing @param {Predicted["paths"]} paths */
+  _approach(tool, thing, paths) {
+    const place = this._placeOf(thing);
+    const tips = Object.values(paths).flatMap((path) => (path ? [new THREE.Vector3(...path[path.length - 1])] : []));
+    this._views.approach(place ? [tool, place, ...tips] : []);
+  }
+
   /** @param {Values["seat"]} seat */
   _lookFrom(seat) {
-    if (!this._first && this._views.seat === seat) return;
+    if (!this._first && this._views.aim.seat === seat) return;
     this._first = false;
-    this._views.seat = seat;
+    this._views.aim.seat = seat;
     this._scene.advance(performance.now());
     this._views.layOut();
   }

@@ -1,26 +1,34 @@
-/** Small texts that stay next to points of the scene, in both views. */
+/** Texts about points of the scene: names at the edge of the large view, with a line to what they name, and marks of arrows in both. */
 
-/** @import * as THREE from "three" */
+import * as THREE from "../three/three.module.min.js";
+import { ROW_PX, layOutNames } from "./label_layout.js";
+
+/** @import {Box, Name, Place} from "./label_layout.js" */
 /** @import {View, Views} from "./views.js" */
 
-const LINE_PX = 22;
-const RAISED_PX = 24;
+/** How large what is named and the tool are, m, and at least, px. */
+const THING_M = 0.03;
+const LEAST_PX = 9;
+/** Where an arrow is kept free, as shares of its length. */
+const ALONG = [0.25, 0.5, 0.75];
+/** The corners of a view that others use: its name, and the button under it, px. */
+const CAPTION = { wide: 92, high: 32 };
+const BUTTON_PX = 52;
 
 /**
  * @typedef {object} Label
  * @property {THREE.Vector3 | null} point
  * @property {boolean} shown
- * @property {boolean} told whether it is never cut to its mark
- * @property {boolean} ghost whether it lies on its point, however close others are
+ * @property {boolean} told whether it goes before the others
+ * @property {boolean} ghost whether it lies on its point
  * @property {string} text
  * @property {number} opacity
  * @property {number} wide px
  * @property {number} narrow its width where it is cut, px
  * @property {HTMLElement[]} elements one in each view
- * @property {string[]} at where each of them is
+ * @property {HTMLElement[]} leaders likewise
+ * @property {(Place | null)[]} places likewise
  */
-
-/** @typedef {{x: number, y: number, wide: number}} Box */
 
 export class Labels {
   /** @param {Views} views */
@@ -30,6 +38,8 @@ export class Labels {
     this._all = new Map();
     /** Measures texts without laying out the page. */
     this._ruler = /** @type {CanvasRenderingContext2D} */ (document.createElement("canvas").getContext("2d"));
+    /** @type {WeakMap<HTMLElement, string>} How elements were moved last. */
+    this._moved = new WeakMap();
     views.beforeFrame.push(() => views.views.forEach((view, index) => this._place(view, index)));
   }
 
@@ -38,13 +48,13 @@ export class Labels {
    * @param {THREE.Vector3 | null} point
    * @param {string} text
    * @param {{shown?: boolean, ghost?: string, thing?: number, mark?: string, told?: boolean, share?: string, opacity?: number}} [look]
-   *   a share is left out where there is little room, and all but the mark of a text that is not told where it would cover another one
+   *   a share is left out where there is little room, and all but the mark where a name has none
    */
   set(key, point, text, { shown = true, ghost, thing, mark = "", told = true, share, opacity = 1 } = {}) {
     const label = this._all.get(key) ?? this._make(key, ghost, thing);
     label.point = point?.clone() ?? null;
     label.shown = shown && point !== null;
-    label.told = told || !mark;
+    label.told = told;
     if (label.opacity !== opacity) for (const { style } of label.elements) style.opacity = String(opacity);
     label.opacity = opacity;
     const [whole, cut] = [[mark, text, share], [mark, share]].map((parts) => parts.filter(Boolean).join(" "));
@@ -58,26 +68,33 @@ export class Labels {
       if (share) element.dataset.share = share;
       else delete element.dataset.share;
     }
-    [label.wide, label.narrow] = this._widths(label, [whole, cut]);
+    [label.wide, label.narrow] = this._widths(label, [whole, mark ? cut : whole]);
   }
 
   /** @param {string} key @param {string} [ghost] @param {number} [thing] @returns {Label} */
   _make(key, ghost, thing) {
-    const elements = this._views.views.map((view) => {
+    const made = (/** @type {View} */ view, /** @type {string} */ name) => {
       const element = document.createElement("span");
-      element.className = ghost ? "label ghost" : "label";
+      element.className = name;
+      element.hidden = true;
       if (ghost) element.dataset.ghost = ghost;
       if (thing) element.dataset.thing = String(thing);
       view.labels.append(element);
       return element;
-    });
-    const label = { point: null, shown: true, told: true, ghost: Boolean(ghost), text: "", opacity: 1, wide: 0, narrow: 0, elements, at: [] };
+    };
+    const { views } = this._views;
+    const leaders = ghost ? [] : views.map((view) => made(view, "leader"));
+    const elements = views.map((view) => made(view, ghost ? "label ghost" : "label"));
+    const label = {
+      point: null, shown: true, told: true, ghost: Boolean(ghost), text: "", opacity: 1, wide: 0, narrow: 0, elements, leaders, places: views.map(() => null),
+    };
     this._all.set(key, label);
     return label;
   }
 
   /** How wide a label is with each text, px. @param {Label} label @param {string[]} texts */
   _widths({ elements: [element], ghost }, texts) {
+    element.hidden = false;
     const style = getComputedStyle(element);
     if (ghost) return texts.map(() => parseFloat(style.width));
     this._ruler.font = `${style.fontWeight} ${style.fontSize} ${style.fontFamily}`;
@@ -88,50 +105,68 @@ export class Labels {
 
   /** @param {View} view @param {number} index */
   _place(view, index) {
-    /** @type {Box[]} */
-    const placed = [];
-    // Announced labels come first: they stay whole.
-    const labels = [...this._all.values()].sort((a, b) => Number(b.told) - Number(a.told));
-    for (const label of labels) {
-      const { point, shown, elements } = label;
-      const element = elements[index];
-      if (element.hidden === shown) element.hidden = !shown;
-      if (!shown || point === null) continue;
-      const { x, y } = label.ghost ? this._within(view, label, point) : this._beside(view, label, point, element, placed);
-      const transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) translate(-50%, -50%)`;
-      if (label.at[index] !== transform) element.style.transform = label.at[index] = transform;
+    const all = [...this._all.values()];
+    const arrows = all.filter(({ ghost, shown }) => ghost && shown);
+    for (const label of arrows) this._move(label.elements[index], this._within(view, label));
+    const named = view === this._views.seen[0] ? all.filter(({ ghost, shown, point }) => !ghost && shown && point !== null).sort((a, b) => Number(b.told) - Number(a.told)) : [];
+    for (const label of all) {
+      const shown = label.ghost ? label.shown : named.includes(label);
+      if (label.elements[index].hidden === shown) label.elements[index].hidden = !shown;
+      if (!shown && label.leaders[index]) label.leaders[index].hidden = true;
     }
+    const names = named.map(({ point, wide, narrow, places }) => (
+      { ...this._views.project(view, /** @type {THREE.Vector3} */ (point)), wide, narrow, before: places[index] }
+    ));
+    layOutNames(names, this._kept(view, named, arrows), view).forEach((place, at) => this._put(named[at], names[at], place, index));
   }
 
-  /** On its point; near the edge it is seen whole. @param {View} view @param {Label} label @param {THREE.Vector3} point */
-  _within(view, { wide }, point) {
-    const { x, y } = this._views.project(view, point);
+  /** @param {Label} label @param {Name} name @param {Place | null} place @param {number} index */
+  _put(label, { x, y }, place, index) {
+    label.places[index] = place;
+    const [element, leader] = [label.elements[index], label.leaders[index]];
+    element.hidden = place === null;
+    leader.hidden = !place?.leader;
+    if (place === null) return;
+    element.classList.toggle("cut", place.cut);
+    const wide = place.cut ? label.narrow : label.wide;
+    this._move(element, { x: place.left + wide / 2, y: place.top + ROW_PX / 2 - 1 });
+    if (!place.leader) return;
+    const [across, along] = [x - place.leader.x, y - place.leader.y];
+    const length = Math.max(Math.hypot(across, along) - LEAST_PX, 0);
+    const turned = `translate(${place.leader.x.toFixed(1)}px, ${place.leader.y.toFixed(1)}px) rotate(${Math.atan2(along, across).toFixed(3)}rad)`;
+    leader.style.transform = `${turned} scaleX(${length.toFixed(1)})`;
+  }
+
+  /** @param {HTMLElement} element @param {{x: number, y: number}} middle px */
+  _move(element, { x, y }) {
+    const transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) translate(-50%, -50%)`;
+    if (this._moved.get(element) === transform) return;
+    element.style.transform = transform;
+    this._moved.set(element, transform);
+  }
+
+  /** What no name may cover: the tool, the things, the arrows along their way, and the corners. @param {View} view @param {Label[]} named @param {Label[]} arrows @returns {Box[]} */
+  _kept(view, named, arrows) {
+    const about = (/** @type {THREE.Vector3} */ point, size = THING_M, least = LEAST_PX) => {
+      const { x, y, perMetre } = this._views.project(view, point);
+      const half = Math.max(size * perMetre, least);
+      return { left: x - half, top: y - half, right: x + half, bottom: y + half };
+    };
+    const { tool } = this._views;
+    const ways = arrows.flatMap(({ point, wide }) => {
+      return point ? [about(point, 0, wide / 2), ...ALONG.map((share) => about(tool.clone().lerp(point, share), 0))] : [];
+    });
+    return [
+      { left: 0, top: 0, right: CAPTION.wide, bottom: CAPTION.high },
+      { left: 0, top: view.height - BUTTON_PX, right: BUTTON_PX, bottom: view.height },
+      about(tool), ...named.flatMap(({ point }) => (point ? [about(point)] : [])), ...ways, ...this._views.covered,
+    ];
+  }
+
+  /** On its point; near the edge it is seen whole. @param {View} view @param {Label} label */
+  _within(view, { wide, point }) {
+    const { x, y } = this._views.project(view, /** @type {THREE.Vector3} */ (point));
     const clamped = (/** @type {number} */ at, /** @type {number} */ size) => Math.min(Math.max(at, wide / 2), size - wide / 2);
     return { x: clamped(x, view.width), y: clamped(y, view.height) };
-  }
-
-  /**
-   * Above its point, where it covers no other one.
-   *
-   * @param {View} view
-   * @param {Label} label
-   * @param {THREE.Vector3} point
-   * @param {HTMLElement} element
-   * @param {Box[]} placed those before it; it is added
-   */
-  _beside(view, { told, wide, narrow }, point, element, placed) {
-    const seen = this._views.project(view, point);
-    const covered = (/** @type {Box} */ box) =>
-      placed.find((other) => Math.abs(other.y - box.y) < LINE_PX && Math.abs(other.x - box.x) < (other.wide + box.wide) / 2);
-    const within = (/** @type {number} */ size) => Math.min(Math.max(seen.x, size / 2 + 2), view.width - size / 2 - 2);
-    let y = seen.y - RAISED_PX;
-    const cut = !told && covered({ x: within(wide), y, wide }) !== undefined;
-    if (element.classList.contains("cut") !== cut) element.classList.toggle("cut", cut);
-    const size = cut ? narrow : wide;
-    const x = within(size);
-    // Those that would cover each other are stacked.
-    for (let under = covered({ x, y, wide: size }); under; under = covered({ x, y, wide: size })) y = under.y - LINE_PX;
-    placed.push({ x, y, wide: size });
-    return { x, y };
   }
 }

@@ -9,12 +9,14 @@ export function merged(parts) {
   const vertices = parts.reduce((sum, { geometry }) => sum + geometry.attributes.position.count, 0);
   const corners = parts.reduce((sum, { geometry }) => sum + indexOf(geometry).count, 0);
   const [positions, normals, colours] = [1, 2, 3].map(() => new Float32Array(3 * vertices));
+  const places = new Float32Array(2 * vertices);
   const index = new Uint32Array(corners);
   let [vertex, corner] = [0, 0];
   for (const { geometry, at, colour } of parts) {
     const moved = geometry.clone().applyMatrix4(at);
     positions.set(moved.attributes.position.array, 3 * vertex);
     normals.set(moved.attributes.normal.array, 3 * vertex);
+    if (geometry.attributes.uv) places.set(geometry.attributes.uv.array, 2 * vertex);
     const own = indexOf(moved).array;
     for (let one = 0; one < own.length; one += 1) index[corner + one] = own[one] + vertex;
     corner += own.length;
@@ -26,6 +28,7 @@ export function merged(parts) {
   all.setAttribute("position", new THREE.BufferAttribute(positions, 3));
   all.setAttribute("normal", new THREE.BufferAttribute(normals, 3));
   all.setAttribute("color", new THREE.BufferAttribute(colours, 3));
+  all.setAttribute("uv", new THREE.BufferAttribute(places, 2));
   all.setIndex(new THREE.BufferAttribute(index, 1));
   return all;
 }

@@ -4,6 +4,7 @@ import * as THREE from "../three/three.module.min.js";
 import { colour } from "./colours.js";
 import { GoalMarkers } from "./goal_markers.js";
 import { groupOf, meshGeometry, place } from "./shapes.js";
+import { Shadows } from "./shadows.js";
 import { Table } from "./table.js";
 import { Things } from "./things.js";
 import { ToolMarker } from "./tool_marker.js";
@@ -17,6 +18,8 @@ import { Zones } from "./zones.js";
 /** States come about this far apart, ms; poses glide for no longer. */
 const LONGEST_GLIDE_MS = 60;
 const FRAME_MS = 16;
+/** How wide the shadow of a link is, from its middle, m. */
+const LINK_M = 0.09;
 
 export class ArmScene {
   /** @param {SceneDescription} description @param {Meshes} meshes @param {string} where their address */
@@ -40,6 +43,7 @@ export class ArmScene {
     this.goals = description.goals;
     this.things = this._thingsOf(description);
     this.markers = this._markersOf(description);
+    this._shades = new Shadows(2 * this._bodies.length + description.things.length);
     this._shadowMaterial = new THREE.MeshLambertMaterial({
       // Behind what it coincides with.
       transparent: true, opacity: 0.4, depthWrite: false, polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 2,
@@ -58,7 +62,7 @@ export class ArmScene {
     const sun = new THREE.DirectionalLight(0xffffff, 1.7);
     sun.position.set(0.6, -0.8, 1.6);
     this.scene.add(new THREE.HemisphereLight(0xffffff, 0x8a98a0, 2.1), sun);
-    this.scene.add(...this._bodies, ...this.things.objects, ...this._table.objects, ...this.zones.objects, this._marker.object, ...this.markers.objects, this.trail.object);
+    this.scene.add(...this._bodies, ...this.things.objects, ...this._table.objects, this._shades.object, ...this.zones.objects, this._marker.object, ...this.markers.objects, this.trail.object);
     this.repaint();
   }
 
@@ -87,7 +91,7 @@ export class ArmScene {
 
   /** @param {SceneDescription} description */
   _thingsOf({ things, grains }) {
-    return new Things(things, grains, this._meshes);
+    return new Things(things, grains, this._meshes, new Set(this.goals.map(({ name }) => name)));
   }
 
   /** @param {SceneDescription} description */
@@ -132,9 +136,21 @@ export class ArmScene {
     });
     this.things.advance(share);
     this.markers.follow();
+    this._shade();
     this.tool.lerpVectors(this._toolFrom, this._toolTo, share);
     this._marker.moveTo(this.tool, this.things.heightUnder(this.tool, this._table.height));
     return share < 1;
+  }
+
+  /** Shadows under the links, from joint to joint, and under the things. */
+  _shade() {
+    const links = this._bodies.flatMap(({ position }, index) => {
+      const before = this._bodies[Math.max(index - 1, 0)].position;
+      return [position, position.clone().lerp(before, 0.5)].map((at) => ({ at, radius: LINK_M }));
+    });
+    this._shades.show([...links, ...this.things.footprints].map(({ at, radius }) => (
+      { at, radius, floor: this.things.heightUnder(at, this._table.height) }
+    )));
   }
 
   /** Both fingers, with this opening between them. @param {number} width m */

@@ -13,9 +13,10 @@ import { merged } from "./merged.js";
  *
  * @param {Geom[]} geoms
  * @param {Meshes} meshes
+ * @param {boolean} [food] whether it has the grain of food
  */
-export function groupOf(geoms, meshes) {
-  return standing([{ geoms, pose: [0, 0, 0, 1, 0, 0, 0] }], meshes);
+export function groupOf(geoms, meshes, food = false) {
+  return standing([{ geoms, pose: [0, 0, 0, 1, 0, 0, 0] }], meshes, food);
 }
 
 /**
@@ -23,8 +24,9 @@ export function groupOf(geoms, meshes) {
  *
  * @param {{geoms: Geom[], pose: number[]}[]} bodies
  * @param {Meshes} meshes
+ * @param {boolean} [food]
  */
-export function standing(bodies, meshes) {
+export function standing(bodies, meshes, food = false) {
   const parts = bodies.flatMap(({ geoms, pose }) => geoms.flatMap((geom) => {
     const geometry = geometryOf(geom, meshes);
     const at = matrixOf(pose).multiply(matrixOf([...geom.pos, ...geom.quat]));
@@ -32,10 +34,35 @@ export function standing(bodies, meshes) {
   }));
   const group = new THREE.Group();
   for (const opacity of new Set(parts.map(({ alpha }) => alpha))) {
-    const material = new THREE.MeshLambertMaterial({ vertexColors: true, transparent: opacity < 1, opacity });
+    const material = new THREE.MeshLambertMaterial({ vertexColors: true, transparent: opacity < 1, opacity, map: food ? grain() : null });
     group.add(new THREE.Mesh(merged(parts.filter(({ alpha }) => alpha === opacity)), material));
   }
   return group;
+}
+
+const GRAIN_PX = 64;
+const SPECKS = 260;
+/** @type {THREE.CanvasTexture | null} */
+let made = null;
+
+/** Light and dark specks, which nothing smooth and clean has. */
+function grain() {
+  if (made) return made;
+  const canvas = document.createElement("canvas");
+  canvas.width = canvas.height = GRAIN_PX;
+  const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
+  context.fillStyle = "#e8e8e8";
+  context.fillRect(0, 0, GRAIN_PX, GRAIN_PX);
+  for (let speck = 0; speck < SPECKS; speck += 1) {
+    // Scattered, and the same on every page.
+    const [x, y] = [0.754877666, 0.569840296].map((step) => GRAIN_PX * ((speck * step) % 1));
+    context.fillStyle = speck % 2 ? "#ffffff" : "#c4bdb2";
+    context.beginPath();
+    context.arc(x, y, 1 + (speck % 3), 0, 2 * Math.PI);
+    context.fill();
+  }
+  made = new THREE.CanvasTexture(canvas);
+  return made;
 }
 
 /** @param {number[]} pose x, y, z (m) and a quaternion w, x, y, z */

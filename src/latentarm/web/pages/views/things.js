@@ -9,10 +9,10 @@ import { groupOf, materialOf, place, standing } from "./shapes.js";
 /** @import {Meshes} from "./shapes.js" */
 
 export class Things {
-  /** @param {Thing[]} things @param {Grains[]} grains @param {Meshes} meshes */
-  constructor(things, grains, meshes) {
-    this._things = things.map(({ pose, geoms }) => {
-      const group = groupOf(geoms, meshes);
+  /** @param {Thing[]} things @param {Grains[]} grains @param {Meshes} meshes @param {Set<string>} food names of what may be meant */
+  constructor(things, grains, meshes, food) {
+    this._things = things.map(({ name, pose, geoms }) => {
+      const group = groupOf(geoms, meshes, food.has(name));
       place(group, pose);
       return group;
     });
@@ -27,13 +27,14 @@ export class Things {
     const boxes = this._things.map((thing) => new THREE.Box3().setFromObject(thing));
     /** Corners of what there is at first: a thing that falls off the table does not take the view along. */
     this.extent = boxes.flatMap(({ min, max }) => [min, max]);
+    this._radii = boxes.map(({ min, max }) => 0.6 * Math.max(max.x - min.x, max.y - min.y));
     /** Fixed things. */
     this._standing = boxes.filter((_, index) => things[index].fixed);
     // Soft parts are added only now: the tool goes into it, and nothing stands on it.
     this._things.forEach((group, index) => {
       const { fixed, soft = [] } = things[index];
       if (fixed) group.clear();
-      else group.add(groupOf(soft, meshes));
+      else group.add(groupOf(soft, meshes, food.has(things[index].name)));
     });
     const still = things.filter(({ fixed }) => fixed).map(({ pose, geoms, soft = [] }) => ({ pose, geoms: [...geoms, ...soft] }));
     this.objects = [...this._things, ...this._grains, standing(still, meshes)];
@@ -46,6 +47,11 @@ export class Things {
   /** Where a thing is shown now, m; null if nothing has that name. @param {string} name */
   placeOf(name) {
     return this._things[this._names.indexOf(name)]?.position ?? null;
+  }
+
+  /** Where things are, and how wide from their middle, m. */
+  get footprints() {
+    return this._things.map(({ position }, index) => ({ at: position, radius: this._radii[index] }));
   }
 
   /** How high what stands under a point is, m; the table where nothing does. @param {THREE.Vector3} point @param {number} table m */

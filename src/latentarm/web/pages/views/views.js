@@ -1,34 +1,22 @@
-/** Two cameras on one scene: front and side, drawn on one canvas, only when something has changed. */
+/** Two views of one scene, drawn on one canvas, only when something has changed. */
 
 import * as THREE from "../three/three.module.min.js";
+import { Aim, FOV_DEG } from "./aim.js";
 import { SOFTWARE } from "./fineness.js";
+import { PixelShare } from "./pixel_share.js";
 
-const FOV_DEG = 32;
-/** Room around the outermost points: the arm is thick, and labels are next to goals. */
-const MARGIN_M = 0.13;
 /** How often a frame's end is checked, ms. */
-const LOOK_MS = 8;
-/** Frames may hold others up for so long, ms, less what each frame in time takes back; then the drawing gets coarser. */
-const MOST_HELD_MS = 640;
-const TAKEN_BACK_MS = 16;
-const COARSEST = 0.5;
+const LOOK_MS = 4;
 const LONGEST_COMPILING_MS = 3000;
-/** So far out, as a share of half a view, the tool is about to leave it. */
-const EDGE = 0.92;
 /** Without a graphics processor, pixels are dear from the start. */
 const SOFTWARE_SHARE = 0.7;
-
 /** Work for the next frame waits no longer than this, ms. */
 const SOON_MS = 120;
+/** Without a graphics processor, the small view is drawn so much less often, ms, and never in the first frame of a motion. */
+const SMALL_MS = 150;
 
 /** @import {ArmScene} from "./scene.js" */
-
-/** Where each camera looks from, as directions from the middle of the scene. @type {Record<string, Record<"front" | "side", [number, number, number]>>} */
-const DIRECTIONS = {
-  facing: { front: [1, 0, 0.42], side: [0.08, -1, 0.22] },
-  behind: { front: [-1, -0.55, 0.75], side: [0.08, -1, 0.22] },
-  flat: { front: [0, -0.01, 1], side: [0, -1, 0.8] },
-};
+/** @import {Box} from "./label_layout.js" */
 
 /**
  * @typedef {object} View
@@ -51,23 +39,28 @@ export class Views {
   constructor(canvas, elements, scene) {
     this._canvas = canvas;
     this._scene = scene;
+    this.aim = new Aim(scene);
     /** Whether there is time for frames between two states. */
     this.smooth = !SOFTWARE;
-    this._renderer = new THREE.WebGLRenderer({ canvas, antialias: !SOFTWARE, alpha: true, powerPreference: "low-power" });
+    // Where the small view is not drawn each time, the frame before is kept.
+    this._renderer = new THREE.WebGLRenderer({
+      canvas, antialias: !SOFTWARE, alpha: true, powerPreference: "low-power", preserveDrawingBuffer: SOFTWARE,
+    });
     this._renderer.setScissorTest(true);
-    this._ratio = Math.min(devicePixelRatio, 2) * (SOFTWARE ? SOFTWARE_SHARE : 1);
+    this._pixels = new PixelShare();
     /** @type {WebGL2RenderingContext} */
     this._gl = /** @type {WebGL2RenderingContext} */ (this._renderer.getContext());
     /** @type {WebGLSync | null} Passed by the graphics processor when the last frame is done. */
     this._fence = null;
-    this._heldMs = 0;
     this._pending = false;
+    /** When there was a frame last, ms. */
+    this._drawnAt = -Infinity;
+    /** When the small view was drawn last, ms; -Infinity where it must be in the next frame. */
+    this._smallAt = -Infinity;
     /** Whether the page shows it. */
     this._shown = true;
     /** @type {ReturnType<typeof setTimeout> | undefined} */
     this._soon = undefined;
-    /** @type {"facing" | "behind"} */
-    this.seat = "facing";
     /** @type {View[]} */
     this.views = /** @type {("front" | "side")[]} */ (["front", "side"]).map((name) => ({
       name,
@@ -77,8 +70,6 @@ export class Views {
       left: 0, bottom: 0, width: 0, height: 0,
     }));
     for (const view of this.views) view.camera.up.set(0, 0, 1);
-    /** @type {THREE.Vector3[]} Where the tool was when it would have left a view, m: cameras hold these too. */
-    this._reached = [];
     /** @type {(() => void)[]} Called before each frame, to move labels. */
     this.beforeFrame = [];
     /** @type {(() => void)[]} Called after each frame. */
@@ -123,9 +114,16 @@ export class Views {
     this._soon ??= setTimeout(() => this.invalidate(), SOON_MS);
   }
 
-  /** The tool is somewhere else altogether: forget where it has been. */
+  /** Come close, where the first two of these are near each other. @param {THREE.Vector3[]} points m; none for never */
+  approach(points) {
+    if (!this.aim.approach(points)) return;
+    /** @type {HTMLElement} */ (this._canvas.parentElement).toggleAttribute("data-close", this.aim.close);
+    this.layOut();
+  }
+
+  /** The tool is somewhere else altogether. */
   forget() {
-    this._reached = [];
+    this.aim.forget();
     this.layOut();
   }
 
@@ -134,7 +132,7 @@ export class Views {
     const box = this._canvas.getBoundingClientRect();
     this._shown = Boolean(box.width && box.height);
     if (!this._shown) return;
-    this._renderer.setPixelRatio(this._ratio);
+    this._renderer.setPixelRatio(Math.min(devicePixelRatio, 2) * (SOFTWARE ? SOFTWARE_SHARE : 1) * this._pixels.share);
     this._renderer.setSize(box.width, box.height, false);
     for (const view of this.views) {
       const { element } = view;
@@ -144,89 +142,80 @@ export class Views {
       view.width = element.clientWidth;
       view.height = element.clientHeight;
     }
-    this._aim();
+    this._smallAt = -Infinity;
+    this.aim.turn(this.seen);
     this.invalidate();
   }
 
   /**
-   * Where a point is in a view, CSS pixels from its left upper corner.
+   * Where a point is in a view, CSS pixels from its left upper corner, and how many of them a metre has there.
    *
    * @param {View} view
-   * @param {THREE.Vector3} point
+   * @param {THREE.Vector3} point m
    */
-  project(view, point) {
-    const seen = point.clone().project(view.camera);
-    return { x: ((seen.x + 1) / 2) * view.width, y: ((1 - seen.y) / 2) * view.height };
+  project({ camera, width, height }, point) {
+    const seen = point.clone().project(camera);
+    const away = -point.clone().applyMatrix4(camera.matrixWorldInverse).z;
+    const perMetre = (height * camera.projectionMatrix.elements[5]) / (2 * away);
+    return { x: ((seen.x + 1) / 2) * width, y: ((1 - seen.y) / 2) * height, perMetre };
   }
 
-  /** The views for which the page has room. */
-  get _seen() {
-    return this.views.filter(({ width, height }) => width > 0 && height > 0);
+  /** The views for which the page has room, the largest first. */
+  get seen() {
+    return this.views.filter(({ width, height }) => width > 0 && height > 0).sort((one, other) => other.width * other.height - one.width * one.height);
   }
 
-  /** Turn both cameras to the scene, as near as holds all of it. */
-  _aim() {
-    const points = [...this._scene.extent(), ...this._reached];
-    const size = new THREE.Box3().setFromPoints(points).getSize(new THREE.Vector3());
-    const flat = size.z < 0.1 * Math.max(size.x, size.y);
-    const directions = DIRECTIONS[flat ? "flat" : this.seat];
-    for (const view of this._seen) {
-      const aspect = view.width / view.height;
-      const away = new THREE.Vector3(...directions[view.name]).normalize();
-      const right = new THREE.Vector3(0, 0, 1).cross(away).normalize();
-      const up = away.clone().cross(right);
-      const tall = Math.tan((FOV_DEG * Math.PI) / 360);
-      const [across, along] = [right, up].map((axis) => middleOf(points.map((point) => point.dot(axis))));
-      let nearest = -Infinity;
-      for (const point of points) {
-        const half = Math.max(
-          (Math.abs(point.dot(right) - across) + MARGIN_M) / (tall * aspect),
-          (Math.abs(point.dot(up) - along) + MARGIN_M) / tall,
-        );
-        nearest = Math.max(nearest, point.dot(away) + half);
-      }
-      view.camera.aspect = aspect;
-      view.camera.position.copy(right.multiplyScalar(across).addScaledVector(up, along).addScaledVector(away, nearest));
-      view.camera.lookAt(view.camera.position.clone().sub(away));
-      view.camera.updateProjectionMatrix();
-      view.camera.updateMatrixWorld();
-    }
+  /** What the small view covers of the large one, px from the left upper corner of that. @returns {Box[]} */
+  get covered() {
+    const [large, ...others] = this.seen;
+    return others.map(({ left, bottom, width, height }) => {
+      const [from, top] = [left - large.left, large.bottom + large.height - bottom - height];
+      return { left: from, top, right: from + width, bottom: top + height };
+    }).filter(({ left, top, right, bottom }) => left < large.width && right > 0 && top < large.height && bottom > 0);
   }
 
-  /** Step back where a point would leave a view. @param {THREE.Vector3} point m */
-  _keepInView(point) {
-    const seen = this._seen.every(({ camera }) => {
-      const { x, y } = point.clone().project(camera);
-      return Math.max(Math.abs(x), Math.abs(y)) < EDGE;
-    });
-    if (seen) return;
-    this._reached.push(point.clone());
-    this._aim();
+  /** Where the tool is shown, m. */
+  get tool() {
+    return this._scene.tool;
   }
 
   _frame() {
     // A frame on top of an unfinished one would hold up the page, and inputs with it.
     if (!this._finished()) {
-      this._hold();
+      if (this._pixels.held(LOOK_MS)) this.layOut();
+      setTimeout(() => this._frame(), LOOK_MS);
       return;
     }
     this._pending = false;
-    this._heldMs = Math.max(this._heldMs - TAKEN_BACK_MS, 0);
     clearTimeout(this._soon);
     this._soon = undefined;
-    const gliding = this._scene.advance(performance.now());
-    this._keepInView(this._scene.tool);
+    if (this._pixels.inTime()) this.layOut();
+    const now = performance.now();
+    const gliding = this._scene.advance(now);
+    this.aim.follow(this.seen);
     for (const call of this.beforeFrame) call();
-    for (const { left, bottom, width, height, camera } of this._seen) {
+    for (const { left, bottom, width, height, camera } of this._drawsSmall(now) ? this.seen : this.seen.slice(0, 1)) {
       this._renderer.setViewport(left, bottom, width, height);
       this._renderer.setScissor(left, bottom, width, height);
       this._renderer.render(this._scene.scene, camera);
     }
+    this._drawnAt = now;
     const gl = this._gl;
     this._fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
     gl.flush();
     for (const call of this.afterFrame) call();
     if (gliding) this.invalidate();
+  }
+
+  /** Whether this frame has the small view too; it follows soon where not. @param {number} now ms */
+  _drawsSmall(now) {
+    const due = now - this._smallAt > SMALL_MS && now - this._drawnAt < SMALL_MS;
+    if (this.smooth || due || this._smallAt === -Infinity || this.covered.length) {
+      this._smallAt = now;
+      return true;
+    }
+    this._soon = setTimeout(() => this.invalidate(), SMALL_MS / 2);
+    return false;
   }
 
   _finished() {
@@ -237,20 +226,4 @@ export class Views {
     this._fence = null;
     return true;
   }
-
-  /** Draw as soon as the frame before is done; coarser, where that takes too long too often. */
-  _hold() {
-    this._heldMs += LOOK_MS;
-    if (this._heldMs > MOST_HELD_MS && this._ratio > COARSEST) {
-      this._ratio = Math.max(this._ratio * 0.75, COARSEST);
-      this._heldMs = 0;
-      this.layOut();
-    }
-    setTimeout(() => this._frame(), LOOK_MS);
-  }
-}
-
-/** The middle of what values there are. @param {number[]} values */
-function middleOf(values) {
-  return (Math.min(...values) + Math.max(...values)) / 2;
 }
