@@ -120,3 +120,37 @@ test("a gamepad's first button chooses, and its second goes on only with two swi
   settings.change({ panel: "stick" });
   assert.equal(scanner.press(0, true), false);
 });
+
+test("with long lists by rows a row is chosen first, Stop stands outside the rows, and Back leads to them", () => {
+  settings.change({ rows: true });
+  scanner.offer(choices("up", "down", "left", "right", "gripper", "mode", "stop", "more"));
+  assert.deepEqual(scanner.choices.map(({ id }) => id), ["row-up", "stop", "row-gripper"]);
+  assert.equal(scanner.choices[2].label, "gripper, mode, more");
+  scanner.choose();
+  assert.deepEqual(scanner.choices.map(({ id }) => id), ["up", "down", "left", "right", "stop", "row-up-back"]);
+  pass(1000);
+  scanner.choose();
+  assert.equal(scanner.moving, "down");
+  scanner.choose();
+  assert.equal(lit(), "down");
+  pass(4000);
+  scanner.choose();
+  assert.equal(lit(), "row-up");
+  scanner.offer(choices("enable", "stop"));
+  assert.equal(lit(), "enable");
+});
+
+test("the light begins at the direction that brings the task on, also after a motion, and no place changes", () => {
+  const directions = (best) => ["up", "down", "left", "stop"].map((id) => ({ id, label: id, first: id === best }));
+  scanner.offer([]);
+  scanner.offer(directions("left"));
+  assert.equal(lit(), "left");
+  pass(2000);
+  assert.equal(lit(), "up");
+  scanner.offer(directions("down"));
+  assert.equal(lit(), "up");
+  scanner.choose();
+  assert.equal(scanner.moving, "up");
+  scanner.choose();
+  assert.deepEqual([lit(), scanner.choices.map(({ id }) => id)], ["down", ["up", "down", "left", "stop"]]);
+});

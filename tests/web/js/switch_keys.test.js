@@ -102,17 +102,18 @@ test("the second key is a switch only where there are two", () => {
   assert.equal(lit(), "second");
 });
 
-test("10,000 presses at random, whatever is offered and has the focus: one is lit, and only that is done", () => {
+for (const rows of [false, true]) test(`10,000 presses at random, ${rows ? "by rows" : "in one list"}, whatever is offered and has the focus: one is lit, and only that is done`, () => {
   let seed = 1;
   const draw = (many) => {
     seed = (seed * 48271) % 2147483647;
     return seed % many;
   };
-  settings.change({ switches: "2" });
+  settings.change({ switches: "2", rows });
   const stops = choices("stop")[0];
   const lists = [
     choices("enable", "stop"), [...choices("a", "b"), groupOf("more", "More", () => choices("c", "d"), [stops]), stops], [stops],
-    choices("close", "stop"),
+    choices("close", "stop"), choices("up", "down", "left", "right", "gripper", "mode", "e", "f", "g", "h", "stop"),
+    [groupOf("long", "Long", () => choices(..."ijklmnopqrst"), [stops]), stops],
   ];
   const kinds = ["button", "summary", "select", "a", "none"].map((kind) => new FakeElement(kind));
   let taken = 0;
@@ -126,6 +127,7 @@ test("10,000 presses at random, whatever is offered and has the focus: one is li
     press("Enter", kinds[draw(kinds.length)]);
     assert.ok(did.every((what) => what === expected || what === "stop"), `${did} where ${expected} was lit`);
     assert.ok(scanner.choices[scanner.lit]);
+    assert.ok(scanner.choices.some(({ id }) => id === "stop"));
     taken += did.length;
   }
   assert.ok(taken > 5000, String(taken));

@@ -423,7 +423,7 @@ test("what is lit is spoken once, in the language of the page and as loud as was
   fakes.window.speechSynthesis = speechSynthesis;
   Object.assign(globalThis, { speechSynthesis, SpeechSynthesisUtterance });
   fakes.document.documentElement = { lang: "de" };
-  const speak = attachSpeech(settings);
+  const speak = attachSpeech(settings, "speak");
   speak("Hoch");
   assert.deepEqual(said, []);
   set({ speak: true, speakVolume: 0.3 });
@@ -431,4 +431,20 @@ test("what is lit is spoken once, in the language of the page and as loud as was
   speak("Hoch");
   speak("Links");
   assert.deepEqual(said, ["cancel", ["Hoch", "de", 0.3], "cancel", ["Links", "de", 0.3]]);
+
+  // What is to be done is spoken once it has stayed for a second, and cuts nothing off.
+  const tell = attachSpeech(settings, "speakNext", 1000);
+  said.length = 0;
+  tell("Push Left");
+  set({ speakNext: true });
+  for (const text of ["Push Right 16 cm", "", "Push Right 12 cm", "Push Right 11 cm"]) {
+    tell(text);
+    pass(900);
+  }
+  assert.deepEqual(said, []);
+  tell("Push Right 11 cm");
+  pass(200);
+  tell("Push Right 11 cm");
+  pass(2000);
+  assert.deepEqual(said, [["Push Right 11 cm", "de", 0.3]]);
 });

@@ -1,5 +1,6 @@
 /** The state of things in one sentence, for eyes and for screen readers. */
 
+import { attachSpeech } from "../inputs/speech.js";
 import { setText } from "../layout/dom.js";
 import { sayTo } from "./notices.js";
 import { sentenceOf, textOf } from "./sentence.js";
@@ -14,6 +15,8 @@ import { sentenceOf, textOf } from "./sentence.js";
 /** A sentence that lasts shorter than this, ms, is not announced: people who nudge would hear nothing else. */
 const SETTLE_MS = 120;
 const LOOK_MS = 200;
+/** What lasts shorter than this, ms, is not spoken. */
+const SPOKEN_MS = 1000;
 /** How long is said why a press does nothing, ms. */
 const REFUSED_MS = 4000;
 
@@ -46,6 +49,7 @@ export function attachStatus(parts, connection, settings) {
   /** Why the arm was stopped when this page found it, until anything else has been seen. @type {string | null} */
   let found = null;
   let look = () => NO_CONTROL;
+  const speak = attachSpeech(settings, "speakNext", SPOKEN_MS);
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let timer;
   const canEnable = document.getElementById("enable") !== null;
@@ -68,6 +72,8 @@ export function attachStatus(parts, connection, settings) {
     const [{ phase }, text] = [sentence, textOf(sentence)];
     parts.line.toggleAttribute("data-trouble", isTrouble(state));
     if (parts.line.dataset.phase !== phase) parts.line.dataset.phase = phase;
+    // While the arm moves there is nothing to be done but to look.
+    if (!document.hidden) speak(phase === "moving" ? "" : text);
     if (text === wanted) return;
     wanted = text;
     clearTimeout(timer);

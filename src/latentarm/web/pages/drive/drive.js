@@ -147,7 +147,7 @@ const scanner = attachScanning(input, settings, stop, (stopIt, group) => {
   if (connection.state?.lost) return [...lostArm.choices(), stopIt, more];
   const unconfirmed = checklist.choices();
   if (unconfirmed.length) return [...unconfirmed, stopIt, more];
-  return input.live ? [...directionChoices(), ...gripper.choices(), mode, stopIt, more]
+  return input.live ? [...directionChoices(settings.values.bestFirst ? nextWords(paths)?.direction : undefined), ...gripper.choices(), mode, stopIt, more]
     : [{ id: "enable", label: say("layout.enable"), act: enable }, mode, ...task.choices(), more];
 });
 attachKeyboard(input, settings, { enable, nextMode: modes.next, axes: modes.axes, gripper: () => gripper.toggle("keyboard") });

@@ -66,9 +66,9 @@ export function leftToGo(toGo, pair, shaped) {
   });
 }
 
-/** @param {string} way @param {boolean} switches whether a switch chooses directions @returns {Words} */
-function push(way, switches) {
-  return { key: switches ? "status.go_switch" : "status.go", parameters: { way } };
+/** @param {Direction} direction @param {string} way @param {boolean} switches whether a switch chooses directions @returns {Words & {direction: Direction}} */
+function push(direction, way, switches) {
+  return { direction, key: switches ? "status.go_switch" : "status.go", parameters: { way } };
 }
 
 /**
@@ -81,7 +81,7 @@ function push(way, switches) {
  */
 export function straightOn(ways, axes, pairs, switches) {
   const [furthest] = [...ways[axes]].sort((one, other) => other.size - one.size);
-  if (furthest) return push(furthest.text, switches);
+  if (furthest) return push(furthest.direction, furthest.text, switches);
   const other = ways.findIndex((left) => left.length > 0);
   return other < 0 ? null : { key: /** @type {const} */ ("status.next_pair"), parameters: { pair: say(/** @type {WordKey} */ (`axes.${pairs[other]}`)) } };
 }
@@ -93,7 +93,7 @@ export function learnedOn(toGo, paths, switches) {
   const [best] = known.sort((one, other) => one.left - other.left);
   if (!best || best.left > Math.hypot(...toGo.shift_m) - NEARER_M) return null;
   // How far is said above the view: the arm goes there on a curve, and not this far this way.
-  return push(say(`directions.${best.direction}`), switches);
+  return push(best.direction, say(`directions.${best.direction}`), switches);
 }
 
 /**
@@ -104,7 +104,7 @@ export function learnedOn(toGo, paths, switches) {
  * @param {Connection} connection
  * @param {(axes: number, x: number, y: number) => number[]} shaped from stick to what is sent in a pair
  * @param {() => boolean} switches whether a switch chooses directions
- * @returns {(paths: Paths | null) => Words | null} what brings the task on, in the numbers of the list
+ * @returns {(paths: Paths | null) => (Words & {direction?: Direction}) | null} what brings the task on, in the numbers of the list
  */
 export function attachToGo(list, choice, connection, shaped, switches) {
   let wordsAt = -Infinity;

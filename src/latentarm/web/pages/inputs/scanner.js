@@ -8,6 +8,7 @@
 
 import { DIRECTIONS } from "./deflection.js";
 import { REACTION_MS } from "./reaction.js";
+import { inRows } from "./rows.js";
 import { SwitchTiming } from "./switch_timing.js";
 
 /** @import {Direction, PersonInput} from "./deflection.js" */
@@ -25,6 +26,8 @@ const READY_MS = 6000;
  * @property {() => void} [act]
  * @property {() => Choice[]} [inner] what it opens
  * @property {boolean} [back] leads back to where it was opened from
+ * @property {boolean} [first] the light begins there
+ * @property {Choice[]} [row] several that it stands for
  * @property {boolean} [stays] is one of several small changes: the light stays there
  */
 /** @typedef {(id: string, label: string, inner: () => Choice[]) => Choice} Group makes a choice that opens others */
@@ -228,14 +231,15 @@ export class Scanner extends EventTarget {
 
   /** The choices along the path that are still offered. */
   _opened() {
-    let choices = this._offered;
+    const listed = (/** @type {Choice[]} */ choices) => (this._settings.values.rows ? inRows(choices) : choices);
+    let choices = listed(this._offered);
     for (const [depth, id] of this._path.entries()) {
       const inner = choices.find((choice) => choice.id === id)?.inner;
       if (!inner) {
         this._path = this._path.slice(0, depth);
         break;
       }
-      choices = inner();
+      choices = listed(inner());
     }
     return choices;
   }
@@ -247,12 +251,17 @@ export class Scanner extends EventTarget {
     if (ids !== before && before) this._litByItself();
     this.choices = choices;
     if (ids !== before) {
-      this.lit = 0;
+      this.lit = this._first;
       this._going = false;
       this.ready = null;
     }
     if (ids !== before || renamed) this._changed();
     if (ids !== before) this._restart();
+  }
+
+  /** Where the light begins. */
+  get _first() {
+    return Math.max(this.choices.findIndex(({ first }) => first), 0);
   }
 
   _litByItself() {
@@ -266,6 +275,10 @@ export class Scanner extends EventTarget {
   }
 
   _rest() {
+    if (this.moving !== null && this._first > 0) {
+      this._litByItself();
+      this.lit = this._first;
+    }
     this.moving = this.ready = null;
     this._input.release("switch");
     this._changed();
@@ -277,7 +290,7 @@ export class Scanner extends EventTarget {
     clearTimeout(this._timer);
     const { dwellS, firstS } = this._settings.values;
     if (!this.on || this.moving !== null) return;
-    const waitMs = 1000 * (dwellS + (this.lit === 0 ? firstS : 0));
+    const waitMs = 1000 * (dwellS + (this.lit === this._first ? firstS : 0));
     const goOn = () => {
       this._litByItself();
       this.next();

@@ -20,9 +20,9 @@ import { attachSwitchPlace } from "./switch_place.js";
 const LOOK_MS = 100;
 const LIT = "lit";
 
-/** The four directions to choose from. @returns {Choice[]} */
-export function directionChoices() {
-  return DIRECTION_NAMES.map((id) => ({ id, label: say(`directions.${id}`) }));
+/** The four directions to choose from. @param {string} [best] where the light begins @returns {Choice[]} */
+export function directionChoices(best) {
+  return DIRECTION_NAMES.map((id) => ({ id, label: say(`directions.${id}`), first: id === best }));
 }
 
 /**
@@ -49,7 +49,7 @@ export function attachScanning(input, settings, stop, offered) {
   const [list, help] = [byId("scan"), byId("scan-help")];
   const [press, next] = [byId("switch", HTMLButtonElement), byId("switch-next", HTMLButtonElement)];
   const scanner = new Scanner(input, settings);
-  const speak = attachSpeech(settings);
+  const speak = attachSpeech(settings, "speak");
   const place = attachSwitchPlace();
   const stops = { id: "stop", label: say("layout.stop"), act: stop };
   /** @type {Group} */
@@ -93,11 +93,12 @@ export function attachScanning(input, settings, stop, offered) {
   /** The page may have redrawn the lit element: look it up each time. */
   const light = () => {
     place(scanner.on, topmost());
-    const lit = scanner.on ? elementOf(scanner.choices[scanner.lit]) : undefined;
-    for (const other of [...document.getElementsByClassName(LIT)]) if (other !== lit) other.classList.remove(LIT);
-    if (!lit || lit.classList.contains(LIT)) return;
-    lit.classList.add(LIT);
-    lit.scrollIntoView({ block: "nearest" });
+    const choice = scanner.on ? scanner.choices[scanner.lit] : undefined;
+    const lit = (choice?.row ?? [choice]).flatMap((one) => elementOf(one) ?? []);
+    for (const other of [...document.getElementsByClassName(LIT)]) if (!lit.includes(/** @type {HTMLElement} */ (other))) other.classList.remove(LIT);
+    if (lit.every((one) => one.classList.contains(LIT))) return;
+    for (const one of lit) one.classList.add(LIT);
+    lit[0].scrollIntoView({ block: "nearest" });
   };
   const explain = () => {
     const { switches, switchKey, nextKey, switchMotion } = settings.values;

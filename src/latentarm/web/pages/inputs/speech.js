@@ -1,25 +1,31 @@
-/** Auditory scanning: what is lit is spoken, in the language of the page. */
+/** What is lit, and what is to be done now, out loud in the language of the page. */
 
-/** @import {Settings} from "../settings/settings.js" */
+/** @import {Settings, Values} from "../settings/settings.js" */
 
 /**
- * @param {Settings} settings
- * @returns {(text: string) => void} speaks a text in place of what is being spoken, where the person wants that
+ * @param {Pick<Settings, "values">} settings
+ * @param {"speak" | "speakNext"} option which setting asks for it
+ * @param {number} [settleMs] how long a text must stay to be spoken, ms; such a text interrupts nothing
+ * @returns {(text: string) => void} speaks a text in place of the one before, where the person wants that
  */
-export function attachSpeech(settings) {
+export function attachSpeech(settings, option, settleMs = 0) {
   let said = "";
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  let waiting;
   return (text) => {
-    const { speak, speakVolume } = settings.values;
-    if (!speak || text === said || !("speechSynthesis" in window)) {
-      if (!speak) said = "";
+    const { [option]: wanted, speakVolume } = settings.values;
+    if (!wanted || text === said || !("speechSynthesis" in window)) {
+      if (!wanted) said = "";
       return;
     }
     said = text;
-    speechSynthesis.cancel();
+    clearTimeout(waiting);
+    if (!settleMs) speechSynthesis.cancel();
     if (text === "") return;
     const utterance = new SpeechSynthesisUtterance(text);
     utterance.lang = document.documentElement.lang;
     utterance.volume = speakVolume;
-    speechSynthesis.speak(utterance);
+    if (settleMs) waiting = setTimeout(() => speechSynthesis.speak(utterance), settleMs);
+    else speechSynthesis.speak(utterance);
   };
 }

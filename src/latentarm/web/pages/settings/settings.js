@@ -26,7 +26,10 @@ import * as storage from "./storage.js";
  * @property {number} releaseS how long a switch must have been up before a press counts, s
  * @property {boolean} debounced whether these two were stored by a version that debounces switches by default
  * @property {number} repeatS how often a switch that is held counts again, s; 0 for never
+ * @property {boolean} rows whether long lists are scanned by rows
+ * @property {boolean} bestFirst whether the direction that brings the task on is lit first
  * @property {boolean} speak whether what is lit is spoken
+ * @property {boolean} speakNext whether what is to be done now is spoken
  * @property {number} speakVolume in [0, 1]
  * @property {string} switchKey key that chooses
  * @property {string} nextKey key that goes on
@@ -68,7 +71,10 @@ export const DEFAULTS = Object.freeze({
   releaseS: 0.2,
   debounced: true,
   repeatS: 0,
+  rows: false,
+  bestFirst: false,
   speak: false,
+  speakNext: false,
   speakVolume: 0.8,
   switchKey: "Enter",
   nextKey: "Backspace",
