@@ -9,6 +9,7 @@ from latentarm.core.types import FloatArray
 from latentarm.robots.assemble import assemble
 from latentarm.robots.gripper import Gripper
 from latentarm.robots.limits import JointLimits, LimitSources
+from latentarm.robots.panda_look import SHELL_GROUP, add_look
 from latentarm.robots.robot import Robot
 
 HOME: FloatArray = np.array([0.0, -np.pi / 4, 0.0, -3 * np.pi / 4, 0.0, np.pi / 2, np.pi / 4])
@@ -93,33 +94,25 @@ _PAD_FRICTION = (1.5, 0.02, 0.0001)
 # the hand's own turning, in proportion to this time constant. With MuJoCo's 0.02 a cup creeps by 1 mm/s.
 _PAD_SOLREF = (0.003, 1.0)
 _PAD_SOLIMP = (0.99, 0.99, 0.001, 0.5, 2.0)
-_WHITE = (0.93, 0.94, 0.95, 1.0)
 _GREY = (0.35, 0.37, 0.40, 1.0)
 _DARK = (0.15, 0.15, 0.16, 1.0)
-# The shell, capsule by capsule: body, both ends in its frame (m), radius (m), colour. Fitted to the
+# The shell, capsule by capsule: body, both ends in its frame (m), radius (m). Fitted to the
 # manufacturer's visual meshes (franka_description): the smallest capsules found that together leave
 # nothing of them outside by more than 1 mm, in any configuration. A seam may be covered by the
 # neighbour's capsule, where that turns about the same axis. The base's dip below the table it stands on.
 _SHELL = (
-    ("link0", (-0.094, 0.0, 0.042), (0.005, 0.0, 0.058), 0.09, _WHITE),
-    ("link0", (0.008, -0.073, 0.005), (0.008, 0.073, 0.005), 0.031, _WHITE),
-    ("link1", (0.0, 0.0, -0.173), (0.0, -0.019, -0.082), 0.066, _WHITE),
-    ("link2", (0.0, 0.0, -0.055), (0.0, -0.017, 0.066), 0.0785, _WHITE),
-    ("link3", (0.0, 0.0, -0.218), (0.0, 0.0, -0.082), 0.0705, _WHITE),
-    ("link4", (0.003, -0.003, -0.042), (-0.003, 0.001, 0.037), 0.0765, _WHITE),
-    ("link5", (0.0, -0.002, -0.309), (0.0, 0.011, -0.207), 0.065, _WHITE),
-    ("link5", (-0.003, 0.058, -0.176), (-0.003, 0.099, -0.064), 0.041, _WHITE),
-    ("link6", (0.0, 0.0, -0.073), (0.011, 0.004, 0.011), 0.064, _WHITE),
-    ("link7", (0.0, 0.0, -0.05), (0.003, 0.003, 0.064), 0.057, _WHITE),
-    ("link7", (0.032, 0.06, 0.083), (0.06, 0.032, 0.083), 0.027, _WHITE),
-    ("hand", (0.0, -0.068, 0.023), (0.0, 0.068, 0.023), 0.052, _GREY),
-)
-# For the eye only: the elbow's bridges over the 82.5 mm offset on either side of joint 4, and the waist.
-_DECORATION = (
-    ("link0", (0.0, 0.0, 0.06), (0.0, 0.0, 0.14), 0.055, _GREY),
-    ("link3", (0.0, 0.0, -0.1), (0.0825, 0.0, 0.0), 0.05, _WHITE),
-    ("link4", (0.0, 0.0, 0.0), (-0.0825, 0.08, 0.0), 0.05, _WHITE),
-    ("link6", (0.0, 0.0, 0.0), (0.088, 0.0, 0.0), 0.04, _GREY),
+    ("link0", (-0.094, 0.0, 0.042), (0.005, 0.0, 0.058), 0.09),
+    ("link0", (0.008, -0.073, 0.005), (0.008, 0.073, 0.005), 0.031),
+    ("link1", (0.0, 0.0, -0.173), (0.0, -0.019, -0.082), 0.066),
+    ("link2", (0.0, 0.0, -0.055), (0.0, -0.017, 0.066), 0.0785),
+    ("link3", (0.0, 0.0, -0.218), (0.0, 0.0, -0.082), 0.0705),
+    ("link4", (0.003, -0.003, -0.042), (-0.003, 0.001, 0.037), 0.0765),
+    ("link5", (0.0, -0.002, -0.309), (0.0, 0.011, -0.207), 0.065),
+    ("link5", (-0.003, 0.058, -0.176), (-0.003, 0.099, -0.064), 0.041),
+    ("link6", (0.0, 0.0, -0.073), (0.011, 0.004, 0.011), 0.064),
+    ("link7", (0.0, 0.0, -0.05), (0.003, 0.003, 0.064), 0.057),
+    ("link7", (0.032, 0.06, 0.083), (0.06, 0.032, 0.083), 0.027),
+    ("hand", (0.0, -0.068, 0.023), (0.0, 0.068, 0.023), 0.052),
 )
 # Links two apart that the joint limits keep from each other: their surfaces never come nearer than 60 mm,
 # those of links 5 and 7 than 19 mm, though their capsules do.
@@ -181,16 +174,14 @@ def franka(model: str, limits: JointLimits, tool_speed_limit: float) -> Robot:
     bodies["hand"] = hand
     _give_inertia(hand, *_HAND_INERTIA)
     hand.add_site(name="tool", pos=[0.0, 0.0, _TOOL_D], size=[0.005, 0.005, 0.005])
-    for shells, collides in ((_SHELL, 1), (_DECORATION, 0)):
-        for name, start, end, radius, colour in shells:
-            bodies[name].add_geom(
-                type=mujoco.mjtGeom.mjGEOM_CAPSULE,
-                fromto=[*start, *end],
-                size=[radius, 0.0, 0.0],
-                rgba=colour,
-                contype=collides,
-                conaffinity=collides,
-            )
+    for name, start, end, radius in _SHELL:
+        bodies[name].add_geom(
+            type=mujoco.mjtGeom.mjGEOM_CAPSULE,
+            fromto=[*start, *end],
+            size=[radius, 0.0, 0.0],
+            group=SHELL_GROUP,
+        )
+    add_look(spec, bodies)
     _add_fingers(spec, hand)
     for first, second in _NEVER_MEET:
         spec.add_exclude(bodyname1=first, bodyname2=second)
