@@ -90,7 +90,7 @@ def test_a_flat_arm_is_seen_from_above(arm):
 
 
 def test_the_views_are_those_of_the_page():
-    source = (Path(latentarm.web.pages.__path__[0]) / "views/views.js").read_text()
+    source = (Path(latentarm.web.pages.__path__[0]) / "views/aim.js").read_text()
     front = dict(re.findall(r"^  (\w+): \{ front: \[([^]]+)\]", source, re.MULTILINE))
     drawn = {name: tuple(map(float, numbers.split(","))) for name, numbers in front.items()}
     assert drawn == CAMERAS | {"flat": FLAT}

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
+from latentarm.robots.panda_look import SHELL_GROUP
 from latentarm.web.protocol.page_messages import FRAME_LIMIT
 from latentarm.web.server.rate_limit import BURST
 
@@ -375,6 +376,12 @@ def test_the_scene_has_a_pose_for_every_body(site, setup):
     assert len(scene["bodies"]) == len(poses) == setup.task.robot.dof + 1
     np.testing.assert_allclose(np.linalg.norm(poses[:, 3:], axis=1), 1.0, atol=1e-3)
     parts = [*scene["bodies"], *scene["fingers"]]
-    assert sum(len(part["geoms"]) for part in parts) == setup.task.robot.model().ngeom
+    drawn = setup.task.robot.model().geom_group < SHELL_GROUP
+    assert sum(len(part["geoms"]) for part in parts) == drawn.sum()
+    meshes = {geom["mesh"] for part in parts for geom in part["geoms"]} - {None}
+    assert meshes
+    for number in meshes:
+        vertices, faces = np.frombuffer(get(site, f"/mesh/{number}")[:8], dtype="<u4")
+        assert len(get(site, f"/mesh/{number}")) == 8 + 12 * (vertices + faces)
     with pytest.raises(urllib.error.HTTPError):
-        get(site, "/mesh/0")
+        get(site, "/mesh/1000")

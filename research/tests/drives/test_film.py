@@ -2,6 +2,7 @@
 
 from types import SimpleNamespace
 
+import mujoco
 import numpy as np
 import pytest
 
@@ -9,7 +10,8 @@ from figure_faults import faults
 from latentarm.arms.kinematic import KinematicArm
 from latentarm.core.errors import UserError
 from latentarm.robots.catalogue import load_robot
-from latentarm_research.drives.film import ACROSS, Camera, Film, strip
+from latentarm.robots.panda_look import SHELL_GROUP
+from latentarm_research.drives.film import ACROSS, WHOLE, Camera, Film, strip
 
 
 def trace_of(*steps, done_s=()):
@@ -35,3 +37,25 @@ def test_only_an_arm_in_mujoco_can_be_filmed():
         Film().sees(KinematicArm(robot, robot.home, lambda: 0.0))
     with pytest.raises(UserError, match="no drive was watched"):
         Film().frames(Camera())
+
+
+def test_no_picture_cuts_off_the_arm():
+    robot = load_robot("panda")
+    model = robot.model()
+    data = mujoco.MjData(model)
+    data.qpos[:] = model.key_qpos[0]
+    mujoco.mj_forward(model, data)
+    azimuth, elevation = np.radians([WHOLE.azimuth_deg, WHOLE.elevation_deg])
+    ahead = np.array([np.cos(azimuth), np.sin(azimuth), np.tan(elevation)])
+    ahead /= np.linalg.norm(ahead)
+    right = np.cross(ahead, [0.0, 0.0, 1.0])
+    right /= np.linalg.norm(right)
+    up = np.cross(right, ahead)
+    tall = np.tan(np.radians(model.vis.global_.fovy / 2.0))
+    seen = np.flatnonzero(model.geom_group < SHELL_GROUP)
+    away = data.geom_xpos[seen] - (np.array(WHOLE.look_at) - WHOLE.distance_m * ahead)
+    depth = away @ ahead
+    # Of each geom the ball about it is in the picture.
+    radius = model.geom_rbound[seen]
+    assert (np.abs(away @ up) + radius < tall * depth).all()
+    assert (np.abs(away @ right) + radius < tall * depth * WHOLE.width / WHOLE.height).all()

@@ -1,4 +1,4 @@
-"""How the Panda is drawn: smooth links of white and grey, each the hull of a few discs. Nothing of it collides."""
+"""The Panda as it is drawn: smooth links in white and grey, each the hull of discs. Nothing collides."""
 
 from collections.abc import Mapping
 from typing import Final

@@ -3,7 +3,7 @@
 import copy
 import warnings
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from textwrap import fill
 from typing import TYPE_CHECKING, Final, final
 
@@ -57,6 +57,15 @@ class Camera:
     height: int = 360  # pixels
 
 
+WHOLE: Final = Camera(look_at=(0.28, 0.0, 0.36), distance_m=1.5, azimuth_deg=150.0, elevation_deg=-18.0)
+"""Shows all of an arm the size of a Panda, from its base to what it does on a table."""
+
+EDGE_PX: Final = 3
+
+CLOSE_SHARE: Final = 0.46
+"""Width of the picture from close by, in the corner of that of the whole arm."""
+
+
 @final
 class Film:
     """Watches a drive, and renders moments of it afterwards.
@@ -84,7 +93,9 @@ class Film:
             self._positions.append(arm.data.qpos.copy())
 
     def frames(self, camera: Camera, count: int = FRAMES) -> tuple[list[float], list[Image]]:
-        """Moments of the drive, evenly spaced from its beginning to its end.
+        """Moments of the drive, evenly spaced: all of the arm, and in a corner what is done, from close by.
+
+        The picture of ``camera`` stands in the lower left corner.
 
         Returns:
             When each was, s, and the pictures.
@@ -95,7 +106,13 @@ class Film:
         if self._model is None:
             raise UserError("There is nothing to show: no drive was watched.")
         chosen = np.linspace(0, len(self._time_s) - 1, count).round().astype(int)
-        pictures = _render(self._model, [self._positions[index] for index in chosen], camera)
+        positions = [self._positions[index] for index in chosen]
+        near = replace(camera, width=int(CLOSE_SHARE * WHOLE.width), height=int(CLOSE_SHARE * WHOLE.height))
+        pictures = _render(self._model, positions, WHOLE)
+        for picture, close in zip(pictures, _render(self._model, positions, near), strict=True):
+            high, wide = close.shape[:2]
+            picture[-high - EDGE_PX :, : wide + EDGE_PX] = 255
+            picture[-high:, :wide] = close
         return [self._time_s[index] for index in chosen], pictures
 
 
