@@ -421,7 +421,6 @@ class Drive:
             ghosts=self._ghosts.newest(self._mode_index),
             belief=tuple(record.belief.tolist()),
             alpha=record.alpha,
-            bound_rad=None if math.isnan(record.bound_rad) else record.bound_rad,
             recording=self._writer.status,
             late_share=self._late_share,
         )

@@ -155,7 +155,6 @@ class Report(ArmState):
     loading: bool  # whether another setup is being loaded; there are no further reports until it is
     q: tuple[float, ...]  # (n,), joint positions as last read, rad
     belief: tuple[float, ...]  # over the goals; empty for a task without goals
-    bound_rad: float | None  # the radius of equation 14, if there is help
     recording: Recording | None  # None before the first
 
 

@@ -53,13 +53,12 @@ class Drawable:
 def drawable(
     place: Place, obstacles: Sequence[Obstacle], scene: Scene | None, zones: Sequence[Zone] = ()
 ) -> Drawable:
-    """The scene: robot, goals, obstacles, slow ``zones``, the things about the arm, and camera views."""
+    """The scene: robot, goals, obstacles, slow ``zones``, and the things about the arm."""
     robot = place.robot
     model = robot.model()
     reading = read(model, [tool.name for tool in robot.chain.tools])
     geoms = _visible(model)
     fingers = _finger_of(model, () if robot.gripper is None else robot.gripper.slides)
-    positions = [goal.pose.position for goal in place.goals]
     return Drawable(
         description={
             "version": 1,
@@ -83,7 +82,6 @@ def drawable(
             "obstacles": [_obstacle(one) for one in obstacles],
             "zones": [{**_obstacle(zone.shape), "speed": zone.speed} for zone in zones],
             **described(scene or Scene()),
-            "cameras": _cameras(robot.chain.link_transforms(robot.home)[:, :3, 3], positions),
         },
         meshes={
             int(model.geom_dataid[geom]): _mesh(model, int(model.geom_dataid[geom]))
@@ -186,18 +184,6 @@ def _obstacle(obstacle: Obstacle) -> dict[str, object]:
             pose = _rounded(pose_of(_frame(centre, rotation)[None])[0])
             placed = {"pos": pose[:3], "quat": pose[3:]}
             return {"name": name, "type": "box", "half_extents": _rounded(half), **placed}
-
-
-def _cameras(joints: FloatArray, goals: list[FloatArray]) -> dict[str, object]:
-    seen = np.concatenate([joints, np.zeros((1, 3)), np.array(goals).reshape(-1, 3)])
-    lower, upper = seen.min(axis=0), seen.max(axis=0)
-    return {
-        "target": _rounded((lower + upper) / 2.0),
-        "radius": round(float(np.linalg.norm(upper - lower)) / 2.0 + 0.15, 3),
-        "up": [0.0, 0.0, 1.0],
-        "front": [1.0, 0.0, 0.35],
-        "side": [0.0, -1.0, 0.35],
-    }
 
 
 def _frame(position: FloatArray, rotation: FloatArray) -> FloatArray:

@@ -114,7 +114,6 @@ class State(ArmState):
     type: Literal["state"] = "state"
     bodies: tuple[tuple[float, ...], ...]  # x, y, z, qw, qx, qy, qz in the order of ``/scene.json``, m
     belief: tuple[float, ...] | None  # over the goals; null for a task without goals
-    bound_m: float | None  # how far from the likeliest goal help lets the tool be, m, to first order; or null
     driver: str | None
     driver_name: PersonName | None
     watchers: int  # number of other pages

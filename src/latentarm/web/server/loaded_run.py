@@ -4,8 +4,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import final
 
-import numpy as np
-
 from latentarm.alignment.profile import profile_names
 from latentarm.core.types import FloatArray
 from latentarm.web.arm_process.drive_setup import DriveSetup, Spec, load_setup
@@ -47,10 +45,6 @@ class LoadedRun:
         self.todo = setup.todo
         self.input_dim = setup.controller.input_dim
         self.latent_dim = setup.latent_dim
-        self.goals_m_per_rad = [
-            float(np.linalg.norm(self.chain.jacobian(goal.configuration)[:3], ord=2))
-            for goal in setup.task.goals
-        ]
         self._setup = setup
         robot = setup.task.robot
         home: dict[BuiltInPose, FloatArray] = {"home": robot.home} if robot.home_stated else {}

@@ -227,7 +227,6 @@ class States:
             **arm,
             bodies=self._bodies(report),
             belief=tuple(round(share, 4) for share in report.belief) or None,
-            bound_m=self._bound_m(report),
             driver=None if driver is None else driver.id,
             driver_name=None if driver is None else driver.name,
             watchers=self._sessions.count - (driver is not None),
@@ -271,13 +270,6 @@ class States:
         links = self.loaded.chain.link_transforms(np.array(report.q))
         frames = np.concatenate([np.eye(4)[None], links])
         return tuple(tuple(round(value, 4) for value in pose) for pose in pose_of(frames).tolist())
-
-    def _bound_m(self, report: Report) -> float | None:
-        """The bound about the likeliest goal as a distance of the tool, m, by the Jacobian at the goal."""
-        if report.bound_rad is None or not report.belief:
-            return None
-        likeliest = int(np.argmax(report.belief))
-        return round(report.bound_rad * self.loaded.goals_m_per_rad[likeliest], 4)
 
 
 def _fields_of(kind: type[Message], message: Message) -> dict[str, Any]:

@@ -348,7 +348,6 @@ export interface State {
   type: "state";
   bodies: number[][];
   belief: number[] | null;
-  bound_m: number | null;
   driver: string | null;
   driver_name: string | number | null;
   watchers: number;

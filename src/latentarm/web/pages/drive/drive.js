@@ -23,7 +23,7 @@ import { attachRim } from "../inputs/rim.js";
 import { attachStick } from "../inputs/stick.js";
 import { attachTremor } from "../inputs/tremor.js";
 import { attachWatching } from "../inputs/watching.js";
-import { byId, setHidden, setText } from "../layout/dom.js";
+import { byId, setText } from "../layout/dom.js";
 import { attachPage } from "../layout/page.js";
 import { say } from "../layout/words.js";
 import { attachTrialBanner } from "../personalise/trial.js";
@@ -178,8 +178,6 @@ function show() {
   predictions.show(paths, pressed, (motion, direction) =>
     turns(direction) ? say("motion.turns") : motionWords(motion, settings.values.seat));
   setText(byId("scene-text"), whereWords(welcome, state, wanted));
-  setHidden(byId("bound-text"), !settings.values.showBound || state.bound_m === null);
-  if (state.bound_m !== null) setText(byId("bound-text"), say("drive.bound", { centimetres: Math.round(100 * state.bound_m) }));
   return moved;
 }
 

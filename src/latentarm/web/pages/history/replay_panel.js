@@ -32,8 +32,8 @@ export function attachReplay(settings) {
     const { bodies, tool, width_m, things } = newest;
     tick += 1;
     const gripper = width_m === null ? null : { width_m, holding: false, closing: null };
-    const state = /** @type {State} */ (/** @type {unknown} */ ({ tick, bodies, tool, gripper, things, belief: null, bound_m: null, zone: null }));
-    drawing.show(state, NOTHING_PREDICTED, [], { ...settings.values, showGhosts: false, showBound: false });
+    const state = /** @type {State} */ (/** @type {unknown} */ ({ tick, bodies, tool, gripper, things, belief: null, zone: null }));
+    drawing.show(state, NOTHING_PREDICTED, [], { ...settings.values, showGhosts: false });
   };
   const show = (/** @type {Moment} */ moment) => {
     newest = moment;

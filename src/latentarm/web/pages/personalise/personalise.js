@@ -194,7 +194,7 @@ function showQuestion() {
 function showArm() {
   if (asked !== -1 || !connection.state) return;
   setText(byId("scene-text"), "");
-  drawing?.show(connection.state, NOTHING_PREDICTED, [], { ...settings.values, showGhosts: false, showTrail: false, showBound: false });
+  drawing?.show(connection.state, NOTHING_PREDICTED, [], { ...settings.values, showGhosts: false, showTrail: false });
 }
 
 connection.addEventListener("learning", () => {

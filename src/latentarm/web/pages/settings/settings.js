@@ -40,7 +40,6 @@ import * as storage from "./storage.js";
  * @property {"camera" | "drawn"} picture what is seen of the arm where there are cameras
  * @property {boolean} showGhosts
  * @property {boolean} showTrail
- * @property {boolean} showBound
  * @property {boolean} practised whether the guided practice was begun or skipped
  * @property {"none" | "success" | "all"} sounds what is heard: nothing, a task that is done, or Stop and Enable too
  * @property {boolean} vibration whether Stop and a task that is done are felt
@@ -85,7 +84,6 @@ export const DEFAULTS = Object.freeze({
   picture: "camera",
   showGhosts: true,
   showTrail: true,
-  showBound: false,
   practised: false,
   sounds: "success",
   vibration: false,

@@ -81,7 +81,7 @@ export class Drawing {
     // An arm at rest needs no new frame; a press or a new belief none that would be in the way of its motion.
     const pose = JSON.stringify([state.bodies, state.gripper?.width_m]);
     const zone = this._slowing(state.zone);
-    const around = JSON.stringify([state.belief, state.bound_m, predicted, pressed, wanted, thing, zone]);
+    const around = JSON.stringify([state.belief, predicted, pressed, wanted, thing, zone]);
     const moved = pose !== this._pose || state.things !== this._things;
     if (!moved && around === this._around) return false;
     const turned = this._pressed !== pressed.join();
@@ -93,9 +93,7 @@ export class Drawing {
     this._tick = state.tick;
     this._scene.take(state, this._views.smooth && !this._still.matches && !this._late());
     this._scene.markers.believe(state.belief);
-    const likeliest = state.belief ? state.belief.indexOf(Math.max(...state.belief)) : -1;
     const tool = new THREE.Vector3(...state.tool);
-    this._scene.markers.bound(wanted.showBound ? state.bound_m : null, likeliest);
     this._scene.showTrail(wanted.showTrail);
     this._scene.markTool(true);
     this._nameGoals(state.belief, tool, thing);
@@ -124,7 +122,6 @@ export class Drawing {
     this._scene.showTrail(false);
     this._scene.take({ bodies, tool: this._scene.tool.toArray() }, false);
     this._scene.markers.believe(null);
-    this._scene.markers.bound(null, -1);
     this._nameGoals(null, null, null);
     this._nameThing(null, null);
     this._lookFrom(seat);

@@ -6,7 +6,6 @@
 import * as THREE from "../three/three.module.min.js";
 import { colour } from "./colours.js";
 import { Dashes } from "./dashes.js";
-import { ballOf } from "./shapes.js";
 import { colourOf, shapeOf } from "./symbols.js";
 
 /** @import {Goal} from "./scene_description.js" */
@@ -32,12 +31,7 @@ export class GoalMarkers {
       this._dashes.ring(hover, HOVER_M, HOVER_DASHES);
       this._dashes.line(hover, new THREE.Vector3(hover.x, hover.y, tableHeight), LINE_DASHES);
     }
-    this._ball = new THREE.Mesh(
-      ballOf(1),
-      new THREE.MeshBasicMaterial({ transparent: true, opacity: 0.18, depthWrite: false, side: THREE.DoubleSide }),
-    );
-    this._ball.visible = false;
-    this.objects = [...this._rings, this._dashes.object, this._ball];
+    this.objects = [...this._rings, this._dashes.object];
     this.follow();
     this.repaint();
   }
@@ -63,16 +57,7 @@ export class GoalMarkers {
     });
   }
 
-  /** The ball around the likeliest goal that help may hold the arm in. @param {number | null} radius m @param {number} goal */
-  bound(radius, goal) {
-    this._ball.visible = radius !== null && radius > 0 && goal >= 0;
-    if (!this._ball.visible || radius === null) return;
-    this._ball.position.set(...this._goals[goal].position);
-    this._ball.scale.setScalar(radius);
-  }
-
   repaint() {
-    this._ball.material.color.set(colour("ring"));
     this._rings.forEach((one, index) => one.material.color.set(colour(`thing-${colourOf(index)}`)));
     this._dashes.paint(this._goals.map((_, index) => colour(`thing-${colourOf(index)}`)));
   }
