@@ -1,8 +1,8 @@
 /** Texts about points of the scene: names at the edge of the large view, with a line to what they name, and marks of arrows in both. */
 
-import * as THREE from "../three/three.module.min.js";
 import { ROW_PX, layOutNames } from "./label_layout.js";
 
+/** @import * as THREE from "three" */
 /** @import {Box, Name, Place} from "./label_layout.js" */
 /** @import {View, Views} from "./views.js" */
 

@@ -124,6 +124,9 @@ export function sheetOf({ point, normal }, size, material) {
   return sheet;
 }
 
+/** A mesh of fewer faces needs no others. */
+const MANY_FACES = 400;
+
 /** @param {Geom} geom @param {Meshes} meshes @returns {THREE.BufferGeometry | null} null for a kind that is not drawn */
 function geometryOf({ type, size, mesh }, meshes) {
   const [a, b, c] = size;
@@ -168,7 +171,7 @@ export function place(object, [x, y, z, w, i, j, k]) {
 export function meshGeometry(bytes) {
   const [vertices, faces] = new Uint32Array(bytes, 0, 2);
   const all = { positions: new Float32Array(bytes, 8, 3 * vertices), faces: new Uint32Array(bytes, 8 + 12 * vertices, 3 * faces) };
-  const drawn = SOFTWARE ? coarser(all.positions, all.faces) : all;
+  const drawn = SOFTWARE && faces > MANY_FACES ? coarser(all.positions, all.faces) : all;
   const geometry = new THREE.BufferGeometry();
   geometry.setAttribute("position", new THREE.BufferAttribute(drawn.positions, 3));
   geometry.setIndex(new THREE.BufferAttribute(drawn.faces, 1));
