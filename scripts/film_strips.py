@@ -16,6 +16,7 @@ from latentarm.core.parallel import run_grid
 from latentarm.core.style import save_figure
 from latentarm.core.untrusted.documents import read_object
 from latentarm.evaluation.looks import look_of
+from latentarm.models.catalogue import DEFAULT_MODEL
 from latentarm.models.saving import read_model
 from latentarm.tasks.catalogue import SCENE_TASKS, make_scene_task
 from latentarm_research.drives.drive import Setup, drive
@@ -95,7 +96,7 @@ def film(task: str, model: str, driver: Driver, preset: Preset, seed: int) -> No
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("tasks", nargs="*", default=[*SCENE_TASKS], help="all where none is named")
-    parser.add_argument("--model", default="homogeneous")
+    parser.add_argument("--model", default=DEFAULT_MODEL)
     parser.add_argument("--study", type=Path, help="what `latentarm reproduce tasks` wrote; else train here")
     parser.add_argument("--seed", type=int, default=0, help="of the models that are trained here")
     parser.add_argument("--jobs", type=int, default=-1)

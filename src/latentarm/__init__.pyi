@@ -37,6 +37,7 @@ from .models.autoencoders.training import CAE as CAE
 from .models.autoencoders.training import CVAE as CVAE
 from .models.estimators import load_model as load_model
 from .models.homogeneous.training import Homogeneous as Homogeneous
+from .models.low_turning.training import LowTurning as LowTurning
 from .models.saving import load_decoder as load_decoder
 from .models.scl.training import SCL as SCL
 from .robots.attachment import Attachment as Attachment

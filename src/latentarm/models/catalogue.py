@@ -37,5 +37,5 @@ KINDS: Final = Catalogue(
 )
 """Every `ModelKind`, in the order of tables and figures. Needs no torch."""
 
-DEFAULT_MODEL: Final = "homogeneous"
+DEFAULT_MODEL: Final = "low_turning"
 """The model of `train`, the demo and the page unless another is named; see docs/decisions/0041."""

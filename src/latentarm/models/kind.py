@@ -87,6 +87,8 @@ class ModelKind:
     # relative to the square of a tool's motion by 1 m: enough that motions that no tool shows have a cost.
     # None for models that do not look.
     damping_m2: float | None = None
+    # L of the way back that `train` adds unless another is named, m; 0 where no measurement speaks for one
+    way_back_m: float = 0.0
     advice: str = ""  # one sentence on which model to try next and why; "" if nothing was measured
     # Shown on the page to people who choose a model. For our own models the page's texts say it.
     description: str = ""

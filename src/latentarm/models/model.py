@@ -164,7 +164,7 @@ class LatentActionModel(BaseEstimator, ABC):
 
         Warns:
             CollapseWarning: a latent dimension moves nothing; ``collapsed_`` says which.
-            NoWayBackWarning: a way back was asked for and would not help.
+            NoWayBackWarning: a way back would not help, so the model has none.
         """
         prepared = self._prepared(demonstrations, validation, chain, term)
         saved = None if checkpoint is None else Path(checkpoint)

@@ -2,7 +2,7 @@
 
 from typing import Final
 
-from latentarm.models.catalogue import KINDS
+from latentarm.models.catalogue import DEFAULT_MODEL, KINDS
 
 FEW_EPISODES: Final = 20
 """With this many episodes or fewer, the choice of held-out episodes matters more than the seed."""
@@ -21,7 +21,9 @@ def next_step(model: str, run: str, dataset: str, missed: frozenset[str]) -> str
     if not missed:
         return f"Next: latentarm drive {run}"
     if missed & {"drift", "reversal", "reversal_2_s"} and not KINDS[model].reverses:
-        return f"Next: latentarm train --demonstrations {dataset} --model homogeneous (rests and goes back)"
+        return (
+            f"Next: latentarm train --demonstrations {dataset} --model {DEFAULT_MODEL} (rests and goes back)"
+        )
     if "motion_turn" in missed and model != "low_turning":
         return (
             f"Next: latentarm train --demonstrations {dataset} --model low_turning, for a driver who is still"

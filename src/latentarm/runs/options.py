@@ -86,12 +86,13 @@ class TrainOptions:
         ),
     ] = 0.0
     way_back_m: Annotated[
-        float,
+        float | None,
         arg(
             help="L, a way back to what was demonstrated: from this far off, a full push also leads back at"
-            " the demonstrations' speed, m, such as 0.06. 0 for none."
+            " the demonstrations' speed, m; 0 for none. By default 0.06 for the models that finish more with"
+            " it, where the arm's model is known."
         ),
-    ] = 0.0
+    ] = None
     device: Annotated[Literal["cpu", "cuda", "auto"], arg(help="Where to train.")] = "cpu"
     end_effector: EndEffector = None
     task: Annotated[

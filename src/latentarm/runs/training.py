@@ -23,6 +23,7 @@ from latentarm.demonstrations.dataset import read_dataset, write_dataset
 from latentarm.demonstrations.joining import join
 from latentarm.demonstrations.split import select_episodes, split_episodes
 from latentarm.demonstrations.timing import check_one_rate
+from latentarm.models.catalogue import KINDS
 from latentarm.models.estimators import MODELS
 from latentarm.models.model import LatentActionModel
 from latentarm.models.neural import NeuralModel
@@ -73,7 +74,7 @@ def train_run(options: TrainOptions, report: Report | None = None) -> TrainedRun
     training, held_out = split_episodes(
         demonstrations, options.held_out, np.random.default_rng([HOLD_OUT_STREAM, options.seed])
     )
-    model = _model(options)
+    model = _model(options, arm_known=robot is not None)
     checkpoint = folder / CHECKPOINT
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
@@ -133,8 +134,11 @@ def _joined_dataset(datasets: Sequence[Path], run: Path) -> Path:
     return run / JOINED
 
 
-def _model(options: TrainOptions) -> LatentActionModel:
-    """The model of these options, with those of its parameters that are options and not None."""
+def _model(options: TrainOptions, *, arm_known: bool) -> LatentActionModel:
+    """The model of these options, with those of its parameters that are options and not None.
+
+    A way back needs the arm's kinematics, so it is a default only where the arm is known.
+    """
     model_class = MODELS[options.model]
     parameters = {field.name for field in fields(model_class) if field.init}
     given = {name: value for name, value in vars(options).items() if value is not None}
@@ -148,6 +152,8 @@ def _model(options: TrainOptions) -> LatentActionModel:
         raise UserError(
             f"The model {options.model} has no KL term: leave --kl-weight out, or choose vae or cvae."
         )
+    if options.way_back_m is None and arm_known:
+        given["way_back_m"] = KINDS[options.model].way_back_m
     given |= {"context": feature_names(options.context), "data_seed": options.seed}
     return model_class(**{name: value for name, value in given.items() if name in parameters})
 

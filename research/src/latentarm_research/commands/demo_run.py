@@ -52,9 +52,6 @@ if TYPE_CHECKING:
 
 MODELS: Final = tuple(dict.fromkeys((DEFAULT_MODEL, "cvae")))  # the default model and the paper's
 CONTEXT: Final[Mapping[str, tuple[str, ...]]] = {DEFAULT_MODEL: (JOINTS, OBJECTS_IN_TOOL), "cvae": (JOINTS,)}
-WAY_BACK_M: Final[Mapping[str, float]] = {DEFAULT_MODEL: 0.06, "cvae": 0.0}
-"""Length of each model's way back, m; the cVAE has none, as in the paper."""
-
 HIDDEN: Final = (64, 64)
 BATCH_SIZE: Final = 256  # units of each hidden layer and pairs per step, as in the study of the tasks
 TASK: Final = Marshmallows()
@@ -194,7 +191,6 @@ def _learn(call: _Learning) -> list[Row]:
         state_noise_rad=STATE_NOISE_RAD,
         epochs=call.epochs,
         context=CONTEXT[call.model],
-        way_back_m=WAY_BACK_M[call.model],
         hidden=HIDDEN,
         batch_size=BATCH_SIZE,
         task=TASK.name,

@@ -209,6 +209,7 @@ HOMOGENEOUS: Final = ModelKind(
     rests_at_zero=True,
     reverses=True,
     damping_m2=DAMPING_M2,
+    way_back_m=0.06,
     advice="The homogeneous suits a driver who knows what each push does: its motions turn several times as"
     " fast as the stick. For one who is still learning that, try --model low_turning or --model scl.",
 )

@@ -48,6 +48,7 @@ LOW_TURNING: Final = ModelKind(
     rests_at_zero=True,
     reverses=True,
     damping_m2=DAMPING_M2,
+    way_back_m=0.06,
     advice="The low_turning suits a driver who is still learning what each push does; where it leaves out"
     " motions that matter, try --model homogeneous, which reproduces more and turns faster.",
 )

@@ -121,8 +121,8 @@ def with_way_back(
     learned, normaliser = min(tried, key=lambda one: one[0].validation_loss.mean())
     missed = np.matvec(judged_weight.reshape(-1, layout.joints, layout.joints), judged.way / OUTPUT_RAD)
     if (learned.validation_loss >= np.vecdot(missed, missed).mean()).any():
-        what = "The way back brings held-out demonstrations no nearer than staying does"
-        warn(NoWayBackWarning(f"{what}, so the model has none: demonstrate more."), stacklevel=3)
+        why = "The demonstrations are too few, or too unlike each other, to learn a way back to them"
+        warn(NoWayBackWarning(f"{why}, so the model has none: record more of the task."), stacklevel=3)
         return trained
     _, jacobian = places_and_jacobian(chain, pairs.clean_context[~outside][:, : layout.joints])
     speed = np.quantile(metric_length(jacobian, pairs.action[~outside]), SPAN_QUANTILE)

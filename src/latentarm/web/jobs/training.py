@@ -25,7 +25,7 @@ FEWEST: Final = 3  # episodes: one trains, one stops the training, and one is ke
 SHORTEST_S: Final = 1.0  # an episode that moves for less than this shows nothing
 STATE_NOISE_RAD: Final = 0.01
 
-_FIRST_MODELS: Final = (DEFAULT_MODEL, "cvae", "cae", "homogeneous", "pca")
+_FIRST_MODELS: Final = (DEFAULT_MODEL, "homogeneous", "cvae", "cae", "pca")
 
 _NAME: Final = re.compile(r"\w[\w .-]{0,58}\w|\w")
 _TELL_EVERY_S: Final = 0.1

@@ -6,7 +6,7 @@ from typing import Final
 from latentarm.models.catalogue import KINDS
 from latentarm_research.tasks.planar.motion import DESIGN, Design
 
-LEFT_OUT: Final = frozenset({"cae_jacobian", "cvae_jacobian", "odd_cae", "low_turning"})
+LEFT_OUT: Final = frozenset({"cae_jacobian", "cvae_jacobian", "odd_cae"})
 """Variants for recorded demonstrations, which `compare` measures. The study has the paper's models, cAE with
 a penalty on rest or on reversal, the models whose speed is controlled, and those of plug-ins."""
 
