@@ -8,13 +8,14 @@ from typing import Final, final
 from latentarm.core.errors import UserError
 from latentarm.core.style import save_figure
 from latentarm.core.types import Row
-from latentarm.evaluation.table import markdown_table
+from latentarm.evaluation.table import format_figure, markdown_table, measure_name, series_name
 from latentarm.tasks.scene_task import SceneTask
 from latentarm_research.drives.drives import Planned
 from latentarm_research.drives.film import Camera, Film, strip
 from latentarm_research.drives.trace import Trace
 from latentarm_research.metrics.ending import STUCK_S
 from latentarm_research.people.names import OperatorName
+from latentarm_research.studies.tables import grid_table
 
 FILM: Final = "film.png"
 
@@ -62,6 +63,19 @@ def held_in_words(driven: Mapping[str, Sequence[Trace]]) -> str:
     return f"The fork holds the marshmallow in {'; '.join(counts)}."
 
 
+README: Final = ("success_rate", "time_s", "input_magnitude", "mode_switches")
+"""Measures of the README's table."""
+
+
+def readme_table(rows: Sequence[Row]) -> str:
+    """The README's table of the drives of one person: what steers down, a few measures across."""
+    shown = [row for row in rows if row.measure in README]
+    figures = {(series_name(row), row.measure): format_figure(row.mean, row.sd) for row in shown}
+    series = {series_name(row): series_name(row) for row in shown}
+    measures = {measure_name(row): row.measure for row in shown}
+    return grid_table("mean ± SD", series, measures, lambda line, column: figures[line, column])
+
+
 def page(
     task: SceneTask,
     tables: Mapping[OperatorName, Sequence[Row]],
@@ -86,6 +100,7 @@ def page(
         f" mean ± SD over the drives, failed ones included (they end after {task.time_limit_s:g} s, or once"
         f" the tool has come no nearer for {STUCK_S:g} s). No person took part. {held}\n\n"
         f"{filmed.picture}"
+        f"{readme_table(tables[shown])}\n"
         f"{_people_tables(tables)}"
         f"The figures show the model {model}, driven by the {shown} operator. Marks are over the"
         " marshmallows, which lie elsewhere in each drive.\n\n"
