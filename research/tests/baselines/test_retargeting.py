@@ -71,11 +71,6 @@ def test_speeds_that_are_none_are_refused(wrong):
         RetargetingController(PANDA, **wrong)
 
 
-def test_costs_that_are_none_are_refused():
-    with pytest.raises(UserError, match="limits"):
-        RetargetingCosts(limits=0.0)
-
-
 class TestTwoSticks:
     CONTROLLER = EndEffectorController(PANDA, 0.2, 0.4, modes=TWO_STICKS)
 

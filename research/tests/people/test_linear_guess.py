@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from latentarm.core.errors import UserError
 from latentarm.core.types import Context, Pose
 from latentarm.robots.catalogue import load_robot
 from latentarm_research.people.contract import Moment
@@ -96,9 +95,3 @@ def test_they_reach_a_target_with_a_stick_that_they_did_not_know(wrist):
         state = moved(state, u, PERIOD_S)
         apart.append(np.linalg.norm(CHAIN.forward(state).position - target.position))
     assert min(apart) < 0.15 * apart[0]
-
-
-@pytest.mark.parametrize("name", ["speed_m_s", "turn_rad_s", "noise", "memory_m", "glance_s", "trial_s"])
-def test_a_learner_who_cannot_be(name):
-    with pytest.raises(UserError, match=name):
-        LinearGuessConfig(**{name: 0.0})

@@ -4,11 +4,9 @@ import re
 from importlib.resources import files
 
 import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from latentarm.core.errors import UserError
 from latentarm.core.types import Context, Input, Pose
 from latentarm.web.server.drive_socket import DRIVER_PERIOD_S
 from latentarm_research.people.contract import Moment
@@ -68,11 +66,3 @@ def test_every_mode_switch_arrives_once_and_in_time(rates, asked):
     arrived = [wire.carried(Input(np.zeros(1), switch_mode=one)).switch_mode for one in asked]
     late = int(np.ceil(rates.network_s / PERIOD_S - 1e-6))
     assert arrived == [*[False] * late, *asked][: len(asked)]
-
-
-@pytest.mark.parametrize(
-    "wrong", [{"input_s": 0.0}, {"state_s": -1.0}, {"frame_s": np.nan}, {"network_s": -0.1}]
-)
-def test_rates_that_cannot_be(wrong):
-    with pytest.raises(UserError):
-        PageRates(**wrong)

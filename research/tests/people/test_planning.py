@@ -121,11 +121,6 @@ def test_the_same_randomness_gives_the_same_drive():
     np.testing.assert_array_equal(first, second)
 
 
-def test_a_plan_without_a_piece_is_refused():
-    with pytest.raises(UserError, match="plan"):
-        PlanningConfig(pieces=0)
-
-
 def test_only_who_knows_the_arm_plans():
     guess = Expectation(ARM.chain, np.eye(3)[:2], 0.1)
     with pytest.raises(UserError, match="knows the arm"):

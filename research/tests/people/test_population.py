@@ -1,7 +1,6 @@
 """Simulated people: the same seed gives the same people, and their traits are in their ranges."""
 
 import json
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -89,20 +88,7 @@ def test_quantiles_go_up_and_stay_within_the_ends(one, other):
         assert spread.lowest <= spread.at(low) <= spread.at(high) <= spread.highest
 
 
-@pytest.mark.parametrize(
-    "wrong",
-    [
-        lambda: draw_people(0, 1),
-        lambda: draw_people(1, -1),
-        lambda: Calibration(0.0, 1.0),
-        lambda: Calibration(1.0, math.nan),
-        lambda: Normal(0.0, 1.0, 1.0, 2.0),
-        lambda: Normal(0.0, 0.0, -1.0, 1.0),
-        lambda: Practice(-0.1),
-        lambda: Practice(0.1).time_share(-1),
-        lambda: Practice(0.1).time_share(0, math.inf),
-    ],
-)
-def test_people_who_cannot_be(wrong):
+@pytest.mark.parametrize(("number", "seed"), [(0, 1), (1, -1)])
+def test_nobody_and_a_negative_seed_are_refused(number, seed):
     with pytest.raises(UserError):
-        wrong()
+        draw_people(number, seed)

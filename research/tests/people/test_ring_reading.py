@@ -7,7 +7,6 @@ import pytest
 
 from latentarm.assistance.controllers.end_effector import EndEffectorController
 from latentarm.control.stick_ring import AHEAD_S, DIRECTIONS, full_pushes
-from latentarm.core.errors import UserError
 from latentarm.core.types import Context
 from latentarm.robots.catalogue import load_robot
 from latentarm_research.people.boltzmann import BoltzmannConfig
@@ -148,11 +147,3 @@ def test_the_same_seed_reads_the_same():
     one, other, third = (driven(PEOPLE["reading"], PANDA, LINES, target, 60, seed)[0] for seed in (4, 4, 5))
     np.testing.assert_array_equal(one, other)
     assert (one != third).any()
-
-
-@pytest.mark.parametrize(
-    "fields", [{"error_rad": -0.1}, {"error_rad": math.nan}, {"read_s": 0.0}, {"least_push": 1.0}]
-)
-def test_a_reading_that_nobody_could_do_is_refused(fields):
-    with pytest.raises(UserError):
-        RingReadingConfig(**fields)

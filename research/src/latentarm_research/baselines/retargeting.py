@@ -11,7 +11,6 @@ from typing import final
 import numpy as np
 
 from latentarm.assistance.controllers.axis_modes import PAIRS, AxisController, AxisModes
-from latentarm.core.errors import UserError
 from latentarm.core.types import Context, FloatArray
 from latentarm.robots.robot import Robot
 
@@ -19,11 +18,7 @@ from latentarm.robots.robot import Robot
 @final
 @dataclass(frozen=True)
 class RetargetingCosts:
-    """What the objectives of retargeting weigh against each other; all values are assumptions.
-
-    Raises:
-        UserError: a weight is not positive and finite.
-    """
+    """What the objectives of retargeting weigh against each other; all values are assumptions."""
 
     # what a rad of wrong orientation counts, m: the tool's place matters more than its turn
     rotation_m: float = 0.2
@@ -32,13 +27,6 @@ class RetargetingCosts:
     limits: float = 1.0  # of a velocity towards a joint's limit, (m/rad)², at the limit itself
     # where that begins, before the limit, rad; it grows with the square of the nearness
     near_rad: float = 0.3
-
-    def __post_init__(self) -> None:
-        for name in ("rotation_m", "effort", "limits", "near_rad"):
-            if not 0 < getattr(self, name) < np.inf:
-                raise UserError(
-                    f"Retargeting's {name} must be positive and finite, not {getattr(self, name)}."
-                )
 
 
 @final

@@ -5,24 +5,14 @@ from dataclasses import dataclass
 from importlib.resources import files
 from typing import Any, Final, final
 
-from latentarm.core.errors import UserError
-
 
 @final
 @dataclass(frozen=True)
 class Calibration:
-    """The figures of the simulated people that are fitted; all others are given.
-
-    Raises:
-        UserError: a figure is not positive.
-    """
+    """The figures of the simulated people that are fitted; all others are given."""
 
     push_variation: float  # of the median person, see `latentarm_research.people.hand.HandConfig`
     switch_s: float  # the median person's time for a mode switch, in which the stick is let go, s
-
-    def __post_init__(self) -> None:
-        if not (self.push_variation > 0 and self.switch_s > 0):
-            raise UserError("The figures of a calibration must be positive.")
 
 
 BEFORE: Final = Calibration(push_variation=0.1, switch_s=0.8)

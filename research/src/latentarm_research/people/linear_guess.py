@@ -19,11 +19,7 @@ from latentarm_research.people.motion import shifted
 @final
 @dataclass(frozen=True)
 class LinearGuessConfig:
-    """How a simulated person learns what the stick does. All figures are assumptions.
-
-    Raises:
-        UserError: a figure is not positive and finite, or what is expected is no twists.
-    """
+    """How a simulated person learns what the stick does. All figures are assumptions."""
 
     # SD of the speed along each axis of space that they expect of the tool, at first, of a full push, m/s
     speed_m_s: float = 0.1
@@ -40,18 +36,6 @@ class LinearGuessConfig:
     # twist (6 numbers, m/s and rad/s, in the base frame); None expects nothing in particular. What is
     # forgotten gives way to it
     expected: tuple[tuple[float, ...], ...] | None = None
-
-    def __post_init__(self) -> None:
-        for name in ("speed_m_s", "turn_rad_s", "noise", "memory_m", "glance_s", "trial_s"):
-            if not 0 < getattr(self, name) < np.inf:
-                raise UserError(
-                    f"A learning person's {name} must be positive and finite, not {getattr(self, name)}."
-                )
-        for twist in self.expected or ():
-            if len(twist) != 6 or not np.isfinite(twist).all():
-                raise UserError(
-                    "What a learning person expects of an axis must be a twist of 6 finite numbers."
-                )
 
 
 @final

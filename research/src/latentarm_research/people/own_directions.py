@@ -16,13 +16,9 @@ from latentarm_research.people.contract import LoopLimits
 @final
 @dataclass(frozen=True)
 class OwnSpeed:
-    """How fast a simulated person likes to go. Raises a `UserError` where the share is out of its range."""
+    """How fast a simulated person likes to go."""
 
     share: float = 1.0  # of the speed of somebody who pushes as far as it takes, in (0, 1]
-
-    def __post_init__(self) -> None:
-        if not 0 < self.share <= 1:
-            raise UserError(f"A person's own speed must be a share in (0, 1], not {self.share}.")
 
     def pushed(self, u: FloatArray, limits: LoopLimits) -> FloatArray:
         """Where they push the stick (d,), where somebody who goes full speed would push it to u (d,).
@@ -38,18 +34,10 @@ class OwnSpeed:
 @final
 @dataclass(frozen=True)
 class OwnDirections:
-    """How one person's directions of a stick of two axes differ from the usual ones.
-
-    Raises:
-        UserError: the turn is not finite.
-    """
+    """How one person's directions of a stick of two axes differ from the usual ones."""
 
     turn_rad: float = 0.0  # they push so far to the left of where others push for the same motion, rad
     mirrored: bool = False  # for them the second axis is upside down, before the turn
-
-    def __post_init__(self) -> None:
-        if not math.isfinite(self.turn_rad):
-            raise UserError(f"A turn of the stick must be finite, not {self.turn_rad} rad.")
 
     @property
     def matrix(self) -> FloatArray:

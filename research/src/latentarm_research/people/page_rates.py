@@ -7,7 +7,6 @@ from typing import Final, final
 
 import numpy as np
 
-from latentarm.core.errors import UserError
 from latentarm.core.types import Input
 from latentarm_research.people.contract import Moment
 
@@ -18,22 +17,12 @@ class PageRates:
     """How often the page shows and sends, and how long messages are under way.
 
     The first two are the page's own constants, which a test compares.
-
-    Raises:
-        UserError: a period is not positive, or the network's time is negative.
     """
 
     input_s: float = 0.02  # time between inputs that the page sends (`PERIOD_MS` of `drive_input.js`), s
     state_s: float = 0.02  # time between states that the server sends to the driver (`DRIVER_PERIOD_S`), s
     frame_s: float = 1.0 / 60.0  # time between frames of the display, s: 60 Hz, as most displays
     network_s: float = 0.001  # from page to server or back, s: chosen for both on one machine
-
-    def __post_init__(self) -> None:
-        for name in ("input_s", "state_s", "frame_s"):
-            if not 0 < getattr(self, name) < math.inf:
-                raise UserError(f"The page's {name} must be positive and finite, not {getattr(self, name)}.")
-        if not 0 <= self.network_s < math.inf:
-            raise UserError(f"The page's network_s must be zero or more, and finite, not {self.network_s}.")
 
 
 PAGE: Final = PageRates()  # the page on the machine that drives the arm

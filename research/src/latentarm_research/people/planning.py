@@ -6,7 +6,6 @@ from typing import Final, final
 import numpy as np
 
 from latentarm.assistance.controllers.contract import Controller
-from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray, Input, IntArray
 from latentarm.robots.robot import Robot
 from latentarm_research.people.boltzmann import BoltzmannConfig, OneStep
@@ -29,7 +28,7 @@ that did not."""
 @final
 @dataclass(frozen=True)
 class PlanningConfig:
-    """How far ahead the simulated person plans. Raises a `UserError` where there would be no plan."""
+    """How far ahead the simulated person plans."""
 
     pieces: int = 8  # maximum number in a plan; the input is constant in each
     piece_s: float = 0.5  # length of a piece, s
@@ -38,10 +37,6 @@ class PlanningConfig:
     stuck_m: float = 0.004  # a step that brings the tool closer by less than this is no progress, m
     # a plan that ends this near the target will do, m; a radian counts as `rotation_weight`
     arrived_m: float = 0.02
-
-    def __post_init__(self) -> None:
-        if min(self.pieces, self.steps) < 1 or self.iterations < 0 or not 0 < self.piece_s < np.inf:
-            raise UserError("A plan needs at least one piece of some length, and one step in each.")
 
 
 @final

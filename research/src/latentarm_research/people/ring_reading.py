@@ -10,7 +10,6 @@ from scipy.spatial.transform import Rotation
 
 from latentarm.assistance.controllers.contract import Controller
 from latentarm.control.stick_ring import AHEAD_S, STRETCHES, full_pushes
-from latentarm.core.errors import UserError
 from latentarm.core.types import Context, FloatArray, Input, IntArray, Pose
 from latentarm.robots.kinematics.chain import Chain
 from latentarm.robots.kinematics.rotations import pose_error
@@ -22,7 +21,7 @@ from latentarm_research.people.motion import shifted
 @final
 @dataclass(frozen=True)
 class RingReadingConfig:
-    """How a simulated person reads the ring. Raises a `UserError` where a figure is out of its range."""
+    """How a simulated person reads the ring."""
 
     # how far a direction in space is misread from two views, RMS of the angle, rad. An assumption
     error_rad: float = math.radians(15.0)
@@ -31,14 +30,6 @@ class RingReadingConfig:
     read_s: float = 0.3
     # how far the stick is pushed at least, as a share of full deflection. An assumption
     least_push: float = 0.03
-
-    def __post_init__(self) -> None:
-        if not 0 <= self.error_rad < np.inf:
-            raise UserError(f"A person's error in reading a ring must be zero or more, not {self.error_rad}.")
-        if not 0 < self.read_s < np.inf:
-            raise UserError(f"The time to read a ring must be positive and finite, not {self.read_s} s.")
-        if not 0 <= self.least_push < 1:
-            raise UserError(f"The least push of a stick must be in [0, 1), not {self.least_push}.")
 
 
 @final

@@ -7,28 +7,15 @@ from typing import final
 import numpy as np
 from scipy.special import ndtr, ndtri
 
-from latentarm.core.errors import UserError
-
 
 @dataclass(frozen=True)
 class Spread(ABC):
-    """A distribution over people, cut off at both ends.
-
-    Raises:
-        UserError: the range is empty or does not hold the middle, or the width is not positive.
-    """
+    """A distribution over people, cut off at both ends."""
 
     middle: float  # median before it is cut off
     width: float  # how wide it is; see the kinds
     lowest: float  # nobody has less
     highest: float  # nobody has more
-
-    def __post_init__(self) -> None:
-        if not (self.lowest < self.highest and self.lowest <= self.middle <= self.highest and self.width > 0):
-            raise UserError(
-                f"A spread needs a width above 0 and its middle in its range, not {self.middle} in"
-                f" {self.lowest} to {self.highest} with {self.width}."
-            )
 
     def at(
         self,
