@@ -33,7 +33,6 @@ STUDIES: Final[Mapping[str, Entry]] = {
         "One of the tasks, or all four.",
         {
             "paper": _PAPER,
-            "noise": "noise on the states as well",
             "smoke": _SMOKE,
         },
     ),

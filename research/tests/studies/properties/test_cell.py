@@ -29,7 +29,6 @@ TINY = Preset(
 ALWAYS = {
     "error_percent_of_pca",
     "median_error_percent_of_pca",
-    "noise_free_error_percent_of_pca",
     "r2",
     "drift",
     "reversal",
@@ -48,8 +47,8 @@ OF_TASK = {
 }
 
 
-def cell(task="sine", model="cae", noise_rad=0.0, seed=0):
-    return PropertiesCell(task, model, noise_rad, TINY, seed)
+def cell(task="sine", model="cae", seed=0):
+    return PropertiesCell(task, model, TINY, seed)
 
 
 measured = cache(measure_cell)
@@ -81,21 +80,11 @@ def test_every_model_can_be_measured(model):
     assert len(result.figures["error_percent_of_pca"]) == TINY.seeds
 
 
-def test_with_noise_nothing_is_driven_and_both_errors_are_told():
-    result = measured(cell("circle", "cae", noise_rad=0.1))
-    assert set(result.figures) == ALWAYS | {"disentanglement_deg"}
-    noisy, clean = (
-        result.figures[name] for name in ("error_percent_of_pca", "noise_free_error_percent_of_pca")
-    )
-    assert (noisy != clean).all()
-
-
-def test_pca_is_its_own_hundred_percent_with_noise_and_without():
-    for noise in (0.0, 0.1):
-        figures = measured(cell("rotate", "pca", noise)).figures
-        for name in figures:
-            if name.endswith("percent_of_pca"):
-                np.testing.assert_allclose(figures[name], [100.0, 100.0])
+def test_pca_is_its_own_hundred_percent():
+    figures = measured(cell("rotate", "pca")).figures
+    for name in figures:
+        if name.endswith("percent_of_pca"):
+            np.testing.assert_allclose(figures[name], [100.0, 100.0])
 
 
 def test_demonstrations_are_the_same_for_every_model_and_others_for_another_seed():

@@ -12,7 +12,7 @@ from latentarm.evaluation.looks import LOOKS, look_of
 from latentarm.models.catalogue import KINDS
 from latentarm.robots.planar import planar
 from latentarm_research.studies.drawing import arm_line
-from latentarm_research.studies.properties.cell import PropertiesCell, PropertiesResult, condition
+from latentarm_research.studies.properties.cell import PropertiesCell, PropertiesResult
 from latentarm_research.studies.properties.figures import (
     beside_paper_figure,
     in_mm,
@@ -25,7 +25,6 @@ from latentarm_research.tasks.planar.catalogue import MOTIONS
 from latentarm_research.tasks.planar.paths import STEP_S
 from latentarm_research.tasks.planar.resolved_rate import plane_point
 
-NOISES_RAD = (0.0, 0.01, 0.1)
 MODELS = ("pca", "ae", "vae", "cae", "cvae", "cae_zero", "scl")
 OURS = "isometric"
 
@@ -46,14 +45,13 @@ class Turning:
 def results_of(tasks, models):
     return [
         PropertiesResult(
-            PropertiesCell(task, model, noise, PRESETS["smoke"], 0),
+            PropertiesCell(task, model, PRESETS["smoke"], 0),
             {},
             Turning(MOTIONS[task]().latent_dim, MOTIONS[task]().robot.dof),
             1.0,
         )
         for task in tasks
         for model in models
-        for noise in NOISES_RAD
     ]
 
 
@@ -66,7 +64,6 @@ def rows_of(tasks, models, n=3):
     measures = [
         ("error_percent_of_pca", "%", 20.0),
         ("median_error_percent_of_pca", "%", 20.0),
-        ("noise_free_error_percent_of_pca", "%", 20.0),
         ("controllability_m", "m", 0.01),
         ("median_controllability_percent_of_pca", "%", 20.0),
         ("final_distance", "m", 0.02),
@@ -79,15 +76,9 @@ def rows_of(tasks, models, n=3):
     for task in tasks:
         for place, model in enumerate(models):
             for measure, unit, size in measures:
-                for where in (None, *map(condition, NOISES_RAD)):
-                    mean, paper = (
-                        size * (1 - 0.1 * place),
-                        size if model == "cvae" and where is None else None,
-                    )
-                    sd = None if n == 1 else 2 * mean  # more than the mean: no logarithm of its lower end
-                    rows.append(
-                        Row("properties", measure, unit, mean, sd, n, task, model, where, paper, paper)
-                    )
+                mean, paper = size * (1 - 0.1 * place), size if model == "cvae" else None
+                sd = None if n == 1 else 2 * mean  # more than the mean: no logarithm of its lower end
+                rows.append(Row("properties", measure, unit, mean, sd, n, task, model, None, paper, paper))
     return rows
 
 

@@ -131,7 +131,7 @@ def test_a_ratio_to_a_pca_that_reaches_everything_is_no_figure():
 
 def test_rotates_r2_is_of_the_grippers_turning():
     motion, preset = Rotate(), Preset("", states=9)
-    pairs = recorded_pairs(shown(motion), 0.0, rng())
+    pairs = recorded_pairs(shown(motion), rng())
     decoder = TurnBox(motion.robot)
     figures = latent_figures(motion, Encoder(decoder), [decoder], pairs, preset)
     assert figures["r2"][0] == pytest.approx(1.0, abs=1e-4)
@@ -141,19 +141,11 @@ def test_rotates_r2_is_of_the_grippers_turning():
 
 def test_axes_at_right_angles_are_told_from_skew_ones():
     motion, preset = Circle(), Preset("")
-    pairs = recorded_pairs(shown(motion), 0.0, rng())
+    pairs = recorded_pairs(shown(motion), rng())
     for directions, angle in ((np.eye(2), 90.0), (np.array([[1.0, 0.0], [1.0, 1.0]]), 45.0)):
         decoder = InPlane(motion.robot, directions)
         figures = latent_figures(motion, Encoder(decoder), [decoder], pairs, preset)
         assert figures["disentanglement_deg"][0] == pytest.approx(angle, abs=0.5)
-
-
-def test_noise_is_on_contexts_never_on_actions():
-    demonstrations = shown(Sine())
-    clean, noisy = (recorded_pairs(demonstrations, noise, rng()) for noise in (0.0, 0.1))
-    np.testing.assert_array_equal(clean.action, noisy.action)
-    np.testing.assert_array_equal(clean.context, noisy.clean_context)
-    assert np.std(noisy.context - noisy.clean_context) == pytest.approx(0.1, rel=0.05)
 
 
 def test_a_tool_that_goes_anywhere_reaches_every_goal_by_no_less_than_the_straight_way():

@@ -12,7 +12,6 @@ from latentarm_research.studies.properties.paper import with_paper
 from latentarm_research.studies.properties.preset import PRESETS
 from latentarm_research.studies.properties.study import STUDY
 from latentarm_research.studies.properties.tables import (
-    noise_table,
     paper_table,
 )
 from latentarm_research.studies.study import Request
@@ -23,8 +22,8 @@ from .test_figures import Turning
 ERROR = "median_error_percent_of_pca"
 
 
-def row(model, mean, measure=ERROR, task="sine", condition=None, sd=0.5):
-    return Row("properties", measure, "%", mean, sd, 10, task=task, model=model, condition=condition)
+def row(model, mean, measure=ERROR, task="sine", sd=0.5):
+    return Row("properties", measure, "%", mean, sd, 10, task=task, model=model)
 
 
 def lines(table):
@@ -48,39 +47,24 @@ def test_a_length_of_the_paper_is_marked():
     assert lines(paper_table(rows, "sine"))[2][1] == "0.0200 (paper: 0.05 ± 0.01 †)"
 
 
-def test_the_table_of_noise_has_a_line_for_each():
-    rows = [
-        row(model, mean + noise, condition=f"noise {noise:g} rad")
-        for noise in (0.0, 0.1)
-        for model, mean in {"ae": 90.0, "cae": 2.0}.items()
-    ]
-    rows += [row("ae", 1.0), row("cae", 3.0, "drift", condition="noise 0.1 rad")]
-    assert lines(noise_table(rows, "sine"))[2:] == [
-        ["median error, of PCA's (%)", "noise 0 rad", "90.00 ± 0.50", "2.00 ± 0.50"],
-        ["median error, of PCA's (%)", "noise 0.1 rad", "90.10 ± 0.50", "2.10 ± 0.50"],
-        ["drift, of motion (%)", "noise 0.1 rad", "–", "3.00 ± 0.50"],
-    ]
-
-
 SMALL = replace(PRESETS["smoke"], name="small")
 """A preset whose hypotheses are judged."""
 
 
-def results_of(seeds=3, noises=(0.0, 0.1), tasks=tuple(MOTIONS)):
+def results_of(seeds=3, tasks=tuple(MOTIONS)):
     rng = np.random.default_rng(0)
     results = []
     for task in tasks:
-        for noise in noises:
-            for model, mean in {"pca": 100.0, "vae": 80.0, "cvae": 4.0, "scl": 3.0}.items():
-                figures = {ERROR: mean + rng.random(seeds), "r2": rng.uniform(0.95, 1.0, seeds)}
-                results.append(
-                    PropertiesResult(
-                        PropertiesCell(task, model, noise, SMALL, 0),
-                        figures,
-                        Turning(MOTIONS[task]().latent_dim, MOTIONS[task]().robot.dof),
-                        fit_s=0.0,
-                    )
+        for model, mean in {"pca": 100.0, "vae": 80.0, "cvae": 4.0, "scl": 3.0}.items():
+            figures = {ERROR: mean + rng.random(seeds), "r2": rng.uniform(0.95, 1.0, seeds)}
+            results.append(
+                PropertiesResult(
+                    PropertiesCell(task, model, SMALL, 0),
+                    figures,
+                    Turning(MOTIONS[task]().latent_dim, MOTIONS[task]().robot.dof),
+                    fit_s=0.0,
                 )
+            )
     return results
 
 
@@ -106,7 +90,6 @@ def test_the_page_has_every_part(report):
         "Circle",
         "Reach",
         "How to read the tables",
-        "Noise on the states",
         "Tests of the hypotheses",
     ]
     assert re.search(
@@ -126,10 +109,9 @@ def test_every_table_of_the_page_has_as_many_cells_in_every_line(report):
 
 
 def test_one_seed_of_one_task_leaves_out_what_was_not_done():
-    page = page_of(results_of(seeds=1, noises=(0.0,), tasks=("circle",)), ("circle",)).page
+    page = page_of(results_of(seeds=1, tasks=("circle",)), ("circle",)).page
     assert "--task circle --seed 3" in page
     assert "## Sine" not in page
-    assert "## Noise" not in page
     assert "nan" not in page
     assert "could not be tested" in page
 

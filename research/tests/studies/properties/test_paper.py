@@ -6,8 +6,8 @@ from latentarm_research.studies.properties.paper import LENGTHS, MODELS_OF_THE_P
 from latentarm_research.tasks.planar.catalogue import MOTIONS
 
 
-def row(task, model, measure, mean=1.0, condition=None, unit="%"):
-    return Row("properties", measure, unit, mean, 0.1, 10, task=task, model=model, condition=condition)
+def row(task, model, measure, mean=1.0, unit="%"):
+    return Row("properties", measure, unit, mean, 0.1, 10, task=task, model=model)
 
 
 def test_every_figure_is_of_a_task_and_a_model_of_ours():
@@ -49,11 +49,6 @@ def test_the_papers_figures_stand_beside_ours():
     assert (beside.mean, beside.sd) == (1.0, 0.1)
     assert (beside.paper_mean, beside.paper_sd) == (1.37, 1.2)
     assert (without.paper_mean, without.paper_sd) == (None, None)
-
-
-def test_the_noise_sweep_is_not_the_papers():
-    swept = row("sine", "cae", "median_error_percent_of_pca", condition="noise 0.1 rad")
-    assert with_paper([swept]) == [swept]
 
 
 def test_our_lengths_on_reach_become_ratios_too():

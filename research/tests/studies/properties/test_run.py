@@ -22,7 +22,6 @@ TINY = Preset(
     reach_goals=2,
     states=5,
     grid=5,
-    noises_rad=(0.0, 0.1),
 )
 TASK = "reach"
 
@@ -38,31 +37,18 @@ def done(tmp_path_factory):
     return run_study(STUDY, tiny(out)).rows, out
 
 
-def test_every_model_has_its_figures_with_and_without_noise(done):
+def test_every_model_has_its_figures(done):
     rows, out = done
     assert json.loads((out / "results.json").read_text())["rows"] == [row.as_json() for row in rows]
     assert {row.model for row in rows} == set(TINY.models)
-    assert {row.condition for row in rows} == {None, "noise 0 rad", "noise 0.1 rad"}
-    main = {row.measure for row in rows if row.condition is None}
-    swept = {row.measure for row in rows if row.condition is not None}
-    assert {"median_error_percent_of_pca", "r2", "drift", "reversal", "final_distance"} <= main
-    assert {"error_percent_of_pca", "r2", "drift", "reversal"} <= swept
-    assert "final_distance" not in swept
+    measured = {row.measure for row in rows}
+    assert {"median_error_percent_of_pca", "r2", "drift", "reversal", "final_distance"} <= measured
     assert all(row.study == "properties" and row.task == TASK for row in rows)
-
-
-def test_the_sweep_begins_with_the_figures_without_noise(done):
-    rows, _ = done
-    at = {(row.model, row.measure, row.condition): row.mean for row in rows}
-    for (model, measure, condition), mean in at.items():
-        if condition == "noise 0 rad":
-            assert mean == at[model, measure, None]
 
 
 def test_the_paper_stands_beside_what_it_prints(done):
     rows, _ = done
     assert any(row.paper_mean is not None for row in rows)
-    assert all(row.paper_mean is None for row in rows if row.condition is not None)
 
 
 def test_the_folder_holds_what_is_promised(done):
@@ -76,10 +62,9 @@ def test_the_folder_holds_what_is_promised(done):
 
 
 def test_sizes_that_make_no_sense_name_the_cell(tmp_path):
-    with pytest.raises(UserError, match=r"reach, pca, noise 0 rad: .*demonstration"):
+    with pytest.raises(UserError, match=r"reach, pca: .*demonstration"):
         run_study(STUDY, tiny(tmp_path, preset=replace(TINY, episodes=0)))
 
 
 def test_presets_have_the_paper_s_setting_and_their_own_names():
     assert {name: preset.name for name, preset in PRESETS.items()} == {name: name for name in PRESETS}
-    assert all(preset.noises_rad[0] == 0.0 for preset in PRESETS.values())

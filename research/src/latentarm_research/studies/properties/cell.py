@@ -1,4 +1,4 @@
-"""One cell of the study: one model, on one task, under one noise, all its seeds."""
+"""One cell of the study: one model, on one task, all its seeds."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -30,8 +30,8 @@ class Stream(IntEnum):
     TRAINING = 0
     TEST = 1
     NETWORKS = 2
-    TRAINING_NOISE = 3
-    TEST_NOISE = 4
+    TRAINING_PAIRS = 3
+    TEST_PAIRS = 4
     PAIRS = 5
     GOALS = 6
 
@@ -42,14 +42,8 @@ class PropertiesCell:
 
     task: str  # a name of `MOTIONS`
     model: str  # a name of `MODELS`
-    noise_rad: float  # SD of the noise on states, in training and in the noisy error, rad
     preset: Preset  # sizes of the study
-    seed: int  # of the whole study; the same demonstrations come from it for every kind of model and noise
-
-
-def condition(noise_rad: float) -> str:
-    """How rows name a noise."""
-    return f"noise {noise_rad:g} rad"
+    seed: int  # of the whole study; the same demonstrations come from it for every kind of model
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +73,7 @@ def demonstrated(
     seeds: int,
     seed: int,
 ) -> tuple[Demonstrated, ...]:
-    """The demonstrations of every seed, the same for every kind of model and noise."""
+    """The demonstrations of every seed, the same for every kind of model."""
     motion = MOTIONS[task](design)
     return tuple(
         Demonstrated(
@@ -127,20 +121,19 @@ def _figures(
     """The figures of one seed, by its index: measure -> (1,)."""
 
     def draws(stream: Stream) -> np.random.Generator:
-        """The same for every kind of model and noise."""
+        """The same for every kind of model."""
         return generator(cell.seed, cell.task, stream, index)
 
     preset = cell.preset
-    pairs = measures.recorded_pairs(shown.test, cell.noise_rad, draws(Stream.TEST_NOISE))
+    pairs = measures.recorded_pairs(shown.test, draws(Stream.TEST_PAIRS))
     chosen = select_episodes(shown.training, range(validation_episodes(shown.training).start))
-    # Only the actions of these are used, so no noise is drawn.
-    fitted = measures.recorded_pairs(chosen, 0.0, draws(Stream.TRAINING_NOISE))
+    fitted = measures.recorded_pairs(chosen, draws(Stream.TRAINING_PAIRS))
     decoders = [model.decoder()]
     figures = measures.accuracy_figures(model, decoders, fitted, pairs)
     figures |= measures.latent_figures(motion, model, decoders, pairs, preset)
-    if cell.noise_rad == 0 and isinstance(motion, ReachRegion):
+    if isinstance(motion, ReachRegion):
         figures |= measures.reach_figures(motion, decoders, preset.reach_goals, draws(Stream.GOALS))
-    elif cell.noise_rad == 0:
+    else:
         goals = measures.start_goal_pairs(motion, shown.test, preset.reach_pairs, draws(Stream.PAIRS))
         figures |= measures.control_figures(motion, decoders, baseline.decoder(), goals)
     return figures
@@ -156,8 +149,8 @@ def _fit(cell: PropertiesCell, kind: str, shown: tuple[Demonstrated, ...]) -> li
         kl_weight=preset.kl_weight,
         latent_dim=MOTIONS[cell.task]().latent_dim,
         actions="recorded",
-        state_noise_rad=cell.noise_rad,
-        data_seed=integer(sequence(cell.seed, cell.task, Stream.TRAINING_NOISE)),
+        state_noise_rad=0.0,
+        data_seed=integer(sequence(cell.seed, cell.task, Stream.TRAINING_PAIRS)),
         hidden=preset.hidden,
         epochs=preset.epochs,
         batch_size=preset.batch_size,

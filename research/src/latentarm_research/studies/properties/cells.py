@@ -64,10 +64,10 @@ def paper_cells(rows: Iterable[Row], *, means: bool = False) -> list[PaperCell]:
     percent of its own) is no cell.
 
     Args:
-        rows: of the study; those under noise are passed over.
+        rows: of the study.
         means: judge means over pairs where the study has medians over episodes.
     """
-    ours = {(row.task, row.model, row.measure): row for row in rows if row.condition is None}
+    ours = {(row.task, row.model, row.measure): row for row in rows}
     cells: list[PaperCell] = []
     for (task, model, measure), (paper, sd) in PAPER.items():
         row = ours.get((task, model, OF_MEANS.get(measure, measure) if means else measure))

@@ -26,14 +26,12 @@ class Point(NamedTuple):
     paper_sd: float  # 0 where the paper reports none
 
 
-def points(rows: Iterable[Row], task: str, measure: str, condition: str | None = None) -> dict[str, Point]:
-    """One measure by model, of the main table where no condition is named."""
+def points(rows: Iterable[Row], task: str, measure: str) -> dict[str, Point]:
+    """One measure by model."""
     return {
         row.model: Point(row.mean, row.sd or 0.0, row.paper_mean, row.paper_sd or 0.0)
         for row in rows
-        if (row.task, row.measure, row.condition) == (task, measure, condition)
-        and row.model is not None
-        and row.mean is not None
+        if (row.task, row.measure) == (task, measure) and row.model is not None and row.mean is not None
     }
 
 

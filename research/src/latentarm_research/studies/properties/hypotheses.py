@@ -66,9 +66,7 @@ def conditioned(model: str) -> bool:
     return KINDS[model].sees_context
 
 
-def compare_models(
-    results: Sequence[PropertiesResult],  # any cells; those with noise are not part of the hypotheses
-) -> list[Tested]:
+def compare_models(results: Sequence[PropertiesResult]) -> list[Tested]:
     """Every claim of H1 and H2 that the results allow.
 
     Returns:
@@ -76,8 +74,7 @@ def compare_models(
     """
     figures: dict[str, dict[str, Mapping[str, FloatArray]]] = {}
     for result in results:
-        if result.cell.noise_rad == 0.0:
-            figures.setdefault(result.cell.task, {})[result.cell.model] = result.figures
+        figures.setdefault(result.cell.task, {})[result.cell.model] = result.figures
     tested = [
         one
         for task, models in figures.items()

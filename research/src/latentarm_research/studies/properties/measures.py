@@ -52,11 +52,10 @@ as many latent axes as the plane has, any model comes so near."""
 
 def recorded_pairs(
     demonstrations: Demonstrations,
-    noise_rad: float,  # SD of the noise on states, rad
     rng: np.random.Generator,
 ) -> Pairs:
-    """State-action pairs as recorded, the contexts noisy and clean."""
-    return make_pairs(demonstrations, 1, noise_rad, "state", rng, actions="recorded")
+    """State-action pairs as recorded."""
+    return make_pairs(demonstrations, 1, 0.0, "state", rng, actions="recorded")
 
 
 def accuracy_figures(
@@ -65,28 +64,23 @@ def accuracy_figures(
     fitted: Pairs,
     pairs: Pairs,  # `recorded_pairs` of other demonstrations
 ) -> dict[str, FloatArray]:
-    """Errors in percent of PCA's, with noise on the states and without.
+    """Errors in percent of PCA's.
 
     Returns:
-        Measure -> (S,), %: of the mean error over all pairs, and of the median of the episodes' mean errors
-        on states with noise.
+        Measure -> (S,), %: of the mean error over all pairs, and of the median of the episodes' mean errors.
     """
     baseline = pca_error(fitted.action, pairs.action, decoders[0].latent_dim)
-    figures: dict[str, FloatArray] = {}
-    for name, context in (
-        ("error_percent_of_pca", pairs.context),
-        ("noise_free_error_percent_of_pca", pairs.clean_context),
-    ):
-        z = model.encode(context, pairs.action)
-        figures[name] = percent_of(baseline, reconstruction_error(decoders, z, context, pairs.action))
-    each = [pairs.episode == episode for episode in np.unique(pairs.episode)]
     z = model.encode(pairs.context, pairs.action)
+    of_all = reconstruction_error(decoders, z, pairs.context, pairs.action)
+    each = [pairs.episode == episode for episode in np.unique(pairs.episode)]
     errors = [
         reconstruction_error(decoders, z[:, one], pairs.context[one], pairs.action[one]) for one in each
     ]
     by_pca = [pca_error(fitted.action, pairs.action[one], decoders[0].latent_dim) for one in each]
-    figures["median_error_percent_of_pca"] = percent_of(float(np.median(by_pca)), np.median(errors, axis=0))
-    return figures
+    return {
+        "error_percent_of_pca": percent_of(baseline, of_all),
+        "median_error_percent_of_pca": percent_of(float(np.median(by_pca)), np.median(errors, axis=0)),
+    }
 
 
 def latent_figures(
@@ -101,7 +95,7 @@ def latent_figures(
     Returns:
         Measure -> (S,).
     """
-    chain, context = motion.robot.chain, pairs.clean_context
+    chain, context = motion.robot.chain, pairs.context
     grid = axis_grid(preset.grid)
     states = context[evenly_spread(preset.states, len(context))]
     effects = axis_effects(decoders, states, grid, chain, STEP_S)

@@ -106,14 +106,14 @@ def with_paper(rows: Sequence[Row]) -> list[Row]:
 
 def _beside_paper(row: Row) -> Row:
     printed = PAPER.get((row.task or "", row.model or "", row.measure))
-    if printed is None or row.condition is not None:
+    if printed is None:
         return row
     return replace(row, paper_mean=printed[0], paper_sd=printed[1])
 
 
 def _length_ratios(rows: Sequence[Row]) -> list[Row]:
     """Mean lengths in percent of the VAE's mean, where the paper's lengths are compared so."""
-    main = {(row.task, row.model, row.measure): row for row in rows if row.condition is None}
+    main = {(row.task, row.model, row.measure): row for row in rows}
     ratios: list[Row] = []
     for (task, _, measure), row in main.items():
         baseline = main.get((task, RATIO_OF, measure))

@@ -39,13 +39,10 @@ class Preset:
     # along the task, from which the effects of a grid of latent actions are measured; 25 in the paper
     states: int = 25
     grid: int = 21  # latent actions in [-1, 1] at each of them
-    # standard deviations of the noise on states, rad; 0 is the paper's setting
-    noises_rad: tuple[float, ...] = (0.0,)
 
 
 PRESETS: Final[dict[str, Preset]] = {
     "paper": Preset("paper"),
-    "noise": Preset("noise", noises_rad=(0.0, 0.01, 0.1)),
     "smoke": Preset(
         "smoke",
         episodes=40,
@@ -55,6 +52,5 @@ PRESETS: Final[dict[str, Preset]] = {
         reach_pairs=10,
         reach_goals=5,
         states=9,
-        noises_rad=(0.0, 0.1),
     ),
 }

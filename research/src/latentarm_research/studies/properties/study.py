@@ -12,7 +12,6 @@ from latentarm_research.studies.properties import tables
 from latentarm_research.studies.properties.cell import (
     PropertiesCell,
     PropertiesResult,
-    condition,
     measure_cell,
 )
 from latentarm_research.studies.properties.cells import cells_table, count, paper_cells
@@ -33,59 +32,38 @@ if TYPE_CHECKING:
 
 
 def _measure(request: Request[Preset], grid: Grid) -> list[PropertiesResult]:
-    # Without noise most is measured: these take longest, and begin first. The models of a task stand
-    # together, so that one process demonstrates once for all of them.
+    # The models of a task stand together, so that one process demonstrates once for all of them.
     cells = [
-        PropertiesCell(task, model, noise_rad, request.preset, request.seed)
-        for noise_rad in request.preset.noises_rad
+        PropertiesCell(task, model, request.preset, request.seed)
         for task, model in product(request.tasks, request.preset.models)
     ]
     return grid.run("Models on tasks", measure_cell, cells, _label)
 
 
 def _label(cell: PropertiesCell) -> str:
-    return f"{cell.task}, {cell.model}, {condition(cell.noise_rad)}"
+    return f"{cell.task}, {cell.model}"
 
 
 def _report(request: Request[Preset], results: list[PropertiesResult]) -> Report:
-    rows = with_paper([row for task in request.tasks for row in _rows(results, task)])
+    series = [one for result in results for one in _series(result)]
+    rows = with_paper([one.row(STUDY.name) for one in series])
     tests = compare_models(results)
     figures = _figures(results, rows, request.tasks)
-    cells = [
-        {"task": cell.task, "model": cell.model, "condition": condition(cell.noise_rad)}
-        for cell in (result.cell for result in results)
-    ]
     return Report(
         rows=rows,
         page=_page(request, rows, tests, figures),
         figures=figures,
         tests=tests,
-        documents={
-            "seeds.json": [
-                {**one.as_json(), **cell}
-                for cell, result in zip(cells, results, strict=True)
-                for one in _series(result)
-            ]
+        documents={"seeds.json": [one.as_json() for one in series]},
+        timings={
+            "cells": [{"task": one.cell.task, "model": one.cell.model, "fit_s": one.fit_s} for one in results]
         },
-        timings={"cells": [{**cell, "fit_s": one.fit_s} for cell, one in zip(cells, results, strict=True)]},
     )
 
 
-def _series(result: PropertiesResult, under: str | None = None) -> list[Series]:
-    """The figures of a cell, under the condition by which rows name it."""
+def _series(result: PropertiesResult) -> list[Series]:
     cell = result.cell
-    return [Series(cell.task, cell.model, under, *figures) for figures in result.figures.items()]
-
-
-def _rows(results: Sequence[PropertiesResult], task: str) -> list[Row]:
-    """One task's rows: without noise everything, and in the sweep what is measured under every noise."""
-    here = [result for result in results if result.cell.task == task]
-    series = [one for result in here if result.cell.noise_rad == 0 for one in _series(result)]
-    if len({result.cell.noise_rad for result in here}) > 1:
-        swept = set[str].intersection(*(set(result.figures) for result in here))
-        noisy = [one for result in here for one in _series(result, condition(result.cell.noise_rad))]
-        series += [one for one in noisy if one.measure in swept]
-    return [one.row(STUDY.name) for one in series]
+    return [Series(cell.task, cell.model, None, *figures) for figures in result.figures.items()]
 
 
 def _figures(
@@ -94,7 +72,7 @@ def _figures(
     """Those over all tasks, and one for each task."""
     figures = {"beside_paper": beside_paper_figure(rows, tasks)}
     for task in tasks:
-        here = [one for one in results if (one.cell.task, one.cell.noise_rad) == (task, 0.0)]
+        here = [one for one in results if one.cell.task == task]
         figures[task] = TASK_FIGURES[task]({one.cell.model: one.decoder for one in here}, rows)
     return figures
 
@@ -118,11 +96,6 @@ def _page(
         **judged_parts(HYPOTHESES, tests),
         figures=list(figures),
         paper_tables={task: tables.paper_table(rows, task) for task in request.tasks},
-        noise_tables={
-            task: tables.noise_table(rows, task)
-            for task in request.tasks
-            if len(request.preset.noises_rad) > 1
-        },
         unit_not_stated=tables.UNIT_NOT_STATED,
         compared_measures=", ".join(
             claim.measure for one in HYPOTHESES for claim in one.claims if claim.against != MARK

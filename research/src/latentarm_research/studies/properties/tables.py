@@ -1,4 +1,4 @@
-"""The study's tables: ours next to the paper's, and the noise sweep."""
+"""The study's tables: ours next to the paper's."""
 
 from collections.abc import Iterable
 from typing import Final
@@ -17,8 +17,8 @@ Cells = dict[tuple[str, str], Row]  # rows by measure and model
 
 
 def paper_table(rows: Iterable[Row], task: str) -> str:
-    """One task without noise: measures down, models across, each figure with the paper's where it has one."""
-    cells = _cells(row for row in rows if row.task == task and row.condition is None)
+    """One task: measures down, models across, each figure with the paper's where it has one."""
+    cells = _cells(row for row in rows if row.task == task)
     models = list(dict.fromkeys(model for _, model in cells))
     lines = [
         [
@@ -28,20 +28,6 @@ def paper_table(rows: Iterable[Row], task: str) -> str:
         for measure in dict.fromkeys(measure for measure, _ in cells)
     ]
     return markdown_table(["mean ± SD", *(look_of(model).label for model in models)], lines)
-
-
-def noise_table(rows: Iterable[Row], task: str) -> str:
-    """One task's noise sweep: measures under each noise down, models across."""
-    rows = [row for row in rows if row.task == task and row.condition is not None]
-    models = list(dict.fromkeys(row.model or "" for row in rows))
-    lines: list[list[str]] = []
-    for measure, condition in dict.fromkeys((row.measure, row.condition or "") for row in rows):
-        cells = _cells(row for row in rows if (row.measure, row.condition) == (measure, condition))
-        figures = [_figure(cells.get((measure, model))) for model in models]
-        lines.append([_name(cells, measure), condition, *figures])
-    order = list(dict.fromkeys(line[0] for line in lines))
-    lines.sort(key=lambda line: order.index(line[0]))
-    return markdown_table(["mean ± SD", "on states", *(look_of(model).label for model in models)], lines)
 
 
 def _cells(rows: Iterable[Row]) -> Cells:

@@ -1,6 +1,6 @@
 """The figure of each task: what latent actions do on it.
 
-Each is drawn from one decoder per model, of the first seed, trained without noise, and the study's rows.
+Each is drawn from one decoder per model, of the first seed, and the study's rows.
 """
 
 from collections.abc import Callable, Sequence

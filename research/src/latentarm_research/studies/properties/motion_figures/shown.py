@@ -30,7 +30,7 @@ CONTRASTED: Final = ("vae", *CONDITIONED)
 
 EPISODES: Final = 60
 STREAM: Final = 81  # separates the drawn states from those of the study: no model was trained on them
-Decoders = Mapping[str, DecodesActions]  # one decoder per model, of the first seed, trained without noise
+Decoders = Mapping[str, DecodesActions]  # one decoder per model, of the first seed
 
 
 @dataclass(frozen=True)
