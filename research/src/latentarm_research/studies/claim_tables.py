@@ -2,15 +2,19 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from latentarm.evaluation.looks import look_of
 from latentarm.evaluation.measures import label_of
 from latentarm.evaluation.table import ABSENT, format_figure
 from latentarm_research.studies.claims import Hypothesis, Label, Tested, Verdict, verdict_on
 from latentarm_research.studies.means_test import CONFIDENCE
+from latentarm_research.studies.page import SMOKE
 from latentarm_research.studies.statistics import LEVEL, format_p
 from latentarm_research.studies.tables import plain_table
+
+if TYPE_CHECKING:
+    from rich.table import Table
 
 Columns = Mapping[str, Sequence[str]]  # heading -> cells, of a line each
 
@@ -31,6 +35,18 @@ def verdict_columns(verdicts: Sequence[Verdict]) -> Columns:
         "says": [one.says for one in verdicts],
         "why": [one.why for one in verdicts],
     }
+
+
+def terminal_verdicts(title: str, verdicts: Sequence[Verdict]) -> "list[Table]":
+    """The verdicts in a table for a terminal; none without any."""
+    from rich.table import Table
+
+    columns = verdict_columns(verdicts)
+    shown = {head: cells for head, cells in columns.items() if head != "hypothesis" and any(cells)}
+    table = Table(*shown, title=title, title_justify="left")
+    for line in zip(*shown.values(), strict=True):
+        table.add_row(*line)
+    return [table] if verdicts else []
 
 
 def claim_columns(tested: Sequence[Tested], measure: Label, name: Label, further: Columns) -> Columns:
@@ -71,6 +87,12 @@ def judged_parts(hypotheses: Iterable[Hypothesis], tested: Sequence[Tested]) -> 
         "test_table": claim_table(tested),
         "level": LEVEL,
     }
+
+
+def verdict_tables(preset: str, hypotheses: Iterable[Hypothesis], tested: Sequence[Tested]) -> "list[Table]":
+    """The verdicts on the hypotheses of a simulation, for a terminal; none of a smoke run."""
+    verdicts = [] if preset == SMOKE else verdicts_by_task(hypotheses, tested)
+    return terminal_verdicts("What the hypotheses come to, simulated", verdicts)
 
 
 def verdicts_by_task(hypotheses: Iterable[Hypothesis], tested: Sequence[Tested]) -> list[Verdict]:

@@ -11,7 +11,7 @@ from latentarm_research.studies.shared_autonomy.hypotheses import HYPOTHESES
 from latentarm_research.studies.shared_autonomy.preset import PRESETS
 from latentarm_research.studies.shared_autonomy.rows import EXTRA_TIME, Figure, figures, rows_of
 from latentarm_research.studies.shared_autonomy.study import STUDY
-from latentarm_research.studies.shared_autonomy.tables import Tables, summary_tables
+from latentarm_research.studies.shared_autonomy.tables import Tables
 from latentarm_research.studies.study import Request
 
 from .test_figures import results_of
@@ -105,13 +105,11 @@ def test_how_much_longer_without_help_is_taken_seed_by_seed():
     assert extra == pytest.approx(100.0 * (times["LA"] - times["LA+SA"]) / times["LA+SA"])
 
 
-def test_the_terminal_shows_one_table_for_each_arm():
-    rows = rows_of(figures(measured("smoke", tuple(TASKS))))
-    tables = summary_tables(rows)
-    assert len(tables) == len(TASKS)
-    for table in tables:
-        assert [column.header for column in table.columns] == ["mean ± SD", *METHODS]
-        assert table.row_count == len(PRESETS["smoke"].people)
+def test_the_terminal_shows_what_the_hypotheses_come_to():
+    (table,) = report_of("paper", tuple(TASKS)).tables
+    assert [column.header for column in table.columns][:1] == [""]
+    assert {"says", "why"} <= {column.header for column in table.columns}
+    assert report_of("smoke", tuple(TASKS)).tables == []
 
 
 def test_a_smoke_run_says_so_and_judges_nothing():

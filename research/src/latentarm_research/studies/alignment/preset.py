@@ -98,7 +98,6 @@ class Stream(IntEnum):
     ANSWERS = 8
     CANDIDATES = 9
     CANDIDATE_ANSWERS = 10
-    ENSEMBLES = 11
     SURROUNDINGS = 14
 
 

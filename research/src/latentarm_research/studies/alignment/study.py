@@ -37,7 +37,7 @@ from latentarm_research.studies.alignment.scene import (
     LearnedDecoder,
     learn_decoder,
 )
-from latentarm_research.studies.claim_tables import judged_parts
+from latentarm_research.studies.claim_tables import judged_parts, verdict_tables
 from latentarm_research.studies.claims import Tested
 from latentarm_research.studies.page import render_page
 from latentarm_research.studies.study import Grid, Report, Request, Study, again
@@ -110,7 +110,7 @@ def _report(request: Request[Preset], measured: AlignmentResults) -> Report:
         tests=tests,
         documents={"runs.json": [one.as_json() for one in series]},
         timings={"one_alignment": alone, **timings(measured)},
-        tables=tables.summary_tables(rows, request.preset),
+        tables=verdict_tables(request.preset.name, HYPOTHESES, tests),
     )
 
 

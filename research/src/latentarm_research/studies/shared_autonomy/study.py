@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Final
 
-from latentarm_research.studies.claim_tables import judged_parts
+from latentarm_research.studies.claim_tables import judged_parts, verdict_tables
 from latentarm_research.studies.claims import Tested
 from latentarm_research.studies.page import render_page
 from latentarm_research.studies.shared_autonomy import choice, drive, hypotheses
@@ -33,7 +33,7 @@ from latentarm_research.studies.shared_autonomy.rows import (
     rows_of,
 )
 from latentarm_research.studies.shared_autonomy.rows import STUDY as NAME
-from latentarm_research.studies.shared_autonomy.tables import Tables, summary_tables
+from latentarm_research.studies.shared_autonomy.tables import Tables
 from latentarm_research.studies.study import Grid, Report, Request, Study, again
 
 if TYPE_CHECKING:
@@ -87,7 +87,7 @@ def _report(request: Request[Preset], results: list[AutonomyResult]) -> Report:
                 {"cell": _label(one.cell), "fit_s": one.fit_s, "drive_s": one.drive_s} for one in results
             ]
         },
-        tables=summary_tables(rows),
+        tables=verdict_tables(request.preset.name, hypotheses.HYPOTHESES, tests),
     )
 
 

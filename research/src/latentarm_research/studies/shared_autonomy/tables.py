@@ -1,19 +1,14 @@
-"""The study's tables: in Markdown for the page, and at a glance for a terminal."""
+"""The study's tables, in Markdown."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, final
+from typing import final
 
-from latentarm.core.types import Row
 from latentarm.evaluation.looks import look_of
 from latentarm.evaluation.table import ABSENT, format_figure
 from latentarm_research.studies.shared_autonomy.cell import METHODS
-from latentarm_research.studies.shared_autonomy.hypotheses import MEASURE
 from latentarm_research.studies.shared_autonomy.preset import Preset
-from latentarm_research.studies.shared_autonomy.rows import EXTRA_TIME, MODEL, PAPER, RECONSTRUCTION, Figure
-from latentarm_research.studies.tables import grid_table, heading, terminal_table
-
-if TYPE_CHECKING:
-    from rich.table import Table
+from latentarm_research.studies.shared_autonomy.rows import EXTRA_TIME, PAPER, RECONSTRUCTION, Figure
+from latentarm_research.studies.tables import grid_table, heading
 
 
 @final
@@ -61,22 +56,3 @@ class Tables:
     def _figure(self, task: str, model: str, condition: str, measure: str) -> str:
         one = self._found.get((task, model, condition, measure))
         return ABSENT if one is None else format_figure(one.interval.mean, one.interval.half_width)
-
-
-def summary_tables(rows: Sequence[Row]) -> "list[Table]":
-    """One table per arm: the final state error with the paper's model, people down, methods across."""
-    tables: list[Table] = []
-    chosen = [row for row in rows if (row.measure, row.model) == (MEASURE, MODEL)]
-    for task in dict.fromkeys(str(row.task) for row in chosen):
-        found = {row.condition: row for row in chosen if row.task == task}
-        people = dict.fromkeys((name or "").partition(", ")[2] for name in found)
-        lines = [
-            [person, *(_figure(found.get(f"{method}, {person}")) for method in METHODS)] for person in people
-        ]
-        title = f"{look_of(task).label}, {look_of(MODEL).label}, simulated: {heading(MEASURE)}"
-        tables.append(terminal_table(title, ["mean ± SD", *METHODS], lines))
-    return tables
-
-
-def _figure(row: Row | None) -> str:
-    return ABSENT if row is None else format_figure(row.mean, row.sd)

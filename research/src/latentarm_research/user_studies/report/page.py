@@ -4,12 +4,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final, final
 
-from rich.table import Table
-
 from latentarm.core.types import Row
 from latentarm.evaluation.summary import Subject, summarise
 from latentarm.evaluation.table import ABSENT, format_figure
-from latentarm_research.studies.claim_tables import columns_table, verdict_columns
+from latentarm_research.studies.claim_tables import columns_table, terminal_verdicts, verdict_columns
 from latentarm_research.studies.page import render_page
 from latentarm_research.studies.statistics import format_p
 from latentarm_research.studies.study import Report
@@ -207,9 +205,6 @@ def report_of(recorded: Recorded, command: str, ratings: Ratings | None = None) 
     analysis = analyse(definition, recorded.trials, scores, recorded.sizes.not_judged)
     rows = rows_of(definition, analysis.trials)
     figures = draw(definition, analysis.trials, recorded.traces, recorded.who, ratings)
-    verdicts = Table("", "says", "why", title=f"{definition.title}: {recorded.who}")
-    for one in analysis.verdicts:
-        verdicts.add_row(one.hypothesis.name, one.says, one.why)
     return Report(
         rows=rows,
         page=report_page(Content(recorded, analysis, rows, figures, command, ratings)),
@@ -219,7 +214,7 @@ def report_of(recorded: Recorded, command: str, ratings: Ratings | None = None) 
             ANALYSIS: analysis.as_json(),
             **({} if ratings is None else {RATINGS: ratings.as_json()}),
         },
-        tables=[verdicts],
+        tables=terminal_verdicts(f"{definition.title}: {recorded.who}", analysis.verdicts),
     )
 
 
