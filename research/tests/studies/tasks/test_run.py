@@ -143,7 +143,7 @@ def stopped(done, tmp_path, monkeypatch):
     out = tmp_path / "run"
     shutil.copytree(done[1], out)
     (out / "results.json").unlink()
-    for name in ("show", "train", "orient"):
+    for name in ("show", "train"):
         monkeypatch.setattr(f"latentarm_research.studies.tasks.study.{name}", never)
     return out
 
@@ -204,7 +204,6 @@ def test_a_study_does_not_go_on_with_other_code(stopped, monkeypatch):
         ),
         ("runs/marshmallows/demonstrations/0.json", {"sha256": "0"}, "does not have the SHA-256"),
         ("runs/marshmallows/demonstrations/0.json", {"text": 3}, "'text' must be a text"),
-        ("models/marshmallows/learned_orientation.json", {"shapes": {"0.weight": [10**9]}}, "not a model's"),
     ],
 )
 def test_a_damaged_cell_is_named(stopped, name, changed, said):

@@ -19,7 +19,6 @@ from latentarm.core.types import Episode, FloatArray
 from latentarm.models.reading import Section
 from latentarm.models.saving import CONFIG_LIMIT, CONFIG_NAME, read_model, read_tensors, write_model
 from latentarm.runs.results_folder import write_json
-from latentarm_research.baselines.learned_orientation import OrientationMap
 from latentarm_research.metrics.drives import Drive
 from latentarm_research.studies.study import Keep
 from latentarm_research.studies.tasks.cell import (
@@ -30,14 +29,11 @@ from latentarm_research.studies.tasks.cell import (
     TaskRunCell,
     TaskRunResult,
 )
-from latentarm_research.studies.tasks.orientation import OrientationCell, Oriented
-from latentarm_research.studies.tasks.preset import ORIENTED
 from latentarm_research.studies.tasks.runs import Run, kept_in
 
 RUNS: Final = "runs"  # the folder of demonstrations and drives
 MODELS: Final = "models"  # the folder of the models
 LIMIT: Final = 1 << 16  # bytes of a run's file
-_NONE: Final = np.zeros(0)
 
 
 def _shown_path(out: Path, cell: ShownCell) -> Path:
@@ -103,42 +99,6 @@ def _read_model(out: Path, cell: ModelCell) -> FittedModel | None:
     return FittedModel(cell.task, cell.condition, read_model(folder), fit_s)
 
 
-def _orientation_path(out: Path, cell: OrientationCell) -> Path:
-    return out / MODELS / cell.task / f"{ORIENTED}.json"
-
-
-def _write_orientation(out: Path, cell: OrientationCell, oriented: Oriented) -> None:
-    path, learned = _orientation_path(out, cell), oriented.orientation
-    arrays = {
-        f"{index}.{part}": one
-        for index, layer in enumerate(learned.layers)
-        for part, one in zip(("weight", "bias"), layer, strict=True)
-    }
-    about = {
-        "objects": list(learned.objects),
-        "sees_gripper": learned.sees_gripper,
-        "fit_s": oriented.fit_s,
-        **_write_arrays(path, arrays),
-    }
-    write_json(path, about)
-
-
-def _read_orientation(out: Path, cell: OrientationCell) -> Oriented | None:
-    path = _orientation_path(out, cell)
-    if not path.exists():
-        return None
-    section = Section.of_file(path, LIMIT)
-    arrays = _read_arrays(section, path)
-    numbers = range(max(len(arrays) // 2, 1))
-    layers = [(arrays.get(f"{one}.weight", _NONE), arrays.get(f"{one}.bias", _NONE)) for one in numbers]
-    widths = [*(weight.shape[:1] for weight, _ in layers[1:]), (6,)]
-    ends = [(weight.shape[1:], bias.shape) for weight, bias in layers]
-    if ends != [(width, width) for width in widths]:
-        raise UserError(f"{path} holds no network: remove it, and it is learned again.")
-    learned = OrientationMap(tuple(section.texts("objects")), section.truth("sees_gripper"), layers)
-    return Oriented(cell.task, learned, section.number("fit_s"))
-
-
 def _write_arrays(path: Path, arrays: Mapping[str, FloatArray]) -> dict[str, object]:
     """Write arrays beside a JSON file, which is to hold what is returned."""
     plain = {name: np.ascontiguousarray(one, dtype=np.float64) for name, one in arrays.items()}
@@ -180,5 +140,4 @@ def _run(section: Section, number: int, figures: Drive | None = None) -> Run:
 
 KEEP_SHOWN: Final = Keep(_read_shown, _write_shown)
 KEEP_MODELS: Final = Keep(_read_model, _write_model)
-KEEP_ORIENTATIONS: Final = Keep(_read_orientation, _write_orientation)
 KEEP_DRIVES: Final = Keep(_read_drive, _write_drive)

@@ -3,7 +3,6 @@
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
-from time import perf_counter
 from typing import Any, Final, final
 
 import numpy as np
@@ -45,7 +44,6 @@ class Oriented:
 
     task: str  # a name of `latentarm_research.studies.tasks.moved.TASKS`
     orientation: OrientationMap  # what was learned
-    fit_s: float  # how long that took, s
 
     @property
     def driver(self) -> Driver:
@@ -55,7 +53,6 @@ class Oriented:
 
 def orient(cell: OrientationCell) -> Oriented:
     """Learn the orientations of a task's demonstrations."""
-    began = perf_counter()
     chain = task_of(cell.task, Stream.DEMONSTRATIONS).robot.chain
     use = (cell.seed, cell.task, Stream.NETWORKS)
     how: dict[str, Any] = {
@@ -64,8 +61,7 @@ def orient(cell: OrientationCell) -> Oriented:
         "max_iter": cell.preset.epochs,
         "random_state": integer(sequence(*use)),
     }
-    orientation = learned(cell.demonstrations, chain, how, generator(*use))
-    return Oriented(cell.task, orientation, perf_counter() - began)
+    return Oriented(cell.task, learned(cell.demonstrations, chain, how, generator(*use)))
 
 
 def learned(

@@ -63,7 +63,7 @@ def _measure(request: Request[Preset], grid: Grid) -> TasksResults:
         "Models", train, training, lambda cell: f"{cell.task}, {cell.condition.label}", kept.KEEP_MODELS
     )
     orienting = [OrientationCell(task, demonstrations, preset, seed) for task, demonstrations in sets.items()]
-    oriented = grid.run("Orientations", orient, orienting, lambda cell: cell.task, kept.KEEP_ORIENTATIONS)
+    oriented = grid.run("Orientations", orient, orienting, lambda cell: cell.task)
     cells = _drive_cells(request, (*oriented, *trained))
     driven = grid.run("Drives", drive, cells, _drive_label, kept.KEEP_DRIVES)
     return TasksResults(shown, trained, driven)
