@@ -24,11 +24,11 @@ AudioScheduledSourceNode.prototype.start = function (...when) {
 """
 PATIENCE_S = 60.0
 LEADER_SHORT_PX = 9
-"""A name is so far over what it names."""
+"""A name's line ends so far from what it names."""
 
 NEAR_PX = 12
 FOOD_PX = 30
-"""Food is looked for so far around the place under its name."""
+"""Food is looked for so far around the end of its name's line."""
 
 
 @pytest.fixture(scope="module")

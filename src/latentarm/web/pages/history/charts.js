@@ -1,6 +1,6 @@
 /** Small charts: a bar for each day or week, with its value in figures, and all of it in words. */
 
-import { create } from "../layout/dom.js";
+import { create, part } from "../layout/dom.js";
 import { say, sayNumber } from "../layout/words.js";
 import { sayTime } from "../records/ask.js";
 import { count } from "./figures.js";
@@ -9,7 +9,6 @@ import { byDay, byWeek, inDays } from "./weeks.js";
 /** @import {Counted} from "./figures.js" */
 /** @import {Drive, Period} from "./weeks.js" */
 
-const SVG = "http://www.w3.org/2000/svg";
 const [WIDTH, HEIGHT, TOP, FOOT] = [300, 124, 20, 24];
 /** Values and days that there is room for, one next to the other. */
 const [MOST_VALUES, MOST_DATES] = [8, 4];
@@ -50,7 +49,7 @@ function chart(title, periods, value, words, told) {
     figure.append(create("p", { className: "muted small", textContent: say("history.chart_nothing") }));
     return figure;
   }
-  const svg = element("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img" });
+  const svg = part("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img" });
   const sentences = known.map((period) => told(date(period.first), words(Number(value(period)))));
   svg.setAttribute("aria-label", `${title}. ${sentences.join(" ")}`);
   const most = Math.max(...known.map((period) => Number(value(period))), 1e-9);
@@ -63,14 +62,14 @@ function chart(title, periods, value, words, told) {
     if (amount !== null) {
       const height = ((HEIGHT - TOP - FOOT) * amount) / most;
       const y = HEIGHT - FOOT - height;
-      if (amount > 0) svg.append(element("rect", { class: "bar-period", x: middle - wide / 2, y, width: wide, height }));
-      if (index % everyValue === 0) svg.append(element("text", { x: middle, y: y - 4, "text-anchor": "middle" }, words(amount)));
+      if (amount > 0) svg.append(part("rect", { class: "bar-period", x: middle - wide / 2, y, width: wide, height }));
+      if (index % everyValue === 0) svg.append(part("text", { x: middle, y: y - 4, "text-anchor": "middle" }, words(amount)));
     }
     if (index % everyDate === 0) {
-      svg.append(element("text", { class: "axis-text", x: middle, y: HEIGHT - 5, "text-anchor": "middle" }, date(period.first)));
+      svg.append(part("text", { class: "axis-text", x: middle, y: HEIGHT - 5, "text-anchor": "middle" }, date(period.first)));
     }
   });
-  svg.append(element("line", { class: "base", x1: 0, x2: WIDTH, y1: HEIGHT - FOOT, y2: HEIGHT - FOOT }));
+  svg.append(part("line", { class: "base", x1: 0, x2: WIDTH, y1: HEIGHT - FOOT, y2: HEIGHT - FOOT }));
   figure.append(svg);
   return figure;
 }
@@ -78,12 +77,4 @@ function chart(title, periods, value, words, told) {
 /** @param {string} day `YYYY-MM-DD` */
 function date(day) {
   return sayTime(`${day}T00:00:00`, { day: "numeric", month: "numeric" });
-}
-
-/** @param {string} name @param {Record<string, string | number>} attributes @param {string} [text] */
-function element(name, attributes, text) {
-  const made = document.createElementNS(SVG, name);
-  for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, String(value));
-  if (text !== undefined) made.textContent = text;
-  return made;
 }

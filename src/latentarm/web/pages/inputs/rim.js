@@ -1,7 +1,8 @@
 /** The rim of the stick, which wears the colours of the ring in the views: where it is pushed to is where it leads. */
 
+import { part } from "../layout/dom.js";
 import { directionColour } from "../views/colours.js";
-import { part, REACH } from "./stick.js";
+import { REACH } from "./stick.js";
 
 const ARCS = 64;
 

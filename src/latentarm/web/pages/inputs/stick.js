@@ -1,13 +1,12 @@
 /** The stick drawn on a grid: a pointer or a finger pushes it, and letting go lets it spring back. */
 
-import { setText } from "../layout/dom.js";
+import { part, setText } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 import { attachHeldPointer } from "./held_pointer.js";
 
 /** @import {Direction, PersonInput} from "./deflection.js" */
 /** @import {Settings} from "../settings/settings.js" */
 
-const SVG = "http://www.w3.org/2000/svg";
 const SIZE = 264;
 /** From the middle to where the input is 1, in the drawing's units. */
 export const REACH = 96;
@@ -117,12 +116,4 @@ function draw(element) {
   svg.append(knob, mark);
   element.replaceChildren(svg);
   return { knob, arm, dead, mark };
-}
-
-/** @param {string} name @param {Record<string, string | number>} attributes @param {string} [text] */
-export function part(name, attributes, text = "") {
-  const made = document.createElementNS(SVG, name);
-  for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, String(value));
-  made.textContent = text;
-  return made;
 }

@@ -35,6 +35,14 @@ export function create(tag, properties = {}) {
   return Object.assign(document.createElement(tag), properties);
 }
 
+/** A part of a drawing in SVG. @param {string} name @param {Record<string, string | number>} attributes @param {string} [text] */
+export function part(name, attributes, text = "") {
+  const made = document.createElementNS("http://www.w3.org/2000/svg", name);
+  for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, String(value));
+  made.textContent = text;
+  return made;
+}
+
 /** A bar of `.bar` with its fill. @param {HTMLElement} bar @param {number} done @param {number} [all] */
 export function fillBar(bar, done, all = 100) {
   bar.setAttribute("aria-valuemax", String(all));
