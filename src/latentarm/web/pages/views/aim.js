@@ -7,7 +7,7 @@ import * as THREE from "../three/three.module.min.js";
 
 export const FOV_DEG = 32;
 /** Room around the outermost points: the arm is thick. */
-const MARGIN_M = 0.1;
+const MARGIN_M = 0.13;
 /** So far out, as a share of half a view, the tool is about to leave it. */
 const EDGE = 0.92;
 /** The small view is close from one distance on, until another, m, with so much room about what is seen. */

@@ -18,8 +18,9 @@ import { Zones } from "./zones.js";
 /** States come about this far apart, ms; poses glide for no longer. */
 const LONGEST_GLIDE_MS = 60;
 const FRAME_MS = 16;
-/** How wide the shadow of a link is, from its middle, m. */
-const LINK_M = 0.09;
+/** How wide the shadow of a link is, from its middle, and how far apart those of two are, m. */
+const LINK_M = 0.1;
+const APART_M = 0.1;
 
 export class ArmScene {
   /** @param {SceneDescription} description @param {Meshes} meshes @param {string} where their address */
@@ -144,9 +145,14 @@ export class ArmScene {
 
   /** Shadows under the links, from joint to joint, and under the things. */
   _shade() {
-    const links = this._bodies.flatMap(({ position }, index) => {
-      const before = this._bodies[Math.max(index - 1, 0)].position;
-      return [position, position.clone().lerp(before, 0.5)].map((at) => ({ at, radius: LINK_M }));
+    /** @type {{at: THREE.Vector3, radius: number}[]} */
+    const links = [];
+    this._bodies.forEach(({ position }, index) => {
+      for (const share of [0.5, 0]) {
+        const at = position.clone().lerp(this._bodies[Math.max(index - 1, 0)].position, share);
+        // What stands over another link makes no second shadow.
+        if (links.every(({ at: { x, y } }) => Math.hypot(x - at.x, y - at.y) > APART_M)) links.push({ at, radius: LINK_M });
+      }
     });
     this._shades.show([...links, ...this.things.footprints].map(({ at, radius }) => (
       { at, radius, floor: this.things.heightUnder(at, this._table.height) }

@@ -3,9 +3,9 @@
 import * as THREE from "../three/three.module.min.js";
 
 const DISC_PX = 64;
-const DARKEST = 0.34;
+const DARKEST = 0.24;
 /** A spot is wider by this share of the height. */
-const SPREAD = 0.25;
+const SPREAD = 0.12;
 /** Above what it lies on, m. */
 const RAISED_M = 0.0015;
 
