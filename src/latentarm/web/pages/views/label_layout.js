@@ -15,16 +15,19 @@
 
 export const ROW_PX = 23;
 const EDGE_PX = 4;
+/** What is better not covered counts like so much of a longer line, px. */
+const AVOIDED_PX = 90;
 /** A name stays where it stood if another row is nearer by less, px. */
 const STAYS_PX = 60;
 
 /**
  * @param {Name[]} names the most important first
  * @param {Box[]} kept what must be seen
+ * @param {Box[]} avoided what is better seen
  * @param {{width: number, height: number}} view px
  * @returns {(Place | null)[]} null where a name has no room
  */
-export function layOutNames(names, kept, { width, height }) {
+export function layOutNames(names, kept, avoided, { width, height }) {
   const rows = Array.from({ length: Math.max(Math.floor((height - EDGE_PX) / ROW_PX), 0) }, (_, row) => EDGE_PX + row * ROW_PX);
   /** @type {Box[]} */
   const taken = [];
@@ -36,7 +39,8 @@ export function layOutNames(names, kept, { width, height }) {
         const box = { left, top, right: left + size, bottom: top + ROW_PX - 2 };
         const stays = before && before.cut === cut && before.top === top && (before.left === EDGE_PX) === (left === EDGE_PX);
         const away = Math.hypot(top + ROW_PX / 2 - y, Math.max(left - x, x - left - size, 0));
-        return { box, away: away - (stays ? STAYS_PX : 0) };
+        const over = avoided.filter((other) => overlap(box, other)).length;
+        return { box, away: away + AVOIDED_PX * over - (stays ? STAYS_PX : 0) };
       })).filter(({ box }) => ![...kept, ...taken].some((other) => overlap(box, other)));
       if (!places.length) continue;
       const { box } = places.reduce((best, one) => (one.away < best.away ? one : best));

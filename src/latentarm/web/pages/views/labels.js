@@ -11,6 +11,10 @@ const THING_M = 0.03;
 const LEAST_PX = 9;
 /** Where an arrow is kept free, as shares of its length. */
 const ALONG = [0.25, 0.5, 0.75];
+/** How wide a link of the arm is, about its joint, m. */
+const LINK_M = 0.07;
+/** In a view narrower than this, px, shares are left out, and names are told alone that go before the others. */
+const NARROW_PX = 384;
 /** The corners of a view that others use: its name, and the button under it, px. */
 const CAPTION = { wide: 92, high: 32 };
 const BUTTON_PX = 52;
@@ -23,8 +27,7 @@ const BUTTON_PX = 52;
  * @property {boolean} ghost whether it lies on its point
  * @property {string} text
  * @property {number} opacity
- * @property {number} wide px
- * @property {number} narrow its width where it is cut, px
+ * @property {number[]} widths px: whole, without its share, its mark and share, and its mark alone
  * @property {HTMLElement[]} elements one in each view
  * @property {HTMLElement[]} leaders likewise
  * @property {(Place | null)[]} places likewise
@@ -54,10 +57,11 @@ export class Labels {
     const label = this._all.get(key) ?? this._make(key, ghost, thing);
     label.point = point?.clone() ?? null;
     label.shown = shown && point !== null;
-    label.told = told;
+    label.told = told || !mark;
     if (label.opacity !== opacity) for (const { style } of label.elements) style.opacity = String(opacity);
     label.opacity = opacity;
-    const [whole, cut] = [[mark, text, share], [mark, share]].map((parts) => parts.filter(Boolean).join(" "));
+    const texts = [[mark, text, share], [mark, text], mark ? [mark, share] : [text, share], [mark || text]].map((parts) => parts.filter(Boolean).join(" "));
+    const [whole] = texts;
     if (label.text === whole) return;
     label.text = whole;
     for (const element of label.elements) {
@@ -68,7 +72,7 @@ export class Labels {
       if (share) element.dataset.share = share;
       else delete element.dataset.share;
     }
-    [label.wide, label.narrow] = this._widths(label, [whole, mark ? cut : whole]);
+    label.widths = this._widths(label, texts);
   }
 
   /** @param {string} key @param {string} [ghost] @param {number} [thing] @returns {Label} */
@@ -86,7 +90,7 @@ export class Labels {
     const leaders = ghost ? [] : views.map((view) => made(view, "leader"));
     const elements = views.map((view) => made(view, ghost ? "label ghost" : "label"));
     const label = {
-      point: null, shown: true, told: true, ghost: Boolean(ghost), text: "", opacity: 1, wide: 0, narrow: 0, elements, leaders, places: views.map(() => null),
+      point: null, shown: true, told: true, ghost: Boolean(ghost), text: "", opacity: 1, widths: [0, 0, 0, 0], elements, leaders, places: views.map(() => null),
     };
     this._all.set(key, label);
     return label;
@@ -114,22 +118,27 @@ export class Labels {
       if (label.elements[index].hidden === shown) label.elements[index].hidden = !shown;
       if (!shown && label.leaders[index]) label.leaders[index].hidden = true;
     }
-    const names = named.map(({ point, wide, narrow, places }) => (
-      { ...this._views.project(view, /** @type {THREE.Vector3} */ (point)), wide, narrow, before: places[index] }
-    ));
-    layOutNames(names, this._kept(view, named, arrows), view).forEach((place, at) => this._put(named[at], names[at], place, index));
+    const bare = view.width < NARROW_PX;
+    const names = named.map(({ point, told, widths: [whole, name, share, mark], places }) => {
+      const [wide, narrow] = bare ? [told ? name : mark, mark] : [whole, share];
+      return { ...this._views.project(view, /** @type {THREE.Vector3} */ (point)), wide, narrow, before: places[index] };
+    });
+    const links = this._views.joints.map((joint) => this._about(view, joint, LINK_M));
+    layOutNames(names, this._kept(view, named, arrows), links, view).forEach((place, at) => {
+      this._put(named[at], names[at], place, index, bare);
+    });
   }
 
-  /** @param {Label} label @param {Name} name @param {Place | null} place @param {number} index */
-  _put(label, { x, y }, place, index) {
+  /** @param {Label} label @param {Name} name @param {Place | null} place @param {number} index of the view @param {boolean} bare */
+  _put(label, { x, y, wide, narrow }, place, index, bare) {
     label.places[index] = place;
     const [element, leader] = [label.elements[index], label.leaders[index]];
     element.hidden = place === null;
     leader.hidden = !place?.leader;
     if (place === null) return;
-    element.classList.toggle("cut", place.cut);
-    const wide = place.cut ? label.narrow : label.wide;
-    this._move(element, { x: place.left + wide / 2, y: place.top + ROW_PX / 2 - 1 });
+    element.classList.toggle("cut", place.cut || (bare && !label.told));
+    element.classList.toggle("bare", bare);
+    this._move(element, { x: place.left + (place.cut ? narrow : wide) / 2, y: place.top + ROW_PX / 2 - 1 });
     if (!place.leader) return;
     const [across, along] = [x - place.leader.x, y - place.leader.y];
     const length = Math.max(Math.hypot(across, along) - LEAST_PX, 0);
@@ -147,13 +156,9 @@ export class Labels {
 
   /** What no name may cover: the tool, the things, the arrows along their way, and the corners. @param {View} view @param {Label[]} named @param {Label[]} arrows @returns {Box[]} */
   _kept(view, named, arrows) {
-    const about = (/** @type {THREE.Vector3} */ point, size = THING_M, least = LEAST_PX) => {
-      const { x, y, perMetre } = this._views.project(view, point);
-      const half = Math.max(size * perMetre, least);
-      return { left: x - half, top: y - half, right: x + half, bottom: y + half };
-    };
+    const about = (/** @type {THREE.Vector3} */ point, size = THING_M, least = LEAST_PX) => this._about(view, point, size, least);
     const { tool } = this._views;
-    const ways = arrows.flatMap(({ point, wide }) => {
+    const ways = arrows.flatMap(({ point, widths: [wide] }) => {
       return point ? [about(point, 0, wide / 2), ...ALONG.map((share) => about(tool.clone().lerp(point, share), 0))] : [];
     });
     return [
@@ -163,8 +168,15 @@ export class Labels {
     ];
   }
 
+  /** @param {View} view @param {THREE.Vector3} point @param {number} size m @param {number} [least] px @returns {Box} */
+  _about(view, point, size, least = LEAST_PX) {
+    const { x, y, perMetre } = this._views.project(view, point);
+    const half = Math.max(size * perMetre, least);
+    return { left: x - half, top: y - half, right: x + half, bottom: y + half };
+  }
+
   /** On its point; near the edge it is seen whole. @param {View} view @param {Label} label */
-  _within(view, { wide, point }) {
+  _within(view, { widths: [wide], point }) {
     const { x, y } = this._views.project(view, /** @type {THREE.Vector3} */ (point));
     const clamped = (/** @type {number} */ at, /** @type {number} */ size) => Math.min(Math.max(at, wide / 2), size - wide / 2);
     return { x: clamped(x, view.width), y: clamped(y, view.height) };

@@ -197,11 +197,16 @@ export class ArmScene {
     for (const part of [this._table, this.zones, this._marker, this.trail, this.markers]) part.repaint();
   }
 
+  /** Where the joints are, m. */
+  get joints() {
+    return this._bodies.map(({ position }) => position);
+  }
+
   /** Points that a view must hold. */
   extent() {
     const goals = this.goals.map((goal) => new THREE.Vector3(...goal.position));
     const zones = this.zones.all.map(({ top }) => top.clone());
-    return [...this._bodies.map((body) => body.position.clone()), ...this.things.extent, ...goals, ...zones, this.tool.clone()];
+    return [...this.joints.map((joint) => joint.clone()), ...this.things.extent, ...goals, ...zones, this.tool.clone()];
   }
 }
 

@@ -174,6 +174,11 @@ export class Views {
     }).filter(({ left, top, right, bottom }) => left < large.width && right > 0 && top < large.height && bottom > 0);
   }
 
+  /** Where the joints are shown, m. */
+  get joints() {
+    return this._scene.joints;
+  }
+
   /** Where the tool is shown, m. */
   get tool() {
     return this._scene.tool;
