@@ -79,6 +79,7 @@ BEGUN = TaskState(
 
 def report(tick, phase, tool, code=None, **changes):
     return Report(
+        reading_age_s=0.0,
         nonce="", tick=tick, time_s=100.0 + 0.01 * tick, driver=1, phase=phase, note=None,
         reason=None if code is None else Notice(code=code), held_back=None, zone=None,
         mode="assisted", axes=0, run=None, own_task=False,

@@ -28,6 +28,8 @@ async def greet(socket):
 APP = Starlette(
     routes=[
         Route("/", hello, methods=["GET", "POST"]),
+        Route("/health", hello),
+        Route("/metrics", hello),
         WebSocketRoute("/drive", greet),
         WebSocketRoute("/other", greet),
     ]
@@ -243,6 +245,13 @@ def test_every_answer_says_what_a_page_may_do(keys):
         assert "frame-ancestors 'none'" in answer.headers["content-security-policy"]
         assert answer.headers["x-content-type-options"] == "nosniff"
         assert answer.headers["referrer-policy"] == "no-referrer"
+
+
+def test_health_needs_no_link_but_the_right_name_and_metrics_need_both(keys):
+    assert Visitor(keys).ask("/health").status == 200
+    assert Visitor(keys).ask("/health", host="evil").status == 421
+    assert Visitor(keys).ask("/metrics").status == 401
+    assert Visitor().ask("/metrics").status == 200
 
 
 def test_stop_is_a_post_and_builds_no_page(keys):

@@ -7,6 +7,7 @@ and options that are otherwise required may come from the file.
 import difflib
 import inspect
 import json
+import logging
 from collections.abc import Callable, Mapping, Sequence
 from contextvars import ContextVar
 from dataclasses import fields, is_dataclass
@@ -18,7 +19,9 @@ from tyro.conf import arg
 from latentarm import __version__
 from latentarm.core.errors import UserError
 from latentarm.core.files import write_text
+from latentarm.core.logs import LogSettings, logging_as
 
+_LOG: Final = logging.getLogger(__name__)
 Command = Callable[..., int]
 ConfigFile = Annotated[
     Path | None,
@@ -28,9 +31,17 @@ ConfigFile = Annotated[
     ),
 ]
 
+LogFile = Annotated[
+    Path | None, arg(metavar="FILE", help="Add to this file when things happened, and errors in full.")
+]
+Verbose = Annotated[bool, arg(help="Show in the terminal what is logged, with details.")]
+
 OPTION: Final = "config"
+_ALWAYS: Final = {OPTION: (ConfigFile, None), "log_file": (LogFile, None), "verbose": (Verbose, False)}
+"""Options of every command, each with its default."""
+
 MOST_BYTES: Final = 1 << 16  # of a file of options
-NOT_KEPT: Final = (OPTION, "json", "resume")
+NOT_KEPT: Final = (*_ALWAYS, "json", "resume")
 """Options of reporting and resuming, which do not change results; they are not written."""
 
 _ASKED: ContextVar[tuple[str, Mapping[str, object]] | None] = ContextVar("asked", default=None)
@@ -38,7 +49,7 @@ _ASKED: ContextVar[tuple[str, Mapping[str, object]] | None] = ContextVar("asked"
 
 
 def configurable(command: Command, name: str, defaults: Mapping[str, object]) -> Command:
-    """A command with ``--config``, whose defaults, by parameter, may come from the file.
+    """A command with the options of all commands; defaults, by parameter, may come from ``--config``.
 
     ``name`` is the words that run it, such as ``reproduce properties``.
     """
@@ -47,16 +58,28 @@ def configurable(command: Command, name: str, defaults: Mapping[str, object]) ->
 
     def run(**options: Any) -> int:
         del options[OPTION]
+        file, verbose = options.pop("log_file"), options.pop("verbose")
         _ASKED.set((name, dict(options)))
         for group, kind in groups.items():
             options[group] = kind(**{one.name: options.pop(one.name) for one in fields(kind)})
-        return command(**options)
+        with logging_as(LogSettings(verbose, () if file is None else (file,))):
+            _LOG.info("latentarm %s: %s begins.", __version__, name)
+            try:
+                code = command(**options)
+            except BaseException:
+                _LOG.info("%s ends.", name, exc_info=True)
+                raise
+            _LOG.info("%s ends with code %d.", name, code)
+            return code
 
     parameters = [one.replace(default=defaults.get(one.name, one.default)) for one in known.values()]
-    option = inspect.Parameter(OPTION, inspect.Parameter.KEYWORD_ONLY, default=None, annotation=ConfigFile)
+    always = [
+        inspect.Parameter(one, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=annotation)
+        for one, (annotation, default) in _ALWAYS.items()
+    ]
     run.__name__, run.__doc__ = command.__name__, command.__doc__
-    run.__signature__ = inspect.Signature([*parameters, option])  # pyright: ignore[reportFunctionMemberAccess]
-    run.__annotations__ = {one.name: one.annotation for one in (*parameters, option)}
+    run.__signature__ = inspect.Signature([*parameters, *always])  # pyright: ignore[reportFunctionMemberAccess]
+    run.__annotations__ = {one.name: one.annotation for one in (*parameters, *always)}
     return run
 
 

@@ -199,14 +199,14 @@ class Drive:
         self._enable_until_s = self._note_until_s = -math.inf
         self._end_guiding(reason)
         if self._step.stopped is None:
-            self._reasons[reason.text] = reason
-        self._loop.stop(reason.text)
+            self._reasons[reason.unnamed] = reason
+        self._loop.stop(reason.unnamed)
 
     def _end_guiding(self, reason: Notice) -> None:
         """End guiding by hand, if it is under way, and keep the arm stopped for this reason."""
         if self._disengaged.end_guiding():
-            self._step.refuse(Stop(reason.text))
-            self._reasons[reason.text] = reason
+            self._step.refuse(Stop(reason.unnamed))
+            self._reasons[reason.unnamed] = reason
 
     def _stop_if_enabled(self, reason: Notice) -> None:
         if self._step.stopped is None:
@@ -414,6 +414,7 @@ class Drive:
             profile=spec.profile,
             loading=self.change is not None,
             q=tuple(q.tolist()),
+            reading_age_s=self._readings.age_s(record.time_s),
             tool=(tool[0], tool[1], tool[2]),
             gripper=self._readings.gripper,
             task=self._run.state,

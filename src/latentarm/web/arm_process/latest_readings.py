@@ -15,13 +15,20 @@ class LatestReadings:
     def __init__(self, start: FloatArray, gripper: Gripper | None) -> None:
         self._gripper = gripper
         self.q = start  # (n,), joint positions, rad
+        self._read_s: float | None = None
         # measurement, and whether the last command was to close; None before the first
         self.gripper: GripperState | None = None
+
+    def age_s(self, now_s: float) -> float:
+        """How long ago, at the loop's time, s, the joints were read, or should have been at first."""
+        return 0.0 if self._read_s is None else now_s - self._read_s
 
     def see(self, record: StepRecord) -> None:
         """Take a step's readings."""
         if not math.isnan(record.state[0]):
-            self.q = record.state
+            self.q, self._read_s = record.state, record.time_s
+        elif self._read_s is None:
+            self._read_s = record.time_s
         measured, command = record.gripper, record.command.gripper
         if self._gripper is None or measured is None:
             return

@@ -3,19 +3,21 @@
 `run_control` runs in it. `ControlProcess` is the web server's side.
 """
 
+import logging
 import multiprocessing
 import os
 import signal
 import sys
 from multiprocessing.connection import Connection
 from types import FrameType
-from typing import final
+from typing import Final, final
 
 from threadpoolctl import threadpool_limits
 
 from latentarm.control.clock import MonotonicClock
 from latentarm.core.errors import UserError
-from latentarm.core.punctuality import ask_for_priority, short_collections
+from latentarm.core.logs import LogSettings, log_settings, logging_as
+from latentarm.core.punctuality import HANG_UPS, ask_for_priority, short_collections
 from latentarm.core.untrusted.terminal import one_line
 from latentarm.web.arm_process.arm_lifecycle import first_arm, from_where_it_stands
 from latentarm.web.arm_process.drive import Drive
@@ -30,8 +32,10 @@ from latentarm.web.protocol.channel import ORDER_LIMIT, Channel, new_channel
 from latentarm.web.protocol.notice import Notice
 from latentarm.web.protocol.report import Report, parse_report
 
+_LOG: Final = logging.getLogger(__name__)
 
-def run_control(spec: Spec, channel: Channel, server: int) -> None:
+
+def run_control(spec: Spec, channel: Channel, server: int, logs: LogSettings) -> None:
     """Drive until the server, a process id, says so or is gone; then bring the arm to rest and return.
 
     Raises UserError if something that the spec names cannot be loaded.
@@ -43,11 +47,13 @@ def run_control(spec: Spec, channel: Channel, server: int) -> None:
     def orphaned() -> bool:
         return os.getppid() != server
 
-    # Ctrl-C in a terminal reaches both processes: the server then ends this one in good order.
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    # Ctrl-C in a terminal, and closing it, reach both processes: the server then ends this one in good order.
+    for number in (signal.SIGINT, *HANG_UPS):
+        signal.signal(number, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, end)
-    ask_for_priority()
-    with threadpool_limits(1):
+    privileged = ask_for_priority()
+    with threadpool_limits(1), logging_as(logs):
+        _LOG.info("The arm's process begins %s real-time priority.", "with" if privileged else "without")
         setup = load_setup(spec)
         clock = MonotonicClock()
         writer = EpisodeWriter(spec.out, spec.journal)
@@ -72,6 +78,9 @@ def run_control(spec: Spec, channel: Channel, server: int) -> None:
         try:
             with short_collections():
                 drive_in_turn(driven, drive, clock)
+        except BaseException:
+            _LOG.info("The arm's process has broken off.", exc_info=True)
+            raise
         finally:
             writer.close()
 
@@ -86,7 +95,10 @@ class ControlProcess:
         self._channel = new_channel(reading)
         self._seen = 0
         self._process = context.Process(
-            target=run_control, args=(spec, self._channel, os.getpid()), name="latentarm control", daemon=True
+            target=run_control,
+            args=(spec, self._channel, os.getpid(), log_settings()),
+            name="latentarm control",
+            daemon=True,
         )
         self._process.start()
         # Else nobody would notice when the control process has closed its end.

@@ -78,6 +78,11 @@ class Camera:
             return "dark" if self._light.dark else "live"
         return "opening" if not self._seen and now_s - self._opened_s < _OPENING_S else "lost"
 
+    @property
+    def age_s(self) -> float | None:
+        """How long ago the newest picture came, s; None before the first and while nobody looks."""
+        return time.monotonic() - self._shown_s if self._lookers and self._seen else None
+
     def look(self) -> None:
         """Add a viewer: the first one opens the camera."""
         self._lookers += 1

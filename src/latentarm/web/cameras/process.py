@@ -20,6 +20,7 @@ from multiprocessing.connection import Connection
 from typing import Any, Final, final
 
 from latentarm.core.errors import UserError
+from latentarm.core.punctuality import HANG_UPS
 from latentarm.core.untrusted.terminal import one_line
 from latentarm.web.cameras.sources import CameraSource
 from latentarm.web.protocol.notice import NoticeError
@@ -35,7 +36,8 @@ _LONGEST: Final = 1 << 17
 
 def run_cameras(sources: Sequence[CameraSource], pipe: Connection, host: str) -> None:
     """Serve the cameras until the web server is gone, listening on the address ``host`` alone."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    for number in (signal.SIGINT, *HANG_UPS):
+        signal.signal(number, signal.SIG_IGN)
     with suppress(OSError, AttributeError):
         os.nice(_LOWER_PRIORITY)
     # What goes wrong with one page is shown on that page; aiortc would also quote what strangers sent.
@@ -82,6 +84,9 @@ class _Desk:
                     self._say({"number": number, **await self._answer(page, offer)})
                 case {"order": "leave", "page": page}:
                     self._leave(page)
+                case {"order": "ages", "number": number}:
+                    ages = {one.source.name: one.age_s for one in self._cameras}
+                    self._say({"number": number, "ages": ages})
                 case _:
                     pass
         for camera in self._cameras:
@@ -150,6 +155,12 @@ class CameraProcess:
         """
         return await asyncio.get_running_loop().run_in_executor(self._thread, self._answer, page, offer)
 
+    async def ages_s(self) -> dict[str, float]:
+        """Ages of the newest pictures, s, by the name of the camera, of those that somebody watches."""
+        said = await asyncio.get_running_loop().run_in_executor(self._thread, self._ask, {"order": "ages"})
+        ages: dict[str, float | None] = {} if said is None else said["ages"]
+        return {name: age_s for name, age_s in ages.items() if age_s is not None}
+
     def leave(self, page: str) -> None:
         """End a page's view; returns at once."""
         self._thread.submit(self._send, {"order": "leave", "page": page})
@@ -180,14 +191,17 @@ class CameraProcess:
                 raise NoticeError("cameras_gone")
             self._pipe.close()
             self._start()
-        self._number += 1
-        sent = self._send({"order": "answer", "number": self._number, "page": page, "offer": offer})
-        said = self._heard("number", ANSWER_WITHIN_S) if sent else None
+        said = self._ask({"order": "answer", "page": page, "offer": offer})
         if said is None:
             raise NoticeError("cameras_gone")
         if "answer" in said:
             return str(said["answer"])
         raise NoticeError("cameras_full" if said.get("failed") == "cameras_full" else "request_invalid")
+
+    def _ask(self, question: Mapping[str, object]) -> dict[str, Any] | None:
+        self._number += 1
+        sent = self._send({**question, "number": self._number})
+        return self._heard("number", ANSWER_WITHIN_S) if sent else None
 
     def _send(self, message: Mapping[str, object]) -> bool:
         try:

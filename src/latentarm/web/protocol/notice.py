@@ -135,6 +135,12 @@ class Notice(Message):
             spoken["because"] = words.say(f"notice.{spoken['because']}", spoken)
         return words.say(f"notice.{self.code}", spoken)
 
+    @property
+    def unnamed(self) -> str:
+        """The same without the name of a person, for what is kept about the arm and sent to others."""
+        nobody = {"name": "Somebody"} if "name" in self.parameters else {}
+        return self.model_copy(update={"parameters": {**self.parameters, **nobody}}).text
+
 
 @final
 class NoticeError(UserError):

@@ -154,6 +154,7 @@ class Report(ArmState):
     seed: int  # decides where things were placed and where the arm started
     loading: bool  # whether another setup is being loaded; there are no further reports until it is
     q: tuple[float, ...]  # (n,), joint positions as last read, rad
+    reading_age_s: float  # how long ago that was, s
     belief: tuple[float, ...]  # over the goals; empty for a task without goals
     recording: Recording | None  # None before the first
 

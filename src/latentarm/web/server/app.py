@@ -10,7 +10,7 @@ from contextlib import asynccontextmanager, contextmanager
 from dataclasses import replace
 from functools import partial
 from types import FrameType
-from typing import Any, Final, cast, final
+from typing import Final, cast, final
 
 import uvicorn
 from starlette.applications import Starlette
@@ -26,10 +26,12 @@ from latentarm.arms.checking import look_at
 from latentarm.control.clock import MonotonicClock
 from latentarm.control.recordings import JOURNAL_SUFFIX
 from latentarm.core.errors import UserError
-from latentarm.core.punctuality import short_collections
+from latentarm.core.logs import logging_also_to
+from latentarm.core.punctuality import HANG_UPS, short_collections
 from latentarm.demonstrations.folders import locked
 from latentarm.robots.notices import notices
 from latentarm.web.arm_process.drive_setup import PERIOD_S, DriveSetup, load_setup
+from latentarm.web.arm_process.incident import computer
 from latentarm.web.arm_process.process import ControlProcess
 from latentarm.web.cameras.process import CameraProcess
 from latentarm.web.jobs.training import model_names
@@ -45,12 +47,12 @@ from latentarm.web.server.camera_routes import CameraRoutes
 from latentarm.web.server.config import TeleopConfig, check_certificate, listen
 from latentarm.web.server.connections import HEAD_LIMIT, ConnectionLimits, Connections, limits_here
 from latentarm.web.server.drive_socket import DriveSocket
+from latentarm.web.server.health import Health
 from latentarm.web.server.history import History
 from latentarm.web.server.invitations import Invitations
 from latentarm.web.server.keys import Keys
 from latentarm.web.server.learning import Learning
 from latentarm.web.server.loaded_run import LoadedRun, RunList
-from latentarm.web.server.logs import LOGGING
 from latentarm.web.server.pages import Pages
 from latentarm.web.server.people_routes import IMPORT, PeopleRoutes
 from latentarm.web.server.pins import Pins
@@ -65,6 +67,7 @@ from latentarm.web.server.states import States
 _LOG: Final = logging.getLogger(__name__)
 
 _LOOK_S: Final = 1.0
+LOG: Final = "teleop.log"  # in the output folder
 _LOCK: Final = ".teleop.lock"  # locked in the output folder while a server runs
 _COOKIES: Final = ".teleop-cookies.json"  # in the output folder: who may come back after a restart
 _STARTED_S: Final = 0.01
@@ -89,7 +92,11 @@ def serve(
     setup = load_setup(config.spec)
     out = config.spec.out
     out.mkdir(parents=True, exist_ok=True)
-    with locked(out, out / _LOCK, "end it with Ctrl-C, or choose another folder with --out"):
+    with (
+        locked(out, out / _LOCK, "end it with Ctrl-C, or choose another folder with --out"),
+        logging_also_to(out / LOG),
+    ):
+        _LOG.info("The server begins: %s.", computer())
         _serve_alone(config, setup, say, ready, draws, calendar)
 
 
@@ -131,7 +138,7 @@ def _serve_alone(
         gate = gated(
             app, control, config, port, keys, (lambda: "") if invitations is None else invitations.next
         )
-        server = _Server(server_config(gate, config, LOGGING))
+        server = _Server(server_config(gate, config))
         with _ended_by_signals(server):
             first = f"{base}/" if invitations is None else invitations.first()
             say(f"The page is at {first} (end with Ctrl-C).")
@@ -172,8 +179,12 @@ class _Server(uvicorn.Server):
 
 @contextmanager
 def _ended_by_signals(server: _Server) -> Generator[None]:
-    """Let Ctrl-C and SIGTERM end the server, even while a library that is starting could swallow them."""
-    signals = (signal.SIGINT, signal.SIGTERM)
+    """Let Ctrl-C, SIGTERM and a closed terminal end the server, whatever a library that is starting does.
+
+    Under `nohup` a closed terminal ends nothing.
+    """
+    hang_ups = [one for one in HANG_UPS if signal.getsignal(one) is not signal.SIG_IGN]
+    signals = (signal.SIGINT, signal.SIGTERM, *hang_ups)
     before = {number: signal.signal(number, server.handle_exit) for number in signals}
     try:
         yield
@@ -236,6 +247,7 @@ def build_app(
     records = Records(spec.out, run_list.runs, states.journal, calendar)
     learning = Learning(control, states, run_list, records.recordings, spec.out)
     history = History(states, sessions, records, calendar)
+    health = Health(states, sessions, history, cameras)
     pins = Pins(records.people, wanted=config.pins)
     lock = SetupLock(records.people, states, on=config.lock_setup)
     poses = PoseBook(records.people, spec.out / FOLDER)
@@ -289,6 +301,7 @@ def build_app(
         WebSocketRoute(DRIVE, drive.answer),
         Route("/scene.json", describe),
         Route("/mesh/{number}", mesh),
+        *health.routes(),
         *PeopleRoutes(records, history, busy, let_go, pins, lock).routes(),
         *RecordRoutes(records, history, pins).routes(),
         *([] if camera_routes is None else camera_routes.routes()),
@@ -326,13 +339,11 @@ def gated(
     )
 
 
-def server_config(
-    app: ASGIApp, config: TeleopConfig, log_config: dict[str, Any] | None = None
-) -> uvicorn.Config:
+def server_config(app: ASGIApp, config: TeleopConfig) -> uvicorn.Config:
     """Configuration of uvicorn: everything bounded, nothing compressed, no proxy trusted."""
     return uvicorn.Config(
         app,
-        log_config=log_config,
+        log_config=None,
         access_log=False,
         server_header=False,
         proxy_headers=False,

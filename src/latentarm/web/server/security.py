@@ -36,6 +36,9 @@ EXPIRED_WHY: Final = "expired"
 STOP: Final = "/stop"
 """Needs no cookie: anyone who can reach the page may stop the arm."""
 
+HEALTH: Final = "/health"
+"""Needs no cookie either: it only says whether the server is well."""
+
 _MOST_DIGITS: Final = 20
 _READING: Final = ("GET", "HEAD")
 
@@ -145,7 +148,9 @@ class Gate:
             return PlainTextResponse("That is too long.", 413)
         if self._requests >= MOST_REQUESTS:
             return PlainTextResponse("The server is busy: try again.", 503)
-        if self._keys is None or scope["path"] == ENTRY or self._keys.opens_for(_cookie(headers)) is not None:
+        if self._keys is None or scope["path"] in (ENTRY, HEALTH):
+            return None
+        if self._keys.opens_for(_cookie(headers)) is not None:
             return None
         return PlainTextResponse("Open the link that latentarm has printed; each one works once.", 401)
 

@@ -112,7 +112,7 @@ class States:
                 self._heard_s = now_s
                 self._take(report)
             # Pages without messages would assume that the server is dead, so the reason is repeated.
-            if self._away(now_s):
+            if self.away is not None:
                 if now_s - told_s > AWAY_PERIOD_S:
                     told_s = now_s
                     self._wake()
@@ -136,6 +136,16 @@ class States:
         """Show every page a note instead of the arm's state for this long, s; None removes it."""
         self._note = note
         self._note_until_s = time.monotonic() + for_s
+
+    @property
+    def quiet_s(self) -> float:
+        """For how long there has been no report, s."""
+        return time.monotonic() - self._heard_s
+
+    @property
+    def away(self) -> Notice | None:
+        """Why there is no news of the arm; None if there is."""
+        return self._why_away() if self.loading or self.quiet_s > SILENT_S else None
 
     def clear_trail(self) -> None:
         """Empty the trail on every page."""
@@ -208,12 +218,12 @@ class States:
         driver, asking = self._sessions.driver, self._sessions.asking
         would = self._sessions.named(self._sessions.copilot.asking)
         recording = report.recording
-        away = self._away(time.monotonic())
+        away = self.away
         arm = _fields_of(ArmState, report)
-        if away:
+        if away is not None:
             arm |= _UNKNOWN | {"guiding": "offered" if report.guiding == "on" else report.guiding}
         arm |= {
-            "note": self._why_away() if away else self._shown_note(report),
+            "note": away or self._shown_note(report),
             "tool": _rounded(report.tool),
             "things": self._things if things else None,
             "ghosts": report.ghosts if ghosts else None,
@@ -252,9 +262,6 @@ class States:
             return self._note
         disengaged = report.phase in ("disengaged", "neutral_needed")
         return self.standstill if disengaged and self.standstill is not None else report.note
-
-    def _away(self, now_s: float) -> bool:
-        return self.loading or now_s - self._heard_s > SILENT_S
 
     def _why_away(self) -> Notice:
         if not self._control.alive:
