@@ -70,6 +70,9 @@ OWN: Final = CommandSet(
             "replay:replay",
             "Decide again what an arm was commanded on the page, and compare every command to the bit.",
         ),
+        "doctor": _ours(
+            "doctor:doctor", "Look at this computer and the way to an arm, before somebody drives."
+        ),
         "arms list": _ours(
             "arms:list_arms",
             "List what `--arm` takes: simulated arms by name, real ones by the scheme of their address.",

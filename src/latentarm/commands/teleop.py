@@ -4,15 +4,20 @@ import json as json_format
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Final
 
 from tyro.conf import Positional, UseAppendAction, arg
 
+from latentarm.arms.address import is_address
 from latentarm.commands.configuration import write_options
+from latentarm.commands.doctor import lines_of
 from latentarm.commands.options import AnyArm, JointSpeed, LimitsFile, LinkSpeed, Seated
 from latentarm.commands.output import draws_blocks, say
 from latentarm.core.errors import UserError
+from latentarm.core.machine import examine_machine
 from latentarm.runs.options import EndEffector, Json, Seed, TaskName
+
+_LOOK_S: Final = 0.5  # pauses of this computer are measured for so long before a real arm is driven, s
 
 
 def teleop(
@@ -143,6 +148,10 @@ def teleop(
         shadow=shadow,
         idle_s=idle_s_of(idle_minutes),
     )
+    if arm is not None and is_address(arm):
+        found = [one for one in examine_machine(out, room.least_free_bytes, _LOOK_S) if one.level != "good"]
+        for line in lines_of(found):
+            say(f"This computer: {line}", json)
     config = TeleopConfig(spec, host, port, certfile, keyfile, pin, cameras, lock_setup, public_url)
     serve(config, partial(say, json=json), ready, draws=draws_blocks())
     return 0

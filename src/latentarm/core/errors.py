@@ -6,6 +6,8 @@ from typing import Final
 
 TRAINING: Final = ("torch", "sklearn", "joblib")  # packages of the extra ``train``
 
+BAD_GL: Final = "environment variable MUJOCO_GL"  # in the error of MuJoCo where its value is unknown
+
 
 class UserError(Exception):
     """Raised for problems the user can fix.
@@ -17,7 +19,7 @@ class UserError(Exception):
 
 @contextmanager
 def naming_extras() -> Generator[None]:
-    """Turn the lack of a package of the extra ``train`` into a `UserError`."""
+    """Turn the lack of a package of the extra ``train``, or an unknown ``MUJOCO_GL``, into a `UserError`."""
     try:
         yield
     except ModuleNotFoundError as error:
@@ -25,4 +27,10 @@ def naming_extras() -> Generator[None]:
             raise
         raise UserError(
             f"This needs {error.name}, which is not installed: pip install 'latentarm[train]'."
+        ) from error
+    except RuntimeError as error:
+        if BAD_GL not in str(error):
+            raise
+        raise UserError(
+            f"MuJoCo does not load ({error}): unset it, or set it to egl, osmesa or glfw."
         ) from error
