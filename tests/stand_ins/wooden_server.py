@@ -7,6 +7,7 @@ import json
 import socket
 import sys
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -40,6 +41,8 @@ class WoodenServer(StandIn):
         self._listening.settimeout(None)
         self.port = int(self._listening.getsockname()[1])
         self.guiding = False
+        self.pause_s = 0.0  # how long it waits before each answer
+        self.unreadable = False  # whether its joint positions are no numbers
         threading.Thread(target=self._serve, daemon=True).start()
 
     @property
@@ -101,6 +104,7 @@ class WoodenServer(StandIn):
                     self.requests.append(request["do"])
                     self._obey(request)
                     answer = self._state()
+                time.sleep(self.pause_s)
                 lines.write(json.dumps(answer).encode() + b"\n")
                 lines.flush()
         except (OSError, ValueError):
@@ -148,7 +152,7 @@ class WoodenServer(StandIn):
             "upper": self.robot.limits.upper.tolist(),
             "velocity": self.robot.limits.velocity.tolist(),
             "firmware": self.firmware,
-            "q": reading.q.tolist(),
+            "q": [float("nan")] * self.robot.dof if self.unreadable else reading.q.tolist(),
             "dq": reading.dq.tolist(),
             "gripper": None if gripper is None else [gripper.width_m, gripper.holding],
             "phase": "guided" if self.guiding else status.phase,

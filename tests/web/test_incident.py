@@ -171,7 +171,7 @@ def test_the_file_is_all_that_is_needed(desk, file, trained, tmp_path, capsys):
         assert cli.main(["replay", str(file), "--json"]) == 0
     finally:
         hidden.rename(trained)
-    found = json.loads(capsys.readouterr().out)
+    (found,) = json.loads(capsys.readouterr().out).values()
     assert found["ticks"] == found["agreed"] == len(desk.records)
 
 
@@ -277,7 +277,7 @@ def test_a_file_writes_nothing_elsewhere(file, tmp_path, name):
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        (lambda lines: lines[0].update({"incident": 2}), "another version"),
+        (lambda lines: lines[0].update({"incident": 1}), "another version"),
         (lambda lines: lines[0].update({"spec": None}), "does not say what was driven"),
         (lambda lines: lines[-5].update({"call": "_record"}), None),
         (lambda lines: lines[-5].update({"given": [1, 2, 3, 4, 5, 6]}), "is damaged"),

@@ -70,6 +70,9 @@ OWN: Final = CommandSet(
             "replay:replay",
             "Decide again what an arm was commanded on the page, and compare every command to the bit.",
         ),
+        "report": _ours(
+            "report:report", "Pack into one file, to send to somebody, what happened and with which settings."
+        ),
         "doctor": _ours(
             "doctor:doctor", "Look at this computer and the way to an arm, before somebody drives."
         ),

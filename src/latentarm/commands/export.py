@@ -61,6 +61,7 @@ def describe(recordings: "Sequence[NumberedEpisode]") -> list[dict[str, object]]
                 "samples": entry.samples,
                 "complete": entry.complete,
                 "robot": header.robot,
+                "settings": dict(header.settings) or None,
                 **{name: getattr(by, name) or None for name in _BY},
             }
         )

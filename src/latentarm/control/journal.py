@@ -177,6 +177,7 @@ def _header(about: dict[str, Any]) -> EpisodeHeader:
         # Journals from before things were recorded have neither.
         things=_names(about.get("things", [])),
         objects=_names(about.get("objects", [])),
+        settings=dict(about.get("settings", {})),
     )
     if not set(header.objects) <= set(header.things):
         raise ValueError("an object is not among the things")

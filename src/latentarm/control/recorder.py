@@ -3,10 +3,11 @@
 import json
 import sqlite3
 import sys
+from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import final
+from typing import Any, final
 
 import numpy as np
 
@@ -71,6 +72,7 @@ class EpisodeHeader:
     limits: StatedLimits | None = None  # stated by a person
     joint_limits: JointLimits | None = None  # samples outside them are impossible; None if unknown
     things: tuple[str, ...] = ()  # names of the K things whose poses every sample has
+    settings: Mapping[str, Any] = field(default_factory=dict[str, Any])  # speeds and limits, as JSON
     objects: tuple[str, ...] = ()
     """Those that matter for the task, in the order of the feature ``objects``; all where empty."""
 
@@ -165,6 +167,7 @@ class Recorder:
             "provenance": provenance_json(header.provenance),
             "things": list(header.things),
             "objects": list(header.objects),
+            "settings": dict(header.settings),
         }
         try:
             cursor = self._database.execute("INSERT INTO episodes (about) VALUES (?)", (json.dumps(about),))

@@ -8,7 +8,7 @@ from collections.abc import Callable, Generator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import wraps
 from pathlib import Path
-from typing import Any, Concatenate, Final, ParamSpec, Protocol, TypeVar, final
+from typing import Any, Concatenate, Final, ParamSpec, Protocol, TypeVar, cast, final
 
 from latentarm.core.errors import UserError
 from latentarm.core.exact_json import to_json
@@ -34,9 +34,13 @@ class CallLog:
 
     The file is gzip of one JSON document a line, each after a digest of all lines so far. It can be read up
     to the last flush at any time. When it cannot be written any more, the log says so once on standard error.
+    In sentences, such as the arm's own words, ``hidden`` (an address) is left out.
     """
 
-    def __init__(self, path: Path, limits: JournalLimits, head: Sequence[dict[str, Any]]) -> None:
+    def __init__(
+        self, path: Path, limits: JournalLimits, head: Sequence[dict[str, Any]], hidden: str = ""
+    ) -> None:
+        self._hidden = hidden
         path.parent.mkdir(parents=True, exist_ok=True)
         self._file = path.open("xb", buffering=0)
         self._watch = JournalWatch(path, limits)
@@ -103,7 +107,10 @@ class CallLog:
             if self._written % _CHECK_EVERY == 0:
                 self._watch.check()
             for line in lines:
-                text = json.dumps({**line, "answer": answer_of(line.get("answer"))}, separators=(",", ":"))
+                line["answer"] = answer_of(line.get("answer"))
+                text = json.dumps(line, separators=(",", ":"))
+                if self._hidden and self._hidden in text:
+                    text = json.dumps(_hiding(line, self._hidden), separators=(",", ":"))
                 self._digest = _digest(self._digest, text)
                 self._file.write(self._packing.compress(f"{self._digest} {text}\n".encode()))
             self._file.write(self._packing.flush(zlib.Z_SYNC_FLUSH))
@@ -135,12 +142,25 @@ def logged(method: Callable[Concatenate[_S, _P], _R]) -> Callable[Concatenate[_S
 
 
 def answer_of(result: object) -> Any:
-    """The decision of a call: a command with its stop's code, or the reason why the arm may not move."""
+    """The decision of a call: a command, or why the arm may not move, with its code and in words."""
     if isinstance(result, StepRecord):
         return answer_of(result.command)
     if isinstance(result, Command):
         return {**to_json(result)["fields"], "stop": answer_of(result.stop)}
-    return result.code or result.reason if isinstance(result, Stop) else None
+    return {"code": result.code, "reason": result.reason} if isinstance(result, Stop) else None
+
+
+def _hiding(value: Any, hidden: str) -> Any:
+    """A document without ``hidden`` in its sentences; a word alone is a name or a code."""
+    match value:
+        case str() if " " in value:
+            return value.replace(hidden, "...")
+        case dict():
+            return {key: _hiding(one, hidden) for key, one in cast(dict[str, Any], value).items()}
+        case list():
+            return [_hiding(one, hidden) for one in cast(list[Any], value)]
+        case _:
+            return value
 
 
 def _noted(value: object) -> Any:

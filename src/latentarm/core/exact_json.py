@@ -38,6 +38,21 @@ def to_json(value: object) -> Any:
             return None
 
 
+def as_text_json(value: object) -> Any:
+    """A value as JSON for people to read: arrays as lists, records by their fields; exact as well."""
+    match value:
+        case np.ndarray():
+            return as_text_json(value.tolist())
+        case float() if not math.isfinite(value):
+            return str(value)
+        case tuple() | list():
+            return [as_text_json(one) for one in value]
+        case _ if is_dataclass(value):
+            return {name: as_text_json(getattr(value, name)) for name in _names(type(value))}
+        case _:
+            return value if isinstance(value, str | int | float | None) else str(value)
+
+
 @cache
 def _names(kind: type[Any]) -> tuple[str, ...]:
     return tuple(field.name for field in fields(kind))

@@ -3,12 +3,12 @@
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Final, final
+from typing import Any, Final, final
 
 import numpy as np
 
 from latentarm.alignment.contract import Seat
-from latentarm.arms.address import is_address
+from latentarm.arms.address import MARK, is_address
 from latentarm.arms.catalogue import check_named
 from latentarm.arms.contract import Arm, SceneArm
 from latentarm.assistance.belief import BELIEF_PERIOD_S
@@ -23,6 +23,7 @@ from latentarm.control.step import Step
 from latentarm.core.call_log import CallLog
 from latentarm.core.context import BELIEF
 from latentarm.core.errors import UserError
+from latentarm.core.exact_json import as_text_json
 from latentarm.core.journal_limits import JournalLimits
 from latentarm.core.types import FloatArray
 from latentarm.demonstrations.provenance import provenance_now
@@ -196,6 +197,23 @@ class DriveSetup:
         """The scene that pages draw: the one in physics, else the task's."""
         return self.task.shown if self.scene is None and isinstance(self.task, Task) else self.scene
 
+    @property
+    def settings(self) -> dict[str, Any]:
+        """What was chosen and the limits, as JSON to read, without names of people and addresses."""
+        spec = self.spec
+        chosen = ("own_task", "choice", "seed", "seat", "shadow", "idle_s")
+        return {
+            "arm": self.arm.partition(MARK)[0],
+            "task": self.todo.task,
+            **{name: getattr(spec, name) for name in chosen},
+            "safety": as_text_json(self._safety),
+        }
+
+    @property
+    def _safety(self) -> SafetyConfig:
+        limits = safety_limits(self.spec.speeds)
+        return replace(limits, obstacles=self.obstacles, zones=self.spec.zones)
+
     def mode_index(self, mode: ModeName, axes: int) -> int:
         """Index into the controller's modes; ``axes`` is a pair of axes of end-effector control."""
         return (1 if self.latent_dim else 0) + axes if mode == "end_effector" else 0
@@ -224,6 +242,7 @@ class DriveSetup:
             limits=robot.stated_limits,
             things=things,
             objects=self.objects if things else (),
+            settings=self.settings,
         )
 
     @property
@@ -265,7 +284,7 @@ class DriveSetup:
         return Step(
             self.task.robot,
             JoinedController([self.controller, to_pose or self.to_pose()]),
-            replace(safety_limits(self.spec.speeds), obstacles=self.obstacles, zones=self.spec.zones),
+            self._safety,
             goals=self.task.goals,
             belief=BoltzmannBelief(goals, period_s=BELIEF_PERIOD_S) if self.task.goals else None,
             assistance=GoalBlending(goals, self.help) if self.task.goals else None,

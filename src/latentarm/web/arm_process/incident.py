@@ -1,4 +1,7 @@
-"""Incident files: every call of an arm's `Step`, with all that is needed to repeat it."""
+"""Incident files: every call of an arm's `Step`, with all that is needed to repeat it.
+
+They are made to be sent to others: no name of a person, no address and no folder of this computer is in them.
+"""
 
 import base64
 import hashlib
@@ -9,7 +12,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, cast
 
 import numpy as np
 from threadpoolctl import threadpool_info
@@ -17,10 +20,12 @@ from threadpoolctl import threadpool_info
 from latentarm import __version__
 from latentarm.alignment.frame_file import FRAME_NAME
 from latentarm.alignment.profile import folder_of
+from latentarm.arms.address import MARK, is_address, parse_address
 from latentarm.core.call_log import MOST_FILE_BYTES, CallLog
 from latentarm.core.errors import UserError
-from latentarm.core.exact_json import of_json, to_json
+from latentarm.core.exact_json import as_text_json, of_json, to_json
 from latentarm.core.journal_limits import JournalLimits
+from latentarm.core.untrusted.names import clean_name
 from latentarm.core.untrusted.opening import read_bytes
 from latentarm.models.saving import CONFIG_NAME, WEIGHTS_NAME
 from latentarm.robots.kinematics.obstacles import Box, Capsule, HalfSpace, Sphere
@@ -31,9 +36,13 @@ from latentarm.web.arm_process.drive_setup import DriveSetup, Spec, load_setup
 from latentarm.web.arm_process.initial_state import RobotOptions
 from latentarm.web.arm_process.speeds import Speeds
 
+VERSION: Final = 2
 KEPT_BYTES: Final = 512 << 20  # size of all incident files in a folder; the oldest are deleted first
-_SUFFIX: Final = ".incident.gz"
+SUFFIX: Final = ".incident.gz"
+FOLDER: Final = "incidents"
+_STAMP: Final = "%Y%m%d-%H%M%S-%f"
 _RUN: Final = "run"
+_PERSON: Final = "person"  # stands for the name of a profile
 _LIMITS: Final = "limits"
 _PART_BYTES: Final = 30_000
 _KINDS: Final = (Spec, JournalLimits, RobotOptions, Speeds, Zone, HalfSpace, Sphere, Capsule, Box)
@@ -43,29 +52,36 @@ def begin_incident(setup: DriveSetup) -> CallLog | None:
     """A new incident file for a drive; None if none is wanted, or it cannot be written."""
     if not setup.spec.incidents:
         return None
-    folder = setup.spec.out / "incidents"
+    folder = setup.spec.out / FOLDER
     limits = JournalLimits(MOST_FILE_BYTES, setup.spec.journal.least_free_bytes)
     try:
         room = KEPT_BYTES - MOST_FILE_BYTES
-        for file in sorted(folder.glob(f"*{_SUFFIX}"), reverse=True):
+        for file in sorted(folder.glob(f"*{SUFFIX}"), reverse=True):
             room -= file.stat().st_size
             if room < 0:
                 file.unlink()
-        return CallLog(folder / f"{datetime.now(UTC):%Y%m%d-%H%M%S-%f}{_SUFFIX}", limits, _head(setup))
+        path = folder / f"{datetime.now(UTC):{_STAMP}}{SUFFIX}"
+        return CallLog(path, limits, _head(setup), parse_address(setup.arm).host if setup.real else "")
     except (OSError, UserError) as error:
         sys.stderr.write(f"latentarm: no incident file is written: {error}.\n")
         return None
 
 
-def newest(path: Path) -> Path:
-    """The file itself, or the newest one of a folder. Raises UserError if the folder has none."""
+def incident_files(path: Path) -> list[Path]:
+    """The file itself, or those of a folder, the oldest first. Raises UserError if the folder has none."""
     if not path.is_dir():
-        return path
-    if not (files := sorted(path.glob(f"*{_SUFFIX}"))):
-        raise UserError(
-            f"{path} has no incident file: name incidents/ of the folder that `teleop --out` names."
-        )
-    return files[-1]
+        return [path]
+    if not (files := sorted([*path.glob(f"*{SUFFIX}"), *path.glob(f"{FOLDER}/*{SUFFIX}")])):
+        raise UserError(f"{path} has no incident file: name the folder that `teleop --out` names.")
+    return files
+
+
+def began(file: Path) -> datetime | None:
+    """When a file began, by its name; None if its name does not say."""
+    try:
+        return datetime.strptime(file.name.removesuffix(SUFFIX), _STAMP).replace(tzinfo=UTC)
+    except ValueError:
+        return None
 
 
 def computer() -> str:
@@ -82,10 +98,11 @@ def rebuild(head: Mapping[str, Any], folder: Path, where: str) -> DriveSetup:
     """
     try:
         spec: Spec = of_json(head["spec"], *_KINDS)
-        named = spec.robot.limits
-        limits = None if named is None else folder / f"{_LIMITS}{Path(named).suffix}"
+        named = spec.robot
+        limits = None if named.limits is None else folder / named.limits
+        model = None if named.robot is None else str(Path(named.robot).expanduser())
         run = None if spec.run is None else folder / _RUN
-        spec = replace(spec, run=run, out=folder, robot=replace(spec.robot, limits=limits))
+        spec = replace(spec, run=run, out=folder, robot=replace(named, robot=model, limits=limits))
         start, parts = of_json(head["start"]), dict[str, str](head["parts"])
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise UserError(f"{where} does not say what was driven: it is damaged.") from error
@@ -112,29 +129,78 @@ def unpack(line: Mapping[str, Any], folder: Path, where: str) -> None:
 
 
 def _head(setup: DriveSetup) -> list[dict[str, Any]]:
-    spec = setup.spec
+    spec, robot = setup.spec, setup.task.robot
     limits = spec.robot.limits
     copied: dict[str, Path] = {} if limits is None else {f"{_LIMITS}{limits.suffix}": limits}
     if spec.run is not None:
         kept = [spec.run / CONFIG_NAME, spec.run / WEIGHTS_NAME, *(spec.run / ROBOT).glob("*")]
         kept += spec.run.glob(FRAME_NAME)
-        if spec.profile is not None:
-            kept += folder_of(spec.run, spec.profile).glob("*")
         copied |= {f"{_RUN}/{file.relative_to(spec.run).as_posix()}": file for file in kept}
+        if spec.profile is not None:
+            copied |= {
+                f"{_RUN}/{folder_of(Path(), _PERSON).as_posix()}/{file.name}": file
+                for file in folder_of(spec.run, spec.profile).glob("*")
+            }
     first = {
-        "incident": 1,
+        "incident": VERSION,
         "computer": computer(),
         "began_utc": datetime.now(UTC).isoformat(timespec="seconds"),
-        "spec": to_json(spec),
+        "spec": to_json(_unnamed(spec)),
+        "settings": setup.settings,
+        "robot": {
+            "name": Path(robot.name).name,
+            "joints": list(robot.joint_names),
+            "limits": as_text_json(robot.limits),
+        },
+        "model": setup.run_fingerprint,
         "start": to_json(setup.start),
         "parts": _parts(setup),
     }
-    contents = {name: read_bytes(path, MOST_COPIED) for name, path in copied.items()}
+    contents = {name: _content(path, spec.profile) for name, path in copied.items()}
     return [first] + [
         {"file": name, "data": base64.b64encode(content[at : at + _PART_BYTES]).decode()}
         for name, content in contents.items()
         for at in range(0, len(content), _PART_BYTES)
     ]
+
+
+def _unnamed(spec: Spec) -> Spec:
+    """The spec without names of people, addresses, and folders of this computer."""
+    named, found, arm = spec.robot, spec.found, spec.arm
+    if arm is not None and is_address(arm):
+        where = parse_address(arm)
+        arm = f"{where.scheme}{MARK}arm"
+        found = tuple((name, value.replace(where.host, "...")) for name, value in found)
+    home = str(Path.home())
+    robot = RobotOptions(
+        None if named.robot is None else named.robot.replace(home, "~", 1),
+        named.end_effector,
+        None if named.limits is None else Path(f"{_LIMITS}{named.limits.suffix}"),
+    )
+    run, profile = spec.run and Path(_RUN), spec.profile and _PERSON
+    return replace(spec, run=run, profile=profile, out=Path(), arm=arm, robot=robot, found=found)
+
+
+def _content(path: Path, profile: str | None) -> bytes:
+    """A file of a run; in a description, folders of this computer and the profile's name are left out."""
+    content = read_bytes(path, MOST_COPIED)
+    if path.name != CONFIG_NAME:
+        return content
+
+    names = () if profile is None else (profile, clean_name(profile))
+
+    def unnamed(value: Any) -> Any:
+        match value:
+            case str():
+                return _PERSON if value in names else Path(value).name if Path(value).is_absolute() else value
+            case dict():
+                return {key: unnamed(one) for key, one in cast(dict[str, Any], value).items()}
+            case list():
+                return [unnamed(one) for one in cast(list[Any], value)]
+            case _:
+                return value
+
+    return json.dumps(unnamed(json.loads(content))).encode()
 
 
 def _parts(setup: DriveSetup) -> dict[str, str]:

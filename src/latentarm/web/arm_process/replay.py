@@ -1,23 +1,36 @@
 """Repeat the calls of an incident file, and compare every command."""
 
 import json
+import re
 from collections import deque
 from collections.abc import Mapping
 from pathlib import Path
+from shutil import copyfileobj
 from tempfile import TemporaryDirectory
-from typing import Any, Final, final
+from typing import Any, Final, NoReturn, final
+from zipfile import ZIP_STORED, BadZipFile, ZipFile, ZipInfo
 
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from latentarm.core.call_log import answer_of, read_calls
+from latentarm.core.call_log import MOST_FILE_BYTES, answer_of, read_calls
 from latentarm.core.errors import UserError
 from latentarm.core.exact_json import of_json
 from latentarm.core.types import FloatArray, GripperReading, Input, Reading, Stop
+from latentarm.core.untrusted.opening import opened
 from latentarm.web.arm_process.drive_setup import DriveSetup
-from latentarm.web.arm_process.incident import computer, newest, rebuild, unpack
+from latentarm.web.arm_process.incident import (
+    FOLDER,
+    SUFFIX,
+    VERSION,
+    computer,
+    incident_files,
+    rebuild,
+    unpack,
+)
 
 ELSEWHERE_RAD_S: Final = 1e-9  # velocities may differ by this much on another computer, rad/s
+_IN_REPORT: Final = re.compile(rf"{FOLDER}/[\w-]+{re.escape(SUFFIX)}")
 
 
 @final
@@ -77,23 +90,52 @@ class Replay:
 def _differences(then: Any, now: Any) -> tuple[float, bool]:
     if json.dumps(then) == json.dumps(now):
         return 0.0, False
-    if not (isinstance(then, dict) and isinstance(now, dict)):
+    if not all(isinstance(one, dict) and "velocity" in one for one in (then, now)):
         return 0.0, True
     old, new = (of_json(each["velocity"]) for each in (then, now))
     return float(np.abs(old - new).max()), {**then, "velocity": 0} != {**now, "velocity": 0}
 
 
+def replay_all(path: Path) -> dict[str, dict[str, Any]]:
+    """Replay every incident file of a report, or else as `replay`; by the names of the files.
+
+    Raises UserError as `replay`, and where a report has none, or is damaged.
+    """
+    if path.suffix != ".zip" or path.is_dir():
+        file = incident_files(path)[-1]
+        return {file.name: replay(file)}
+    try:
+        with opened(path, 4 * MOST_FILE_BYTES) as content, ZipFile(content) as packed:
+            files = [one for one in packed.infolist() if _IN_REPORT.fullmatch(one.filename)]
+            return {Path(one.filename).name: _replay_packed(packed, one) for one in files} or _none(path)
+    except (BadZipFile, OSError, NotImplementedError, RuntimeError) as error:
+        raise UserError(f"{path} is damaged ({error}): copy it again.") from error
+
+
+def _none(path: Path) -> NoReturn:
+    raise UserError(f"{path} has no incident file: name one that `latentarm report` wrote.")
+
+
+def _replay_packed(packed: ZipFile, file: ZipInfo) -> dict[str, Any]:
+    if file.compress_type != ZIP_STORED:
+        raise UserError(f"{packed.filename} was packed by another program: name the file of the report.")
+    with TemporaryDirectory() as folder, packed.open(file) as content:
+        path = Path(folder) / Path(file.filename).name
+        with path.open("wb") as copy:
+            copyfileobj(content, copy)
+        return replay(path)
+
+
 def replay(path: Path) -> dict[str, Any]:
-    """Replay an incident file, or the newest of a folder.
+    """Replay an incident file.
 
     Returns the public attributes of `Replay`, with ``same``: whether the commands are the same as nearly as
     this computer can tell; ``then`` and ``here``: the computers; ``began_utc``; ``complete``: whether the
     file was closed. Raises UserError if it is none, is damaged, or names what is missing here or differs.
     """
-    path = newest(path)
     lines = read_calls(path)
     head, here, complete = next(lines), computer(), False
-    if head.get("incident") != 1:
+    if head.get("incident") != VERSION:
         raise UserError(f"{path} was written by another version of latentarm: replay it with that one.")
     again: Replay | None = None
     with TemporaryDirectory() as folder, threadpool_limits(1):
