@@ -31,6 +31,7 @@ QUICKLY = {
     "evaluate": {"--folds": "0"},
     "drive": {"--drives": "1", "--time-limit-s": "1"},
     "align": {"--answers": "2"},
+    "doctor": {"--port": "0"},
 }
 """Options that make a command short, whatever the page says."""
 
