@@ -105,3 +105,24 @@ def test_what_cannot_be_exported_is_refused(
     assert (code, out, err.count("\n")) == (2, "", 1)
     assert re.search(said, err)
     assert not Path("new").exists()
+
+
+def test_recordings_become_a_file_that_foxglove_shows(run: Run, teleop: Path) -> None:
+    reader = pytest.importorskip("mcap.reader")
+    code, out, _ = run("export", "teleop", "--format", "mcap", "--episodes", "1", "--out", "eaten.mcap")
+    assert (code, out) == (0, "1 of 3 episodes are in eaten.mcap.\n")
+    with Path("eaten.mcap").open("rb") as file:
+        found = [
+            (schema.name, channel.topic, message.log_time, json.loads(message.data))
+            for schema, channel, message in reader.make_reader(file).iter_messages()
+        ]
+    joints = [message for name, _, _, message in found if name == "foxglove.JointStates"]
+    assert len(joints) == 5
+    assert joints[1]["joints"][0] == {"name": "a", "position": 0.01, "velocity": 0.01}
+    steps = [message for _, topic, _, message in found if topic == "/step"]
+    assert steps[3]["gripper_m"] == [0.06]
+    times = [at_ns for _, topic, at_ns, _ in found if topic == "/step"]
+    assert times[1] - times[0] == pytest.approx(1e7, abs=1e3)
+    assert times[0] > 1e18  # in this century
+    assert [message["message"] for name, _, _, message in found if name == "foxglove.Log"] == ["enabled"]
+    assert run("export", "teleop", "--format", "mcap", "--out", "eaten.mcap")[0] == 2

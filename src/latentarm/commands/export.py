@@ -4,7 +4,7 @@ import json as json_format
 import re
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from rich.box import SIMPLE_HEAD
 from rich.table import Table
@@ -116,14 +116,19 @@ def export(
         tuple[str, ...],
         arg(metavar="N|N-M", help="Numbers from the list, such as 1 3-5; all complete episodes by default."),
     ] = (),
+    format: Annotated[  # noqa: A002 - the option's name
+        Literal["lerobot", "mcap"],
+        arg(help="A dataset (a folder), or one MCAP file for Foxglove and other viewers."),
+    ] = "lerobot",
     incomplete: Annotated[bool, arg(help="Export episodes that were cut short too.")] = False,
     json: Json = False,
 ) -> int:
-    """List what was recorded, and export it to a native dataset (LeRobotDataset v3.0).
+    """List what was recorded, and export it to a native dataset (LeRobotDataset v3.0) or to MCAP.
 
     For example: latentarm export teleop --episodes 1 3-5 --out eaten
     """
-    from latentarm.control.recordings import list_recordings, read_recordings
+    from latentarm.control.mcap_export import write_mcap
+    from latentarm.control.recordings import list_recordings, read_episodes, read_recordings
     from latentarm.demonstrations.dataset import write_dataset
 
     recordings = list_recordings(source)
@@ -136,11 +141,15 @@ def export(
         return 0
     check_vacant(out)
     chosen = choose(recordings, episodes, source, incomplete=incomplete)
-    write_dataset(read_recordings(chosen, source=str(source), incomplete=incomplete), out)
-    write_options(out, "export")
+    if format == "mcap":
+        write_mcap(read_episodes(chosen), out)
+    else:
+        write_dataset(read_recordings(chosen, source=str(source), incomplete=incomplete), out)
+        write_options(out, "export")
     if json:
         print(json_format.dumps(describe(chosen), indent=2))
-    say(f"{len(chosen)} of {len(recordings)} episodes are in {out}/.", json)
+    folder = "" if format == "mcap" else "/"
+    say(f"{len(chosen)} of {len(recordings)} episodes are in {out}{folder}.", json)
     left = sum(not recording.entry.complete for recording in recordings)
     if left and not incomplete and not episodes:
         say(f"{left} were cut short and were left out; --incomplete exports them too.", json)

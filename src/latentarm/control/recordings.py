@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Final, final
 
 from latentarm.control.export import demonstrations_of
-from latentarm.control.journal import JournalEntry, list_journal, read_journal
+from latentarm.control.journal import JournalEntry, JournalEpisode, list_journal, read_journal
 from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations
 
@@ -39,6 +39,14 @@ def list_recordings(path: Path) -> list[NumberedEpisode]:
     return [NumberedEpisode(number, journal, one) for number, (journal, one) in enumerate(entries, start=1)]
 
 
+def read_episodes(recordings: Sequence[NumberedEpisode]) -> list[JournalEpisode]:
+    """Recorded episodes from `list_recordings`; UserError where a journal is damaged."""
+    wanted: dict[Path, list[int]] = {}
+    for recording in recordings:
+        wanted.setdefault(recording.journal, []).append(recording.entry.number)
+    return [episode for journal, numbers in wanted.items() for episode in read_journal(journal, numbers)]
+
+
 def read_recordings(
     recordings: Sequence[NumberedEpisode], *, source: str, incomplete: bool
 ) -> Demonstrations:
@@ -46,8 +54,4 @@ def read_recordings(
 
     Raises UserError where a journal is damaged, or `demonstrations_of` refuses.
     """
-    wanted: dict[Path, list[int]] = {}
-    for recording in recordings:
-        wanted.setdefault(recording.journal, []).append(recording.entry.number)
-    episodes = [episode for journal, numbers in wanted.items() for episode in read_journal(journal, numbers)]
-    return demonstrations_of(episodes, source=source, incomplete=incomplete)
+    return demonstrations_of(read_episodes(recordings), source=source, incomplete=incomplete)
