@@ -122,7 +122,7 @@ def test_an_arm_is_asked_and_not_commanded(capsys, tmp_path):
         code, said = found(capsys, *options)
         assert (code, said["arm"]["level"]) == (2, "fault")
         assert "too old: update it" in said["arm"]["means"]
-    code, said = found(capsys, *options)
+    code, said = found(capsys, "--out", str(tmp_path), "--arm", "wooden://127.0.0.1:1", "--robot", "panda")
     assert (code, said["arm"]["level"]) == (2, "fault")
     assert "There is no wooden arm" in said["arm"]["means"]
 

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -12,8 +13,10 @@ from urllib.parse import urlsplit
 import httpx
 import pytest
 
+from latentarm.control.journal import read_journal
 from latentarm.demonstrations.folders import locked
 from latentarm.web.arm_process.drive_setup import Spec
+from latentarm.web.arm_process.replay import replay
 from latentarm.web.records.drives import Wanted
 from latentarm.web.records.record_files import SYSTEM_CALENDAR
 from latentarm.web.records.records import Records
@@ -25,6 +28,71 @@ pytestmark = pytest.mark.clock
 
 def command(out):
     return [sys.executable, "-m", "latentarm", "teleop", "--port", "0", "--json", "--out", str(out)]
+
+
+IN_A_TERMINAL = """
+import fcntl, os, sys, termios
+os.setsid()
+fcntl.ioctl(0, termios.TIOCSCTTY, 0)
+os.execv(sys.argv[1], sys.argv[1:])
+"""
+
+
+@contextmanager
+def in_a_terminal(out):
+    """A server as somebody starts it in a window; and a function that closes the window."""
+    ours, theirs = os.openpty()
+    words = [sys.executable, "-c", IN_A_TERMINAL, *command(out)]
+    with subprocess.Popen(words, stdin=theirs, stdout=theirs, stderr=theirs) as server:
+        os.close(theirs)
+        said = b""
+        while b"}" not in said:
+            said += os.read(ours, 1 << 16)
+        address = json.loads(re.search(rb"{.*}", said).group())["address"]
+        window = [ours]
+        try:
+            yield server, Site(urlsplit(address).port, None, None), lambda: os.close(window.pop())
+        finally:
+            for one in window:
+                os.close(one)
+            server.wait(60)
+
+
+def alive_in_group(group):
+    """Processes of a group, by what they run; Python's own, which tidies up, ends last."""
+    listed = subprocess.run(["ps", "-eo", "pgid=,stat=,args="], capture_output=True, text=True, check=True)
+    rows = [line.split(maxsplit=2) for line in listed.stdout.splitlines()]
+    return [row[2] for row in rows if row[0] == str(group) and not row[1].startswith("Z")]
+
+
+@pytest.mark.parametrize("how", ["window", "SIGHUP", "SIGTERM", "SIGTERM to all"])
+def test_however_a_server_is_ended_the_drive_is_kept_the_arm_stops_and_all_can_be_read(tmp_path, how):
+    with in_a_terminal(tmp_path) as (server, site, close_window), site.page() as page:
+        page.send(type="record", on=True, task="until the end")
+        page.drive(1.0, 0.0)
+        wait_for(lambda: any(drive.way_m >= 0.01 for drive in drives_in(tmp_path)))
+        match how:
+            case "window":
+                close_window()
+            case "SIGTERM to all":  # as systemd does
+                os.killpg(server.pid, signal.SIGTERM)
+            case _:
+                server.send_signal(signal.Signals[how])
+        server.wait(60)
+        wait_for(lambda: not alive_in_group(server.pid), within_s=10.0)
+    drives = drives_in(tmp_path)  # a busy computer may stop the arm, and then there is more than one
+    assert max(drive.way_m for drive in drives) >= 0.01
+    assert all(drive.scene is not None or drive.ended == "broken_off" for drive in drives)
+    (journal,) = tmp_path.glob("*.sqlite")
+    (episode,) = read_journal(journal)
+    assert len(episode.records) > 20
+    assert not episode.records[-1].command.velocity.any()
+    found = replay(max((tmp_path / "incidents").iterdir()))
+    assert found["complete"]
+    assert found["agreed"] == found["ticks"] >= len(episode.records)
+    assert "Traceback" not in (tmp_path / "teleop.log").read_text()
+    with locked(tmp_path, tmp_path / ".teleop.lock"):
+        pass  # the next server can start
 
 
 @contextmanager

@@ -75,7 +75,7 @@ def test_an_incident_is_reported_and_replayed_to_the_bit(serve, tmp_path, capsys
             page.send(type="mode", mode="end_effector", axes=0)
             page.drive(1.0, 0.0)
             happen(site, page, server)
-            page.wait(lambda state: state["phase"] == "disengaged")
+            page.wait(lambda state: state["phase"] in ("disengaged", "neutral_needed"))
             time.sleep(0.2)
             server.pause_s, server.unreadable = 0.0, False
             server.repair()
@@ -98,7 +98,7 @@ def test_an_incident_is_reported_and_replayed_to_the_bit(serve, tmp_path, capsys
     capsys.readouterr()
     assert cli.main(["replay", str(report), "--json"]) == 0
     (found,) = json.loads(capsys.readouterr().out).values()
-    assert found["agreed"] == found["ticks"] == told["ticks"] > 50
+    assert found["agreed"] == found["ticks"] == told["ticks"] > 10
     assert found["complete"] is (kind != "killed")
     assert "127.0.0.1" not in str(contents(report))
 

@@ -165,6 +165,7 @@ def _serve_alone(
         if cameras is not None:
             cameras.end()
         listening.close()
+        _LOG.info("The server ends.")
     for journal in sorted(set(out.glob(f"*{JOURNAL_SUFFIX}")) - before):
         say(f"To use what was recorded: latentarm export {shlex.quote(str(journal))} --out NEW_FOLDER")
 
