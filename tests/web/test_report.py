@@ -158,6 +158,12 @@ def test_the_drive_that_went_wrong_can_be_named_and_old_versions_are_said(tmp_pa
     told = json.loads(contents(report)["report.json"])["incidents"]
     assert [one["file"][:8] for one in told] == ["20261125", "20261124"]
     assert all("another version" in one["damaged"] for one in told)
+    with (folder / "20261124-100000-000000.incident.gz").open("ab") as file:
+        file.truncate(30 << 20)
+    capsys.readouterr()
+    assert cli.main(["report", str(tmp_path), "--out", str(report)]) == 0
+    assert "20261124-100000-000000.incident.gz and 0 older" in capsys.readouterr().out
+    assert len(json.loads(contents(report)["report.json"])["incidents"]) == 2
     for when, said in (("2026-11-24T09:00+00:00", "no incident file from before"), ("today", "is no time")):
         assert cli.main(["report", str(tmp_path), "--drive", when]) == 2
         assert said in capsys.readouterr().err

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Annotated, Any, Final
 from zipfile import ZIP_DEFLATED, ZIP_STORED, ZipFile
 
+import numpy as np
 from tyro.conf import Positional, arg
 
 from latentarm import __version__
@@ -49,7 +50,7 @@ def report(
 
     It has no names of people, addresses or PINs, and no pictures. For example: latentarm report teleop
     """
-    files = _chosen(folder, drive)
+    files, left_out = _chosen(folder, drive)
     told = [_told(file) for file in files]
     hidden = {**dict.fromkeys(_people(folder), "Somebody"), str(folder.absolute()): folder.name}
     about = {
@@ -73,12 +74,15 @@ def report(
         stops = sum("stopped" in event for event in one["events"])
         said = one["damaged"] or f"{one['ticks']:,} ticks, {stops} stops"
         say(f"{one['file']}: {said}", json)
+    if left_out:
+        one = f"{left_out[0].name} and {len(left_out) - 1} older incident files are"
+        say(f"{one} left out, as they are too large together: choose by --drive.", json)
     say(f"{out} has {out.stat().st_size / 1e6:.1f} MB. To see what happened: latentarm replay {out}", json)
     return 0
 
 
-def _chosen(folder: Path, drive: str | None) -> list[Path]:
-    """Incident files, the newest first: as many as may be sent."""
+def _chosen(folder: Path, drive: str | None) -> tuple[list[Path], list[Path]]:
+    """Incident files, the newest first: those to send, and older ones that would make too much."""
     from latentarm.web.arm_process.incident import began, incident_files
 
     files = incident_files(folder)[::-1]
@@ -91,9 +95,9 @@ def _chosen(folder: Path, drive: str | None) -> list[Path]:
         files = [file for file in files if (at := began(file)) is not None and at < until]
         if not files:
             raise UserError(f"{folder} has no incident file from before {drive}.")
-    room = MOST_BYTES
-    sizes = {file: file.stat().st_size for file in files}
-    return [file for file in files if (room := room - sizes[file]) >= 0 or file == files[0]]
+    sizes = np.cumsum([file.stat().st_size for file in files])
+    most = max(1, int((sizes <= MOST_BYTES).sum()))
+    return files[:most], files[most:]
 
 
 def _told(file: Path) -> dict[str, Any]:
