@@ -1,0 +1,50 @@
+"""Sources of where things are, by name: ours, and those that other distributions register."""
+
+from collections.abc import Sequence
+from typing import Final, Protocol, cast
+
+from latentarm.core.errors import UserError
+from latentarm.core.plugins import Catalogue
+from latentarm.surroundings.contract import Source
+
+
+class SourceFactory(Protocol):
+    """Opens a source."""
+
+    def __call__(self, rest: str, names: Sequence[str]) -> Source:
+        """Open a source for the things of these names; ``rest`` is what follows ``NAME:`` in ``--objects``.
+
+        Raises UserError where ``rest`` is malformed, or what it names cannot be opened.
+        """
+        ...
+
+
+def _factory(name: str, thing: object) -> SourceFactory:
+    if not callable(thing):
+        raise TypeError(f"{thing!r} is not a function that opens a source of where things are")
+    return cast(SourceFactory, thing)
+
+
+SOURCES: Final[Catalogue[SourceFactory]] = Catalogue(
+    "latentarm.surroundings",
+    "source of where things are",
+    {"http": "latentarm.surroundings.http:open_http"},
+    _factory,
+)
+
+TOUCH: Final = "touch"
+"""Not opened: a person who brings the tool to a thing may always say so."""
+
+
+def check_source(text: str) -> None:
+    """Check what ``--objects`` names, without opening it."""
+    name, colon, _ = text.partition(":")
+    if text != TOUCH and SOURCES.find(name, "--objects") and not colon:
+        raise UserError(f"--objects {text} does not say where: write {name}:..., see docs/objects.md.")
+
+
+def open_source(text: str, names: Sequence[str]) -> Source:
+    """Open the source that a text such as ``http:8470`` names, for the things of these names."""
+    check_source(text)
+    name, _, rest = text.partition(":")
+    return SOURCES.running(name, lambda: SOURCES[name](rest, names))
