@@ -47,4 +47,4 @@ def open_source(text: str, names: Sequence[str]) -> Source:
     """Open the source that a text such as ``http:8470`` names, for the things of these names."""
     check_source(text)
     name, _, rest = text.partition(":")
-    return SOURCES.running(name, lambda: SOURCES[name](rest, names))
+    return SOURCES[name](rest, names)

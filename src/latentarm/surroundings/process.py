@@ -1,0 +1,161 @@
+"""The process in which sources look for things, apart from the arm's loop and the web server.
+
+`run_sources` runs in it. `SourceProcess` is the side that starts it; `Inbox` is the loop's. What comes from
+there is JSON: strangers wrote what is decoded there, so nothing is unpickled.
+"""
+
+import json
+import multiprocessing
+import os
+import signal
+import sys
+import time
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from multiprocessing.connection import Connection
+from typing import Any, Final, final
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from latentarm.core.errors import UserError
+from latentarm.core.types import Pose
+from latentarm.core.untrusted.terminal import one_line
+from latentarm.surroundings.catalogue import open_source
+from latentarm.surroundings.contract import MOST_HOLD_S, Sighting, Source
+
+OPENED_WITHIN_S: Final = 30.0
+_PERIOD_S: Final = 0.02
+_LONGEST: Final = 4096  # bytes of a message: short enough that a pipe takes it whole or not at all
+_MOST_AT_ONCE: Final = 50
+_LOWER_PRIORITY: Final = 5
+
+
+def run_sources(texts: Sequence[str], names: Sequence[str], sightings: Connection, owner: Connection) -> None:
+    """Open sources, send what they see, and end when ``owner`` is closed at the other end."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    with suppress(OSError, AttributeError):
+        os.nice(_LOWER_PRIORITY)
+    os.set_blocking(sightings.fileno(), False)
+    opened: dict[str, Source] = {}
+    try:
+        for text in texts:
+            opened[text] = open_source(text, names)
+        owner.send_bytes(b"")
+        while not owner.poll(_PERIOD_S):
+            for text in list(opened):
+                _send_all(text, opened, sightings)
+    except UserError as error:
+        owner.send_bytes(one_line(str(error)).encode())
+    finally:
+        for source in opened.values():
+            source.close()
+
+
+def _send_all(text: str, opened: dict[str, Source], sightings: Connection) -> None:
+    source = opened[text]
+    try:
+        seen = source.read()
+    except Exception as error:  # noqa: BLE001 - whatever a source does, the others go on
+        sys.stderr.write(f"latentarm: --objects {text} has ended: {one_line(repr(error))}\n")
+        source.close()
+        del opened[text]
+        return
+    for sighting in seen:
+        # A loop that does not read loses sightings: they would be old by the time that it does.
+        with suppress(OSError):
+            sightings.send_bytes(_as_json(sighting, text, min(source.hold_s, MOST_HOLD_S)))
+
+
+@final
+class SourceProcess:
+    """Sources, opened in a process of their own; ``sightings`` is for the loop's `Inbox`.
+
+    Raises UserError where one cannot be opened.
+    """
+
+    def __init__(self, texts: Sequence[str], names: Sequence[str]) -> None:
+        context = multiprocessing.get_context("spawn")
+        self.sightings, writing = multiprocessing.Pipe(duplex=False)
+        self._owner, theirs = multiprocessing.Pipe()
+        self._process = context.Process(
+            target=run_sources, args=(texts, names, writing, theirs), name="latentarm objects", daemon=True
+        )
+        self._process.start()
+        writing.close()
+        theirs.close()
+        refused = "The sources of --objects did not open in time."
+        with suppress(EOFError):
+            if self._owner.poll(OPENED_WITHIN_S):
+                refused = self._owner.recv_bytes().decode()
+        if refused:
+            self.end()
+            raise UserError(refused)
+
+    def end(self) -> None:
+        """End the process."""
+        self._owner.close()
+        self._process.join(1.0)
+        if self._process.is_alive():
+            self._process.kill()
+            self._process.join()
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Received:
+    """A sighting with the text that named its source, and how long it counts, s."""
+
+    sighting: Sighting
+    source: str
+    hold_s: float
+
+
+@final
+class Inbox:
+    """Sightings as they come from a `SourceProcess`, for the loop; it never waits."""
+
+    def __init__(self, sightings: Connection) -> None:
+        self._sightings: Connection | None = sightings
+
+    def read(self, now_s: float) -> list[Received]:
+        """New ones, oldest first, at most `_MOST_AT_ONCE`; times are on the clock that reads ``now_s``."""
+        found: list[Received] = []
+        ahead_s = now_s - time.monotonic()
+        while self._sightings is not None and len(found) < _MOST_AT_ONCE:
+            try:
+                if not self._sightings.poll(0):
+                    break
+                one = _parsed(json.loads(self._sightings.recv_bytes(_LONGEST)))
+            except (OSError, EOFError):
+                self._sightings = None  # its process has ended: what it saw grows old
+            except (ValueError, KeyError, TypeError, UserError):
+                continue
+            else:
+                sighting = replace(one.sighting, time_s=one.sighting.time_s + ahead_s)
+                found.append(replace(one, sighting=sighting))
+        return found
+
+
+def _as_json(sighting: Sighting, source: str, hold_s: float) -> bytes:
+    message = {
+        "source": source,
+        "hold_s": hold_s,
+        "name": sighting.name,
+        "position": sighting.pose.position.tolist(),
+        "rotation": Rotation.from_matrix(sighting.pose.rotation).as_quat().tolist(),
+        "time_s": sighting.time_s,
+        "sd_m": sighting.position_sd_m,
+        "sd_rad": sighting.orientation_sd_rad,
+    }
+    return json.dumps(message).encode()
+
+
+def _parsed(message: dict[str, Any]) -> Received:
+    pose = Pose(
+        np.array(message["position"], dtype=np.float64),
+        Rotation.from_quat(message["rotation"]).as_matrix(),
+    )
+    sighting = Sighting(str(message["name"]), pose, message["time_s"], message["sd_m"], message["sd_rad"])
+    return Received(sighting, str(message["source"]), float(message["hold_s"]))
