@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, ExitStack, contextmanager, suppress
 from dataclasses import dataclass, field, replace
 from multiprocessing import Pipe
+from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
 
@@ -101,11 +102,11 @@ class Desk:
     `each_tick` is called before every tick with the time, s.
     """
 
-    def __init__(self, setup: DriveSetup, folder: Path) -> None:
+    def __init__(self, setup: DriveSetup, folder: Path, sightings: Connection | None = None) -> None:
         self.setup = setup
         self.clock = Watched(self._passed)
         reading, self.orders = Pipe(duplex=False)
-        self.channel = new_channel(reading)
+        self.channel = new_channel(reading, sightings)
         self.orphaned = False
         self.writer = EpisodeWriter(folder)
         plant = make_arm(setup.arm, setup.task.robot, setup.start, self.clock.now_s)
@@ -177,8 +178,8 @@ class Desk:
 
 
 @contextmanager
-def a_desk(setup: DriveSetup, folder: Path) -> Iterator[Desk]:
-    desk = Desk(setup, folder)
+def a_desk(setup: DriveSetup, folder: Path, sightings: Connection | None = None) -> Iterator[Desk]:
+    desk = Desk(setup, folder, sightings)
     yield desk
     desk.writer.close()
     desk.orders.close()
@@ -192,9 +193,9 @@ def desk(setup: DriveSetup, tmp_path: Path) -> Iterator[Desk]:
 
 
 @pytest.fixture
-def desk_of(tmp_path: Path) -> Callable[[DriveSetup], AbstractContextManager[Desk]]:
-    """A desk for another setup."""
-    return lambda setup: a_desk(setup, tmp_path / "teleop")
+def desk_of(tmp_path: Path) -> Callable[..., AbstractContextManager[Desk]]:
+    """A desk for another setup, and with sightings of things."""
+    return lambda setup, sightings=None: a_desk(setup, tmp_path / "teleop", sightings)
 
 
 @pytest.fixture

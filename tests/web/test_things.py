@@ -84,8 +84,12 @@ def test_icing_is_drawn_where_the_food_must_go_and_apart_from_what_is_solid():
     assert soft["rgba"][3] < 1.0
 
 
+def told(state):
+    return things_at(SCENE, state.poses, state.grains, ())
+
+
 def test_places_are_in_the_order_of_the_scene():
-    found = things_at(SCENE, state(Pose(np.array([0.12347, 0.0, 0.5]), ON_ITS_SIDE)))
+    found = told(state(Pose(np.array([0.12347, 0.0, 0.5]), ON_ITS_SIDE)))
     cup, bowl = found.poses
     assert cup == pytest.approx((0.1235, 0.0, 0.5, np.sqrt(0.5), np.sqrt(0.5), 0.0, 0.0), abs=1e-4)
     assert bowl[:3] == (1.0, 1.0, 1.0)
@@ -94,8 +98,8 @@ def test_places_are_in_the_order_of_the_scene():
 
 def test_a_page_is_sent_what_has_moved_since_it_was_last_sent_something():
     first, second = PageMemory(), PageMemory()
-    here = things_at(SCENE, state(CUP.pose))
-    there = things_at(SCENE, state(Pose(np.array([0.0, 0.0, 0.1]), UPRIGHT)))
+    here = told(state(CUP.pose))
+    there = told(state(Pose(np.array([0.0, 0.0, 0.1]), UPRIGHT)))
     assert [first.new_things(one) for one in (here, here, Things(**dict(here)), there, here)] == [
         True,
         False,
@@ -121,12 +125,12 @@ def test_the_fingers_of_a_gripper_open_away_from_each_other():
 def test_things_are_looked_at_25_times_a_second_where_the_arm_knows_of_them():
     setup = load_setup(Spec(task="marshmallows"))
     arm = make_scene_arm("mujoco", setup.task.robot, setup.start, lambda: 0.0, setup.scene)
-    seen = [ThingPoses(setup.scene, arm).look(tick) for tick in range(100)]
+    seen = [ThingPoses(setup, arm, None, lambda: 0.0).look(tick) for tick in range(100)]
     assert sum(one is not None for one in seen) == 25
     first = [thing["pose"] for thing in described(setup.scene)["things"]]
     np.testing.assert_allclose(seen[0].poses, first, atol=1e-3)
     ghost = KinematicArm(setup.task.robot, setup.start, lambda: 0.0)
-    assert ThingPoses(setup.scene, setup.with_things(ghost)).look(0) is None
+    assert ThingPoses(setup, setup.with_things(ghost), None, lambda: 0.0).look(0) is None
 
 
 def test_a_recording_says_where_things_went_and_a_model_can_see_them(tmp_path):

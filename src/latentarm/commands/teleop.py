@@ -88,6 +88,14 @@ def teleop(
         bool,
         arg(help="Read a real arm and send it nothing: commands are only computed, drawn and recorded."),
     ] = False,
+    objects: Annotated[
+        UseAppendAction[tuple[str, ...]],
+        arg(
+            metavar="SOURCE",
+            help="Where things are: http:PORT takes what a detector posts, touch what a person shows with the"
+            " tool, the default for a real arm; see docs/objects.md. Several are joined.",
+        ),
+    ] = (),
     idle_minutes: Annotated[
         float, arg(metavar="MIN", help="Disable the arm when nobody has given an input for so long.")
     ] = 2.0,
@@ -147,6 +155,7 @@ def teleop(
         seat=seat,
         shadow=shadow,
         idle_s=idle_s_of(idle_minutes),
+        objects=tuple(objects),
     )
     if arm is not None and is_address(arm):
         found = [one for one in examine_machine(out, room.least_free_bytes, _LOOK_S) if one.level != "good"]

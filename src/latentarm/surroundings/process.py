@@ -65,7 +65,7 @@ def _send_all(text: str, opened: dict[str, Source], sightings: Connection) -> No
     for sighting in seen:
         # A loop that does not read loses sightings: they would be old by the time that it does.
         with suppress(OSError):
-            sightings.send_bytes(_as_json(sighting, text, min(source.hold_s, MOST_HOLD_S)))
+            sightings.send_bytes(as_message(sighting, text, min(source.hold_s, MOST_HOLD_S)))
 
 
 @final
@@ -138,7 +138,8 @@ class Inbox:
         return found
 
 
-def _as_json(sighting: Sighting, source: str, hold_s: float) -> bytes:
+def as_message(sighting: Sighting, source: str, hold_s: float) -> bytes:
+    """A sighting as it is sent to an `Inbox`."""
     message = {
         "source": source,
         "hold_s": hold_s,

@@ -18,7 +18,7 @@ def first_arm(setup: DriveSetup, clock: Clock) -> Arm:
     name, robot = setup.arm, setup.task.robot
     if setup.spec.shadow:
         arm = ShadowArm(make_real_arm(name, robot, clock.now_s))
-    elif setup.scene is None:
+    elif setup.real or setup.scene is None:
         arm = make_arm(name, robot, setup.start, clock.now_s)
     else:
         arm = make_scene_arm(name, robot, setup.start, clock.now_s, setup.scene)

@@ -27,7 +27,7 @@ from latentarm.web.arm_process.page_inputs import PageInputs
 from latentarm.web.arm_process.pose_motion import AT_START_RAD, PoseMotion
 from latentarm.web.arm_process.steering import Steering
 from latentarm.web.arm_process.task_run import TaskRun
-from latentarm.web.arm_process.thing_poses import ThingPoses
+from latentarm.web.arm_process.thing_poses import ThingPoses, follow
 from latentarm.web.protocol.channel import Channel, parse_stop
 from latentarm.web.protocol.notice import Notice, notice_of_stop
 from latentarm.web.protocol.orders import (
@@ -48,6 +48,7 @@ from latentarm.web.protocol.orders import (
     Record,
     Reset,
     Return,
+    TouchThing,
 )
 from latentarm.web.protocol.report import HeldBack, Phase, Report
 
@@ -112,7 +113,10 @@ class Drive:
         self._to_pose = setup.to_pose()
         self._calls = calls
         self._to_pose.calls = setup.help.calls = calls
-        self._step = setup.step(setup.surroundings(arm), self._to_pose, calls)
+        about = setup.with_things(arm)
+        steering.things = follow(setup, steering.things, channel.sightings)
+        self._things = ThingPoses(setup, about, steering.things, clock.now_s)
+        self._step = setup.step(self._things.surroundings(setup, about), self._to_pose, calls)
         self._inputs = PageInputs(
             channel.given, clock, setup.controller.input_dim, self._step.dead_zone, self._stop_if_enabled
         )
@@ -130,10 +134,9 @@ class Drive:
         self._readings = LatestReadings(setup.start, setup.task.robot.gripper)
         self._ghosts = GhostPaths(setup.task, setup.controller, setup.help, self._step.safety)
         self._late_share = 0.0
-        self._thing_poses = ThingPoses(setup.scene, setup.with_things(arm))
-        self._episodes = Episodes(setup, writer, steering, self._inputs, self._thing_poses)
+        self._episodes = Episodes(setup, writer, steering, self._inputs, self._things)
         self._disengaged = Disengaged(self._step, arm, self._episodes, self._say)
-        self._run = steering.run or TaskRun(setup.todo, setup.with_things(arm), setup.task.robot.chain)
+        self._run = steering.run or TaskRun(setup.todo, about, setup.task.robot.chain)
         steering.run = self._run
         self._goals = setup.step_goals()
         self._note = note
@@ -153,11 +156,12 @@ class Drive:
         enabled, steered = self._step.stopped is None, not self._way_back.on
         self._run.see(record.time_s, self._readings.q, enabled=enabled, steered=steered)
         # Only a recording is worth the look: some 0.1 ms.
-        kept = replace(record, things=self._thing_poses.rows()) if self._writer.on else record
+        kept = replace(record, things=self._things.rows()) if self._writer.on else record
         self._episodes.follow(kept, at_rest=self._step.at_rest)
         self._obey(record)
         self._disengaged.follow(record.time_s)
         self._follow_way_back(record)
+        self._mind_things(record)
         self._enable_if_asked(record.time_s)
         self._look_for_inputs(record.time_s)
         self._channel.report.write(self._report(record).model_dump_json().encode())
@@ -246,6 +250,9 @@ class Drive:
                 self._end_guiding(Notice(code="guiding_ended"))
             case KeepGuiding(gripper=ask):
                 self._disengaged.keep_guiding(record.time_s, ask)
+            case TouchThing(thing=thing, kind=kind):
+                if not self._step.at_rest or not self._things.touch(thing, kind):
+                    self._say(Notice(code="touch_refused"))
             case Reconnect():
                 if self._disengaged.connect_again():
                     self._change_to(order)
@@ -321,6 +328,21 @@ class Drive:
             self._ended = self._way_back.ending(outcome)
             self._say(self._ended)
 
+    def _mind_things(self, record: StepRecord) -> None:
+        """Follow the things; leave learned motions that need one whose place is unknown.
+
+        What a held stick does changes too where a thing is suddenly elsewhere: it must be let go first.
+        """
+        self._things.update(record, self._readings.q)
+        if self._steering.mode == "end_effector" or self._way_back.on:
+            return
+        if (unknown := self._things.unknown) is not None:
+            self._choose("end_effector", self._steering.axes, self._steering.help)
+            self._say(unknown)
+        elif (moved := self._things.moved) is not None:
+            self._neutral.demand()
+            self._say(moved)
+
     def _enable_if_asked(self, now_s: float) -> None:
         """Enable once there is a fresh neutral input; the loop itself decides."""
         if now_s > self._enable_until_s:
@@ -352,7 +374,7 @@ class Drive:
             self._late_share = 1.0 - self._loop.statistics().met_share
 
     def _move_goals(self) -> None:
-        move = self._run.move_goals(self._goals, self._readings.q)
+        move = self._run.move_goals(self._goals, self._readings.q, self._things.believed())
         if move is not None:
             self._step.move_goals(move.goals)
             self._ghosts.move_goals(move.goals)
@@ -418,7 +440,7 @@ class Drive:
             tool=(tool[0], tool[1], tool[2]),
             gripper=self._readings.gripper,
             task=self._run.state,
-            things=self._thing_poses.look(self._steering.tick),
+            things=self._things.look(self._steering.tick),
             ghosts=self._ghosts.newest(self._mode_index),
             belief=tuple(record.belief.tolist()),
             alpha=record.alpha,

@@ -25,14 +25,16 @@ from latentarm.core.context import BELIEF
 from latentarm.core.errors import UserError
 from latentarm.core.exact_json import as_text_json
 from latentarm.core.journal_limits import JournalLimits
-from latentarm.core.types import FloatArray
+from latentarm.core.types import FloatArray, Pose
 from latentarm.demonstrations.provenance import provenance_now
 from latentarm.robots.kinematics.obstacles import Obstacle
 from latentarm.robots.scene.scene import Scene
+from latentarm.robots.scene.thing import Part, Thing
 from latentarm.runs.folder import Run, read_run, weights_fingerprint
 from latentarm.runs.tasks import usual_arm
 from latentarm.safety.config import SafetyConfig
 from latentarm.safety.zones import Zone
+from latentarm.surroundings.catalogue import check_source
 from latentarm.tasks.catalogue import HELD_OUT
 from latentarm.tasks.place import Place, ScenePlace, surroundings_of, watched
 from latentarm.tasks.step_goals import StepGoals
@@ -61,6 +63,9 @@ MOST_JOINTS: Final = 64
 MOST_GOALS: Final = 200
 """Largest numbers that fit into a tick's report."""
 
+MARKER_M: Final = 0.02
+"""Radius of the ball that stands for a thing of unknown shape."""
+
 COMMAND_PERIODS: Final = 5.0
 """Periods that a command lasts: a shared computer may hold the loop up for 50 ms before the arm stops."""
 
@@ -87,6 +92,7 @@ class Spec:
         incidents: whether calls are kept for a while, see `latentarm.web.arm_process.incident`.
         seat: where a person without a profile sits, see `latent_controller`; None for z = u.
         shadow: whether a real arm is read and nothing is sent to it.
+        objects: sources of where things are, see `latentarm.surroundings.catalogue`.
         idle_s: without an input for so long, the arm is disabled, s.
 
     Raises:
@@ -112,6 +118,7 @@ class Spec:
     seat: Seat | None = None
     shadow: bool = False
     idle_s: float = idle_s_of(USUAL_MINUTES)
+    objects: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         if not 0 <= self.seed < SEEDS:
@@ -120,6 +127,8 @@ class Spec:
             raise UserError(
                 "A profile belongs to a run: name one, as in `latentarm teleop RUN --profile NAME`."
             )
+        for text in self.objects:
+            check_source(text)
         if self.shadow and (self.arm is None or not is_address(self.arm)):
             raise UserError("--shadow watches a real arm: name its address with --arm SCHEME://HOST.")
 
@@ -152,6 +161,7 @@ class DriveSetup:
             stood when it was connected.
         run_fingerprint: of the run's weights; "" without a run.
         scene: the things about the arm; None where they do not count.
+        stand: whether things of a real arm stand as a task says, rather than anywhere.
     """
 
     spec: Spec
@@ -165,10 +175,11 @@ class DriveSetup:
     todo: Todo
     run_fingerprint: str = ""
     scene: Scene | None = None
+    stand: bool = True
 
     @property
     def real(self) -> bool:
-        """Whether the arm is real: it stays where it is, and nothing detects the things about it."""
+        """Whether the arm is real: it stays where it is."""
         return is_address(self.arm)
 
     @property
@@ -193,9 +204,21 @@ class DriveSetup:
         return self.task.objects if isinstance(self.task, ScenePlace) else ()
 
     @property
+    def tracked(self) -> tuple[Thing, ...]:
+        """The things whose places come from sources and from people; none where the simulation tells them."""
+        if self.scene is None or not (self.real or self.spec.objects):
+            return ()
+        return self.scene.things if self.real else tuple(self.scene.thing(name) for name in self.objects)
+
+    @property
     def shown(self) -> Scene | None:
-        """The scene that pages draw: the one in physics, else the task's."""
-        return self.task.shown if self.scene is None and isinstance(self.task, Task) else self.scene
+        """The scene that pages draw: the one about the arm, else the task's."""
+        if self.scene is None:
+            return self.task.shown if isinstance(self.task, Task) else None
+        # What is followed may be anywhere, whatever a task fixes.
+        followed = {thing.name for thing in self.tracked}
+        things = (replace(one, fixed=one.fixed and one.name not in followed) for one in self.scene.things)
+        return replace(self.scene, things=tuple(things))
 
     @property
     def settings(self) -> dict[str, Any]:
@@ -241,7 +264,7 @@ class DriveSetup:
             end_effector=robot.end_effector,
             limits=robot.stated_limits,
             things=things,
-            objects=self.objects if things else (),
+            objects=tuple(name for name in self.objects if name in things),
             settings=self.settings,
         )
 
@@ -357,20 +380,38 @@ def load_setup(spec: Spec) -> DriveSetup:
         scene=begun.scene,
     )
     if setup.real and run is not None:
+        setup = _with_markers(setup)
         _check_blind(run, setup)
+    if spec.objects and not setup.tracked:
+        raise UserError(
+            "--objects says where the things of a task are, and there are none here: name a task with things"
+            " in physics, or a real arm with a run that looks at things."
+        )
     setup.step()  # what cannot be driven fails now rather than later
     return setup
 
 
+def _with_markers(setup: DriveSetup) -> DriveSetup:
+    """The setup with a marker for each thing that the model looks at, where no task knows their shapes."""
+    if setup.scene is not None or not setup.controller.objects:
+        return setup
+    stood = Pose(np.zeros(3), np.eye(3))
+    marks = tuple(
+        Thing(name, (Part("sphere", (MARKER_M,)),), 0.1, stood) for name in setup.controller.objects
+    )
+    return replace(setup, scene=Scene(marks), stand=False)
+
+
 def _check_blind(run: Run, setup: DriveSetup) -> None:
-    """Refuse a model that needs things or goals, which nothing detects about a real arm."""
-    if setup.controller.objects:
-        raise UserError(
-            f"{run.folder} looks at where {', '.join(setup.controller.objects)} are, and nothing sees them"
-            " about a real arm: train a model that does not, with --context joints."
-        )
+    """Refuse a model that needs goals, which nothing detects about a real arm, or things of another task."""
     if BELIEF in run.context and not setup.task.goals:
         raise UserError(
             f"{run.folder} sees a belief over goals, and nothing sees where they are about a real arm: train"
             " a model that does not, with --context joints."
+        )
+    there = () if setup.scene is None else setup.scene.names
+    if missing := set(setup.controller.objects) - set(there):
+        raise UserError(
+            f"{run.folder} looks at {', '.join(sorted(missing))}, which this task does not have: name the"
+            " task that it was trained for with --task."
         )

@@ -113,4 +113,6 @@ def _begun(driven: Driven, spec: Spec, clock: Clock) -> Driven:
     if setup.real:
         setup = replace(setup, start=driven.setup.start)
     arm = next_arm(setup, driven.setup, driven.arm, clock)
-    return Driven(setup, arm, replace(driven.steering, run=None, enabled=False))
+    # About a real arm nothing is put anywhere else.
+    things = driven.steering.things if setup.real else None
+    return Driven(setup, arm, replace(driven.steering, run=None, things=things, enabled=False))

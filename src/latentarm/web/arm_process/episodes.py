@@ -30,6 +30,7 @@ class Episodes:
         self._inputs = inputs
         self._thing_poses = thing_poses
         self._by_hand = False
+        self._things: tuple[str, ...] = ()
 
     @property
     def by_hand(self) -> bool:
@@ -42,8 +43,9 @@ class Episodes:
         if not self._writer.on:
             self._inputs.devices.clear()
             self._by_hand = order.by_hand
+            self._things = self._thing_poses.begin()
         how = BY_HAND if order.by_hand else self._steering.mode
-        self._writer.begin(self._setup.episode(self._thing_poses.names, how, order.task, order.person))
+        self._writer.begin(self._setup.episode(self._things, how, order.task, order.person))
 
     def end_at_rest(self) -> None:
         """End it once the arm is at rest: its last motion belongs to it."""

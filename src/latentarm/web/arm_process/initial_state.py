@@ -49,7 +49,7 @@ class InitialState:
     place: Place
     start: FloatArray  # (n,), where a simulated arm starts, and where the way back leads, rad
     todo: Todo
-    scene: Scene | None = None  # the things about a simulated arm; None where they do not count
+    scene: Scene | None = None  # the things about the arm; None where they do not count
 
 
 def begin(
@@ -79,9 +79,9 @@ def begin(
 def begin_real(run: Run | None, task: str | None, choice: int, robot: RobotOptions) -> InitialState:
     """Begin with a real arm, wherever it is.
 
-    Nothing detects the things about a real arm. Of a task with things only the robot and its obstacles count;
-    goals are those of a run's demonstrations, or of a task that was named. ``task`` is None for the run's
-    own, or for nothing in particular. Raises UserError if neither a run nor a robot is named, any of these
+    Of a task with things the robot, its obstacles and the shapes of its things count; goals are those of a
+    run's demonstrations, or of a task that was named. ``task`` is None for the run's own, or for nothing in
+    particular. Raises UserError if neither a run nor a robot is named, any of these
     does not exist, or they do not fit each other.
     """
     if run is None and robot.robot is None:
@@ -93,7 +93,11 @@ def begin_real(run: Run | None, task: str | None, choice: int, robot: RobotOptio
         with_things = make_scene_task(task)
         _check_own_robot(task, with_things.robot, robot)
         arm = with_things.robot if robot.stated is None else restate(with_things.robot, robot.stated)
-        return _free(arm, ScenePlace(arm, (), tuple(with_things.obstacles)))
+        _check_choice(choice, with_things.choices)
+        # The places that are drawn here are none of this room's: only shapes, heights and tilts count.
+        begun = with_things.begin(choice, np.random.default_rng(0))
+        scene = Scene(tuple(begun.scene.thing(name) for name in begun.objects), table_m=begun.scene.table_m)
+        return _free(arm, ScenePlace(arm, (), tuple(with_things.obstacles), begun.objects), scene)
     if run is None and task is None and robot.robot is not None:
         arm = load_robot(robot.robot, robot.end_effector, robot.stated)
         return _free(arm, ScenePlace(arm, (), ()))
@@ -104,8 +108,8 @@ def begin_real(run: Run | None, task: str | None, choice: int, robot: RobotOptio
     return InitialState(place, made.robot.home, goal_to_reach(made, choice))
 
 
-def _free(robot: Robot, place: Place) -> InitialState:
-    return InitialState(place, robot.home, Todo(FREE, (), 0, ()))
+def _free(robot: Robot, place: Place, scene: Scene | None = None) -> InitialState:
+    return InitialState(place, robot.home, Todo(FREE, (), 0, ()), scene)
 
 
 def _check_own_robot(task: str, own: Robot, options: RobotOptions) -> None:

@@ -89,10 +89,10 @@ def run_control(spec: Spec, channel: Channel, server: int, logs: LogSettings) ->
 class ControlProcess:
     """A running control process. Every method but `end` returns at once."""
 
-    def __init__(self, spec: Spec) -> None:
+    def __init__(self, spec: Spec, sightings: Connection | None = None) -> None:
         context = multiprocessing.get_context("spawn")
         reading, self._orders = _order_pipe()
-        self._channel = new_channel(reading)
+        self._channel = new_channel(reading, sightings)
         self._seen = 0
         self._process = context.Process(
             target=run_control,

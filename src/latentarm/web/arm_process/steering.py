@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from typing import final
 
+from latentarm.surroundings.surroundings import Surroundings
 from latentarm.web.arm_process.help import USUAL_HELP
 from latentarm.web.arm_process.task_run import TaskRun
 from latentarm.web.protocol.orders import HelpLevel, ModeName
@@ -19,6 +20,7 @@ class Steering:
     tick: int = 0  # counts the ticks of all drives
     ending_episode: bool = False  # whether the episode ends as soon as the arm is at rest
     run: TaskRun | None = None  # of the task; None before it begins
+    things: Surroundings | None = None  # where things are; None where the simulation tells
     enabled: bool = False  # whether the arm was enabled since the setup changed
 
     @property

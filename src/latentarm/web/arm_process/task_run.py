@@ -1,11 +1,12 @@
 """One run of a task for pages: its steps are ticked off until it has succeeded or failed."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Final, final
 
 from latentarm.arms.contract import SceneArm
-from latentarm.core.types import FloatArray
+from latentarm.core.types import FloatArray, Pose
 from latentarm.robots.kinematics.chain import Chain
 from latentarm.robots.scene.scene import SceneState
 from latentarm.tasks.goal_task import coming_to, without_things
@@ -100,11 +101,17 @@ class TaskRun:
             short=self._fills.short and not self._over,
         )
 
-    def move_goals(self, goals: StepGoals, q: FloatArray) -> GoalMove | None:
-        """How the goals moved with the steps, see `StepGoals.look`; ``q``: (n,), joint positions, rad."""
-        if self._seen is None or self._over:
+    def move_goals(
+        self, goals: StepGoals, q: FloatArray, believed: Mapping[str, Pose] | None
+    ) -> GoalMove | None:
+        """How the goals moved with the steps, see `StepGoals.look`; ``q``: (n,), joint positions, rad.
+
+        ``believed`` are poses that replace the true ones; None where nobody knows one.
+        """
+        if self._seen is None or self._over or believed is None:
             return None
-        return goals.look(self._progress.done, self._step, self._guide.waypoint, self._seen, q)
+        seen = replace(self._seen, poses={**self._seen.poses, **believed})
+        return goals.look(self._progress.done, self._step, self._guide.waypoint, seen, q)
 
     def see(self, time_s: float, q: FloatArray, *, enabled: bool, steered: bool) -> None:
         """Update, in every tick; ``q``: (n,), joint positions, rad.

@@ -1,38 +1,126 @@
-"""Poses of the things about a simulated arm, for pages."""
+"""Where the things about an arm are, for pages, models and recordings: the simulation's truth, or beliefs."""
 
+from collections.abc import Callable, Mapping
+from multiprocessing.connection import Connection
 from typing import Final, final
 
+import numpy as np
+
 from latentarm.arms.contract import SceneArm
-from latentarm.core.types import NO_THINGS, FloatArray
+from latentarm.core.types import FloatArray, Pose, StepRecord
 from latentarm.robots.kinematics.pose_rows import thing_rows
-from latentarm.robots.scene.scene import Scene
-from latentarm.web.protocol.report import Things
+from latentarm.surroundings.surroundings import Surroundings, TouchKind
+from latentarm.surroundings.tracker import Whereabouts
+from latentarm.web.arm_process.drive_setup import PERIOD_S, DriveSetup
+from latentarm.web.protocol.notice import Notice
+from latentarm.web.protocol.report import SeenThing, Things
 from latentarm.web.protocol.things import things_at
+
+SOON_S: Final = 3.0 * PERIOD_S
+"""Learned motions end so long before a thing is lost, so that a late tick gives a model nothing too old."""
 
 _EVERY: Final = 4  # ticks between two looks: 25 looks per second; pages interpolate
 
 
+def follow(
+    setup: DriveSetup, known: Surroundings | None, sightings: Connection | None
+) -> Surroundings | None:
+    """The followed things of a setup: those ``known`` from before if they are the same; None for none."""
+    if not (things := setup.tracked):
+        return None
+    if known is not None and known.tracker.names == tuple(thing.name for thing in things):
+        return known
+    return Surroundings(things, stand=setup.stand, sightings=sightings)
+
+
 @final
 class ThingPoses:
-    """Reads the poses of the things about an arm every few ticks; none without a scene."""
+    """The things about an arm: followed, true in a simulation, or none."""
 
-    def __init__(self, scene: Scene | None, arm: SceneArm | None) -> None:
-        self._scene = scene
+    def __init__(
+        self,
+        setup: DriveSetup,
+        arm: SceneArm | None,
+        followed: Surroundings | None,
+        now_s: Callable[[], float],
+    ) -> None:
+        self._scene = setup.scene
         self._arm = arm
+        self._needed = setup.controller.objects
+        self._chain = setup.task.robot.chain
+        self._followed = followed
+        self._now_s = now_s
+        self._recorded: tuple[str, ...] = ()
+
+    def surroundings(self, setup: DriveSetup, arm: SceneArm | None) -> Callable[[], FloatArray] | None:
+        """What tells a `Step` where the things are that its controller looks at."""
+        if self._followed is None or not self._needed:
+            return setup.surroundings(arm)
+        return self._followed.rows(self._needed, self._now_s)
+
+    def update(self, record: StepRecord, q: FloatArray) -> None:
+        """Follow things, once a tick; ``q``: (n,), the newest joint positions, rad."""
+        if self._followed is not None:
+            tool = None if np.isnan(record.state[0]) else self._chain.forward(q)
+            self._followed.update(tool, record.gripper, self._now_s())
 
     @property
-    def names(self) -> tuple[str, ...]:
-        """The things, in the order of the scene."""
-        if self._scene is None or self._arm is None:
-            return ()
-        return self._scene.names
+    def unknown(self) -> Notice | None:
+        """Why a model that looks at things must not be driven from the next tick on; None if it may be."""
+        for name in () if self._followed is None else self._needed:
+            where = self._where(name, self._now_s() + SOON_S)
+            if not where.known:
+                code = "thing_unseen" if where.pose is None else "thing_lost"
+                return Notice(code=code, parameters={"thing": name})
+        return None
+
+    @property
+    def moved(self) -> Notice | None:
+        """The news that a thing which the model looks at is suddenly elsewhere; None for none."""
+        jumped = () if self._followed is None else self._followed.tracker.jumped.intersection(self._needed)
+        return Notice(code="thing_moved", parameters={"thing": min(jumped)}) if jumped else None
+
+    def touch(self, thing: str, kind: TouchKind) -> bool:
+        """Take a person's word about a thing, see `Surroundings.touch`."""
+        return self._followed is not None and self._followed.touch(thing, kind, self._now_s())
+
+    def begin(self) -> tuple[str, ...]:
+        """The things that a recording which begins now holds: those that have been seen."""
+        self._recorded = () if self._scene is None else tuple(self._poses())
+        return self._recorded
 
     def rows(self) -> FloatArray:
         """Their poses, (K, 7), see `StepRecord.things`."""
-        return NO_THINGS if self._arm is None else thing_rows(self._arm.scene_state().poses, self.names)
+        return thing_rows(self._poses(), self._recorded)
+
+    def believed(self) -> Mapping[str, Pose] | None:
+        """Where the followed things are, or were last; None while one has not been seen."""
+        found = {name: where.pose for name, where in self._all()}
+        return None if None in found.values() else {name: pose for name, pose in found.items() if pose}
 
     def look(self, tick: int) -> Things | None:
         """Where everything is; None in ticks without a look."""
-        if self._scene is None or self._arm is None or tick % _EVERY:
+        if self._scene is None or (self._arm is None and self._followed is None) or tick % _EVERY:
             return None
-        return things_at(self._scene, self._arm.scene_state())
+        begun = {thing.name: thing.pose for thing in self._scene.things}
+        grains = {} if self._arm is None else self._arm.scene_state().grains
+        seen = [
+            SeenThing(name=name, seen=where.seen, age_s=int(where.age_s), source=where.source)
+            for name, where in self._all()
+        ]
+        return things_at(self._scene, begun | self._poses(), grains, seen)
+
+    def _where(self, name: str, now_s: float) -> Whereabouts:
+        return Whereabouts("unseen") if self._followed is None else self._followed.tracker.look(name, now_s)
+
+    def _all(self) -> list[tuple[str, Whereabouts]]:
+        names = () if self._followed is None else self._followed.tracker.names
+        return [(name, self._where(name, self._now_s())) for name in names]
+
+    def _poses(self) -> dict[str, Pose]:
+        poses = {} if self._arm is None else dict(self._arm.scene_state().poses)
+        for name, where in self._all():
+            poses.pop(name, None)
+            if where.pose is not None:
+                poses[name] = where.pose
+        return poses

@@ -30,6 +30,7 @@ class Channel:
     stop: LatestSlot  # the newest reason to stop, a `Notice`; every new one stops the arm
     ending: Flag  # raised to make the control process bring the arm to rest and end
     orders: Connection  # bounded, so that a slow reader loses orders and never blocks the writer
+    sightings: Connection | None = None  # from a `latentarm.surroundings.process.SourceProcess`
 
     def read_orders(self, most: int) -> list[Order]:
         """New orders, oldest first; invalid ones are skipped. Raises EOFError if the other side is gone."""
@@ -44,7 +45,7 @@ class Channel:
         return found
 
 
-def new_channel(orders: Connection) -> Channel:
+def new_channel(orders: Connection, sightings: Connection | None = None) -> Channel:
     """Slots and flags for a new control process that reads its orders from ``orders``."""
     return Channel(
         given=LatestSlot(_GIVEN_LIMIT),
@@ -52,6 +53,7 @@ def new_channel(orders: Connection) -> Channel:
         stop=LatestSlot(_REASON_LIMIT),
         ending=Flag(),
         orders=orders,
+        sightings=sightings,
     )
 
 

@@ -100,10 +100,14 @@ NoticeCode = Literal[
     "stop_first",
     "stop_pressed",
     "stop_pressed_by",
+    "thing_lost",
+    "thing_moved",
+    "thing_unseen",
     "too_few_episodes",
     "too_many_axes",
     "too_many_people",
     "too_many_poses",
+    "touch_refused",
     "work_broke_off",
 ]
 """Texts have the key ``notice.<code>``."""

@@ -9,6 +9,7 @@ from pydantic import Field, TypeAdapter, ValidationError
 
 from latentarm.alignment.contract import Seat
 from latentarm.core.types import GripperAsk
+from latentarm.surroundings.surroundings import TouchKind
 from latentarm.web.protocol.notice import Message
 
 ModeName = Literal["latent", "assisted", "end_effector"]
@@ -163,6 +164,15 @@ class Reconnect(Message):
 
 
 @final
+class TouchThing(Message):
+    """A person's word about a thing, with the tool where it stands now."""
+
+    type: Literal["touch"] = "touch"
+    thing: Annotated[str, Field(max_length=80)]
+    kind: TouchKind
+
+
+@final
 class Reset(Message):
     """Put the simulated arm back to its start; only while it is disengaged."""
 
@@ -179,7 +189,9 @@ class BeginTask(Message):
     anew: bool  # whether things are placed anew
 
 
-DriverOrder = ChooseMode | ChooseHelp | ChooseProfile | KeepGuiding | Reconnect | Reset | BeginTask
+DriverOrder = (
+    ChooseMode | ChooseHelp | ChooseProfile | KeepGuiding | Reconnect | TouchThing | Reset | BeginTask
+)
 Change = ChooseProfile | ChooseRun | Reset | BeginTask | Reconnect
 """Orders that end the loop, to restart it with another setup."""
 

@@ -4,6 +4,7 @@ from typing import Final, Literal, final
 
 from pydantic import ValidationError
 
+from latentarm.surroundings.tracker import Seen
 from latentarm.tasks.mishap import MishapKind
 from latentarm.web.protocol.notice import Message, Notice
 from latentarm.web.protocol.orders import HelpLevel, ModeName
@@ -54,11 +55,22 @@ class GripperState(Message):
 
 
 @final
+class SeenThing(Message):
+    """How a thing's place is known, see `latentarm.surroundings.tracker.Whereabouts`."""
+
+    name: str
+    seen: Seen
+    age_s: int  # of its newest sighting
+    source: str  # of that sighting, as ``--objects`` names it; "" before the first
+
+
+@final
 class Things(Message):
     """Where things and grains are, in the order of ``/scene.json``."""
 
     poses: tuple[PoseRow, ...]
     grains: tuple[tuple[float, ...], ...]  # for each kind, x, y, z of one grain after the other, m
+    seen: tuple[SeenThing, ...] = ()  # of the things whose places are not the simulation's truth
 
 
 @final

@@ -1,15 +1,15 @@
 """The things about the arm for pages: their shapes once, and their poses repeatedly."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Final
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from latentarm.core.types import FloatArray, Pose
-from latentarm.robots.scene.scene import Scene, SceneState
+from latentarm.robots.scene.scene import Scene
 from latentarm.robots.scene.thing import Grains, Part
-from latentarm.web.protocol.report import PoseRow, Things
+from latentarm.web.protocol.report import PoseRow, SeenThing, Things
 
 _DIGITS: Final = 4
 """Positions are sent to a tenth of a millimetre, so that things at rest need not be sent again."""
@@ -40,11 +40,14 @@ def described(scene: Scene) -> dict[str, object]:
     }
 
 
-def things_at(scene: Scene, state: SceneState) -> Things:
-    """Where everything is, in the order of the scene."""
+def things_at(
+    scene: Scene, poses: Mapping[str, Pose], grains: Mapping[str, FloatArray], seen: Sequence[SeenThing]
+) -> Things:
+    """Where everything is, in the order of the scene; ``grains`` (K, 3) by the grains' name, m."""
     return Things(
-        poses=tuple(_rows([state.poses[thing.name] for thing in scene.things])),
-        grains=tuple(tuple(_rounded(state.grains[one.name].ravel())) for one in scene.grains),
+        poses=tuple(_rows([poses[thing.name] for thing in scene.things])),
+        grains=tuple(tuple(_rounded(grains[one.name].ravel())) for one in scene.grains),
+        seen=tuple(seen),
     )
 
 

@@ -30,6 +30,8 @@ from latentarm.core.logs import logging_also_to
 from latentarm.core.punctuality import HANG_UPS, short_collections
 from latentarm.demonstrations.folders import locked
 from latentarm.robots.notices import notices
+from latentarm.surroundings.catalogue import TOUCH
+from latentarm.surroundings.process import SourceProcess
 from latentarm.web.arm_process.drive_setup import PERIOD_S, DriveSetup, load_setup
 from latentarm.web.arm_process.incident import computer
 from latentarm.web.arm_process.process import ControlProcess
@@ -132,7 +134,8 @@ def _serve_alone(
         say(f"The arm keeps out of: {', '.join(one.name for one in config.spec.keep_out)}.")
     out = config.spec.out
     before = set(out.glob(f"*{JOURNAL_SUFFIX}"))
-    control = ControlProcess(config.spec)
+    sources = _sources(setup, listening, say)
+    control = ControlProcess(config.spec, None if sources is None else sources.sightings)
     try:
         app = build_app(setup, control, config, calendar, cameras)
         gate = gated(
@@ -162,8 +165,9 @@ def _serve_alone(
         say("The page is closed.")
     finally:
         control.end()
-        if cameras is not None:
-            cameras.end()
+        for helper in (sources, cameras):
+            if helper is not None:
+                helper.end()
         listening.close()
         _LOG.info("The server ends.")
     for journal in sorted(set(out.glob(f"*{JOURNAL_SUFFIX}")) - before):
@@ -220,6 +224,25 @@ def _cameras(config: TeleopConfig, listening: socket.socket) -> CameraProcess | 
         return None
     try:
         return CameraProcess(config.cameras, listening.getsockname()[0])
+    except UserError:
+        listening.close()
+        raise
+
+
+def _sources(setup: DriveSetup, listening: socket.socket, say: Callable[[str], None]) -> SourceProcess | None:
+    names = [thing.name for thing in setup.tracked]
+    if not names:
+        return None
+    texts = [text for text in setup.spec.objects if text != TOUCH]
+    shown = ", ".join(names)
+    if not texts:
+        say(
+            f"Nobody sees where things are ({shown}): bring the tool to each, and say so on the page (Poses)."
+        )
+        return None
+    say(f"Where things are ({shown}) is told by {', '.join(texts)}, and by the tool on the page (Poses).")
+    try:
+        return SourceProcess(texts, names)
     except UserError:
         listening.close()
         raise

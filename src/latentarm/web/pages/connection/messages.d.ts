@@ -203,7 +203,7 @@ export interface NamedZone {
 }
 
 export interface Notice {
-  code: "answers_agree" | "answers_alike" | "answers_few" | "answers_unclear" | "answers_weak" | "arm_emergency_stop" | "arm_fault" | "arm_off" | "clock_jumped" | "clock_stood_still" | "controller_failed" | "controller_invalid" | "emergency_stop_released" | "gripper_invalid" | "input_invalid" | "input_late" | "joint_astray" | "joint_frozen" | "joint_jumped" | "joints_invalid" | "let_go_first" | "loop_late" | "no_smooth_path" | "not_enabled" | "reading_invalid" | "reading_old" | "readings_unsteady" | "slide_astray" | "slide_jumped" | "arm_lost" | "arm_process_ended" | "arm_process_silent" | "arm_stopped" | "asking" | "asking_already" | "at_pose" | "at_start" | "cameras_full" | "cameras_gone" | "checklist_first" | "checking_run" | "copilot_began" | "copilot_changed" | "copilot_ended" | "copilot_gone" | "copilot_late" | "disk_full" | "disk_too_slow" | "driver_changed" | "driver_expired" | "driver_gone" | "driver_released" | "episodes_too_short" | "error" | "expired" | "full" | "guiding_ended" | "guiding_page_gone" | "handed_over" | "idle" | "import_invalid" | "journal_full" | "journal_lost" | "journal_unwritable" | "joints_unreadable" | "latch_ended" | "loading_run" | "message_invalid" | "model_unknown" | "name_invalid" | "no_hello" | "no_run" | "not_loaded" | "page_refused" | "page_stopped" | "path_blocked" | "person_driving" | "person_name_invalid" | "person_name_taken" | "person_unknown" | "pin_needed" | "pin_wait" | "pin_wrong" | "pose_name_invalid" | "pose_pushed" | "pose_stuck" | "pose_unreachable" | "profile_exists" | "question_began" | "reconnected" | "reconnecting" | "record_unknown" | "record_unreadable" | "recording_cut" | "recording_ended" | "recording_in_use" | "recording_left_out" | "recording_still" | "recording_unreadable" | "recordings_of_rates" | "recordings_of_robots" | "recordings_of_tasks" | "request_invalid" | "return_blocked" | "return_not_now" | "return_pushed" | "return_stuck" | "run_exists" | "run_too_slow" | "setup_locked" | "shadow_stays" | "stop_first" | "stop_pressed" | "stop_pressed_by" | "too_few_episodes" | "too_many_axes" | "too_many_people" | "too_many_poses" | "work_broke_off";
+  code: "answers_agree" | "answers_alike" | "answers_few" | "answers_unclear" | "answers_weak" | "arm_emergency_stop" | "arm_fault" | "arm_off" | "clock_jumped" | "clock_stood_still" | "controller_failed" | "controller_invalid" | "emergency_stop_released" | "gripper_invalid" | "input_invalid" | "input_late" | "joint_astray" | "joint_frozen" | "joint_jumped" | "joints_invalid" | "let_go_first" | "loop_late" | "no_smooth_path" | "not_enabled" | "reading_invalid" | "reading_old" | "readings_unsteady" | "slide_astray" | "slide_jumped" | "arm_lost" | "arm_process_ended" | "arm_process_silent" | "arm_stopped" | "asking" | "asking_already" | "at_pose" | "at_start" | "cameras_full" | "cameras_gone" | "checklist_first" | "checking_run" | "copilot_began" | "copilot_changed" | "copilot_ended" | "copilot_gone" | "copilot_late" | "disk_full" | "disk_too_slow" | "driver_changed" | "driver_expired" | "driver_gone" | "driver_released" | "episodes_too_short" | "error" | "expired" | "full" | "guiding_ended" | "guiding_page_gone" | "handed_over" | "idle" | "import_invalid" | "journal_full" | "journal_lost" | "journal_unwritable" | "joints_unreadable" | "latch_ended" | "loading_run" | "message_invalid" | "model_unknown" | "name_invalid" | "no_hello" | "no_run" | "not_loaded" | "page_refused" | "page_stopped" | "path_blocked" | "person_driving" | "person_name_invalid" | "person_name_taken" | "person_unknown" | "pin_needed" | "pin_wait" | "pin_wrong" | "pose_name_invalid" | "pose_pushed" | "pose_stuck" | "pose_unreachable" | "profile_exists" | "question_began" | "reconnected" | "reconnecting" | "record_unknown" | "record_unreadable" | "recording_cut" | "recording_ended" | "recording_in_use" | "recording_left_out" | "recording_still" | "recording_unreadable" | "recordings_of_rates" | "recordings_of_robots" | "recordings_of_tasks" | "request_invalid" | "return_blocked" | "return_not_now" | "return_pushed" | "return_stuck" | "run_exists" | "run_too_slow" | "setup_locked" | "shadow_stays" | "stop_first" | "stop_pressed" | "stop_pressed_by" | "thing_lost" | "thing_moved" | "thing_unseen" | "too_few_episodes" | "too_many_axes" | "too_many_people" | "too_many_poses" | "touch_refused" | "work_broke_off";
   parameters: Record<string, string | number>;
 }
 
@@ -308,6 +308,13 @@ export interface SavePose {
   name: string;
 }
 
+export interface SeenThing {
+  name: string;
+  seen: "unseen" | "seen" | "doubted" | "carried" | "lost";
+  age_s: number;
+  source: string;
+}
+
 export interface ShownMotion {
   duration_s: number;
   frames: number[][][];
@@ -389,12 +396,19 @@ export interface TaskToDo {
 export interface Things {
   poses: [number, number, number, number, number, number, number][];
   grains: number[][];
+  seen: SeenThing[];
 }
 
 export interface ToGo {
   shift_m: [number, number, number];
   turn_rad: [number, number, number];
   gripper: "open" | "close" | null;
+}
+
+export interface TouchThing {
+  type: "touch";
+  thing: string;
+  kind: "place" | "front" | "undo";
 }
 
 export interface TrailClear {
@@ -452,6 +466,6 @@ export interface Why {
   thing: string;
 }
 
-export type ClientMessage = Hello | DriverInput | ConfirmChecklist | PressEnable | PressStop | AskToDrive | HandOver | Release | TrailClear | RecordEpisode | GuideArm | ReturnArm | GoToPose | SavePose | DeletePose | Train | CancelTraining | PickRun | BeginPersonalise | AnswerQuestion | SkipQuestion | QuestionBefore | CancelPersonalise | TryAlignment | KeepAlignment | DiscardAlignment | AskToCopilot | AcceptCopilot | EndCopilot | CopilotPace | ChooseMode | ChooseHelp | ChooseProfile | KeepGuiding | Reconnect | Reset | BeginTask;
+export type ClientMessage = Hello | DriverInput | ConfirmChecklist | PressEnable | PressStop | AskToDrive | HandOver | Release | TrailClear | RecordEpisode | GuideArm | ReturnArm | GoToPose | SavePose | DeletePose | Train | CancelTraining | PickRun | BeginPersonalise | AnswerQuestion | SkipQuestion | QuestionBefore | CancelPersonalise | TryAlignment | KeepAlignment | DiscardAlignment | AskToCopilot | AcceptCopilot | EndCopilot | CopilotPace | ChooseMode | ChooseHelp | ChooseProfile | KeepGuiding | Reconnect | TouchThing | Reset | BeginTask;
 
 export type ServerMessage = Welcome | State | LearningState | Poses | Refused;

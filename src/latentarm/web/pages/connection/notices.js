@@ -1,5 +1,6 @@
 /** Notices as this page's own person must read them: what they did themselves is not told of somebody else. */
 
+import { theThing } from "../layout/thing_words.js";
 import { say, sayNotice } from "../layout/words.js";
 
 /** @import {Notice} from "./messages.js" */
@@ -28,13 +29,13 @@ export function sayTo(notice, { you, own, late, absent }) {
   if (absent && OF_A_DRIVE.includes(code)) return say("halted.not_enabled");
   if (you && code === "driver_changed") return say("yours.driver_changed");
   if (you && late !== null && code === "input_late") return say(`late.${late}`);
-  return sayNotice(notice);
+  return sayNotice("thing" in parameters ? { code, parameters: { ...parameters, thing: theThing(String(parameters.thing)) } } : notice);
 }
 
 /** Notices for the person who drives, meaningless to those who watch. */
 const FOR_THE_DRIVER = [
   "checklist_first", "let_go_first", "path_blocked", "pose_pushed", "pose_stuck", "pose_unreachable", "return_blocked", "return_not_now", "return_pushed", "return_stuck",
-  "shadow_stays", "stop_first",
+  "shadow_stays", "stop_first", "thing_moved", "touch_refused",
 ];
 
 /** Whether a note concerns this page's person. @param {Notice | null} note @param {boolean} you @returns {note is Notice} */

@@ -35,6 +35,7 @@ import { attachChecklist } from "./checklist.js";
 import { attachHelp } from "./help.js";
 import { attachModes } from "./modes.js";
 import { attachPoses } from "./poses.js";
+import { attachThingsHere, seenWords } from "./things_here.js";
 import { attachProfileChoice } from "./profile_choice.js";
 import { attachRecording } from "./recording.js";
 import { attachSpeed } from "./speed.js";
@@ -100,6 +101,8 @@ const poses = attachPoses({
   panel: byId("poses-panel"), list: byId("poses"), why: byId("poses-why"), name: byId("pose-name", HTMLInputElement), save: byId("pose-save"),
 }, connection);
 
+const thingsHere = attachThingsHere({ section: byId("things-here"), list: byId("things-list") }, connection);
+
 const modes = attachModes({ mode: byId("mode"), axes: byId("axes") }, connection, settings);
 const inPair = (/** @type {number} */ axes, /** @type {number} */ x, /** @type {number} */ y) =>
   connection.state ? modeInput(settings.values, { ...connection.state, mode: "end_effector", axes }, connection.welcome, x, y) : [0, 0];
@@ -143,7 +146,7 @@ const scanner = attachScanning(input, settings, stop, (stopIt, group) => {
   if (does === "ask") return [{ id: "ask", label: say(label), act: () => connection.send({ type: "ask_to_drive" }) }, stopIt];
   // On the way back any press ends it.
   if (connection.state?.returning || !(connection.driving || does)) return [stopIt];
-  const more = moreChoices(radioChoices(byId("help"), group), [...radioChoices(byId("speed"), group), ...wayBack.choices(), ...poses.choices(), ...practice.choices()], group);
+  const more = moreChoices(radioChoices(byId("help"), group), [...radioChoices(byId("speed"), group), ...wayBack.choices(), ...poses.choices(), ...thingsHere.choices(), ...practice.choices()], group);
   if (connection.state?.lost) return [...lostArm.choices(), stopIt, more];
   const unconfirmed = checklist.choices();
   if (unconfirmed.length) return [...unconfirmed, stopIt, more];
@@ -177,7 +180,7 @@ function show() {
     pair !== null && movedPart(pair, shaped(...DIRECTIONS[direction])).part.of === "turn_rad";
   predictions.show(paths, pressed, (motion, direction) =>
     turns(direction) ? say("motion.turns") : motionWords(motion, settings.values.seat));
-  setText(byId("scene-text"), whereWords(welcome, state, wanted));
+  setText(byId("scene-text"), [whereWords(welcome, state, wanted), ...(state.things?.seen ?? []).map(seenWords)].filter(Boolean).join(" "));
   return moved;
 }
 

@@ -63,6 +63,14 @@ export class Things {
   /** Where things go from what is shown now; null for no news. @param {State["things"]} things */
   take(things) {
     if (things === null) return;
+    for (const { name, seen } of things.seen ?? []) {
+      const group = this._things[this._names.indexOf(name)];
+      group.visible = seen !== "unseen";
+      // A lost thing is drawn as a cage.
+      group.traverse((part) => {
+        if (part instanceof THREE.Mesh) part.material.wireframe = seen === "lost";
+      });
+    }
     this._from = this._things.map(({ position, quaternion }) => ({ position: position.clone(), quaternion: quaternion.clone() }));
     if (things !== this._to) this._grains.forEach((balls, index) => scatter(balls, things.grains[index]));
     this._to = things;

@@ -1,0 +1,54 @@
+/** Where the things are: how each place is known, and buttons by which a person says that the tool is at a thing. */
+
+import { create, setHidden, setText } from "../layout/dom.js";
+import { capital, theThing, thingWords } from "../layout/thing_words.js";
+import { say } from "../layout/words.js";
+
+/** @import {State} from "../connection/messages.js" */
+/** @import {Connection} from "../connection/connection.js" */
+/** @import {Choice} from "../inputs/scanner.js" */
+/** @typedef {NonNullable<State["things"]>["seen"][number]} SeenThing */
+
+/** How old a sighting is before its age is told, s. */
+const FRESH_S = 2;
+const KINDS = /** @type {const} */ (["place", "front", "undo"]);
+
+/** How a thing's place is known, in words; "" where it is seen now. @param {SeenThing} thing */
+export function seenWords({ name, seen, age_s }) {
+  if (seen === "seen" && age_s < FRESH_S) return "";
+  return capital(say(`things.${seen}`, { thing: thingWords(name), seconds: age_s }));
+}
+
+/**
+ * @param {{section: HTMLElement, list: HTMLElement}} parts
+ * @param {Connection} connection
+ */
+export function attachThingsHere(parts, connection) {
+  const seen = () => connection.state?.things?.seen ?? [];
+  const choices = () => !connection.driving ? [] : seen().flatMap(({ name, seen: how }) => KINDS.filter((kind) => kind === "place" || how !== "unseen").map((kind) => (
+    { id: `thing-${kind}-${name}`, label: say(`things.${kind}`, { thing: theThing(name) }), act: () => connection.send({ type: "touch", thing: name, kind }) })));
+  let shown = "";
+  connection.addEventListener("state", () => {
+    setHidden(parts.section, seen().length === 0);
+    const offered = choices();
+    const now = offered.map(({ id }) => id).join();
+    if (now !== shown || !parts.list.children.length) {
+      shown = now;
+      parts.list.replaceChildren(...seen().map(({ name }) => {
+        const row = create("li");
+        const buttons = offered.filter(({ id }) => id.endsWith(`-${name}`)).map(({ label, act }) => {
+          const button = create("button", { type: "button", textContent: label });
+          button.addEventListener("click", act);
+          return button;
+        });
+        row.append(create("p", { className: "small" }), ...buttons);
+        return row;
+      }));
+    }
+    seen().forEach((thing, index) => setText(parts.list.children[index].children[0], seenWords(thing) || say("things.now", { thing: capital(thingWords(thing.name)) })));
+  });
+  return {
+    /** Among the choices of a switch. @returns {Choice[]} */
+    choices,
+  };
+}
