@@ -13,9 +13,9 @@ import { say } from "../layout/words.js";
 const FRESH_S = 2;
 const KINDS = /** @type {const} */ (["place", "front", "undo"]);
 
-/** How a thing's place is known, in words; "" where it is seen now. @param {SeenThing} thing */
-export function seenWords({ name, seen, age_s }) {
-  if (seen === "seen" && age_s < FRESH_S) return "";
+/** How a thing's place is known, in words; "" where it is seen now, or a person has shown it. @param {SeenThing} thing */
+export function seenWords({ name, seen, age_s, source }) {
+  if (seen === "seen" && (age_s < FRESH_S || source === "touch")) return "";
   return capital(say(`things.${seen}`, { thing: thingWords(name), seconds: age_s }));
 }
 
@@ -35,7 +35,7 @@ export function attachThingsHere(parts, connection) {
     if (now !== shown || !parts.list.children.length) {
       shown = now;
       parts.list.replaceChildren(...seen().map(({ name }) => {
-        const row = create("li");
+        const row = create("li", { className: "row" });
         const buttons = offered.filter(({ id }) => id.endsWith(`-${name}`)).map(({ label, act }) => {
           const button = create("button", { type: "button", textContent: label });
           button.addEventListener("click", act);
