@@ -6,6 +6,7 @@ from multiprocessing import Pipe
 
 import numpy as np
 import pytest
+from wooden_server import wooden_server
 
 from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations, Episode, Pose
@@ -25,8 +26,8 @@ FAR = np.array([0.0, 0.0, 0.1])
 
 
 @pytest.fixture(scope="module")
-def looking(tmp_path_factory):
-    """A run of a model that looks at three things, at a simulated arm that sources tell where they are."""
+def run(tmp_path_factory):
+    """A run of a model that looks at three things."""
     rng, robot = np.random.default_rng(0), make_scene_task("marshmallows").robot
     episodes = []
     for _ in range(4):
@@ -42,7 +43,13 @@ def looking(tmp_path_factory):
     train_run(
         TrainOptions((folder / "data",), "cae", context=("joints", "objects"), out=folder / "run", seeds=1)
     )
-    setup = load_setup(Spec(folder / "run", task="marshmallows", arm="mujoco", objects=("touch",)))
+    return folder / "run"
+
+
+@pytest.fixture(scope="module")
+def looking(run):
+    """The run at a simulated arm that sources tell where the things are."""
+    setup = load_setup(Spec(run, task="marshmallows", arm="mujoco", objects=("touch",)))
     return replace(setup, arm="kinematic", todo=replace(setup.todo, steps=(), failures=()))
 
 
@@ -155,6 +162,26 @@ def test_a_person_shows_where_things_are_with_the_tool_alone(desk_of, looking):
     assert {one.seen for one in told.values()} == {"seen"}
     assert {one.source for one in told.values()} == {"touch"}
     assert modes(desk, 2.1, 2.5) == {"end_effector"}
+
+
+def test_about_a_real_arm_a_person_shows_the_things_from_the_page(serve, run, tmp_path):
+    with (
+        wooden_server(make_scene_task("marshmallows").robot) as wooden,
+        serve(Spec(run, arm=wooden.address, out=tmp_path)) as site,
+        site.page() as page,
+    ):
+        state = page.wait(lambda state: state["you"] and state["things"])
+        assert {one["seen"] for one in state["things"]["seen"]} == {"unseen"}
+        assert state["mode"] == "end_effector"
+        for name in NAMES:
+            page.send(type="touch", thing=name, kind="place")
+        page.wait(
+            lambda state: {one["seen"] for one in (state["things"] or {"seen": []})["seen"]} == {"seen"}
+        )
+        page.send(type="mode", mode="latent", axes=None)
+        page.wait(lambda state: state["mode"] == "latent")
+        page.send(type="touch", thing=NAMES[0], kind="undo")
+        page.wait(lambda state: state["mode"] == "end_effector" and state["note"]["code"] == "thing_unseen")
 
 
 def test_a_source_that_is_none_is_refused_where_it_was_typed(looking):

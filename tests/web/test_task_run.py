@@ -85,16 +85,16 @@ def test_help_leads_to_the_waypoint_of_the_step_until_the_run_is_over():
     arm, goal = Table(), Goal("cup", robot.home, robot.chain.forward(robot.home))
     run = TaskRun(Todo("lift", ("cup",), 0, (step,)), arm, robot.chain)
     goals = StepGoals(robot, (goal,), (step,), ("cup",))
-    assert run.move_goals(goals, robot.home) is None  # nothing has been seen yet
+    assert run.move_goals(goals, robot.home, {}) is None  # nothing has been seen yet
     seen(run, 1.0)
-    move = run.move_goals(goals, robot.home)
+    move = run.move_goals(goals, robot.home, {})
     assert move is not None
     assert robot.chain.forward(move.goals[0]).position == pytest.approx(ahead.position, abs=1e-3)
-    assert run.move_goals(goals, robot.home) is None  # it stays there
+    assert run.move_goals(goals, robot.home, {}) is None  # it stays there
     arm.height_m = 0.3
     seen(run, 2.0)
     assert run.state.outcome == "success"
-    assert run.move_goals(goals, robot.home) is None
+    assert run.move_goals(goals, robot.home, {}) is None
 
 
 def test_progress_with_things_counts_on_the_way_back_too():
