@@ -54,7 +54,7 @@ def test_a_zone_may_not_be_faster_than_the_arm_anywhere(run, workplace):
 
 
 def test_cameras_need_their_extra(run, workplace, monkeypatch):
-    monkeypatch.setattr("latentarm.web.cameras.sources.find_spec", lambda name: None)
+    monkeypatch.setattr("latentarm.cameras.sources.find_spec", lambda name: None)
     code, out, err = run("teleop", "--camera", "front=testsrc")
     assert (code, out) == (2, "")
     assert err == "latentarm: --camera needs the extra `camera`: pip install 'latentarm[camera]'.\n"

@@ -7,9 +7,9 @@ from collections import deque
 
 import pytest
 
+from latentarm.cameras.decoding import CameraError, open_pictures
+from latentarm.cameras.sources import CameraSource
 from latentarm.web.cameras.camera import Camera, check_camera
-from latentarm.web.cameras.decoding import CameraError, open_pictures
-from latentarm.web.cameras.sources import CameraSource
 
 from .rtsp_server import RtspCamera, until
 

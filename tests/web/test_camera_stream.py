@@ -8,12 +8,12 @@ from contextlib import suppress
 import pytest
 from aiortc import RTCConfiguration, RTCPeerConnection, RTCRtpReceiver, RTCSessionDescription
 
+from latentarm.cameras.clock_pattern import BITS, ROWS
+from latentarm.cameras.decoding import open_pictures
+from latentarm.cameras.sources import CameraSource
 from latentarm.core.errors import UserError
 from latentarm.web.cameras.camera import Camera
-from latentarm.web.cameras.clock_pattern import BITS, ROWS
-from latentarm.web.cameras.decoding import open_pictures
 from latentarm.web.cameras.process import CameraProcess
-from latentarm.web.cameras.sources import CameraSource
 from latentarm.web.cameras.viewer import OfferError, Viewer, listen_only_on
 from latentarm.web.protocol.notice import NoticeError
 

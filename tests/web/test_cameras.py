@@ -12,12 +12,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from latentarm.cameras.clock_pattern import BITS, ROWS, clock_picture
+from latentarm.cameras.decoding import ArrivalClock, CameraError, open_pictures
+from latentarm.cameras.picture import MOST_HIGH, MOST_WIDE, Picture, fitted
+from latentarm.cameras.sources import CameraSource, kept, parse_cameras
 from latentarm.core.errors import UserError
 from latentarm.web.cameras.camera import Camera, Light, check_camera
-from latentarm.web.cameras.clock_pattern import BITS, ROWS, clock_picture
-from latentarm.web.cameras.decoding import ArrivalClock, CameraError, open_pictures
-from latentarm.web.cameras.picture import MOST_HIGH, MOST_WIDE, Picture, fitted
-from latentarm.web.cameras.sources import CameraSource, kept, parse_cameras
 from latentarm.web.cameras.viewer import asked_ms, without_candidates
 
 SECRET = "hunter2"  # noqa: S105 - it must not be shown

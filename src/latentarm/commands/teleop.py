@@ -110,13 +110,13 @@ def teleop(
 
     Prints the page's address; Ctrl-C ends it. For example: latentarm teleop runs/pour-cae
     """
+    from latentarm.cameras.sources import kept, parse_cameras
     from latentarm.core.journal_limits import JournalLimits
     from latentarm.safety.zones_file import StatedZones, read_zones
     from latentarm.web.arm_process.drive_setup import Spec
     from latentarm.web.arm_process.idle_limit import idle_s_of
     from latentarm.web.arm_process.initial_state import RobotOptions
     from latentarm.web.arm_process.speeds import Speeds
-    from latentarm.web.cameras.sources import kept, parse_cameras
     from latentarm.web.server.app import serve
     from latentarm.web.server.config import TeleopConfig
 

@@ -71,7 +71,7 @@ ALLOWED = {
     "arms/franka/link.py": {"_REALTIME_FILE.read_text"},  # the kernel's
     "arms/helper_process.py": {"json.loads"},  # what our own process says
     "arms/lerobot/keeper.py": {"self._bus.open"},  # a serial port
-    "web/cameras/decoding.py": {"av.open"},  # named on the command line; in a process of its own
+    "cameras/decoding.py": {"av.open"},  # named on the command line; in a process of its own
     "web/cameras/process.py": {"json.loads"},  # what our own process says
     "models/checkpoint.py": {"json.loads"},  # after the bound on the whole file; it holds infinities
 }

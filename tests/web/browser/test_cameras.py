@@ -9,7 +9,7 @@ import av
 import numpy as np
 import pytest
 
-from latentarm.web.cameras.clock_pattern import BITS, ROWS
+from latentarm.cameras.clock_pattern import BITS, ROWS
 
 from .conftest import find_chromium
 

@@ -9,9 +9,9 @@ from typing import Final, Literal, final
 import numpy as np
 from numpy.typing import NDArray
 
+from latentarm.cameras.picture import Picture
+from latentarm.cameras.sources import CameraSource
 from latentarm.core.errors import UserError
-from latentarm.web.cameras.picture import Picture
-from latentarm.web.cameras.sources import CameraSource
 
 CameraState = Literal["opening", "live", "dark", "lost"]
 """Being opened; visible; visible, but too dark; without a picture for `LOST_AFTER_S`."""

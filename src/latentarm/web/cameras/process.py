@@ -19,10 +19,10 @@ from functools import partial
 from multiprocessing.connection import Connection
 from typing import Any, Final, final
 
+from latentarm.cameras.sources import CameraSource
 from latentarm.core.errors import UserError
 from latentarm.core.punctuality import HANG_UPS
 from latentarm.core.untrusted.terminal import one_line
-from latentarm.web.cameras.sources import CameraSource
 from latentarm.web.protocol.notice import NoticeError
 
 MOST_VIEWERS: Final = 4  # pages that may watch the cameras at once: pictures are encoded for each
@@ -48,8 +48,8 @@ def run_cameras(sources: Sequence[CameraSource], pipe: Connection, host: str) ->
 @final
 class _Desk:
     def __init__(self, sources: Sequence[CameraSource], pipe: Connection, host: str) -> None:
+        from latentarm.cameras.decoding import open_pictures
         from latentarm.web.cameras.camera import Camera
-        from latentarm.web.cameras.decoding import open_pictures
         from latentarm.web.cameras.viewer import OfferError, Viewer, listen_only_on
 
         listen_only_on(host)

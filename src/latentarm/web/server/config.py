@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, final
 
+from latentarm.cameras.sources import CameraSource
 from latentarm.core.errors import UserError
 from latentarm.web.arm_process.drive_setup import Spec
-from latentarm.web.cameras.sources import CameraSource
 
 _BACKLOG: Final = 2048
 

@@ -13,10 +13,10 @@ from av.error import FFmpegError
 from av.video.frame import VideoFrame
 from av.video.stream import VideoStream
 
+from latentarm.cameras.clock_pattern import clock_pictures
+from latentarm.cameras.picture import MOST_HIGH, MOST_PER_S, MOST_WIDE, Picture, fitted
+from latentarm.cameras.sources import CameraSource, Kind
 from latentarm.core.errors import UserError
-from latentarm.web.cameras.clock_pattern import clock_pictures
-from latentarm.web.cameras.picture import MOST_HIGH, MOST_PER_S, MOST_WIDE, Picture, fitted
-from latentarm.web.cameras.sources import CameraSource, Kind
 
 DRIFT: Final = 2e-4  # the camera's clock may run faster or slower than ours by this share
 _OPEN_WITHIN_S: Final = 5.0

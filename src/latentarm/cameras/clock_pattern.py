@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from latentarm.web.cameras.picture import MOST_HIGH, MOST_PER_S, MOST_WIDE, Picture
+from latentarm.cameras.picture import MOST_HIGH, MOST_PER_S, MOST_WIDE, Picture
 
 BITS: Final = 32
 """Bars of the code: milliseconds of Unix time, modulo 2 to this power, as a Gray code, highest bit first."""

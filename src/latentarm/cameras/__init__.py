@@ -1,0 +1,1 @@
+"""Cameras: their addresses, and pictures from them with the time when each was taken."""
