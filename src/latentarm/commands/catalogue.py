@@ -84,9 +84,21 @@ OWN: Final = CommandSet(
             "arms:check",
             "Look at a real arm without moving it: what it is, whether it can be driven, and if not, why.",
         ),
+        "calibrate board": _ours(
+            "calibrate:print_board", "Write a board to print, which the other two look at."
+        ),
+        "calibrate intrinsics": _ours(
+            "calibrate:intrinsics", "Find the optics of a camera from pictures of a board."
+        ),
+        "calibrate hand-eye": _ours(
+            "calibrate:hand_eye", "Find where a camera is from pictures of a board at poses of the arm."
+        ),
         "robots": _ours("robots:robots", "List the robots, or show one: joints, limits and end-effector."),
     },
-    {"arms": "List what can be driven, and look at a real arm before it moves; `arms --help` lists how."},
+    {
+        "arms": "List what can be driven, and look at a real arm before it moves; `arms --help` lists how.",
+        "calibrate": "Calibrate the cameras of `--objects tags`; `calibrate --help` lists how.",
+    },
 )
 
 

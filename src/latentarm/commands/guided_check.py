@@ -27,7 +27,7 @@ def look_guided(address: str, robot: Robot, ask: Callable[[str], None]) -> Findi
     for number in range(1, _POSES + 1):
         arm = make_real_arm(address, robot, MonotonicClock().now_s)
         try:
-            how = _released(arm)
+            how = released(arm)
             ask(f"Pose {number} of {_POSES}. {how} Turn every joint by 10° or more, each by another angle.")
         finally:
             arm.close()
@@ -37,7 +37,7 @@ def look_guided(address: str, robot: Robot, ask: Callable[[str], None]) -> Findi
     return Findings(tuple(facts), tuple(dict.fromkeys(refusals)))
 
 
-def _released(arm: RealArm) -> str:
+def released(arm: RealArm) -> str:
     """Let go of an arm that can be guided from here; how it is moved, a sentence."""
     if not isinstance(arm, GuidableArm):
         return "Move the arm with its own controls."

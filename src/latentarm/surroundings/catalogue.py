@@ -28,7 +28,10 @@ def _factory(name: str, thing: object) -> SourceFactory:
 SOURCES: Final[Catalogue[SourceFactory]] = Catalogue(
     "latentarm.surroundings",
     "source of where things are",
-    {"http": "latentarm.surroundings.http:open_http"},
+    {
+        "http": "latentarm.surroundings.http:open_http",
+        "tags": "latentarm.surroundings.tags:open_tags",
+    },
     _factory,
 )
 

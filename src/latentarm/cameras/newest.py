@@ -1,0 +1,50 @@
+"""The newest picture of a camera, kept by a thread that opens it again when it is lost."""
+
+import threading
+from typing import Final, final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from latentarm.cameras.decoding import open_pictures
+from latentarm.cameras.picture import Picture
+from latentarm.cameras.sources import CameraSource
+from latentarm.core.errors import UserError
+
+_OPENED_WITHIN_S: Final = 15.0
+_RETRY_S: Final = 1.0
+
+
+@final
+class NewestPicture:
+    """Begins to read a camera at once, until ``closing`` is set."""
+
+    def __init__(self, source: CameraSource, closing: threading.Event) -> None:
+        self.picture: Picture | None = None
+        self._source, self._closing = source, closing
+        self._failed = ""
+        self._tried = threading.Event()
+        threading.Thread(target=self._work, name=f"camera {source.name}", daemon=True).start()
+
+    def first(self) -> Picture:
+        """Wait for a picture; raises UserError where none comes."""
+        self._tried.wait(_OPENED_WITHIN_S)
+        if self.picture is None:
+            raise UserError(self._failed or f"Camera {self._source.name} gives no picture in time.")
+        return self.picture
+
+    def _work(self) -> None:
+        while not self._closing.is_set():
+            try:
+                for picture in open_pictures(self._source, self._closing):
+                    self.picture = picture
+                    self._tried.set()
+            except UserError as error:
+                self._failed = str(error)
+                self._tried.set()
+            self._closing.wait(_RETRY_S)
+
+
+def brightness_of(picture: Picture) -> NDArray[np.uint8]:
+    """The picture in grey, (H, W)."""
+    return picture.planes[: 2 * picture.planes.shape[0] // 3]
