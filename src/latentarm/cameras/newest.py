@@ -13,6 +13,7 @@ from latentarm.core.errors import UserError
 
 _OPENED_WITHIN_S: Final = 15.0
 _RETRY_S: Final = 1.0
+_END_WITHIN_S: Final = 1.0
 
 
 @final
@@ -24,7 +25,8 @@ class NewestPicture:
         self._source, self._closing = source, closing
         self._failed = ""
         self._tried = threading.Event()
-        threading.Thread(target=self._work, name=f"camera {source.name}", daemon=True).start()
+        self._thread = threading.Thread(target=self._work, name=f"camera {source.name}", daemon=True)
+        self._thread.start()
 
     def first(self) -> Picture:
         """Wait for a picture; raises UserError where none comes."""
@@ -32,6 +34,10 @@ class NewestPicture:
         if self.picture is None:
             raise UserError(self._failed or f"Camera {self._source.name} gives no picture in time.")
         return self.picture
+
+    def end(self) -> None:
+        """Wait shortly for the camera to close, after ``closing`` is set."""
+        self._thread.join(_END_WITHIN_S)
 
     def _work(self) -> None:
         while not self._closing.is_set():

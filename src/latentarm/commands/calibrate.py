@@ -187,8 +187,8 @@ def _take(
     from latentarm.surroundings.tags.pictures import write_grey
 
     closing = threading.Event()
+    newest = NewestPicture(source, closing)
     try:
-        newest = NewestPicture(source, closing)
         newest.first()
         number = 1
         while True:
@@ -204,6 +204,7 @@ def _take(
             number += 1
     finally:
         closing.set()
+        newest.end()
 
 
 def _entered(prompt: str) -> str:

@@ -119,6 +119,14 @@ class People:
     people: Annotated[int, arg(help="Simulated in each try of the fit; four times as many predict.")] = 4
 
 
+@dataclass(frozen=True)
+class Tags:
+    """Options of ``tags``."""
+
+    scenes: Annotated[int, arg(help="Rendered in each condition.")] = 200
+    seconds: Annotated[float, arg(help="That a loop runs, with tags and without.")] = 20.0
+
+
 MEASUREMENTS: Final[Mapping[str, Measurement]] = {
     "clearance": Measurement(
         "Push arms at things and at themselves; MuJoCo measures the distances that they keep.",
@@ -179,6 +187,11 @@ MEASUREMENTS: Final[Mapping[str, Measurement]] = {
         "Measure what share of the motors' torque gravity and a stop take, by a model and a limits file.",
         Torque,
         {"poses": 20},
+    ),
+    "tags": Measurement(
+        "Measure how well things are found by tags, and cameras calibrated, in rendered pictures.",
+        Tags,
+        {"scenes": 1, "seconds": 0.5},
     ),
 }
 

@@ -18,6 +18,7 @@ UNITS: Final = {
     "_ms": "ms",
     "_nats": "nats",
     "_percent": "%",
+    "_deg": "°",
     "_rad": "rad",
     "_m": "m",
     "_n": "N",

@@ -17,6 +17,7 @@ from latentarm.surroundings.tags.files import CameraEntry, TagEntry, read_camera
 from latentarm.surroundings.tags.solving import SeenTag, solve
 
 TOGETHER_S: Final = 0.05  # pictures of different cameras that count as one moment, s
+_END_WITHIN_S: Final = 1.0
 EVERY_S: Final = 0.06  # shortest time between two looks, s: a camera gives more than is needed
 
 
@@ -50,6 +51,7 @@ class TagSource(Source):
         self._cameras = {
             name: NewestPicture(entry.source(name), self._closing) for name, entry in placed.items()
         }
+        self._thread = threading.Thread(target=self._work, name="tags", daemon=True)
         try:
             for name, camera in self._cameras.items():
                 high, wide = brightness_of(camera.first()).shape
@@ -62,7 +64,7 @@ class TagSource(Source):
             self.close()
             raise
         cv2.setNumThreads(1)  # the other cores are the arm's
-        threading.Thread(target=self._work, name="tags", daemon=True).start()
+        self._thread.start()
 
     @property
     def hold_s(self) -> float:
@@ -76,8 +78,12 @@ class TagSource(Source):
         return tuple(found.values())
 
     def close(self) -> None:
-        """Close the cameras, soon."""
+        """Close the cameras."""
         self._closing.set()
+        for camera in self._cameras.values():
+            camera.end()
+        if self._thread.is_alive():
+            self._thread.join(_END_WITHIN_S)
 
     def _work(self) -> None:
         seen: dict[str, tuple[float, Mapping[int, FloatArray]]] = {}
