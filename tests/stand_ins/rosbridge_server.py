@@ -181,6 +181,10 @@ class RosbridgeServer(StandIn):
         """The clock of ROS is set."""
         self.clock_s += by_s
 
+    def publish(self, topic: str, message: dict[str, Any]) -> None:
+        """Another node's message to all that have subscribed."""
+        self._do(lambda: self._publish(topic, message))
+
     def start_watchdog(self) -> None:
         """Start the watchdog, again."""
         module, limits = self._module, self._robot.limits

@@ -30,6 +30,7 @@ SOURCES: Final[Catalogue[SourceFactory]] = Catalogue(
     "source of where things are",
     {
         "http": "latentarm.surroundings.http:open_http",
+        "ros2": "latentarm.surroundings.ros2:open_ros2",
         "tags": "latentarm.surroundings.tags:open_tags",
     },
     _factory,

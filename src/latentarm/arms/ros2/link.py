@@ -11,10 +11,10 @@ from latentarm.core.errors import UserError
 CONNECTING_S: Final = 3.0  # for rosbridge to answer
 
 
-def check_installed() -> None:
-    """Check that roslibpy is installed."""
+def check_installed(what: str = "--arm ros2") -> None:
+    """Check that roslibpy is installed, which ``what`` needs."""
     if importlib.util.find_spec("roslibpy") is None:
-        raise UserError("--arm ros2 needs roslibpy: pip install 'latentarm[ros2]'.")
+        raise UserError(f"{what} needs roslibpy: pip install 'latentarm[ros2]'.")
 
 
 @final

@@ -9,13 +9,13 @@ from xml.etree import ElementTree as Xml
 
 import mujoco
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from latentarm.arms.kinds import kind_misfit
 from latentarm.arms.own_pose import OwnPose, poses_about
 from latentarm.arms.real import FoundLimits
 from latentarm.arms.ros2.link import Link
 from latentarm.arms.ros2.options import Ros2Options
+from latentarm.arms.ros2.transforms import MOST_FRAMES, TOPICS, placed, transforms_in
 from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray
 from latentarm.core.untrusted.memory import bounded_memory
@@ -23,13 +23,8 @@ from latentarm.robots.model_xml import MOST_XML_BYTES, parse_xml
 from latentarm.robots.robot import Robot
 
 DESCRIPTION: Final = "/robot_description"
-_TOPICS: Final = {
-    DESCRIPTION: "std_msgs/msg/String",
-    "/tf": "tf2_msgs/msg/TFMessage",
-    "/tf_static": "tf2_msgs/msg/TFMessage",
-}
+_TOPICS: Final = {DESCRIPTION: "std_msgs/msg/String", **TOPICS}
 _UNNEEDED: Final = ("visual", "collision")
-_MOST_FRAMES: Final = 2000
 _MOST_NAMED: Final = 12
 
 
@@ -75,9 +70,9 @@ class OwnModel:
             except UserError as error:
                 refusals = (str(error),)
         if frames and not refusals:
-            placed = _placed(self._options.tool_frame, self._options.base_frame, frames)
-            if placed is not None:
-                poses.append(OwnPose(q, placed))
+            tool = placed(self._options.tool_frame, self._options.base_frame, frames)
+            if tool is not None:
+                poses.append(OwnPose(q, tool))
             elif not poses:
                 refusals = (_no_frame(self._options.tool_frame, frames),)
         return refusals, tuple(poses), limits
@@ -90,17 +85,11 @@ class OwnModel:
 
     def _heard_frames(self, message: Mapping[str, Any]) -> None:
         try:
-            heard = {
-                str(one["child_frame_id"]).strip("/"): (
-                    str(one["header"]["frame_id"]).strip("/"),
-                    _frame(one["transform"]),
-                )
-                for one in message["transforms"]
-            }
+            heard = transforms_in(message)
         except (KeyError, TypeError, ValueError):
             return
         with self._lock:
-            if len(self._frames) + len(heard) <= _MOST_FRAMES:
+            if len(self._frames) + len(heard) <= MOST_FRAMES:
                 self._frames |= heard
 
 
@@ -188,19 +177,6 @@ class Description:
         return placed
 
 
-def _placed(tool: str, base: str, frames: Mapping[str, tuple[str, FloatArray]]) -> FloatArray | None:
-    """The pose (4, 4), m, of a frame in the base frame, or in the last one above it; None where unknown."""
-    if tool not in frames:
-        return None
-    placed, at = np.eye(4), tool
-    for _ in range(len(frames)):
-        if at not in frames or at == base:
-            break
-        at, step = frames[at]
-        placed = step @ placed
-    return placed if base in ("", at) else None
-
-
 def _no_frame(tool: str, names: Mapping[str, object] | list[str]) -> str:
     known = sorted(names)
     shown = ", ".join([*known[:_MOST_NAMED], *(["..."] if len(known) > _MOST_NAMED else [])])
@@ -208,17 +184,6 @@ def _no_frame(tool: str, names: Mapping[str, object] | list[str]) -> str:
         f"ROS has no frame {tool}, so where the tool is cannot be compared: name the tool's frame in --arm"
         f" with tool_frame=NAME, one of {shown}."
     )
-
-
-def _frame(transform: Mapping[str, Any]) -> FloatArray:
-    at, turn = transform["translation"], transform["rotation"]
-    figures = [float(at[axis]) for axis in "xyz"], [float(turn[axis]) for axis in "xyzw"]
-    frame = np.eye(4)
-    frame[:3, 3] = figures[0]
-    frame[:3, :3] = Rotation.from_quat(figures[1]).as_matrix()
-    if not np.isfinite(frame).all():
-        raise ValueError("a transform that is not finite")
-    return frame
 
 
 def _number(text: str) -> float:
