@@ -12,6 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
+from documentation import ROOT, blocks
 from drawn_planes import LENS, drawn, looking, tag_image
 from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray
@@ -202,3 +203,9 @@ def test_a_camera_that_does_not_fit_is_refused(tags_file: Path, old: str, new: s
 def test_tags_on_other_things_are_refused(tags_file: Path) -> None:
     with pytest.raises(UserError, match="has tags on bowl, and the model looks at cup"):
         open_source(f"tags:{tags_file}", ["cup"])
+
+
+def test_the_tags_file_of_the_page_can_be_read(tmp_path: Path) -> None:
+    (written,) = [one for one in blocks(ROOT / "docs" / "objects-with-tags.md") if one.language == "toml"]
+    (tmp_path / "tags.toml").write_text(written.code)
+    assert read_tags(tmp_path / "tags.toml").tags[0].thing == "bowl"

@@ -112,8 +112,8 @@ def _stick(spec: Any, body: Any, image: NDArray[Any], wide_m: float, pose: Float
 
 
 def _looking(eye: FloatArray, at: FloatArray) -> FloatArray:
-    ahead = (at - eye) / np.linalg.norm(at - eye)
-    right = np.cross(ahead, [0.0, 0.0, 1.0]) / np.hypot(ahead[0], ahead[1])
+    ahead: FloatArray = (at - eye) / np.linalg.norm(at - eye)
+    right = np.array([ahead[1], -ahead[0], 0.0]) / np.hypot(ahead[0], ahead[1])
     return frame(np.stack([right, np.cross(ahead, right), ahead], axis=1), eye)
 
 

@@ -38,7 +38,7 @@ from latentarm_research.measurements.rendered_tags import (
 PERIOD_S: Final = 0.01
 PLACES: Final = {"bowl": (0.45, 0.12), "cup": (0.4, -0.2), "spoon": (0.65, -0.05)}  # m, on the table
 CONDITIONS: Final = ("clear", "noise and blur", "dim from one side", "hidden in part", "one camera")
-CALIBRATIONS: Final[Mapping[str, Mapping[str, float]]] = {
+CALIBRATIONS: Final[Mapping[str, Mapping[str, Any]]] = {
     "12 poses": {},
     "arm errs by 0.5 mm and 0.03°": {"arm": 0.0005},
     "6 poses": {"poses": 6},
@@ -78,7 +78,7 @@ def _scene(rng: np.random.Generator) -> dict[str, FloatArray]:
 
 def _spoilt(picture: FloatArray, condition: str, rng: np.random.Generator) -> Any:
     if condition != "clear":
-        picture = cv2.GaussianBlur(picture, (0, 0), rng.uniform(0.5, 1.3))
+        picture = np.asarray(cv2.GaussianBlur(picture, (0, 0), rng.uniform(0.5, 1.3)), np.float64)
     if condition == "dim from one side":
         picture = picture * np.linspace(0.15, 0.6, WIDE)
     noise = 0.0 if condition == "clear" else 4.0
