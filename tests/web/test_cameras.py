@@ -14,7 +14,9 @@ from hypothesis import strategies as st
 
 from latentarm.cameras.clock_pattern import BITS, ROWS, clock_picture
 from latentarm.cameras.decoding import ArrivalClock, CameraError, open_pictures
+from latentarm.cameras.newest import NewestPicture
 from latentarm.cameras.picture import MOST_HIGH, MOST_WIDE, Picture, fitted
+from latentarm.cameras.sharing import SharedPictures
 from latentarm.cameras.sources import CameraSource, kept, parse_cameras
 from latentarm.core.errors import UserError
 from latentarm.web.cameras.camera import Camera, Light, check_camera
@@ -232,3 +234,23 @@ def test_a_picture_that_waited_in_a_queue_is_old():
     assert clock.taken_s(100.0, 5.0) == 5.0
     clock.arrived(100.5, 6.0)
     assert clock.taken_s(100.5, 6.0) == pytest.approx(5.5, abs=1e-3)
+
+
+def test_a_device_that_one_process_has_open_is_shared_with_others() -> None:
+    source = CameraSource("front", "/dev/latentarm-test")  # nothing is there to open
+    planes = np.full((MOST_HIGH * 3 // 2, MOST_WIDE), 7, np.uint8)
+    closing = threading.Event()
+    shared = SharedPictures(source, lambda: Picture(planes, 12.5))
+    try:
+        for name in ("front", "another name"):
+            pictures = open_pictures(CameraSource(name, source.address), closing)
+            taken = next(pictures)
+            assert taken.captured_s == 12.5
+            assert np.array_equal(taken.planes, planes)
+        assert np.array_equal(NewestPicture(source, closing).first().planes, planes)
+    finally:
+        shared.end()
+    # The device itself is tried once nobody serves it.
+    with pytest.raises(CameraError, match="cannot be opened"):
+        list(pictures)
+    closing.set()

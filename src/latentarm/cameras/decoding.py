@@ -15,6 +15,7 @@ from av.video.stream import VideoStream
 
 from latentarm.cameras.clock_pattern import clock_pictures
 from latentarm.cameras.picture import MOST_HIGH, MOST_PER_S, MOST_WIDE, Picture, fitted
+from latentarm.cameras.sharing import shared_pictures
 from latentarm.cameras.sources import CameraSource, Kind
 from latentarm.core.errors import UserError
 
@@ -56,8 +57,17 @@ class CameraError(UserError):
 def open_pictures(source: CameraSource, closing: threading.Event) -> Iterator[Picture]:
     """The pictures of a camera until ``closing`` is set; a file begins again at its end.
 
-    Raises CameraError if the camera cannot be opened, or has ended.
+    Those of a device come from the process that has it open, if one serves them. Raises CameraError if the
+    camera cannot be opened, or has ended.
     """
+    if source.kind == "device":
+        yield from shared_pictures(source, closing)
+    if not closing.is_set():
+        yield from decoded_pictures(source, closing)
+
+
+def decoded_pictures(source: CameraSource, closing: threading.Event) -> Iterator[Picture]:
+    """As `open_pictures`, but opened here."""
     if source.kind == "pattern":
         yield from clock_pictures(closing)
         return

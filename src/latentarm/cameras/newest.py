@@ -1,13 +1,15 @@
 """The newest picture of a camera, kept by a thread that opens it again when it is lost."""
 
 import threading
+from collections.abc import Iterator
 from typing import Final, final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from latentarm.cameras.decoding import open_pictures
+from latentarm.cameras.decoding import decoded_pictures
 from latentarm.cameras.picture import Picture
+from latentarm.cameras.sharing import SharedPictures, shared_pictures
 from latentarm.cameras.sources import CameraSource
 from latentarm.core.errors import UserError
 
@@ -42,13 +44,24 @@ class NewestPicture:
     def _work(self) -> None:
         while not self._closing.is_set():
             try:
-                for picture in open_pictures(self._source, self._closing):
+                for picture in self._pictures():
                     self.picture = picture
                     self._tried.set()
-            except UserError as error:
+            except (UserError, OSError) as error:
                 self._failed = str(error)
                 self._tried.set()
             self._closing.wait(_RETRY_S)
+
+    def _pictures(self) -> Iterator[Picture]:
+        if self._source.kind != "device":
+            yield from decoded_pictures(self._source, self._closing)
+            return
+        yield from shared_pictures(self._source, self._closing)
+        shared = SharedPictures(self._source, lambda: self.picture)
+        try:
+            yield from decoded_pictures(self._source, self._closing)
+        finally:
+            shared.end()
 
 
 def brightness_of(picture: Picture) -> NDArray[np.uint8]:
