@@ -1,5 +1,9 @@
 """Pictures of tags and boards, drawn as a camera would see them: by the homography of their plane."""
 
+from fractions import Fraction
+from pathlib import Path
+
+import av
 import cv2
 import numpy as np
 from numpy.typing import NDArray
@@ -46,3 +50,14 @@ def tag_image(number: int) -> NDArray[np.uint8]:
         cv2.aruco.getPredefinedDictionary(FAMILIES["apriltag_36h11"]), number, 160
     )
     return cv2.copyMakeBorder(made, 20, 20, 20, 20, cv2.BORDER_CONSTANT, value=255)
+
+
+def write_video(path: Path, picture: NDArray[np.uint8]) -> None:
+    """A second of a picture that does not move."""
+    with av.open(str(path), "w") as container:
+        stream = container.add_stream("libx264", rate=Fraction(20), options={"crf": "10"})
+        stream.width, stream.height, stream.pix_fmt = *LENS.size_px, "yuv420p"
+        shown = av.VideoFrame.from_ndarray(picture, format="gray")
+        for _ in range(20):
+            container.mux(stream.encode(shown))
+        container.mux(stream.encode(None))

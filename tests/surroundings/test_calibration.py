@@ -7,9 +7,10 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
+from rosbridge_server import RosbridgeServer
 from scipy.spatial.transform import Rotation
 
-from drawn_planes import LENS, drawn, looking
+from drawn_planes import LENS, drawn, looking, write_video
 from latentarm.cli import main
 from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray
@@ -19,12 +20,14 @@ from latentarm.surroundings.tags.files import CameraEntry, read_cameras, write_c
 from latentarm.surroundings.tags.frames import frame, inverse, moved, shifted
 from latentarm.surroundings.tags.hand_eye import Mount, Shot, calibrate_hand_eye
 from latentarm.surroundings.tags.intrinsics import calibrate_intrinsics
+from latentarm.surroundings.tags.pictures import read_grey
 
 BOARD = Board(7, 5, 0.03)
 POINTS = np.asarray(BOARD.made.getChessboardCorners(), float)
 MIDDLE_M = np.array([0.105, 0.075, 0.0])  # of the board in its frame
 MIDDLE_Q = np.array([0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.8])
 NOISE_PX = 0.1
+BOARD_ENDS = np.array([(0, 0, 0), (0.21, 0, 0), (0.21, 0.15, 0), (0, 0.15, 0)])
 
 
 def tool(q: FloatArray) -> FloatArray:
@@ -154,13 +157,12 @@ def test_a_folder_of_pictures_places_a_camera(tmp_path: Path, capsys: pytest.Cap
     folder, joints = tmp_path / "place", {}
     folder.mkdir()
     image = BOARD.made.generateImage((700, 500))
-    ends = np.array([(0, 0, 0), (0.21, 0, 0), (0.21, 0.15, 0), (0, 0.15, 0)])
     while len(joints) < 16:
         q = MIDDLE_Q + rng.normal(0, 0.25, 7)
         to_camera = inverse(camera) @ tool(q) @ board
         if view_of(to_camera, rng) is not None:
             name = f"{len(joints):03}.png"
-            cv2.imwrite(str(folder / name), drawn([(image, moved(to_camera, ends))]))
+            cv2.imwrite(str(folder / name), drawn([(image, moved(to_camera, BOARD_ENDS))]))
             joints[name] = q.tolist()
     (folder / "joints.json").write_text(json.dumps(joints))
     cameras = tmp_path / "cameras.toml"
@@ -178,3 +180,23 @@ def test_a_folder_of_pictures_places_a_camera(tmp_path: Path, capsys: pytest.Cap
 def test_a_board_is_written_to_print(tmp_path: Path) -> None:
     assert main(["calibrate", "board", "--out", str(tmp_path / "board.pdf")]) == 0
     assert (tmp_path / "board.pdf").read_bytes().startswith(b"%PDF")
+
+
+def test_pictures_are_taken_at_poses_of_the_arm(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    camera, board = place("base")
+    corners = moved(inverse(camera) @ tool(MIDDLE_Q) @ board, BOARD_ENDS)
+    image = drawn([(BOARD.made.generateImage((700, 500)), corners)])
+    write_video(tmp_path / "front.mp4", image)
+    cameras, folder = tmp_path / "cameras.toml", tmp_path / "place"
+    write_cameras(cameras, {"front": CameraEntry.of_lens(str(tmp_path / "front.mp4"), LENS)})
+    typed = iter(["", "", "done"])
+    monkeypatch.setattr("builtins.input", lambda _: next(typed))
+    monkeypatch.setattr("latentarm.commands.calibrate.LET_GO_S", 0.0)
+    with RosbridgeServer(panda()) as server:
+        words = ["--pictures", str(folder), "--robot", "panda", "--cameras", str(cameras)]
+        words += ["--arm", server.address]
+        assert main(["calibrate", "hand-eye", "front", *words]) == 2  # two are too few
+    joints = json.loads((folder / "joints.json").read_text())
+    assert sorted(path.name for path in folder.glob("*.png")) == sorted(joints) == ["001.png", "002.png"]
+    assert joints["001.png"] == pytest.approx(panda().home.tolist(), abs=0.01)
+    assert np.abs(read_grey(folder / "001.png").astype(float) - image).mean() < 30  # YUV has another range

@@ -2,10 +2,8 @@
 
 import threading
 import time
-from fractions import Fraction
 from pathlib import Path
 
-import av
 import numpy as np
 import pytest
 from hypothesis import given
@@ -13,7 +11,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from documentation import ROOT, blocks
-from drawn_planes import LENS, drawn, looking, tag_image
+from drawn_planes import LENS, drawn, looking, tag_image, write_video
 from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray
 from latentarm.surroundings.catalogue import open_source
@@ -114,13 +112,7 @@ def test_corners_in_a_picture_are_found_to_a_fifth_of_a_pixel() -> None:
 def videos(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("videos")
     for name, camera in (("left", LEFT), ("right", RIGHT)):
-        with av.open(str(folder / f"{name}.mp4"), "w") as container:
-            stream = container.add_stream("libx264", rate=Fraction(20), options={"crf": "10"})
-            stream.width, stream.height, stream.pix_fmt = 640, 480, "yuv420p"
-            shown = av.VideoFrame.from_ndarray(picture(frame(np.eye(3), MIDDLE), camera), format="gray")
-            for _ in range(20):
-                container.mux(stream.encode(shown))
-            container.mux(stream.encode(None))
+        write_video(folder / f"{name}.mp4", picture(frame(np.eye(3), MIDDLE), camera))
     return folder
 
 

@@ -2,6 +2,7 @@
 
 import json as json_format
 import threading
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Final, Literal
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
 Squares = Annotated[str, arg(metavar="COLUMNSxROWS", help="Squares of the board along its sides.")]
 SquareMm = Annotated[float, arg(metavar="MM", help="Side of a square, measured on the printed board.")]
 Cameras = Annotated[Path, arg(metavar="FILE", help="The cameras file, which is written.")]
+LET_GO_S: Final = 2.0  # between the person's key and the picture: a hand leaves the arm
 _USUAL: Final = ("7x5", 30.0, Path("cameras.toml"))
 
 
@@ -76,8 +78,8 @@ def intrinsics(
     board = _board(squares, square_mm)
     source = parse_cameras([camera])[0]
     if is_missing(pictures):
-        how = "Hold the board still, each time tilted another way and in another part of the picture."
-        _take(source, pictures, board, lambda _: how, lambda _: None)
+        how = "Hold the board still, tilted another way and in another part of the picture than before."
+        _take(source, pictures, board, lambda prompt: _entered(f"{prompt} {how}"), lambda _: None)
     grey = [read_grey(path) for path in picture_files(pictures)]
     sizes = {one.shape for one in grey}
     if len(sizes) > 1:
@@ -137,7 +139,7 @@ def hand_eye(
             joints[file] = _read_joints(arm, driven).tolist()
             write_joints(pictures, joints)
 
-        _take(entry.source(name), pictures, board, lambda ask: _guided(arm, driven, ask), keep)
+        _take(entry.source(name), pictures, board, lambda prompt: _guided(arm, driven, prompt), keep)
     shots: list[Shot] = []
     at = read_joints(pictures, driven.dof)
     for path in picture_files(pictures):
@@ -175,26 +177,23 @@ def _take(
     source: "CameraSource",
     folder: Path,
     board: "Board",
-    prepare: Callable[[str], str],
+    ask: Callable[[str], str],
     keep: Callable[[str], None],
 ) -> None:
     """Take pictures until the person is done.
 
-    ``prepare`` gets what there is to say and returns what is still to be said; ``keep`` gets the name of the
-    file of a picture that is about to be written.
+    ``ask`` says that a picture is next and returns what the person types; ``keep`` is called with the name of
+    its file before that is written.
     """
     from latentarm.cameras.newest import NewestPicture, brightness_of
     from latentarm.surroundings.tags.pictures import write_grey
 
     closing = threading.Event()
     newest = NewestPicture(source, closing)
+    number = 1
     try:
         newest.first()
-        number = 1
-        while True:
-            said = prepare(f"Picture {number}.")
-            if _entered(f"Picture {number}. {said} Press Enter to take it, or type done: ") == "done":
-                return
+        while ask(f"Picture {number}.") != "done":
             grey = brightness_of(newest.first())
             if board.find(grey) is None:
                 say("Too little of the board is in the picture, or it is dark or blurred: not taken.", False)
@@ -209,26 +208,24 @@ def _take(
 
 def _entered(prompt: str) -> str:
     try:
-        return input(prompt).strip().lower()
+        return input(f"{prompt} Press Enter to take it, or type done: ").strip().lower()
     except EOFError as error:
         raise UserError("Pictures are taken with a person: run it in a terminal.") from error
 
 
-def _guided(address: str, robot: "Robot", said: str) -> str:
-    """Let go of the arm until the person has moved it; it then holds its position."""
+def _guided(address: str, robot: "Robot", prompt: str) -> str:
+    """Let the person move the arm, which then holds its position."""
     from latentarm.arms.catalogue import make_real_arm
     from latentarm.commands.guided_check import released
     from latentarm.control.clock import MonotonicClock
 
     arm = make_real_arm(address, robot, MonotonicClock().now_s)
     try:
-        how = released(arm)
-        _entered(
-            f"{said} {how} Tilt and twist the gripper about all axes from pose to pose. Then press Enter: "
-        )
+        said = _entered(f"{prompt} {released(arm)} Tilt and twist the gripper another way than before.")
     finally:
         arm.close()
-    return "Let go of the arm."
+    time.sleep(LET_GO_S)
+    return said
 
 
 def _read_joints(address: str, robot: "Robot") -> FloatArray:
