@@ -90,6 +90,13 @@ def test_a_square_that_fits_two_poses_needs_a_second_view() -> None:
     assert solve([seen(pose, far, np.eye(4)), seen(pose, RIGHT, np.eye(4))]) is not None
 
 
+def test_of_two_poses_the_one_that_would_lean_too_far_is_left_out() -> None:
+    pose = frame(Rotation.from_euler("z", 0.4).as_matrix(), MIDDLE)
+    found = solve([seen(pose, looking(np.array([1.6, -1.2, 1.2]), MIDDLE), np.eye(4))], np.radians(30))
+    assert found is not None
+    assert np.abs(off(found.pose, pose)).max() < 1e-4
+
+
 def picture(pose: FloatArray, camera: FloatArray) -> np.ndarray:
     planes = [
         (tag_image(number), moved(inverse(camera) @ pose @ tag, corners_on_tag(SIZE_M * 10 / 8)))
@@ -179,7 +186,7 @@ def test_a_wrong_entry_is_named(tags_file: Path, old: str, new: str, said: str) 
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
-        ('mount = "base"', 'mount = "tool"', "is on the wrist"),
+        ('mount = "base"', 'mount = "tool"', "is on the wrist, and only fixed ones can be used"),
         ("[640, 480]", "[1280, 720]", "was calibrated with others"),
         ("left.mp4", "gone.mp4", "the file does not exist"),
     ],

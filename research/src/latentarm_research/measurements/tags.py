@@ -66,7 +66,8 @@ def measure(options: Tags, work: Work) -> Outcome:
     return Outcome(rows, note="Calibrations that are refused, and what is said:\n\n" + "\n".join(refused))
 
 
-def _scene(rng: np.random.Generator) -> dict[str, FloatArray]:
+def scene(rng: np.random.Generator) -> dict[str, FloatArray]:
+    """Poses (4, 4) of the things, anywhere about their places and a little tilted."""
     return {
         name: frame(
             Rotation.from_rotvec([*rng.normal(0, 0.1, 2), rng.uniform(-3, 3)]).as_matrix(),
@@ -76,7 +77,8 @@ def _scene(rng: np.random.Generator) -> dict[str, FloatArray]:
     }
 
 
-def _spoilt(picture: FloatArray, condition: str, rng: np.random.Generator) -> Any:
+def spoilt(picture: FloatArray, condition: str, rng: np.random.Generator) -> Any:
+    """The picture (H, W) as a camera would give it in a condition, bytes."""
     if condition != "clear":
         picture = np.asarray(cv2.GaussianBlur(picture, (0, 0), rng.uniform(0.5, 1.3)), np.float64)
     if condition == "dim from one side":
@@ -85,7 +87,8 @@ def _spoilt(picture: FloatArray, condition: str, rng: np.random.Generator) -> An
     return np.clip(picture + rng.normal(0, noise, picture.shape), 0, 255).astype(np.uint8)
 
 
-def _cameras(room: Room, addresses: list[str]) -> dict[str, CameraEntry]:
+def exact_cameras(room: Room, addresses: list[str]) -> dict[str, CameraEntry]:
+    """The room's cameras by name, calibrated without error."""
     lens = CameraEntry.of_lens("testsrc", LENS)
     exact = [lens.at(HandEye(pose, 0.0, 0.0, 0.0, 0.0), "base") for pose in room.cameras]
     return {
@@ -97,16 +100,16 @@ def _cameras(room: Room, addresses: list[str]) -> dict[str, CameraEntry]:
 def _errors(room: Room, condition: str, scenes: int, rng: np.random.Generator) -> list[Row]:
     """Rows for each thing in a condition."""
     detector, tags = Detector(FAMILY), {tag.id: tag for tag in tags_on_things()}
-    cameras = _cameras(room, ["testsrc"] * 2)
+    cameras = exact_cameras(room, ["testsrc"] * 2)
     off: dict[str, list[tuple[float, float, bool]]] = {name: [] for name in PLACES}
     spent_s = 0.0
     for _ in range(scenes):
-        true = _scene(rng)
+        true = scene(rng)
         arm = frame(Rotation.from_rotvec(rng.normal(0, 0.4, 3)).as_matrix(), np.array([0.6, 0.0, 0.0]))
         arm[:2, 3] += rng.uniform(-0.2, 0.2, 2)
         room.put(true | ({"arm": arm} if condition == "hidden in part" else {}))
         used = range(1 if condition == "one camera" else 2)
-        pictures = [_spoilt(room.picture(camera), condition, rng) for camera in used]
+        pictures = [spoilt(room.picture(camera), condition, rng) for camera in used]
         began_s = time.process_time()
         found = sightings(cameras, {f"c{k}": detector.find(pictures[k]) for k in used}, tags, 0.0)
         spent_s += time.process_time() - began_s
@@ -139,7 +142,7 @@ def _errors(room: Room, condition: str, scenes: int, rng: np.random.Generator) -
 
 def _written(folder: Path, room: Room, rng: np.random.Generator) -> Path:
     """A tags file with cameras that are videos of one scene."""
-    room.put(_scene(rng))
+    room.put(scene(rng))
     addresses = [str(folder / f"{camera}.mp4") for camera in range(2)]
     for camera, address in enumerate(addresses):
         clear = room.picture(camera)
@@ -147,10 +150,10 @@ def _written(folder: Path, room: Room, rng: np.random.Generator) -> Path:
             stream = container.add_stream("libx264", rate=30, options={"crf": "15"})
             stream.width, stream.height, stream.pix_fmt = WIDE, HIGH, "yuv420p"
             for _ in range(60):
-                shown = _spoilt(clear, "noise and blur", rng)
+                shown = spoilt(clear, "noise and blur", rng)
                 container.mux(stream.encode(av.VideoFrame.from_ndarray(shown, format="gray")))
             container.mux(stream.encode(None))
-    write_cameras(folder / "cameras.toml", _cameras(room, addresses))
+    write_cameras(folder / "cameras.toml", exact_cameras(room, addresses))
     lines = ['cameras = "cameras.toml"', f'family = "{FAMILY}"']
     for tag in tags_on_things():
         lines += ["[[tags]]", *(f"{key} = {value!r}" for key, value in tag.model_dump(mode="json").items())]
@@ -202,7 +205,7 @@ def _calibrated(
         seen = frame(facing, np.array([0.0, 0.0, rng.uniform(0.35, 0.55)]) - facing @ middle)
         slipped = seen @ frame(np.eye(3), np.array([slip * (len(shots) == 5), 0.0, 0.0]))
         room.put({"board": camera @ slipped})
-        view = BOARD.find(_spoilt(room.picture(0), "noise and blur", rng))
+        view = BOARD.find(spoilt(room.picture(0), "noise and blur", rng))
         if view is not None:
             tool = shifted(camera @ seen @ inverse(held), rng.normal(0, arm, 6))
             shots.append(Shot(f"{len(shots) + 1:03}.png", tool, type(view)(scale * view.points, view.pixels)))

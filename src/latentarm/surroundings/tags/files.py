@@ -121,6 +121,7 @@ class TagEntry(_Placed):
     id: Annotated[int, Field(ge=0)]
     thing: Annotated[str, Field(min_length=1, max_length=100)]
     size_m: Annotated[float, Field(gt=0.001, lt=1.0)]
+    most_tilt_deg: Annotated[float, Field(gt=0.0, le=180.0)] = 180.0  # by which the thing's z can lean
 
 
 @final

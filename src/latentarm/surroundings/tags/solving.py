@@ -64,17 +64,18 @@ class Solved:
         return float(np.sqrt(np.linalg.eigvalsh(self.covariance[3:, 3:])[-1]))
 
 
-def solve(seen: Sequence[SeenTag]) -> Solved | None:
+def solve(seen: Sequence[SeenTag], most_tilt_rad: float = np.pi) -> Solved | None:
     """The pose of the thing that all the tags are on; None where they do not agree on one.
 
     A square seen from nearly in front fits two poses. Both of every tag are tried against all tags in all
-    pictures. Where two different poses fit about equally well, there is no answer. Tags that do not fit are
-    left out; more than half must fit.
+    pictures, if the thing would then lean by ``most_tilt_rad`` at most. Where two different poses fit about
+    equally well, there is no answer. Tags that do not fit are left out; more than half must fit.
     """
     if not seen:
         return None
     problem = _Problem(seen)
-    guesses = _different(sorted((guess for tag in seen for guess in _two_poses(tag)), key=problem.cost))
+    possible = [pose for tag in seen for pose in _two_poses(tag) if pose[2, 2] >= np.cos(most_tilt_rad)]
+    guesses = _different(sorted(possible, key=problem.cost))
     fits = [fit for fit in map(problem.fit, guesses) if fit is not None]
     if not fits:
         return None

@@ -38,9 +38,11 @@ class TagSource(Source):
         placed = read_cameras(path.parent / stated.cameras)
         for name, entry in placed.items():
             if entry.mount != "base":
-                where = "on the wrist, which --objects cannot follow" if entry.mount else "anywhere"
+                why = (
+                    "is on the wrist, and only fixed ones can be used" if entry.mount else "is not placed yet"
+                )
                 raise UserError(
-                    f"{stated.cameras}: the camera {name} is {where}: fix it in the room and run latentarm"
+                    f"{stated.cameras}: the camera {name} {why}: fix it in the room and run latentarm"
                     f" calibrate hand-eye {name}, or leave it out."
                 )
         self._detector = Detector(stated.family)
@@ -92,7 +94,10 @@ class TagSource(Source):
             for name, camera in self._cameras.items():
                 picture = camera.picture
                 if picture is not None and (name not in seen or picture.captured_s > seen[name][0]):
-                    seen[name] = (picture.captured_s, self._detector.find(brightness_of(picture)))
+                    grey = brightness_of(picture)
+                    # A camera on the network may change the size of its pictures at any time.
+                    fits = grey.shape[::-1] == self._placed[name].size_px
+                    seen[name] = (picture.captured_s, self._detector.find(grey) if fits else {})
                     fresh = True
             if not fresh:
                 continue
@@ -121,7 +126,8 @@ def sightings(
             if number in tags and tags[number].thing == thing
         ]
         solved = solve(
-            [SeenTag(corners, by.lens, by.pose, tag.size_m, tag.pose) for by, corners, tag in mine]
+            [SeenTag(corners, by.lens, by.pose, tag.size_m, tag.pose) for by, corners, tag in mine],
+            np.radians(min((tag.most_tilt_deg for _, _, tag in mine), default=180.0)),
         )
         if solved is None:
             continue
