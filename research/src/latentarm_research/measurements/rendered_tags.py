@@ -43,7 +43,12 @@ def tags_on_things() -> list[TagEntry]:
     placed.append(("spoon", 0.05, np.array([-0.1, 0.0, 0.01]), Rotation.identity()))
     return [
         TagEntry(
-            id=k, thing=thing, size_m=size, position_m=at, quaternion_wxyz=turn.as_quat(scalar_first=True)
+            id=k,
+            thing=thing,
+            size_m=size,
+            position_m=at,
+            quaternion_wxyz=turn.as_quat(scalar_first=True),
+            most_tilt_deg=45.0,
         )
         for k, (thing, size, at, turn) in enumerate(placed)
     ]
