@@ -201,7 +201,7 @@ class TestTable:
             for y in ("top", "bottom")
         ]
         middle = np.array([name["x"] + name["width"] / 2, name["y"] + name["height"] / 2])
-        end = max(ends, key=lambda one: np.hypot(*(one + [box["x"], box["y"]] - middle)))
+        end = max(ends, key=lambda one: np.hypot(*(one + np.array([box["x"], box["y"]]) - middle)))
         across, down = np.meshgrid(np.arange(orange.shape[1]), np.arange(orange.shape[0]))
         # One of the arrows is orange too.
         orange &= np.hypot(across - end[0], down - end[1]) < FOOD_PX
