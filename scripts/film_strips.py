@@ -32,7 +32,7 @@ from latentarm_research.studies.tasks.runs import Driver, choice_of, decoders_of
 
 FIGURES = Path(__file__).resolve().parents[1] / "docs" / "figures" / "tasks"
 
-COUNTER = Camera(look_at=(0.45, 0.0, 0.33), distance_m=0.95, azimuth_deg=165.0, elevation_deg=-42.0)
+COUNTER = Camera(look_at=(0.45, 0.0, 0.33), distance_m=0.8, azimuth_deg=165.0, elevation_deg=-42.0)
 """For what stands on the counter, higher and farther apart than plates."""
 
 CAMERAS: dict[str, Camera] = dict.fromkeys(("avoid", "pour", "reach_and_pour", "apple_pie"), COUNTER)

@@ -50,15 +50,17 @@ class Camera:
 
     # (3,), what is in the middle, in the base frame of the arm, m
     look_at: tuple[float, float, float] = (0.5, 0.0, 0.15)
-    distance_m: float = 0.64  # from there, m
+    distance_m: float = 0.5  # from there, m
     azimuth_deg: float = 155.0  # in which direction it looks, from x towards y
     elevation_deg: float = -36.0  # how far up it looks; below 0 it looks down
     width: int = 480  # pixels
     height: int = 360  # pixels
 
 
-WHOLE: Final = Camera(look_at=(0.28, 0.0, 0.36), distance_m=1.5, azimuth_deg=150.0, elevation_deg=-18.0)
-"""Shows all of an arm the size of a Panda, from its base to what it does on a table."""
+WHOLE: Final = Camera(look_at=(0.15, -0.22, 0.36), distance_m=1.5, azimuth_deg=150.0, elevation_deg=-18.0)
+"""Shows all of an arm the size of a Panda, from its base to what it does on a table, with room for the corner."""
+
+SKY: Final = 238  # grey of what is behind everything, which MuJoCo leaves black
 
 EDGE_PX: Final = 3
 
@@ -154,7 +156,9 @@ def _render(model: mujoco.MjModel, positions: Sequence[FloatArray], camera: Came
             data.qpos[:] = position
             mujoco.mj_forward(lit, data)
             renderer.update_scene(data, seen_from)
-            pictures.append(renderer.render())
+            picture = renderer.render()
+            picture[(picture == 0).all(axis=-1)] = SKY
+            pictures.append(picture)
     return pictures
 
 
