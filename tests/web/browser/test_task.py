@@ -187,9 +187,10 @@ class TestTable:
 
     def test_a_name_is_at_its_food_and_the_tool_stays_in_both_views(self, open_page, arm, press_enable):
         page = open_page()
-        page.wait_for_timeout(1000)
         view = page.locator("#view-front")
         label = view.locator(".label", has_text="carrot")
+        label.wait_for()
+        page.wait_for_timeout(1000)
         # Its line is the element before it, and ends short of the food.
         leader = label.evaluate("label => label.previousElementSibling.getBoundingClientRect().toJSON()")
         box, name = view.bounding_box(), label.bounding_box()

@@ -98,12 +98,15 @@ export class Labels {
 
   /** How wide a label is with each text, px. @param {Label} label @param {string[]} texts */
   _widths({ elements: [element], ghost }, texts) {
+    const { hidden } = element;
     element.hidden = false;
     const style = getComputedStyle(element);
-    if (ghost) return texts.map(() => parseFloat(style.width));
+    const wide = parseFloat(style.width);
     this._ruler.font = `${style.fontWeight} ${style.fontSize} ${style.fontFamily}`;
     const edges = [style.paddingLeft, style.paddingRight, style.borderLeftWidth, style.borderRightWidth];
     const around = edges.reduce((sum, edge) => sum + parseFloat(edge), 0);
+    element.hidden = hidden;
+    if (ghost) return texts.map(() => wide);
     return texts.map((text) => around + this._ruler.measureText(text).width);
   }
 
