@@ -201,8 +201,8 @@ class TestTable:
             for x in ("left", "right")
             for y in ("top", "bottom")
         ]
-        middle = np.array([name["x"] + name["width"] / 2, name["y"] + name["height"] / 2])
-        end = max(ends, key=lambda one: np.hypot(*(one + np.array([box["x"], box["y"]]) - middle)))
+        x, y = name["x"] + name["width"] / 2 - box["x"], name["y"] + name["height"] / 2 - box["y"]
+        end = max(ends, key=lambda one: np.hypot(one[0] - x, one[1] - y))
         across, down = np.meshgrid(np.arange(orange.shape[1]), np.arange(orange.shape[0]))
         # One of the arrows is orange too.
         orange &= np.hypot(across - end[0], down - end[1]) < FOOD_PX
