@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from shutil import copyfileobj
 from tempfile import TemporaryDirectory
-from typing import Any, Final, NoReturn, final
+from typing import Any, Final, final
 from zipfile import ZIP_STORED, BadZipFile, ZipFile, ZipInfo
 
 import numpy as np
@@ -107,18 +107,18 @@ def replay_all(path: Path) -> dict[str, dict[str, Any]]:
     try:
         with opened(path, 4 * MOST_FILE_BYTES) as content, ZipFile(content) as packed:
             files = [one for one in packed.infolist() if _IN_REPORT.fullmatch(one.filename)]
-            return {Path(one.filename).name: _replay_packed(packed, one) for one in files} or _none(path)
+            if not files:
+                raise UserError(f"{path} has no incident file: name one that `latentarm report` wrote.")
+            return {Path(one.filename).name: _replay_packed(packed, one, path) for one in files}
     except (BadZipFile, OSError, NotImplementedError, RuntimeError) as error:
         raise UserError(f"{path} is damaged ({error}): copy it again.") from error
 
 
-def _none(path: Path) -> NoReturn:
-    raise UserError(f"{path} has no incident file: name one that `latentarm report` wrote.")
-
-
-def _replay_packed(packed: ZipFile, file: ZipInfo) -> dict[str, Any]:
+def _replay_packed(packed: ZipFile, file: ZipInfo, report: Path) -> dict[str, Any]:
     if file.compress_type != ZIP_STORED:
-        raise UserError(f"{packed.filename} was packed by another program: name the file of the report.")
+        raise UserError(
+            f"{report} was packed by another program: name the file that `latentarm report` wrote."
+        )
     with TemporaryDirectory() as folder, packed.open(file) as content:
         path = Path(folder) / Path(file.filename).name
         with path.open("wb") as copy:
