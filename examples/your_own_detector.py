@@ -1,11 +1,11 @@
 """Your own detector of things: posts what it sees to `latentarm teleop RUN --objects http:8470`."""
 
 import json
-import sys
+import os
 import time
 from http.client import HTTPConnection
 
-PORT = int(sys.argv[1]) if len(sys.argv) > 1 else 8470
+PORT = int(os.environ.get("OBJECTS_PORT", "8470"))
 PROMPTS = {"a white bowl": "bowl", "a blue cup": "cup"}  # what your detector looks for, and the task's names
 
 

@@ -1,6 +1,7 @@
 """What a detector posts, through the process of the sources, and what is refused."""
 
 import json
+import os
 import subprocess
 import sys
 import time
@@ -85,8 +86,9 @@ def test_pages_of_other_sites_cannot_post(source, path, headers, status):
 
 def test_the_example_posts_what_is_taken(source):
     example = Path(__file__).parents[2] / "examples/your_own_detector.py"
+    named = os.environ | {"OBJECTS_PORT": str(source.port)}
     done = subprocess.run(
-        [sys.executable, example, str(source.port)], capture_output=True, text=True, timeout=30, check=True
+        [sys.executable, example], capture_output=True, text=True, timeout=30, check=True, env=named
     )
     assert done.stdout == "Posted.\n"
     (seen,) = source.read()

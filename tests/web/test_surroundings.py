@@ -184,8 +184,10 @@ def test_about_a_real_arm_a_person_shows_the_things_from_the_page(serve, run, tm
         page.wait(lambda state: state["mode"] == "end_effector" and state["note"]["code"] == "thing_unseen")
 
 
-def test_a_source_that_is_none_is_refused_where_it_was_typed(looking):
+def test_a_source_that_is_none_is_refused_where_it_was_typed(run):
     with pytest.raises(UserError, match="--objects names the source of where things are 'radar'"):
         Spec(objects=("radar:1",))
     with pytest.raises(UserError, match="there are none here"):
         load_setup(Spec(objects=("touch",)))
+    with pytest.raises(UserError, match=r"looks at left marshmallow, .*, which this task does not have"):
+        load_setup(Spec(run, task="dessert", objects=("touch",)))

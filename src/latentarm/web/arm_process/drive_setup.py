@@ -380,12 +380,18 @@ def load_setup(spec: Spec) -> DriveSetup:
         scene=begun.scene,
     )
     if setup.real and run is not None:
-        setup = _with_markers(setup)
         _check_blind(run, setup)
+        setup = _with_markers(setup)
     if spec.objects and not setup.tracked:
         raise UserError(
             "--objects says where the things of a task are, and there are none here: name a task with things"
             " in physics, or a real arm with a run that looks at things."
+        )
+    missing = set(setup.controller.objects) - {thing.name for thing in setup.tracked}
+    if missing and (setup.real or spec.objects):
+        raise UserError(
+            f"{spec.run} looks at {', '.join(sorted(missing))}, which this task does not have: name the task"
+            " that it was trained for with --task."
         )
     setup.step()  # what cannot be driven fails now rather than later
     return setup
@@ -403,15 +409,9 @@ def _with_markers(setup: DriveSetup) -> DriveSetup:
 
 
 def _check_blind(run: Run, setup: DriveSetup) -> None:
-    """Refuse a model that needs goals, which nothing detects about a real arm, or things of another task."""
+    """Refuse a model that needs goals, which nothing detects about a real arm."""
     if BELIEF in run.context and not setup.task.goals:
         raise UserError(
             f"{run.folder} sees a belief over goals, and nothing sees where they are about a real arm: train"
             " a model that does not, with --context joints."
-        )
-    there = () if setup.scene is None else setup.scene.names
-    if missing := set(setup.controller.objects) - set(there):
-        raise UserError(
-            f"{run.folder} looks at {', '.join(sorted(missing))}, which this task does not have: name the"
-            " task that it was trained for with --task."
         )
