@@ -104,9 +104,10 @@ def test_a_frame_that_nothing_joins_to_the_base_is_not_used(
     ros: RosbridgeServer, capfd: pytest.CaptureFixture[str]
 ) -> None:
     source = opened(ros, "bowl=/bowl&cup=/cup")
-    found = heard(source, ros, ("/bowl", posed("nowhere", 0.4)), ("/cup", posed("base_link", 0.2)))
+    for _ in range(2):  # by the second time both topics are heard
+        found = heard(source, ros, ("/bowl", posed("nowhere", 0.4)), ("/cup", posed("base_link", 0.2)))
+        assert found.name == "cup"
     source.close()
-    assert found.name == "cup"
     said = capfd.readouterr().err
     assert said.count("the pose of bowl is in the frame nowhere, which /tf does not join to base_link") == 1
 
