@@ -25,7 +25,6 @@ TINY = Preset(
     reach_goals=2,
     states=5,
     grid=5,
-    noises_rad=(0.0,),
 )
 PROPERTIES = ("reproduce", "properties", "--preset", "smoke", "--task", "reach", "--jobs", 1)
 

@@ -13,7 +13,6 @@ def cells(model: str, errors: tuple[float, ...]) -> list[FoldResult]:
             None,  # type: ignore[arg-type]
             0.0,
             0.0,
-            0.0,
         )
         for fold, error in enumerate(errors)
     ]
