@@ -3,11 +3,8 @@
 Times are of the processor, of all threads together: what a training costs, whatever else the machine does.
 """
 
-import math
 import statistics
 import time
-from collections.abc import Callable
-from functools import partial
 from itertools import pairwise
 from typing import Final, NamedTuple, final
 
@@ -79,15 +76,12 @@ def time_training(demonstrations: Demonstrations, seeds: int, epochs: int, repea
     validation; the fit with its own after every epoch, and with all that comes before and after its loop.
 
     Returns:
-        Times and their ratio per seed; the same with a fit's matrix products alone, and with those and its
-        activations, in place of the fit, which no fit by these kernels can do better than; and how long each
-        way takes to a loss that every run of the plain loop reaches.
+        Times and their ratio per seed, and how long each way takes to a loss that every run of the plain loop
+        reaches.
     """
     data = _normalised_pairs(demonstrations)
-    steps = epochs * math.ceil(len(data.training) / BATCH)
     plain_s: list[float] = []
     fit_s: list[float] = []
-    floors: list[tuple[float, float]] = []
     plain_curves: list[list[tuple[float, float]]] = []
     fit_curve: list[tuple[float, float]] = []
     for repeat in range(repeats):
@@ -97,9 +91,7 @@ def time_training(demonstrations: Demonstrations, seeds: int, epochs: int, repea
         began = time.process_time()
         fit_curve = _fit(demonstrations, seeds, epochs)
         fit_s.append(time.process_time() - began)
-        floors.append(_floors_s(data.training.shape[1], demonstrations.dof, seeds))
     plain, fit = statistics.median(plain_s), statistics.median(fit_s)
-    products, layers = (steps * float(value) for value in np.median(floors, axis=0))
     setting = f"cAE, {HIDDEN[0]}-{HIDDEN[1]}, batch {BATCH}, {len(data.training)} pairs, {epochs} epochs"
     # What every run of the plain loop reaches: how long until each way gets there.
     goal = max(min(loss for _, loss in curve) for curve in plain_curves)
@@ -108,8 +100,6 @@ def time_training(demonstrations: Demonstrations, seeds: int, epochs: int, repea
         "plain_run_s": ("s", plain),
         f"fit_of_{seeds}_seeds_s": ("s", fit),
         "plain_run_over_fit_per_seed": ("1", seeds * plain / fit),
-        "plain_run_over_products_alone_per_seed": ("1", seeds * plain / products),
-        "plain_run_over_products_and_activations_per_seed": ("1", seeds * plain / layers),
         "loss_of_the_plain_runs": ("1", goal),
         "plain_run_to_that_loss_s": ("s", plain_to_goal),
         f"fit_of_{seeds}_seeds_to_that_loss_s": ("s", _reached(fit_curve, goal)),
@@ -178,37 +168,6 @@ def _fit(demonstrations: Demonstrations, seeds: int, epochs: int) -> list[tuple[
     model.fit(demonstrations, validation=_validation(demonstrations), report=report)
     best = np.median(np.minimum.accumulate(model.history_, axis=0), axis=1)
     return list(zip(clock[1:], best.tolist(), strict=True))
-
-
-def _floors_s(width: int, joints: int, seeds: int) -> tuple[float, float]:
-    """Time of the matrix products alone of one step of S seeds, and with its activations, s."""
-    products: list[Callable[[], object]] = []
-    activations: list[Callable[[], object]] = []
-    for widths in ((width, *HIDDEN, CAE.latent_dim), (CAE.latent_dim + width - joints, *HIDDEN, joints)):
-        for layer, (inputs, outputs) in enumerate(pairwise(widths)):
-            weight, x = torch.randn(seeds, inputs, outputs), torch.randn(seeds, inputs, BATCH)
-            y, of_weight, of_x = torch.randn(seeds, outputs, BATCH), weight.clone(), torch.empty_like(x)
-            products.append(partial(torch.bmm, weight.mT, x, out=torch.empty_like(y)))
-            products.append(partial(torch.bmm, x, y.mT, out=of_weight))
-            if layer or widths[0] != width:
-                products.append(partial(torch.bmm, weight, y, out=of_x))
-            if layer:
-                activations.append(partial(torch.ops.aten.silu.out, x, out=torch.empty_like(x)))
-                backward = torch.ops.aten.silu_backward.grad_input
-                activations.append(partial(backward, x, x, grad_input=torch.empty_like(x)))
-    only, both = _median_s(products), _median_s([*products, *activations])
-    return only, both
-
-
-def _median_s(calls: list[Callable[[], object]]) -> float:
-    """Of 20 rounds of all calls."""
-    took: list[float] = []
-    for _ in range(20):
-        began = time.process_time()
-        for call in calls:
-            call()
-        took.append(time.process_time() - began)
-    return statistics.median(took)
 
 
 def _reached(curve: list[tuple[float, float]], goal: float) -> float | None:
