@@ -206,12 +206,12 @@ def test_help_is_as_the_person_sets_it_and_is_recorded(run: Run, table: Path) ->
         "--time-limit-s",
         1,
     )
-    helped = ("--belief", "distance", "--arbitration", "confidence", "--alpha", 0.4)
+    helped = ("--belief", "boltzmann", "--arbitration", "confidence", "--alpha", 0.4)
     code, out, _ = run(*drive, *helped, "--record", "helped", "--out", "confidence", "--json")
     assert code in (0, 1)
     assert (figures(out)["path_length"] or 0.0) > 0
     said = json.loads(Path("confidence/drives.json").read_text())["about"]
-    assert (said["belief"], said["arbitration"], said["alpha"]["most"]) == ("distance", "confidence", 0.4)
+    assert (said["belief"], said["arbitration"], said["alpha"]["most"]) == ("boltzmann", "confidence", 0.4)
     for episode in read_dataset(Path("helped")).episodes:
         alpha, bound = episode.extras["assist.alpha"][:, 0], episode.extras["assist.bound"][:, 0]
         assert alpha.max() <= 0.4 + 1e-6

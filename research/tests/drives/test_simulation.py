@@ -71,9 +71,7 @@ def test_every_command_keeps_the_limits_and_help_believes_in_the_goal_to_the_end
     ids=[*BELIEFS, "with confidence"],
 )
 def test_every_rule_is_sure_of_the_goal_on_the_way(rule: Rule, arbitration: Arbitration) -> None:
-    # All but the distance alone are sure within 8 s.
-    limit_s = 20.0 if rule is BELIEFS["distance"] else 8.0
-    trace = drive(setup(TableTop(), "stab", arbitration, limit_s, rule), 2, np.random.default_rng(0))
+    trace = drive(setup(TableTop(), "stab", arbitration, 8.0, rule), 2, np.random.default_rng(0))
     assert trace.belief[0] == pytest.approx(1 / 3)
     assert trace.belief[:, 2].max() > max(0.5, *trace.belief[:, :2].max(axis=0))
     assert trace.belief.sum(axis=1) == pytest.approx(1.0)

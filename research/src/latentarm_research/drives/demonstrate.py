@@ -58,8 +58,6 @@ def demonstrate_once(
     task: SceneTask,  # what is done
     choice: int,  # index into the task's choices
     rng: np.random.Generator,  # source of all variation
-    hand: GuidingHand | None = None,  # how the simulated person moves
-    arm: str = "mujoco",  # a simulated arm of the catalogue that can have things about it
     watch: Callable[[SceneArm], None] | None = None,  # sees the arm at every period, such as a camera
 ) -> Demonstration:
     """Guide an arm through one run of a task.
@@ -71,13 +69,13 @@ def demonstrate_once(
         UserError: the arm cannot be used.
     """
     begun = task.begin(choice, rng)
-    person = _Person(task, begun, hand or GuidingHand(), rng)
+    person = _Person(task, begun, rng)
     clock = SimulatedClock()
     samples: list[tuple[Reading, Command]] = []
     states: list[SceneState] = []
     goals = StepGoals(task.robot, begun.goals, begun.steps, begun.scene.names)
     moves: dict[int, GoalMove] = {}
-    with make_scene_arm(arm, task.robot, begun.state, clock.now_s, begun.scene) as driven:
+    with make_scene_arm("mujoco", task.robot, begun.state, clock.now_s, begun.scene) as driven:
         driven.enable()
         for tick in range(int(task.time_limit_s / PERIOD_S)):
             clock.wait_until(tick * PERIOD_S)
@@ -155,12 +153,10 @@ def _name_of(call: _Call) -> str:
 class _Person:
     """Decides where the tool is meant to be, movement by movement."""
 
-    def __init__(
-        self, task: SceneTask, begun: Beginning, hand: GuidingHand, rng: np.random.Generator
-    ) -> None:
+    def __init__(self, task: SceneTask, begun: Beginning, rng: np.random.Generator) -> None:
         self.progress = Progress(begun.steps, begun.failures)
         self._robot = task.robot
-        self._hand = hand
+        self._hand = GuidingHand()
         self._rng = rng
         self._movement: Movement | None = None
         self._began_s = 0.0

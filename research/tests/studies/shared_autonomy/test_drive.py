@@ -1,13 +1,11 @@
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 import pytest
 
 from latentarm.assistance.blending import FixedAlpha
-from latentarm_research.assistance.distance import DistanceBelief
 from latentarm_research.studies.shared_autonomy import drive as drives
-from latentarm_research.studies.shared_autonomy.drive import HELP, NO_HELP, STEP_S, drive, steps_of
+from latentarm_research.studies.shared_autonomy.drive import HELP, NO_HELP, RULE, STEP_S, drive, steps_of
 from latentarm_research.studies.shared_autonomy.measures import (
     EVERY,
     certify,
@@ -52,7 +50,7 @@ def test_help_towards_the_believed_goal_brings_people_there_sooner(scene, straig
 
 
 def test_without_help_belief_does_not_move_the_arm(scene, straight):
-    other = replace(scene, belief=partial(DistanceBelief, beta=3.0)(scene.goals, period_s=STEP_S))
+    other = replace(scene, belief=RULE(scene.goals, beta=10.0, period_s=STEP_S))
     person = of_fixed_expertise(75.0)
     one, two = (driven(where, straight, person, NO_HELP) for where in (scene, other))
     np.testing.assert_array_equal(one.state, two.state)
