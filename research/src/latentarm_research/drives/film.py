@@ -58,7 +58,7 @@ class Camera:
 
 
 WHOLE: Final = Camera(look_at=(0.15, -0.22, 0.36), distance_m=1.5, azimuth_deg=150.0, elevation_deg=-18.0)
-"""Shows all of an arm the size of a Panda, from its base to what it does on a table, with room for the corner."""
+"""All of an arm the size of a Panda, from its base to what it does on a table, with room for the corner."""
 
 SKY: Final = 238  # grey of what is behind everything, which MuJoCo leaves black
 
