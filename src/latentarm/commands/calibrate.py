@@ -33,6 +33,7 @@ def print_board(
     out: Annotated[Path, arg(metavar="FILE", help="A PDF file, which is written.")],
     squares: Squares = _USUAL[0],
     square_mm: SquareMm = _USUAL[1],
+    json: Json = False,
 ) -> int:
     """Write a board to print at its true size: measure a square afterwards, and glue it to something flat.
 
@@ -51,7 +52,9 @@ def print_board(
     axes.imshow(pixels, cmap="gray", interpolation="none", aspect="auto")
     with written_whole(out) as part:
         page.savefig(part, format="pdf")
-    say(f"Print {out} at 100 % on something flat, and measure a square.", False)
+    wide_mm, high_mm = (25.4 * size_inch).tolist()
+    last = f"Print {out} at 100 % on something flat, and measure a square."
+    _tell({"wide_mm": wide_mm, "high_mm": high_mm}, last, json)
     return 0
 
 

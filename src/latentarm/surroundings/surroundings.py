@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from multiprocessing.connection import Connection
-from typing import Literal, final
+from typing import final
 
 from latentarm.core.types import FloatArray, GripperReading, Pose
 from latentarm.robots.scene.thing import Thing
@@ -11,10 +11,6 @@ from latentarm.surroundings.catalogue import TOUCH
 from latentarm.surroundings.grasp import Grasp
 from latentarm.surroundings.process import Inbox
 from latentarm.surroundings.tracker import Tracker
-
-TouchKind = Literal["place", "front", "undo"]
-"""*place*: the thing's middle is below the tool. *front*: its x axis points to the tool. *undo*: forget the
-newest of these."""
 
 
 @final
@@ -44,7 +40,7 @@ class Surroundings:
         if tool is not None:
             self._grasp.update(self.tracker, tool, gripper, now_s)
 
-    def touch(self, name: str, kind: TouchKind, now_s: float) -> bool:
+    def touch(self, name: str, kind: touch.TouchKind, now_s: float) -> bool:
         """Take a person's word about a thing, with the tool where it is; False where it cannot be taken."""
         tracker = self.tracker
         if name not in tracker.names or self._tool is None:

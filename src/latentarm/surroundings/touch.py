@@ -1,13 +1,17 @@
 """A person says where a thing is by bringing the tool to it."""
 
 from math import atan2
-from typing import Final
+from typing import Final, Literal
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from latentarm.core.types import FloatArray, Pose
 from latentarm.surroundings.contract import Sighting
+
+TouchKind = Literal["place", "front", "undo"]
+"""*place*: the thing's middle is below the tool. *front*: its x axis points to the tool. *undo*: forget the
+newest of these."""
 
 HOLD_S: Final = 600.0
 """A touch counts so long: a thing stays where it is unless somebody moves it."""

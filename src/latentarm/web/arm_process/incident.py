@@ -25,6 +25,7 @@ from latentarm.core.call_log import MOST_FILE_BYTES, CallLog
 from latentarm.core.errors import UserError
 from latentarm.core.exact_json import as_text_json, of_json, to_json
 from latentarm.core.journal_limits import JournalLimits
+from latentarm.core.untrusted.documents import parse_object
 from latentarm.core.untrusted.names import clean_name
 from latentarm.core.untrusted.opening import read_bytes
 from latentarm.models.saving import CONFIG_NAME, WEIGHTS_NAME
@@ -200,7 +201,7 @@ def _content(path: Path, profile: str | None) -> bytes:
             case _:
                 return value
 
-    return json.dumps(unnamed(json.loads(content))).encode()
+    return json.dumps(unnamed(parse_object(content, str(path)))).encode()
 
 
 def _parts(setup: DriveSetup) -> dict[str, str]:

@@ -2,28 +2,31 @@
 
 from collections.abc import Callable, Mapping
 from multiprocessing.connection import Connection
-from typing import Final, final
+from typing import TYPE_CHECKING, Final, final
 
 import numpy as np
 
 from latentarm.arms.contract import SceneArm
 from latentarm.core.types import FloatArray, Pose, StepRecord
 from latentarm.robots.kinematics.pose_rows import thing_rows
-from latentarm.surroundings.surroundings import Surroundings, TouchKind
+from latentarm.surroundings.surroundings import Surroundings
+from latentarm.surroundings.touch import TouchKind
 from latentarm.surroundings.tracker import Whereabouts
-from latentarm.web.arm_process.drive_setup import PERIOD_S, DriveSetup
 from latentarm.web.protocol.notice import Notice
 from latentarm.web.protocol.report import SeenThing, Things
 from latentarm.web.protocol.things import things_at
 
-SOON_S: Final = 3.0 * PERIOD_S
-"""Learned motions end so long before a thing is lost, so that a late tick gives a model nothing too old."""
+if TYPE_CHECKING:
+    from latentarm.web.arm_process.drive_setup import DriveSetup
+
+SOON_S: Final = 0.03
+"""Learned motions end three periods before a thing is lost, so that a late tick gives a model nothing too old."""
 
 _EVERY: Final = 4  # ticks between two looks: 25 looks per second; pages interpolate
 
 
 def follow(
-    setup: DriveSetup, known: Surroundings | None, sightings: Connection | None
+    setup: "DriveSetup", known: Surroundings | None, sightings: Connection | None
 ) -> Surroundings | None:
     """The followed things of a setup: those ``known`` from before if they are the same; None for none."""
     if not (things := setup.tracked):
@@ -39,7 +42,7 @@ class ThingPoses:
 
     def __init__(
         self,
-        setup: DriveSetup,
+        setup: "DriveSetup",
         arm: SceneArm | None,
         followed: Surroundings | None,
         now_s: Callable[[], float],
@@ -52,7 +55,7 @@ class ThingPoses:
         self._now_s = now_s
         self._recorded: tuple[str, ...] = ()
 
-    def surroundings(self, setup: DriveSetup, arm: SceneArm | None) -> Callable[[], FloatArray] | None:
+    def surroundings(self, setup: "DriveSetup", arm: SceneArm | None) -> Callable[[], FloatArray] | None:
         """What tells a `Step` where the things are that its controller looks at."""
         if self._followed is None or not self._needed:
             return setup.surroundings(arm)

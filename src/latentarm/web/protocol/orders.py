@@ -9,7 +9,7 @@ from pydantic import Field, TypeAdapter, ValidationError
 
 from latentarm.alignment.contract import Seat
 from latentarm.core.types import GripperAsk
-from latentarm.surroundings.surroundings import TouchKind
+from latentarm.surroundings.touch import TouchKind
 from latentarm.web.protocol.notice import Message
 
 ModeName = Literal["latent", "assisted", "end_effector"]
