@@ -118,9 +118,8 @@ def _stick(spec: Any, body: Any, image: NDArray[Any], wide_m: float, pose: Float
 
 def _looking(eye: FloatArray, at: FloatArray) -> FloatArray:
     ahead: FloatArray = (at - eye) / np.linalg.norm(at - eye)
-    right: FloatArray = np.array([ahead[1], -ahead[0], 0.0]) / np.hypot(ahead[0], ahead[1])
-    down: FloatArray = np.cross(ahead, right)
-    return frame(np.stack([right, down, ahead], axis=1), eye)
+    right = np.array([ahead[1], -ahead[0], 0.0]) / np.hypot(ahead[0], ahead[1])
+    return frame(np.stack([right, np.cross(ahead, right), ahead], axis=1).astype(np.float64), eye)
 
 
 def _quaternion(rotation: FloatArray) -> FloatArray:

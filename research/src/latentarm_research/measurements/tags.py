@@ -164,7 +164,7 @@ def _written(folder: Path, room: Room, rng: np.random.Generator) -> Path:
     return folder / "tags.toml"
 
 
-def _beside(texts: list[str], seconds: float) -> dict[str, float | None]:
+def _beside(texts: list[str], seconds: float) -> dict[str, float]:
     """A loop with the arm's priority and a source's process at work, and what they cost."""
     before = os.times()
     process = SourceProcess(texts, tuple(PLACES))
