@@ -45,7 +45,9 @@ export function layOutNames(names, kept, avoided, { width, height }) {
       if (!places.length) continue;
       const { box } = places.reduce((best, one) => (one.away < best.away ? one : best));
       taken.push(box);
-      const from = { x: x < box.left ? box.left : box.right, y: box.top + (ROW_PX - 2) / 2 };
+      // From the nearest edge: at the side in the middle, above or below straight over the point.
+      const fromX = Math.min(Math.max(x, box.left), box.right);
+      const from = { x: fromX, y: fromX !== x ? box.top + (ROW_PX - 2) / 2 : y < box.top ? box.top : box.bottom };
       const inTheWay = [...kept.filter((other) => !holds(other, x, y)), ...taken.slice(0, -1)];
       const clear = !holds(box, x, y) && !inTheWay.some((other) => crosses(from, { x, y }, other));
       return { left: box.left, top: box.top, cut, leader: clear ? from : null };

@@ -14,7 +14,7 @@ const ALONG = [0.25, 0.5, 0.75];
 /** How wide a link of the arm is, about its joint, m. */
 const LINK_M = 0.07;
 /** In a view narrower than this, px, shares are left out, and names are told alone that go before the others. */
-const NARROW_PX = 384;
+const NARROW_PX = 480;
 /** The corners of a view that others use: its name, and the button under it, px. */
 const CAPTION = { wide: 92, high: 32 };
 const BUTTON_PX = 52;
