@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from latentarm.web.arm_process.drive_setup import DriveSetup
 
 SOON_S: Final = 0.03
-"""Learned motions end three periods before a thing is lost, so that a late tick gives a model nothing too old."""
+"""Learned motions end three periods before a thing is lost: a late tick gives no model what is too old."""
 
 _EVERY: Final = 4  # ticks between two looks: 25 looks per second; pages interpolate
 
