@@ -34,8 +34,8 @@ def required(name: str, tmp_path: Path) -> list[object]:
 
 
 SLOW = {"clearance", "zones", "help", "way-back", "calibration"}
-# Two need a trained run and a Chromium (tests/web/browser/test_fault_times.py), one a log that is not ours, one
-# OpenGL without a screen.
+# Two need a trained run and a Chromium (tests/web/browser/test_fault_times.py), one a log that is not ours,
+# one OpenGL.
 ELSEWHERE = {"page-stops", "page-latency", "people", "tags"}
 
 
