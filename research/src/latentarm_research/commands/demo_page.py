@@ -8,6 +8,7 @@ from typing import Final, final
 from latentarm.core.errors import UserError
 from latentarm.core.style import save_figure
 from latentarm.core.types import Row
+from latentarm.evaluation.looks import look_of
 from latentarm.evaluation.table import format_figure, markdown_table, measure_name, series_name
 from latentarm.tasks.scene_task import SceneTask
 from latentarm_research.drives.drives import Planned
@@ -46,7 +47,7 @@ def film(out: Path, model: str, planned: Sequence[Planned], driven: Sequence[Tra
         times, pictures = seen.frames(CAMERA)
     except UserError as error:
         return Filmed("", f"{FILM} is left out. {error}")
-    heading = f"Latent actions, {model}; person and arm simulated"
+    heading = f"Latent actions, {look_of(model).label}; person and arm simulated"
     save_figure(strip(heading, times, pictures, trace), out / FILM)
     return Filmed(
         f"![A drive in eight pictures: the fork goes over a marshmallow, into it, and lifts it]({FILM})\n\n",
