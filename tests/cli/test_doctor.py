@@ -10,6 +10,7 @@ import pytest
 from wooden_server import wooden_server
 
 from latentarm import cli
+from latentarm.commands import doctor
 from latentarm.core.machine import examine_machine
 from latentarm.robots.panda import panda
 from latentarm.web.arm_process.drive_setup import Spec
@@ -28,6 +29,12 @@ from latentarm.core.machine import examine_machine
 print(next(examine_machine(Path("."), 0, 0.1)))
 """
 TAKE = "import os; os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(10))"
+
+
+@pytest.fixture(autouse=True)
+def fixture_short(monkeypatch):
+    """Pauses are measured as they are for people, but not for as long."""
+    monkeypatch.setattr(doctor, "_MEASURED_S", 0.1)
 
 
 def found(capsys, *options):
