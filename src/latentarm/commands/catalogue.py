@@ -64,17 +64,19 @@ OWN: Final = CommandSet(
         ),
         "export": _ours(
             "export:export",
-            "List what was recorded, and export it to a native dataset (LeRobotDataset v3.0).",
+            "List what was recorded, and export it to a native dataset (LeRobotDataset v3.0) or to MCAP.",
         ),
         "replay": _ours(
             "replay:replay",
             "Decide again what an arm was commanded on the page, and compare every command to the bit.",
         ),
         "report": _ours(
-            "report:report", "Pack into one file, to send to somebody, what happened and with which settings."
+            "report:report",
+            "Pack what happened into one file: versions, settings, stops, every reading and command, the log's end.",
         ),
         "doctor": _ours(
-            "doctor:doctor", "Look at this computer and the way to an arm, before somebody drives."
+            "doctor:doctor",
+            "Look at this computer: priority, cores, pauses, clock, disk, GL, the page's port; and at an arm.",
         ),
         "arms list": _ours(
             "arms:list_arms",
@@ -85,13 +87,16 @@ OWN: Final = CommandSet(
             "Look at a real arm without moving it: what it is, whether it can be driven, and if not, why.",
         ),
         "calibrate board": _ours(
-            "calibrate:print_board", "Write a board to print, which the other two look at."
+            "calibrate:print_board",
+            "Write a board to print at its true size: measure a square afterwards, and glue it to something flat.",
         ),
         "calibrate intrinsics": _ours(
-            "calibrate:intrinsics", "Find the optics of a camera from pictures of a board."
+            "calibrate:intrinsics",
+            "Find the optics of a camera from 10 or more pictures of a board.",
         ),
         "calibrate hand-eye": _ours(
-            "calibrate:hand_eye", "Find where a camera is from pictures of a board at poses of the arm."
+            "calibrate:hand_eye",
+            "Find where a camera is, from pictures of the board at 12 or more poses that you guide the arm to.",
         ),
         "robots": _ours("robots:robots", "List the robots, or show one: joints, limits and end-effector."),
     },
