@@ -55,11 +55,11 @@ Run = Callable[..., tuple[int, str, str]]
 
 @pytest.mark.parametrize(
     "command",
-    [name for name in COMMANDS if name not in ("reproduce", "measure", "study", "arms")]
+    [name for name in COMMANDS if name not in ("reproduce", "measure", "study", "arms", "calibrate")]
     + [f"reproduce {study}" for study in STUDIES]
     + [f"measure {name}" for name in MEASUREMENTS]
     + [f"study {verb}" for verb in VERBS]
-    + ["arms list", "arms check"],
+    + ["arms list", "arms check", "calibrate board", "calibrate intrinsics", "calibrate hand-eye"],
 )
 def test_every_command_shows_an_example_and_json(run: Run, command: str) -> None:
     code, out, _ = run(*command.split(), "--help")

@@ -35,7 +35,7 @@ def print_board(
     square_mm: SquareMm = _USUAL[1],
     json: Json = False,
 ) -> int:
-    """Write a board to print at its true size: measure a square afterwards, and glue it to something flat.
+    """Write a board to print at its true size; measure a square, and glue it to something flat.
 
     For example: latentarm calibrate board --out board.pdf
     """
@@ -118,7 +118,7 @@ def hand_eye(
     cameras: Cameras = _USUAL[2],
     json: Json = False,
 ) -> int:
-    """Find where a camera is, from pictures of the board at 12 or more poses that you guide the arm to.
+    """Find where a camera is, from pictures of the board at 12 or more poses of the arm.
 
     For example: latentarm calibrate hand-eye front --pictures place --robot fr3 --arm franka://172.16.0.2
     """

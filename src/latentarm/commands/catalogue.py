@@ -72,11 +72,11 @@ OWN: Final = CommandSet(
         ),
         "report": _ours(
             "report:report",
-            "Pack what happened into one file: versions, settings, stops, every reading and command, the log's end.",
+            "Pack what happened into one file: versions, settings, stops, readings, commands, logs.",
         ),
         "doctor": _ours(
             "doctor:doctor",
-            "Look at this computer: priority, cores, pauses, clock, disk, GL, the page's port; and at an arm.",
+            "Look at this computer: priority, cores, pauses, clock, disk, GL, and the port; and at an arm.",
         ),
         "arms list": _ours(
             "arms:list_arms",
@@ -88,7 +88,7 @@ OWN: Final = CommandSet(
         ),
         "calibrate board": _ours(
             "calibrate:print_board",
-            "Write a board to print at its true size: measure a square afterwards, and glue it to something flat.",
+            "Write a board to print at its true size; measure a square, and glue it to something flat.",
         ),
         "calibrate intrinsics": _ours(
             "calibrate:intrinsics",
@@ -96,7 +96,7 @@ OWN: Final = CommandSet(
         ),
         "calibrate hand-eye": _ours(
             "calibrate:hand_eye",
-            "Find where a camera is, from pictures of the board at 12 or more poses that you guide the arm to.",
+            "Find where a camera is, from pictures of the board at 12 or more poses of the arm.",
         ),
         "robots": _ours("robots:robots", "List the robots, or show one: joints, limits and end-effector."),
     },

@@ -117,7 +117,7 @@ def doctor(
     ),
     json: Json = False,
 ) -> int:
-    """Look at this computer: priority, cores, pauses, clock, disk, GL, the page's port; and at an arm.
+    """Look at this computer: priority, cores, pauses, clock, disk, GL, and the port; and at an arm.
 
     Exit code 1 for what matters with a real arm, 2 for what must be changed first. For example:
     latentarm doctor --arm franka://172.16.0.2 --robot fr3

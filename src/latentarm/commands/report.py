@@ -46,7 +46,7 @@ def report(
     ] = None,
     json: Json = False,
 ) -> int:
-    """Pack what happened into one file: versions, settings, stops, every reading and command, the log's end.
+    """Pack what happened into one file: versions, settings, stops, readings, commands, logs.
 
     It has no names of people, addresses or PINs, and no pictures. For example: latentarm report teleop
     """
