@@ -65,7 +65,15 @@ def alive_in_group(group):
     return [row[2] for row in rows if row[0] == str(group) and not row[1].startswith("Z")]
 
 
-@pytest.mark.parametrize("how", ["window", "SIGHUP", "SIGTERM", "SIGTERM to all"])
+@pytest.mark.parametrize(
+    "how",
+    [
+        "window",  # a hang-up
+        "SIGTERM",
+        pytest.param("SIGHUP", marks=pytest.mark.slow),
+        pytest.param("SIGTERM to all", marks=pytest.mark.slow),
+    ],
+)
 def test_however_a_server_is_ended_the_drive_is_kept_the_arm_stops_and_all_can_be_read(tmp_path, how):
     with in_a_terminal(tmp_path) as (server, site, close_window), site.page() as page:
         page.send(type="record", on=True, task="until the end")
