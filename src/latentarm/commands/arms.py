@@ -36,8 +36,8 @@ def check_arm_at(
 ) -> Findings:
     """Check a real arm, such as ``franka://172.16.0.2``, before it is driven from the page; nothing moves.
 
-    ``robot`` describes the arm where there is no run. With ``guide`` it is looked at in three more poses, see
-    `latentarm.commands.guided_check.look_guided`. Raises UserError where the address, the run or the
+    ``robot`` describes the arm where there is no run. ``guide`` compares its tool pose at three more poses,
+    see `latentarm.commands.guided_check.look_guided`. Raises UserError where the address, the run or the
     robot cannot be used; a refusal by the arm is among the findings instead.
     """
     from latentarm.commands.abilities import abilities

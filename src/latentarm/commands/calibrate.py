@@ -61,7 +61,7 @@ def print_board(
 def intrinsics(
     camera: Annotated[Positional[str], arg(metavar="NAME=ADDRESS", help="The camera, as for `teleop`.")],
     pictures: Annotated[
-        Path, arg(metavar="DIR", help="Pictures of the board; where there are none, they are taken.")
+        Path, arg(metavar="DIR", help="Pictures of the board; a missing folder starts taking them.")
     ],
     squares: Squares = _USUAL[0],
     square_mm: SquareMm = _USUAL[1],
@@ -101,7 +101,7 @@ def hand_eye(
     pictures: Annotated[
         Path,
         arg(
-            metavar="DIR", help="Pictures of the board and joints.json; where there are none, they are taken."
+            metavar="DIR", help="Pictures of the board and joints.json; a missing folder starts taking them."
         ),
     ],
     robot: Annotated[str, arg(help="The arm: a robot's name, or the path of an MJCF or URDF file.")],

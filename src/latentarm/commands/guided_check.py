@@ -20,7 +20,7 @@ _LOOK_S: Final = 0.02
 def look_guided(address: str, robot: Robot, ask: Callable[[str], None]) -> Findings:
     """Look at three poses. ``ask`` says what to do and waits until it is done.
 
-    The arm is let go only while the person is asked, and holds its position while it is looked at.
+    The person can move the arm only while they are asked; it holds its position while its pose is read.
     """
     facts: list[Fact] = []
     refusals: list[str] = []

@@ -51,7 +51,7 @@ def report(
     It has no names of people, addresses or PINs, and no pictures. For example: latentarm report teleop
     """
     files, left_out = _chosen(folder, drive)
-    told = [_told(file) for file in files]
+    incidents = [_summary(file) for file in files]
     hidden = {**dict.fromkeys(_people(folder), "Somebody"), str(folder.absolute()): folder.name}
     about = {
         "made_utc": datetime.now(UTC).isoformat(timespec="seconds"),
@@ -59,7 +59,7 @@ def report(
         "machine": [
             asdict(one) for one in examine_machine(folder, JournalLimits().least_free_bytes, _LOOK_S)
         ],
-        "incidents": told,
+        "incidents": incidents,
     }
     with written_whole(out) as part, ZipFile(part, "w", ZIP_DEFLATED) as packed:
         packed.writestr("report.json", _unnamed(json_format.dumps(about, indent=1), hidden))
@@ -70,7 +70,7 @@ def report(
             packed.write(file, f"incidents/{file.name}", ZIP_STORED)
     if json:
         print(json_format.dumps(about, indent=2))
-    for one in told:
+    for one in incidents:
         stops = sum("stopped" in event for event in one["events"])
         said = one["damaged"] or f"{one['ticks']:,} ticks, {stops} stops"
         say(f"{one['file']}: {said}", json)
@@ -100,8 +100,8 @@ def _chosen(folder: Path, drive: str | None) -> tuple[list[Path], list[Path]]:
     return files[:most], files[most:]
 
 
-def _told(file: Path) -> dict[str, Any]:
-    """What an incident file says, to be read without replaying it."""
+def _summary(file: Path) -> dict[str, Any]:
+    """Summary of an incident file, without replaying it."""
     from latentarm.web.arm_process.incident import VERSION
 
     lines = read_calls(file)

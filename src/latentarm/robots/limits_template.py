@@ -1,4 +1,4 @@
-"""A limits file to fill in: what is known of a robot is stated, and the rest is asked for."""
+"""A template of a limits file: it states the known limits of a robot and leaves the others blank."""
 
 import json
 import re

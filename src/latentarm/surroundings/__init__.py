@@ -1,1 +1,1 @@
-"""Where the things about an arm are: sources that see them, and what is believed of each."""
+"""Perception of the things around an arm: sources of sightings, and tracking."""

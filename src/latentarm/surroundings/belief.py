@@ -1,4 +1,4 @@
-"""What is believed of where one thing is, and how a sighting agrees with it or changes it."""
+"""Pose estimate of one thing, and its update by sightings."""
 
 import math
 from dataclasses import dataclass, replace
@@ -16,7 +16,7 @@ GATE: Final = 4.0
 
 DRIFT_M_S: Final = 0.02
 DRIFT_RAD_S: Final = 0.1
-"""How much less sure a belief becomes with its age, as standard deviations."""
+"""Growth of the standard deviations with age."""
 
 MOVED_M_S: Final = 0.1
 MOVED_RAD_S: Final = 0.5
@@ -27,7 +27,7 @@ MOST_MOVED_S: Final = 0.5
 @final
 @dataclass(frozen=True, eq=False)
 class Belief:
-    """Where a thing is believed to be, as of the newest sighting behind it."""
+    """Estimated pose of a thing at the time of its newest sighting."""
 
     pose: Pose
     position_sd_m: float
@@ -38,12 +38,12 @@ class Belief:
 
     @staticmethod
     def of(sighting: Sighting, source: str, hold_s: float) -> "Belief":
-        """What a single sighting makes believe."""
+        """The estimate from a single sighting."""
         sd_m, sd_rad = sighting.position_sd_m, sighting.orientation_sd_rad
         return Belief(sighting.pose, sd_m, sd_rad, sighting.time_s, hold_s, source)
 
     def away(self, pose: Pose) -> float:
-        """How far another pose is from it, m."""
+        """Distance to another pose, m."""
         return float(np.linalg.norm(pose.position - self.pose.position))
 
     def counts(self, now_s: float) -> bool:

@@ -21,7 +21,7 @@ _SKEW: Final = 1e-3  # largest error of a rotation matrix
 @final
 @dataclass(frozen=True, eq=False)
 class Sighting:
-    """Where a source saw a thing, once.
+    """One detection of a thing by a source.
 
     Attributes:
         name: of the thing, as the task and the model name it.

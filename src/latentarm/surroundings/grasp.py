@@ -1,4 +1,4 @@
-"""Which thing the tool carries: what the fingers close on, and food that a fork enters."""
+"""Detects what the tool carries: a thing between the fingers, or food on the fork."""
 
 import math
 from collections.abc import Sequence
@@ -53,7 +53,7 @@ class Grasp:
             tracker.carry(nearest, sensed=True)
 
     def _away(self, tracker: Tracker, name: str, tool: Pose, now_s: float) -> float:
-        """How far the tool's point is from a thing's solids, m; infinite where it has not been seen."""
+        """Distance from the tool's point to a thing's solids, m; infinite for an unseen thing."""
         pose = tracker.look(name, now_s).pose
         if pose is None:
             return math.inf

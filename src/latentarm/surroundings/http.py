@@ -111,7 +111,7 @@ class HttpSource(Source):
         return self._hold_s
 
     def read(self) -> Sequence[Sighting]:
-        """What was posted since the last call, the newest of each thing."""
+        """The newest post of each thing since the last call."""
         with self._lock:
             found, self._newest = self._newest, {}
         return tuple(found.values())

@@ -57,5 +57,5 @@ class Surroundings:
         return said is not None
 
     def rows(self, names: Sequence[str], now_s: Callable[[], float]) -> Callable[[], FloatArray]:
-        """What gives a `Step` the poses of these things, at the moment that it asks."""
+        """A function that returns the poses of these things at the time of the call."""
         return lambda: self.tracker.rows(names, now_s())

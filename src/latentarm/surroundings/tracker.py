@@ -1,4 +1,4 @@
-"""Where several things are believed to be, from all sources, what the tool carries, and what people say."""
+"""Tracks several things by sightings of all sources, by touch, and with the tool that carries them."""
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
@@ -34,7 +34,7 @@ RELEASED_SD_RAD: Final = 0.1  # a thing may slip as it is let go
 @final
 @dataclass(frozen=True, eq=False)
 class Whereabouts:
-    """What is known of where a thing is."""
+    """Tracking state and pose of a thing."""
 
     seen: Seen
     pose: Pose | None = None  # where it is, or was last; None where it has not been seen
@@ -161,7 +161,7 @@ class Tracker:
         self.jumped = frozenset(found)
 
     def look(self, name: str, now_s: float) -> Whereabouts:
-        """What is known of one thing."""
+        """State and pose of one thing."""
         track = self._tracks[name]
         if track.belief is None:
             return Whereabouts("unseen")
@@ -175,7 +175,7 @@ class Tracker:
         return Whereabouts("doubted" if doubted else "seen", track.belief.pose, age_s, source)
 
     def unknown(self, names: Sequence[str], now_s: float) -> tuple[str, ...]:
-        """Which of these things nobody may rely on."""
+        """The things among these without a valid pose."""
         return tuple(name for name in names if not self.look(name, now_s).known)
 
     def rows(self, names: Sequence[str], now_s: float) -> FloatArray:

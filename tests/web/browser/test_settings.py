@@ -125,3 +125,16 @@ def test_two_switches_go_on_and_choose(person, arm):
     lit.get_by_text("Other mode").wait_for()
     person.get_by_role("button", name="Switch", exact=True).click(delay=80)
     arm.wait(lambda: arm.state["mode"] == "end_effector")
+
+
+def test_after_a_click_on_done_enter_enables_and_keys_find_their_place_again(open_page, seat, arm):
+    page = seat(open_page(), arm)  # closes Settings by a click
+    page.keyboard.press("Enter")
+    arm.wait(lambda: arm.enabled)
+    expect(page.get_by_role("dialog")).to_be_hidden()
+    page.keyboard.press("Escape")
+    page.locator("#settings-open").focus()
+    page.keyboard.press("Enter")
+    expect(page.get_by_role("dialog")).to_be_visible()
+    page.keyboard.press("Escape")
+    expect(page.locator("#settings-open")).to_be_focused()

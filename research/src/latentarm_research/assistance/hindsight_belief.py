@@ -28,7 +28,7 @@ class HindsightBelief(Belief):
 
     Args:
         goals: (G, n), the goals' configurations, rad.
-        robot: the arm; its first tool is looked at.
+        robot: the arm; only its first tool counts.
         options: see `Belief`; the period is 1/40 s, the floor 0 and the most 0.99 where they are not given.
 
     Raises:

@@ -18,7 +18,7 @@ from latentarm.robots.robot import Robot
 @final
 @dataclass(frozen=True)
 class RetargetingCosts:
-    """What the objectives of retargeting weigh against each other; all values are assumptions."""
+    """Weights of the objectives of retargeting; all values are assumptions."""
 
     # what a rad of wrong orientation counts, m: the tool's place matters more than its turn
     rotation_m: float = 0.2

@@ -66,7 +66,7 @@ class KnowsTheArm:
 
     def __init__(
         self,
-        chain: Chain,  # the arm; its first tool is looked at
+        chain: Chain,  # the arm; only its first tool counts
         limits: LoopLimits,
     ) -> None:
         self._chain = chain

@@ -27,7 +27,7 @@ class Expectation:
         UserError: the directions are invalid, or the speed is not positive.
     """
 
-    chain: Chain  # the arm; its first tool is looked at
+    chain: Chain  # the arm; only its first tool counts
     directions: FloatArray  # (d, 3), unit vectors of the base frame at right angles to each other
     speed_m_s: float  # of the tool at a full push along one axis, m/s
 

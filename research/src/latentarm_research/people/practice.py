@@ -24,5 +24,5 @@ class Practice:
         trial: int,  # number of trials before this one
         practice_s: float = 0.0,  # practised before the first trial, s
     ) -> float:
-        """What something takes in a trial, as a share of what it takes in the first without practice."""
+        """Effort in a trial, as a share of that in the first trial without practice."""
         return (1.0 + trial + practice_s / TRIAL_S) ** -self.exponent

@@ -34,7 +34,7 @@ UNLABELLED: Final = 1000  # contexts without an answer, in which the priors appl
 class MainMotions:
     """People who expect each axis of the stick to be one of the two motions that a task mostly takes."""
 
-    chain: Chain  # the arm; its first tool is looked at
+    chain: Chain  # the arm; only its first tool counts
     # (2, 6), unit vectors at right angles: linear velocity, and angular velocity times `ROTATION_WEIGHT_M`
     directions: FloatArray
     speed_m_s: float  # along one of them at a full push, m/s

@@ -20,7 +20,7 @@ _MARKER: Final = 0.75  # side of a marker as a share of a square's
 @final
 @dataclass(frozen=True, eq=False)
 class BoardView:
-    """What one picture shows of a board."""
+    """Corners of a board found in one picture."""
 
     points: FloatArray  # (N, 3), inner corners in the board's frame, m
     pixels: FloatArray  # (N, 2), the same in the picture, px

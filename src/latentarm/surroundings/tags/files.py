@@ -85,7 +85,7 @@ class CameraEntry(_Placed):
         return Lens(self.size_px, matrix, np.array(self.distortion))
 
     def source(self, name: str) -> CameraSource:
-        """Where its pictures come from."""
+        """The source of its pictures."""
         return parse_cameras([f"{name}={self.address}"])[0]
 
     @classmethod

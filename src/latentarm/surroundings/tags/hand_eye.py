@@ -1,4 +1,4 @@
-"""Where a camera is: fixed in the room with a board in the gripper, or on the wrist with a fixed board."""
+"""Hand-eye calibration: a fixed camera with a board in the gripper, or a wrist camera with a fixed board."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -45,7 +45,7 @@ class Shot:
 @final
 @dataclass(frozen=True, eq=False)
 class HandEye:
-    """Where a camera is, and how well the poses agree on it."""
+    """Pose of a camera, and the residuals of its calibration."""
 
     camera: FloatArray  # (4, 4), its pose in the frame of the base or of the tool, m
     residual_mm: float  # RMS distance of the board from where the arm has it
@@ -156,7 +156,7 @@ class _Problem:
         )
 
     def residuals(self, found: tuple[FloatArray, FloatArray]) -> tuple[FloatArray, FloatArray]:
-        """How far the board is from where the arm has it, at each pose, mm and degrees."""
+        """Residuals of the board at each pose, mm and degrees."""
         off = inverse(found[1]) @ self._arm @ found[0] @ self._seen
         turn = Rotation.from_matrix(off[:, :3, :3]).magnitude()
         return 1000.0 * np.linalg.norm(off[:, :3, 3], axis=-1), np.degrees(turn)

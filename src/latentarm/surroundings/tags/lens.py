@@ -24,7 +24,7 @@ class Lens:
         return float(self.matrix[0, 0] + self.matrix[1, 1]) / 2.0
 
     def normalised(self, pixels: FloatArray) -> FloatArray:
-        """Where points (..., 2), px, lie on the plane at depth 1 without distortion, (..., 2)."""
+        """Undistorted coordinates (..., 2) of points (..., 2), px, on the plane at depth 1."""
         flat = np.ascontiguousarray(pixels, np.float64).reshape(-1, 1, 2)
         # The iteration of undistortPoints alone stops at 1e-2 px.
         criteria = (cv2.TERM_CRITERIA_COUNT + cv2.TERM_CRITERIA_EPS, 40, 1e-9)

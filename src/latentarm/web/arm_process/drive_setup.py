@@ -222,7 +222,7 @@ class DriveSetup:
 
     @property
     def settings(self) -> dict[str, Any]:
-        """What was chosen and the limits, as JSON to read, without names of people and addresses."""
+        """Settings and limits as readable JSON, without names of people and addresses."""
         spec = self.spec
         chosen = ("own_task", "choice", "seed", "seat", "shadow", "idle_s")
         return {

@@ -78,7 +78,7 @@ def incident_files(path: Path) -> list[Path]:
 
 
 def began(file: Path) -> datetime | None:
-    """When a file began, by its name; None if its name does not say."""
+    """Start of a file, from its name; None if the name has no time."""
     try:
         return datetime.strptime(file.name.removesuffix(SUFFIX), _STAMP).replace(tzinfo=UTC)
     except ValueError:

@@ -1,4 +1,4 @@
-"""Where the things about an arm are, for pages, models and recordings: the simulation's truth, or beliefs."""
+"""Poses of the things around an arm for pages, models and recordings, simulated or tracked."""
 
 from collections.abc import Callable, Mapping
 from multiprocessing.connection import Connection
@@ -56,7 +56,7 @@ class ThingPoses:
         self._recorded: tuple[str, ...] = ()
 
     def surroundings(self, setup: "DriveSetup", arm: SceneArm | None) -> Callable[[], FloatArray] | None:
-        """What tells a `Step` where the things are that its controller looks at."""
+        """A function that gives a `Step` the poses of the things in its context."""
         if self._followed is None or not self._needed:
             return setup.surroundings(arm)
         return self._followed.rows(self._needed, self._now_s)
@@ -97,7 +97,7 @@ class ThingPoses:
         return thing_rows(self._poses(), self._recorded)
 
     def believed(self) -> Mapping[str, Pose] | None:
-        """Where the followed things are, or were last; None while one has not been seen."""
+        """Latest poses of the tracked things; None while one has not been seen."""
         found = {name: where.pose for name, where in self._all()}
         return None if None in found.values() else {name: pose for name, pose in found.items() if pose}
 

@@ -56,7 +56,7 @@ class GripperState(Message):
 
 @final
 class SeenThing(Message):
-    """How a thing's place is known, see `latentarm.surroundings.tracker.Whereabouts`."""
+    """Tracking state of a thing, see `latentarm.surroundings.tracker.Whereabouts`."""
 
     name: str
     seen: Seen

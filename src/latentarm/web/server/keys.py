@@ -26,7 +26,7 @@ _MOST_VISITORS: Final = 64
 
 @final
 class Keys:
-    """Who may open the page.
+    """Access to the page by links and cookies.
 
     The first link of a start makes a host: it is printed for the person who started the server.
 

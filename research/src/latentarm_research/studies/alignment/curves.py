@@ -22,7 +22,7 @@ CHOICES: Final = (PRIORS_AT_RANDOM, AT_RANDOM, CHOSEN)
 
 @dataclass(frozen=True, eq=False)
 class CurveResult:
-    """What was measured."""
+    """Results of one cell."""
 
     cell: AlignmentCell
     # choice -> number of answers -> (R,), relative error of each run on the held-out motions

@@ -52,7 +52,7 @@ class AlignedDrive:
 
 @dataclass(frozen=True, eq=False)
 class DrivesResult:
-    """What was measured."""
+    """Results of one cell."""
 
     cell: AlignedDriveCell
     # condition -> all drives, from the same starts in the same order everywhere

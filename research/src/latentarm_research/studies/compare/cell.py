@@ -53,7 +53,7 @@ class FoldCell:
 
 @dataclass(frozen=True, eq=False)
 class FoldResult:
-    """What was measured."""
+    """Results of one cell."""
 
     place: Place  # of the cell
     figures: Mapping[str, FloatArray]  # measure -> (S,), one figure per seed

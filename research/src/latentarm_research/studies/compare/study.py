@@ -58,7 +58,7 @@ class Asked:
 
 @dataclass(frozen=True, eq=False)
 class CompareResults:
-    """What was measured."""
+    """Results of one cell."""
 
     results: Sequence[FoldResult]  # of all cells
     whole: Sequence[FoldResult]  # of those that have all of a fold's demonstrations

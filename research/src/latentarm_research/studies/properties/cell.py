@@ -48,7 +48,7 @@ class PropertiesCell:
 
 @dataclass(frozen=True, eq=False)
 class PropertiesResult:
-    """What was measured."""
+    """Results of one cell."""
 
     cell: PropertiesCell
     # measure -> (S,), one figure per seed; each seed has demonstrations of its own

@@ -85,7 +85,7 @@ class Outcome:
 
 @dataclass(frozen=True, eq=False)
 class AutonomyResult:
-    """What was measured."""
+    """Results of one cell."""
 
     cell: AutonomyCell
     outcomes: tuple[Outcome, ...]  # of every method and person

@@ -2,6 +2,7 @@
 
 import { byId, create } from "../layout/dom.js";
 import { say, sayNumber, sayPercent } from "../layout/words.js";
+import { unfocus } from "../inputs/keyboard.js";
 import { keyWords } from "../inputs/keys.js";
 import { attachLanguage } from "./language.js";
 import { attachPadSection } from "./pad_section.js";
@@ -44,12 +45,13 @@ export function attachSettingsDialog(dialog, opener, settings) {
   };
 
   const chooser = attachPersonChoice(byId("settings-person", HTMLSelectElement), settings);
-  opener.addEventListener("click", () => {
+  opener.addEventListener("click", (event) => {
+    // The browser gives the focus back at once when the dialog closes: to the opener only where keys had opened it.
+    unfocus(event);
     chooser.offer();
     show();
     dialog.showModal();
   });
-  dialog.addEventListener("close", () => opener.focus());
   form.addEventListener("input", (event) => {
     const field = /** @type {HTMLInputElement} */ (event.target);
     if (field.type === "text" || !field.name) return;
