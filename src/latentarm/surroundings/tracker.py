@@ -10,8 +10,8 @@ import numpy as np
 from latentarm.core.types import NO_OBJECTS, FloatArray, Pose
 from latentarm.robots.kinematics.pose_rows import object_rows
 from latentarm.robots.kinematics.rotations import angle_between
-from latentarm.surroundings.belief import Belief
 from latentarm.surroundings.contract import Sighting
+from latentarm.surroundings.pose_estimate import PoseEstimate
 
 Seen = Literal["unseen", "seen", "doubted", "carried", "lost"]
 """*doubted*: sightings elsewhere are not believed yet. *carried*: it moves with the tool. *lost*: its last
@@ -52,15 +52,15 @@ class Whereabouts:
 class _Track:
     """One thing."""
 
-    belief: Belief | None = None
-    # sightings elsewhere, as a belief of their own, since when, and how many have confirmed the first
-    other: Belief | None = None
+    estimate: PoseEstimate | None = None
+    # sightings elsewhere, as a estimate of their own, since when, and how many have confirmed the first
+    other: PoseEstimate | None = None
     other_since_s: float = 0.0
     confirmed: int = 0
     in_tool: Pose | None = None  # pose in the tool's frame while it is carried
     sensed: bool = False  # whether the gripper says that it is carried
     newest_s: dict[str, float] = field(default_factory=dict[str, float])  # of each source
-    before: list[Belief | None] = field(default_factory=list[Belief | None])  # the person's words
+    before: list[PoseEstimate | None] = field(default_factory=list[PoseEstimate | None])  # the person's words
     fed: Pose | None = None
 
 
@@ -68,11 +68,11 @@ class _Track:
 class Tracker:
     """Follows things of known names.
 
-    Sightings that agree with what is believed are joined with it (see `Belief.joined`). One farther off than
-    its error and a plausible motion allow is not believed until `CONFIRMATIONS` later ones agree with it over
-    `CONFIRMED_S` without one that agrees with the belief. Of sources that contradict each other the one that
-    was believed first stays. A thing seen nearer to where another one is than to its own place is doubted
-    too; while two seem to have changed places, neither is followed before both are lost, or a person says so.
+    A sighting that agrees with the estimate updates it (see `PoseEstimate.joined`). One farther off than its
+    error and a plausible motion allow is not used until `CONFIRMATIONS` later ones agree with it over
+    `CONFIRMED_S` and none with the estimate. Of sources that contradict each other the first one stays. A
+    sighting nearer to another thing's place than to the thing's own is doubted too; while two things seem to
+    have changed places, neither is followed before both are lost, or a person says so.
 
     A thing counts for as long as its newest sighting holds, and is then lost; where a lost or a new thing is
     seen several times, it is found. A thing in the gripper moves with the tool, whatever sources say; food
@@ -104,21 +104,21 @@ class Tracker:
         if track.in_tool is not None:
             self._saw_carried(track, sighting, source, hold_s)
         elif (
-            track.belief is not None
-            and track.belief.counts(now_s)
-            and track.belief.agrees(sighting)
-            and not self._elsewhere(track.belief, sighting, now_s)
+            track.estimate is not None
+            and track.estimate.counts(now_s)
+            and track.estimate.agrees(sighting)
+            and not self._elsewhere(track.estimate, sighting, now_s)
         ):
-            track.belief = track.belief.joined(sighting, source, hold_s)
+            track.estimate = track.estimate.joined(sighting, source, hold_s)
             track.other = None
         elif self._confirms(track, sighting, source, hold_s, now_s) and not self._swapped(sighting, now_s):
-            track.belief, track.other = track.other, None
+            track.estimate, track.other = track.other, None
 
     def place(self, sighting: Sighting, source: str, hold_s: float) -> None:
         """Believe a person, at once."""
         track = self._tracks[sighting.name]
-        track.before.append(self._now_believed(track, sighting.time_s))
-        track.belief = Belief.of(sighting, source, hold_s)
+        track.before.append(self._current(track, sighting.time_s))
+        track.estimate = PoseEstimate.of(sighting, source, hold_s)
         track.other = track.in_tool = None
 
     def take_back(self, name: str) -> bool:
@@ -126,20 +126,20 @@ class Tracker:
         track = self._tracks.get(name)
         if track is None or not track.before:
             return False
-        track.belief, track.other = track.before.pop(), None
+        track.estimate, track.other = track.before.pop(), None
         return True
 
     def carry(self, name: str, *, sensed: bool) -> None:
         """From now on a thing moves with the tool; ``sensed``: whether the gripper says so."""
         track = self._tracks[name]
-        if self._tool is not None and track.belief is not None:
-            track.in_tool = _within(self._tool, track.belief.pose)
+        if self._tool is not None and track.estimate is not None:
+            track.in_tool = _within(self._tool, track.estimate.pose)
             track.sensed, track.other = sensed, None
 
     def let_go(self, name: str, now_s: float) -> None:
         """A thing no longer moves with the tool: it is where it was let go."""
         track = self._tracks[name]
-        track.belief, track.in_tool = self._now_believed(track, now_s), None
+        track.estimate, track.in_tool = self._current(track, now_s), None
 
     @property
     def carried(self) -> Mapping[str, bool]:
@@ -163,16 +163,16 @@ class Tracker:
     def look(self, name: str, now_s: float) -> Whereabouts:
         """State and pose of one thing."""
         track = self._tracks[name]
-        if track.belief is None:
+        if track.estimate is None:
             return Whereabouts("unseen")
-        source = track.belief.source
+        source = track.estimate.source
         if track.in_tool is not None and self._tool is not None:
             return Whereabouts("carried", _placed(self._tool, track.in_tool), 0.0, source)
-        age_s = max(now_s - track.belief.time_s, 0.0)
-        if not track.belief.counts(now_s):
-            return Whereabouts("lost", track.belief.pose, age_s, source)
+        age_s = max(now_s - track.estimate.time_s, 0.0)
+        if not track.estimate.counts(now_s):
+            return Whereabouts("lost", track.estimate.pose, age_s, source)
         doubted = track.other is not None and now_s - track.other.time_s <= PAUSE_S
-        return Whereabouts("doubted" if doubted else "seen", track.belief.pose, age_s, source)
+        return Whereabouts("doubted" if doubted else "seen", track.estimate.pose, age_s, source)
 
     def unknown(self, names: Sequence[str], now_s: float) -> tuple[str, ...]:
         """The things among these without a valid pose."""
@@ -186,26 +186,28 @@ class Tracker:
 
     def _saw_carried(self, track: _Track, sighting: Sighting, source: str, hold_s: float) -> None:
         now_s = sighting.time_s
-        believed = self._now_believed(track, now_s)
-        if track.sensed or believed is None or believed.agrees(sighting):
+        current = self._current(track, now_s)
+        if track.sensed or current is None or current.agrees(sighting):
             track.other = None
         elif self._confirms(track, sighting, source, hold_s, now_s):
-            track.belief, track.other, track.in_tool = track.other, None, None
+            track.estimate, track.other, track.in_tool = track.other, None, None
 
-    def _now_believed(self, track: _Track, now_s: float) -> Belief | None:
-        belief = track.belief
-        if belief is None or track.in_tool is None or self._tool is None:
-            return belief
-        sd_m = math.hypot(belief.position_sd_m, RELEASED_SD_M)
-        sd_rad = math.hypot(belief.orientation_sd_rad, RELEASED_SD_RAD)
-        return Belief(_placed(self._tool, track.in_tool), sd_m, sd_rad, now_s, belief.hold_s, belief.source)
+    def _current(self, track: _Track, now_s: float) -> PoseEstimate | None:
+        estimate = track.estimate
+        if estimate is None or track.in_tool is None or self._tool is None:
+            return estimate
+        sd_m = math.hypot(estimate.position_sd_m, RELEASED_SD_M)
+        sd_rad = math.hypot(estimate.orientation_sd_rad, RELEASED_SD_RAD)
+        return PoseEstimate(
+            _placed(self._tool, track.in_tool), sd_m, sd_rad, now_s, estimate.hold_s, estimate.source
+        )
 
-    def _elsewhere(self, own: Belief, sighting: Sighting, now_s: float) -> bool:
+    def _elsewhere(self, own: PoseEstimate, sighting: Sighting, now_s: float) -> bool:
         """Whether a sighting is nearer to where another thing is than to the thing's own place."""
         others = [
-            track.belief
+            track.estimate
             for name, track in self._tracks.items()
-            if name != sighting.name and track.belief is not None and track.belief.counts(now_s)
+            if name != sighting.name and track.estimate is not None and track.estimate.counts(now_s)
         ]
         return any(other.away(sighting.pose) < own.away(sighting.pose) for other in others)
 
@@ -213,30 +215,30 @@ class Tracker:
         """Count a sighting that is not believed; whether there are enough of them now."""
         other = track.other
         if other is None or not other.agrees(sighting) or abs(sighting.time_s - other.time_s) > PAUSE_S:
-            track.other, track.confirmed = Belief.of(sighting, source, hold_s), 0
+            track.other, track.confirmed = PoseEstimate.of(sighting, source, hold_s), 0
             track.other_since_s = sighting.time_s
             return False
         track.other = other.joined(sighting, source, hold_s)
         track.confirmed += 1
         since_s, span_s = track.other_since_s, FOUND_S
-        if track.belief is not None:
+        if track.estimate is not None:
             # It is lost for a while before it is found elsewhere, so that nobody goes on without knowing.
-            lost = not track.belief.counts(now_s) and track.in_tool is None
-            since_s = max(since_s, track.belief.time_s + track.belief.hold_s) if lost else since_s
+            lost = not track.estimate.counts(now_s) and track.in_tool is None
+            since_s = max(since_s, track.estimate.time_s + track.estimate.hold_s) if lost else since_s
             span_s = FOUND_S if lost else CONFIRMED_S
         return track.confirmed >= CONFIRMATIONS and track.other.time_s - since_s >= span_s
 
     def _swapped(self, sighting: Sighting, now_s: float) -> bool:
         """Whether a thing and another one are seen at each other's place, and either still counts."""
         own = self._tracks[sighting.name]
-        if own.belief is None or own.other is None:
+        if own.estimate is None or own.other is None:
             return False
         for name, track in self._tracks.items():
-            if name == sighting.name or track.belief is None or track.other is None:
+            if name == sighting.name or track.estimate is None or track.other is None:
                 continue
-            there = track.belief.away(own.other.pose) < own.belief.away(own.other.pose)
-            here = own.belief.away(track.other.pose) < track.belief.away(track.other.pose)
-            if there and here and (own.belief.counts(now_s) or track.belief.counts(now_s)):
+            there = track.estimate.away(own.other.pose) < own.estimate.away(own.other.pose)
+            here = own.estimate.away(track.other.pose) < track.estimate.away(track.other.pose)
+            if there and here and (own.estimate.counts(now_s) or track.estimate.counts(now_s)):
                 return True
         return False
 

@@ -26,7 +26,7 @@ MOST_MOVED_S: Final = 0.5
 
 @final
 @dataclass(frozen=True, eq=False)
-class Belief:
+class PoseEstimate:
     """Estimated pose of a thing at the time of its newest sighting."""
 
     pose: Pose
@@ -37,10 +37,10 @@ class Belief:
     source: str  # that gave it
 
     @staticmethod
-    def of(sighting: Sighting, source: str, hold_s: float) -> "Belief":
+    def of(sighting: Sighting, source: str, hold_s: float) -> "PoseEstimate":
         """The estimate from a single sighting."""
         sd_m, sd_rad = sighting.position_sd_m, sighting.orientation_sd_rad
-        return Belief(sighting.pose, sd_m, sd_rad, sighting.time_s, hold_s, source)
+        return PoseEstimate(sighting.pose, sd_m, sd_rad, sighting.time_s, hold_s, source)
 
     def away(self, pose: Pose) -> float:
         """Distance to another pose, m."""
@@ -61,8 +61,8 @@ class Belief:
             and turned <= GATE * sd_rad + MOVED_RAD_S * moving_s
         )
 
-    def joined(self, sighting: Sighting, source: str, hold_s: float) -> "Belief":
-        """Both weighted by their inverse variances: the surer counts more, and an older belief less.
+    def joined(self, sighting: Sighting, source: str, hold_s: float) -> "PoseEstimate":
+        """Both weighted by their inverse variances: the surer counts more, and an older estimate less.
 
         It holds as long as the newer of both does, and by the source of the newer.
         """
@@ -78,7 +78,7 @@ class Belief:
         )
         if sighting.time_s < self.time_s:
             return replace(self, pose=pose, position_sd_m=sd_m, orientation_sd_rad=sd_rad)
-        return Belief(pose, sd_m, sd_rad, sighting.time_s, hold_s, source)
+        return PoseEstimate(pose, sd_m, sd_rad, sighting.time_s, hold_s, source)
 
     def _turn(self, sighting: Sighting) -> FloatArray:
         return rotation_vector(sighting.pose.rotation @ self.pose.rotation.T)
