@@ -69,7 +69,9 @@ def test_a_failure_of_what_was_enabled_ends_the_arms_process(trained):
         drive_in_turn(Driven(setup, first_arm(setup, clock), Steering("latent")), drive, clock)
 
 
-@pytest.fixture(scope="module", params=["kinematic", "mujoco", "wooden"])
+@pytest.fixture(
+    scope="module", params=[pytest.param("kinematic", marks=pytest.mark.slow), "mujoco", "wooden"]
+)
 def arm(request):
     """An address or a name of each kind of arm that starts without hardware."""
     if request.param != "wooden":

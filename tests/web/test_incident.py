@@ -4,9 +4,6 @@ import base64
 import hashlib
 import json
 import math
-import os
-import signal
-import time
 import zlib
 from contextlib import contextmanager, suppress
 from dataclasses import replace
@@ -38,7 +35,6 @@ from latentarm.web.arm_process.drive import Drive
 from latentarm.web.arm_process.drive_setup import Spec, load_setup
 from latentarm.web.arm_process.incident import begin_incident
 from latentarm.web.arm_process.initial_state import RobotOptions
-from latentarm.web.arm_process.process import ControlProcess
 from latentarm.web.arm_process.replay import Replay, replay
 from latentarm.web.arm_process.steering import Steering
 from latentarm.web.protocol.notice import Notice
@@ -47,7 +43,6 @@ from latentarm.web.protocol.orders import (
     ChooseMode,
     ChooseProfile,
     Enable,
-    Given,
     PoseToGoTo,
     Return,
 )
@@ -354,32 +349,6 @@ def test_zones_obstacles_speeds_and_limits_come_along(tmp_path, desk_of):
     limits.unlink()
     found = replay(newest(tmp_path / "out"))
     assert found["agreed"] == found["ticks"] > 0
-
-
-@pytest.mark.clock
-@pytest.mark.parametrize("killed", [True, False])
-def test_a_session_of_the_arm_process_replays(trained, tmp_path, killed):
-    control = ControlProcess(Spec(trained, out=tmp_path))
-    nonce, moved = "", 0
-    for sequence in range(3000):
-        report = control.newest()
-        if report is not None:
-            nonce, moved = report.nonce, moved + (report.phase == "moving")
-            if report.phase not in ("ready", "moving"):
-                control.order(Enable(driver=1, stops=control.stops))
-        pushed = report is not None and report.phase in ("ready", "moving")
-        control.give(Given(driver=1, seq=sequence + 1, nonce=nonce, u=(float(pushed), 0.0), latched=False))
-        time.sleep(0.01)
-        if moved >= 50:
-            break
-    assert moved >= 50
-    if killed:
-        os.kill(control.pid, signal.SIGKILL)
-    control.end(20.0)
-    found = replay(newest(tmp_path))
-    assert found["complete"] is not killed
-    assert found["agreed"] == found["ticks"] > 50
-    assert any("enabled" in what for _, what in found["happened"])
 
 
 def test_it_can_be_switched_off(setup, tmp_path):

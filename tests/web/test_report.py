@@ -52,6 +52,8 @@ KINDS = {
     "late page": (fall_silent, "input_late", ""),
     "killed": (kill, None, None),
 }
+FIRST = ("cable", "killed")
+"""A stop that the page's process decides, and an end that nobody decides; the others take the same way."""
 """What happens, the code of the stop that follows, and some of its words."""
 
 
@@ -65,7 +67,9 @@ def contents(path):
     }
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize(
+    "kind", [kind if kind in FIRST else pytest.param(kind, marks=pytest.mark.slow) for kind in KINDS]
+)
 def test_an_incident_is_reported_and_replayed_to_the_bit(serve, tmp_path, capsys, kind):
     happen, code, words = KINDS[kind]
     spec = Spec(out=tmp_path / "teleop", robot=RobotOptions("panda"), found=(("firmware", "2.1"),))
