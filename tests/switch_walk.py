@@ -39,6 +39,8 @@ class Walk:
         self.faults: list[str] = []
         self.keys = ["Enter"]
         self.values: dict[str, Any] = {}
+        self.enables = False
+        """Whether the last press was on Enable."""
         page.add_init_script(SCRIPT)
 
     def go(self, presses: int) -> None:
@@ -129,12 +131,16 @@ class Walk:
             self.did[f"on {lit['tag'] or 'list'}"] += 1
         takes = self.values["scan"] == "auto" or self.values["switches"] == "2"
         faults = led
-        if any("enable" in one for one in after["told"]) and takes and lit["pressed"] != "enable":
+        # Neutral inputs go first: the order to enable may follow as late as the next press.
+        enables = self.enables or any(one["pressed"] == "enable" for one in pressed)
+        self.enables = lit["pressed"] == "enable"
+        if any("enable" in one for one in after["told"]) and takes and not enables:
             faults.append({"enabled": lit})
         if set(before["open"]) != set(after["open"]) and takes and before["path"] == after["path"]:
             toggled = set(before["open"]) ^ set(after["open"])
             details = [one for one in toggled if one.startswith("details")]
-            if (details and lit["tag"] != "summary") or lit["pressed"] is None:
+            # A link to this page loads it anew.
+            if (details and lit["tag"] not in ("summary", "a")) or lit["pressed"] is None:
                 faults.append({"toggled": sorted(toggled)})
         if before["path"] != after["path"] and takes:
             leads = lit["tag"] in ("a", "button") or lit["pressed"].startswith(("page-", "link-", "button-"))

@@ -8,9 +8,11 @@ window.print = () => {};
 let pressing = false;
 /** @type {Element | null} */
 let wasLit = null;
+const switched = () => !document.getElementById("panel-switch").hidden;
 const textOf = (one) => one instanceof HTMLInputElement && !one.readOnly && one.selectionStart !== null;
 addEventListener("keydown", (event) => {
-  if (!isSwitch(event.code) || event.repeat) return;
+  // Somebody with other settings may have been chosen.
+  if (!isSwitch(event.code) || event.repeat || !switched()) return;
   pressing = true;
   const choice = document.querySelector("#scan [aria-current=true]");
   const lit = wasLit = document.querySelector(".lit");
@@ -34,7 +36,7 @@ WebSocket.prototype.send = function (text) {
   return send.call(this, text);
 };
 window.snap = () => {
-  const on = !document.getElementById("panel-switch").hidden;
+  const on = switched();
   const lit = [...document.querySelectorAll("#scan [aria-current=true]")].filter((one) => one.checkVisibility());
   const seen = lit.filter((one) => {
     const { left, top, width, height } = one.getBoundingClientRect();

@@ -58,6 +58,26 @@ def choose_by_one(page, name):
     page.wait_for_timeout(150)
 
 
+LIT_IN_SIGHT = """() => {
+  const lit = document.querySelector("#scan [aria-current=true]");
+  const { left, top, width, height } = lit.getBoundingClientRect();
+  return lit.contains(document.elementFromPoint(left + width / 2, top + height / 2));
+}"""
+
+
+@pytest.mark.parametrize("size", [(844, 390), (390, 844), (1280, 720)])
+def test_of_a_list_longer_than_its_place_the_lit_choice_is_in_sight(page, arm, size):
+    two(page)
+    page.set_viewport_size({"width": size[0], "height": size[1]})
+    choose_by_two(page, "More …")
+    hidden = []
+    for _ in range(len(offered(page))):
+        if not page.evaluate(LIT_IN_SIGHT):
+            hidden.append(page.locator("#scan li[aria-current=true]").inner_text())
+        press_switch(page, "Backspace")
+    assert hidden == []
+
+
 @pytest.mark.parametrize("choose", [choose_by_one, choose_by_two])
 def test_switches_reach_help_settings_and_pages(page, arm, choose):
     if choose is choose_by_two:

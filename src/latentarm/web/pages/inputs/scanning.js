@@ -67,8 +67,14 @@ export function attachScanning(input, settings, stop, offered) {
       }
       return item;
     }));
+    showLit();
     const label = scanner.choices[scanner.lit]?.label ?? "";
     speak(!scanner.on ? "" : scanner.moving === null ? label : say("scanning.says_moving", { direction: label }));
+  };
+  /** A long list has the lit choice in its middle, and the page stays where it is. */
+  const showLit = () => {
+    const lit = list.children[scanner.lit];
+    if (lit) list.scrollTop += lit.getBoundingClientRect().top - list.getBoundingClientRect().top - (list.clientHeight - lit.clientHeight) / 2;
   };
   /** The effect of a press, above the name of the lit choice. */
   const hint = () => {
