@@ -25,6 +25,18 @@ NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable"
 SOFTWARE_GL = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
 HERE = Path(__file__).parent
 
+STICKS_OUT = """() => [...document.querySelectorAll("body *")]
+  .filter((one) => one.checkVisibility({ visibilityProperty: true }) && !one.closest(".skip, .labels, svg"))
+  .filter((one) => {  // what is clipped away is for screen readers
+    let at = one;
+    while (at && getComputedStyle(at).clipPath !== "inset(50%)") at = at.parentElement;
+    return !at;
+  })
+  .map((one) => [one.getBoundingClientRect(), one])
+  .filter(([box]) => box.width > 0 && (box.left < -1 || box.right > innerWidth + 1))
+  .map(([, one]) => one.outerHTML.slice(0, 120))"""
+"""What is wider than the screen, or reaches beyond it on either side."""
+
 SETTLING_S = 0.2
 """The simulated arm follows its last command, zero, within this."""
 

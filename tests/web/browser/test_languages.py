@@ -4,16 +4,10 @@ import pytest
 
 from latentarm.web.words.catalogue import COOKIE, languages
 
+from .conftest import STICKS_OUT
+
 SIZES = {"a laptop": (1280, 720), "a phone": (390, 844)}
 PAGES = ("", "teach", "personalise", "people", "history")
-
-# What is wider than the screen, or reaches beyond it on either side.
-STICKS_OUT = """() => [...document.querySelectorAll("body *")]
-  .filter((one) => one.checkVisibility({ visibilityProperty: true })
-    && !one.closest(".visually-hidden, .skip, .labels, .title-row, svg"))
-  .map((one) => [one.getBoundingClientRect(), one])
-  .filter(([box]) => box.width > 0 && (box.left < -1 || box.right > innerWidth + 1))
-  .map(([, one]) => one.outerHTML.slice(0, 120))"""
 
 # Texts whose letters reach beyond the box that they stand in.
 CUT_OFF = """() => {

@@ -7,7 +7,7 @@ import pytest
 from latentarm.tasks.catalogue import SCENE_TASKS, TASKS
 from latentarm.web.words.catalogue import COOKIE
 
-from .conftest import ask_to_drive, set_up
+from .conftest import STICKS_OUT, ask_to_drive, set_up
 
 SEEN_PX = 90
 """A view that is smaller shows nothing."""
@@ -34,18 +34,6 @@ CUT_OFF = """(selectors) => {
     return !one.checkVisibility() || !inside || under;
   });
 }"""
-
-# What sticks out of the page on either side.
-STICKS_OUT = """() => [...document.querySelectorAll("body *")]
-  .filter((one) => one.checkVisibility() && !one.closest(".skip, .labels, svg"))
-  .filter((one) => {  // what is clipped away is for screen readers
-    let at = one;
-    while (at && getComputedStyle(at).clipPath !== "inset(50%)") at = at.parentElement;
-    return !at;
-  })
-  .map((one) => [one.getBoundingClientRect(), one])
-  .filter(([box]) => box.width > 0 && (box.left < -1 || box.right > innerWidth + 1))
-  .map(([, one]) => one.outerHTML.slice(0, 120))"""
 
 
 @pytest.fixture
