@@ -1,6 +1,5 @@
 """A summary of a dataset, for a person to check before training on it."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final, final
 
@@ -64,35 +63,30 @@ class Table:
 class Summary:
     """A summary of a dataset."""
 
-    robot: str
     rate_hz: float
     episodes: tuple[EpisodeSummary, ...]
     joints: tuple[JointSummary, ...]
-    goals: tuple[str, ...]  # names
-    features: tuple[str, ...]  # names of everything recorded beside the states
     gripper: tuple[GripperUse, ...] = ()  # for each episode; empty where not recorded
-
-    @property
-    def samples(self) -> int:
-        """Number of samples in all episodes."""
-        return sum(episode.samples for episode in self.episodes)
-
-    @property
-    def duration_s(self) -> float:
-        """Total length of all episodes."""
-        return sum(episode.duration_s for episode in self.episodes)
 
     def tables(self) -> tuple[Table, ...]:
         """Tables of episodes, joints and, if recorded, the gripper."""
-        gripper = (_gripper_table(self.gripper),) if self.gripper else ()
-        return _episode_table(self.episodes), _joint_table(self.joints), *gripper
+        tables = {
+            "Episodes": [_episode_cells(episode) for episode in self.episodes],
+            "Joints": [_joint_cells(joint) for joint in self.joints],
+            "Gripper": [_gripper_cells(index, use) for index, use in enumerate(self.gripper)],
+        }
+        return tuple(
+            Table(title, tuple(cells[0]), tuple(tuple(row.values()) for row in cells))
+            for title, cells in tables.items()
+            if cells
+        )
 
     def rows(self) -> list[Row]:
         """Every figure in machine-readable form; the condition is the episode or joint."""
         rows = [
             _row("episodes", "count", len(self.episodes)),
-            _row("samples", "count", self.samples),
-            _row("duration_s", "s", self.duration_s),
+            _row("samples", "count", sum(one.samples for one in self.episodes)),
+            _row("duration_s", "s", sum(one.duration_s for one in self.episodes)),
             _row("rate_hz", "Hz", self.rate_hz),
         ]
         for episode in self.episodes:
@@ -128,15 +122,10 @@ class Summary:
 
 def summarise(demonstrations: Demonstrations, robot: Robot | None = None) -> Summary:
     """Measure a dataset; with a robot also the limits and the end-effector's path."""
-    first = demonstrations.episodes[0]
-    recorded = ("action",) if first.action is not None else ()
     return Summary(
-        robot=demonstrations.robot,
         rate_hz=demonstrations.rate_hz,
         episodes=tuple(_episode(index, one, robot) for index, one in enumerate(demonstrations.episodes)),
         joints=_joints(demonstrations, None if robot is None else robot.limits),
-        goals=tuple(goal.name for goal in demonstrations.goals),
-        features=(*recorded, *sorted(first.extras)),
         gripper=gripper_uses(demonstrations, None if robot is None else robot.gripper),
     )
 
@@ -200,75 +189,43 @@ def _text(value: float | None, digits: int) -> str:
     return "–" if value is None else f"{value:.{digits}f}"
 
 
-def _episode_table(episodes: Sequence[EpisodeSummary]) -> Table:
-    columns = (
-        "episode",
-        "task",
-        "samples",
-        "duration (s)",
-        "rate (Hz)",
-        "joint path (rad)",
-        "tool path (m)",
-        "peak (rad/s)",
-        "still (%)",
-    )
-    rows = tuple(
-        (
-            str(one.index),
-            one.task,
-            str(one.samples),
-            _text(one.duration_s, 1),
-            _text(one.rate_hz, 1),
-            _text(one.path_rad, 2),
-            _text(one.path_m, 2),
-            _text(one.peak_speed_rad_s, 2),
-            _text(100 * one.still_fraction, 0),
-        )
-        for one in episodes
-    )
-    return Table("Episodes", columns, rows)
+def _episode_cells(one: EpisodeSummary) -> dict[str, str]:
+    return {
+        "episode": str(one.index),
+        "task": one.task,
+        "samples": str(one.samples),
+        "duration (s)": _text(one.duration_s, 1),
+        "rate (Hz)": _text(one.rate_hz, 1),
+        "joint path (rad)": _text(one.path_rad, 2),
+        "tool path (m)": _text(one.path_m, 2),
+        "peak (rad/s)": _text(one.peak_speed_rad_s, 2),
+        "still (%)": _text(100 * one.still_fraction, 0),
+    }
 
 
-def _gripper_table(uses: Sequence[GripperUse]) -> Table:
-    columns = ("episode", "closed (%)", "toggled (%)", "changes")
-    rows = tuple(
-        (
-            str(index),
-            _text(None if one.closed_fraction is None else 100 * one.closed_fraction, 0),
-            _text(None if one.toggled_fraction is None else 100 * one.toggled_fraction, 0),
-            str(one.changes),
-        )
-        for index, one in enumerate(uses)
-    )
-    return Table("Gripper", columns, rows)
+def _joint_cells(one: JointSummary) -> dict[str, str]:
+    return {
+        "joint": one.name,
+        "lowest (rad)": _text(one.lowest, 3),
+        "highest (rad)": _text(one.highest, 3),
+        "limits (rad)": "–" if one.lower is None else f"{_text(one.lower, 3)} … {_text(one.upper, 3)}",
+        "margin (rad)": _text(one.margin_rad, 3),
+        "speed (rad/s) p50": _text(one.speed_p50, 2),
+        "p95": _text(one.speed_p95, 2),
+        "p99": _text(one.speed_p99, 2),
+        "max": _text(one.speed_max, 2),
+        "limit": _text(one.speed_limit, 2),
+    }
 
 
-def _joint_table(joints: Sequence[JointSummary]) -> Table:
-    columns = (
-        "joint",
-        "lowest (rad)",
-        "highest (rad)",
-        "limits (rad)",
-        "margin (rad)",
-        "speed (rad/s) p50",
-        "p95",
-        "p99",
-        "max",
-        "limit",
+def _gripper_cells(index: int, use: GripperUse) -> dict[str, str]:
+    closed, toggled = (
+        _text(None if share is None else 100 * share, 0)
+        for share in (use.closed_fraction, use.toggled_fraction)
     )
-    rows = tuple(
-        (
-            one.name,
-            _text(one.lowest, 3),
-            _text(one.highest, 3),
-            "–" if one.lower is None else f"{_text(one.lower, 3)} … {_text(one.upper, 3)}",
-            _text(one.margin_rad, 3),
-            _text(one.speed_p50, 2),
-            _text(one.speed_p95, 2),
-            _text(one.speed_p99, 2),
-            _text(one.speed_max, 2),
-            _text(one.speed_limit, 2),
-        )
-        for one in joints
-    )
-    return Table("Joints", columns, rows)
+    return {
+        "episode": str(index),
+        "closed (%)": closed,
+        "toggled (%)": toggled,
+        "changes": str(use.changes),
+    }
