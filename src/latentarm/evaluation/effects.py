@@ -20,7 +20,6 @@ def axis_effects(
     grid: FloatArray,
     chain: PlacesTool,
     step_s: float,
-    tool: int = 0,
 ) -> FloatArray:
     """Displacement Psi(T(s, phi(z, s))) - Psi(s), (S, d, N, K, 3), m, for each latent axis alone.
 
@@ -30,7 +29,7 @@ def axis_effects(
     effects: list[FloatArray] = []
     for decoder in decoders:
         before, after = _axis_states(decoder, context, grid, step_s)
-        moved = chain.forward(after, tool).position - chain.forward(before, tool).position[:, None]
+        moved = chain.forward(after).position - chain.forward(before).position[:, None]
         effects.append(moved)
     return np.stack(effects)
 
@@ -80,7 +79,6 @@ def held_paths(
     chain: PlacesTool,
     step_s: float,
     steps: int,
-    tool: int = 0,
 ) -> FloatArray:
     """Places (L, N, T + 1, 3), m, of the end-effector while latent actions (L, d) are held for T steps."""
     latent = np.broadcast_to(z[:, None], (len(z), len(context), z.shape[-1]))
@@ -92,4 +90,4 @@ def held_paths(
         now = next_context(now, action, step_s)
         states.append(now[..., :dof])
         action = decoder.decode(latent, now)
-    return chain.forward(np.stack(states, axis=2), tool).position
+    return chain.forward(np.stack(states, axis=2)).position

@@ -31,6 +31,9 @@ from latentarm.evaluation.summary import Subject, summarise
 from latentarm.evaluation.turning import turning
 from latentarm.robots.robot import Robot
 
+STATES: Final = 25  # for consistency, disentanglement and turning
+GRID: Final = 21  # values of z in [-1, 1] on each axis, at each of these states
+HELD_LATENTS: Final = 300  # held-out pairs for reversal after longer holds
 HOLDS_S: Final = {"reversal_0_5_s": 0.5, "reversal_2_s": 2.0}
 """Measure -> how long z and -z are each held for it, s: longer than any loss looks ahead."""
 
@@ -73,14 +76,8 @@ class MeasurableModel(EncodesActions, Protocol):
 class EvaluationConfig:
     """Settings of the measures; the same for all models that are compared."""
 
-    state_noise_rad: float | None = None  # SD of the noise on held-out states; the training's where None
-    step_s: float | None = None  # dt of s' = s + a dt, and of `reversal`'s holds; one sample where None
-    states: int = 25  # for consistency, disentanglement and turning
-    grid: int = 21  # values of z in [-1, 1] on each axis, at each of these states
     latents: int = 2000  # held-out pairs whose nearest inputs are searched for
-    held_latents: int = 300  # of these, for reversal after longer holds
     reach: ReachConfig = field(default_factory=ReachConfig)
-    tool: int = 0  # which end-effector, where there are several
 
 
 @dataclass(frozen=True)
@@ -129,7 +126,7 @@ class Probe:
     states: FloatArray  # (K, c), contexts for consistency, disentanglement and turning
     context: FloatArray  # (L, c), contexts for drift, reversal and change in state
     action: FloatArray  # (L, m), the actions there, rad/s
-    step_s: float  # dt of the transition, s
+    step_s: float  # dt of s' = s + a dt, and of `reversal`'s holds, s
 
 
 def take_probe(model: MeasurableModel, demonstrations: Demonstrations, held_out: Sequence[int]) -> Probe:
@@ -159,11 +156,11 @@ def measure_behaviour(
     """
     config = config or EvaluationConfig()
     figures: dict[str, FloatArray] = {}
-    reach = reach_goals(decoders, probe.pairs, robot.chain, probe.step_s, config.reach.solver, (config.tool,))
+    reach = reach_goals(decoders, probe.pairs, robot.chain, probe.step_s, config.reach.solver)
     figures["controllability_m"] = reach.tool_error_m.mean(axis=1)
     figures["controllability_state_error"] = reach.state_error_rad.mean(axis=1)
-    grid = axis_grid(config.grid)
-    effects = axis_effects(decoders, probe.states, grid, robot.chain, probe.step_s, config.tool)
+    grid = axis_grid(GRID)
+    effects = axis_effects(decoders, probe.states, grid, robot.chain, probe.step_s)
     for name, per_axis in (
         ("r2", consistency(effects, grid)),
         ("r2_local", local_consistency(effects, grid)),
@@ -173,12 +170,12 @@ def measure_behaviour(
     figures["disentanglement_deg"] = disentanglement_deg(effects)
     figures["drift"] = drift(decoders, z, probe.context)
     figures["reversal"] = reversal(decoders, z, probe.context, probe.step_s)
-    held = evenly_spread(config.held_latents, len(probe.context))
+    held = evenly_spread(HELD_LATENTS, len(probe.context))
     for name, hold_s in HOLDS_S.items():
         figures[name] = reversal(decoders, z[:, held], probe.context[held], probe.step_s, hold_s)
     figures["state_change"] = state_change(decoders, z, probe.context)
     if z.shape[-1] == 2:
-        turned = turning(decoders, probe.states, robot.chain, tool=config.tool).joints
+        turned = turning(decoders, probe.states, robot.chain).joints
         count = np.isfinite(turned).sum(axis=(1, 2))
         figures["motion_turn"] = np.divide(
             np.nansum(turned, axis=(1, 2)), count, out=np.full(len(turned), np.nan), where=count > 0
@@ -197,8 +194,8 @@ def _probe(
     pairs = start_goal_pairs(
         episodes, names, separation_s=config.reach.separation_s, count=config.reach.pairs
     )
-    states = spread_contexts(episodes, names, config.states)
-    return Probe(pairs, states, context, action, config.step_s or 1.0 / rate_hz)
+    states = spread_contexts(episodes, names, STATES)
+    return Probe(pairs, states, context, action, 1.0 / rate_hz)
 
 
 def _measure_accuracy(
@@ -209,13 +206,12 @@ def _measure_accuracy(
     config: EvaluationConfig,
 ) -> Accuracy:
     """Reconstruction errors with and without state noise, relative to PCA on the other episodes."""
-    noise = model.state_noise_rad if config.state_noise_rad is None else config.state_noise_rad
     trained_on = [index for index in range(len(demonstrations.episodes)) if index not in set(held_out)]
     if not trained_on:
         raise UserError("Every episode is held out: leave at least one to fit PCA, the baseline, to.")
     how = (model.context, rng, model.actions)
     training = make_pairs(select_episodes(demonstrations, trained_on), model.window, 0.0, *how)
-    pairs = make_pairs(select_episodes(demonstrations, held_out), model.window, noise, *how)
+    pairs = make_pairs(select_episodes(demonstrations, held_out), model.window, model.state_noise_rad, *how)
     return accuracy(
         model, training.action, pairs, learns_encoder=model.learns_encoder, searched=config.latents
     )

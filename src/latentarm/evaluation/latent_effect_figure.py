@@ -36,7 +36,6 @@ def latent_effect_figure(
     step_s: float,
     model: str,
     demonstrated: FloatArray | None = None,
-    tool: int = 0,
     way_back: LeadsBack | None = None,
 ) -> "Figure":
     """Paths of the tool over one second of ±1 on each latent axis, from each of a few contexts (N, c).
@@ -47,7 +46,7 @@ def latent_effect_figure(
     """
     dim = decoder.latent_dim
     ends = np.concatenate([np.eye(dim), -np.eye(dim)])
-    paths = held_paths(decoder, context, ends, chain, step_s, max(1, round(HOLD_S / step_s)), tool)
+    paths = held_paths(decoder, context, ends, chain, step_s, max(1, round(HOLD_S / step_s)))
     behind = np.zeros((0, 3)) if demonstrated is None else demonstrated
     places = np.concatenate([paths.reshape(-1, 3), behind])
     across, up = sorted(np.argsort(np.ptp(places, axis=0))[1:])

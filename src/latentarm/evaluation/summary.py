@@ -1,6 +1,5 @@
 """Summarises values per seed or per drive as the rows that every command prints."""
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,18 +7,6 @@ from numpy.typing import ArrayLike
 
 from latentarm.core.types import Row
 from latentarm.evaluation.measures import unit_of
-
-HEADLINE: tuple[str, ...] = (
-    "search_error_percent_of_pca",
-    "search_noise_free_error_percent_of_pca",
-    "controllability_m",
-    "r2",
-    "r2_local",
-    "disentanglement_deg",
-    "drift",
-    "reversal",
-)
-"""The measures by which models are compared at a glance; the others are details of these."""
 
 
 @dataclass(frozen=True)
@@ -30,11 +17,6 @@ class Subject:
     task: str | None = None
     model: str | None = None
     condition: str | None = None  # the varied setting
-
-
-def headline(rows: Iterable[Row]) -> list[Row]:
-    """Only the rows of the `HEADLINE` measures, for a figure or a short table."""
-    return [row for row in rows if row.measure in HEADLINE]
 
 
 def summarise(subject: Subject, measure: str, values: ArrayLike) -> Row:

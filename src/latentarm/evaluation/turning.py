@@ -23,8 +23,8 @@ so that a 95th percentile shows them."""
 class MovesTool(Protocol):
     """Velocities of the tools."""
 
-    def jacobian(self, q: FloatArray, tool: int = 0) -> FloatArray:
-        """Jacobian (..., 6, n) of a tool at q (..., n), rad; its first three rows are m/s per rad/s."""
+    def jacobian(self, q: FloatArray) -> FloatArray:
+        """Jacobian (..., 6, n) of the first tool at q (..., n), rad; its first rows are m/s per rad/s."""
         ...
 
 
@@ -41,7 +41,6 @@ def turning(
     context: FloatArray,
     chain: MovesTool,
     directions: int = DIRECTIONS,
-    tool: int = 0,
 ) -> TurnRatios:
     """Lead a full push of a two-axis stick once around, in every context (N, c)."""
     if any(decoder.latent_dim != 2 for decoder in decoders):
@@ -50,7 +49,7 @@ def turning(
     around = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
     z = np.broadcast_to(around, (len(context), *around.shape))
     action = np.stack([decoder.decode(z, context[:, None]) for decoder in decoders])
-    velocity = chain.jacobian(context[:, : action.shape[-1]], tool)[:, :3]
+    velocity = chain.jacobian(context[:, : action.shape[-1]])[:, :3]
     step = 2.0 * np.pi / directions
     return TurnRatios(
         joints=_turned(action) / step, tool=_turned(np.einsum("nij,snkj->snki", velocity, action)) / step

@@ -22,7 +22,7 @@ from latentarm.demonstrations.gripper import told_by
 from latentarm.demonstrations.split import make_folds, select_episodes
 from latentarm.evaluation.effects import axis_effects, axis_grid
 from latentarm.evaluation.evaluation import (
-    EvaluationConfig,
+    GRID,
     Probe,
     PropertyFigures,
     measure,
@@ -250,7 +250,7 @@ def _rows_over_folds(subject: Subject, figures: Sequence[PropertyFigures]) -> li
 def _draw(name: str, decoder: Decoder, measured: _Measured, robot: Robot, out: Path) -> None:
     """Figures of one seed: distance against z, and where each axis leads."""
     chain, step_s = robot.chain, measured.probe.step_s
-    grid = axis_grid(EvaluationConfig.grid)
+    grid = axis_grid(GRID)
     effects = axis_effects([decoder], measured.probe.states, grid, chain, step_s)[0]
     save_figure(properties_figure(effects, grid, name), out / "consistency.png")
     behind = None if measured.path is None else chain.forward(measured.path).position
