@@ -80,7 +80,6 @@ class FingerServo(SimulatedGripper):
             self._measured.popleft()
 
     def measure(self) -> GripperReading:
-        """The present opening, and whether it holds something."""
         return self._measured[0][1]
 
     def halt(self) -> None:

@@ -24,21 +24,17 @@ class ShadowArm(Arm):
 
     @property
     def spec(self) -> ArmSpec:
-        """That of the arm, but that it does not follow."""
         return self._spec
 
     def connect(self) -> None:
-        """Connect to read."""
         self._enabled = False
         self._arm.watch()
 
     def close(self) -> None:
-        """End the connection."""
         self._enabled = False
         self._arm.close()
 
     def read(self) -> Reading:
-        """The arm's newest reading."""
         return self._arm.read()
 
     def status(self) -> ArmStatus:
@@ -54,18 +50,15 @@ class ShadowArm(Arm):
         return ArmStatus("disabled", "Shadow mode is not enabled.")
 
     def enable(self) -> None:
-        """Take commands, and drop them."""
         self._enabled = self.status().phase == "disabled"
 
     def disable(self) -> None:
-        """Take no commands."""
         self._enabled = False
 
     def recover(self) -> None:
         """Nothing: the arm is not told anything."""
 
     def send(self, command: Command) -> None:
-        """Check a command as a driver does, and drop it."""
         finite_velocity(command, len(self._spec.joint_names))
 
     def move_gripper(self, command: GripperCommand) -> None:

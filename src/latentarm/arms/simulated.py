@@ -71,12 +71,10 @@ class SimulatedArm(Arm):
     @property
     @final
     def spec(self) -> ArmSpec:
-        """The arm's fixed properties."""
         return self._spec
 
     @final
     def connect(self) -> None:
-        """Connect; the arm is then disabled."""
         self._elapse()
         if self._phase == "off":
             self._phase = "disabled"
@@ -84,13 +82,11 @@ class SimulatedArm(Arm):
 
     @final
     def close(self) -> None:
-        """Stop the arm and disconnect."""
         self.disable()
         self._phase = "off"
 
     @final
     def read(self) -> Reading:
-        """The newest reading."""
         if self._newest is None:
             raise RuntimeError("an arm has no reading before it is connected")
         self._elapse()
@@ -100,7 +96,6 @@ class SimulatedArm(Arm):
 
     @final
     def status(self) -> ArmStatus:
-        """Whether the arm can move, and if not, why."""
         self._elapse()
         phase = self._phase
         if phase == "ready" and self._newest is not None and np.abs(self._newest.dq).max() > STILL_RAD_S:
@@ -109,13 +104,11 @@ class SimulatedArm(Arm):
 
     @final
     def enable(self) -> None:
-        """Ask to take commands."""
         if self._phase == "disabled":
             self._phase = "ready"
 
     @final
     def disable(self) -> None:
-        """Stop, and take no commands."""
         self.stop()
         if self._phase == "ready":
             self._phase = "disabled"
@@ -126,7 +119,6 @@ class SimulatedArm(Arm):
 
     @final
     def send(self, command: Command) -> None:
-        """Take a command; ignored unless enabled."""
         velocity = finite_velocity(command, len(self._rest))
         if command.gripper is not None and self._gripper is None:
             raise ValueError("this arm has no gripper to command")
@@ -139,14 +131,12 @@ class SimulatedArm(Arm):
 
     @final
     def move_gripper(self, command: GripperCommand) -> None:
-        """Move the gripper of an arm that takes no commands."""
         self._elapse()
         if self._gripper is not None and self._phase == "disabled":
             self._gripper.send(command)
 
     @final
     def stop(self) -> None:
-        """Stop now, and stay enabled."""
         self._elapse()
         self._commanded, self._left_s = self._rest, 0.0
         self._halt()

@@ -58,9 +58,7 @@ class KinematicGripper(SimulatedGripper):
         self._target_m, self._speed_m_s = width_m, speed_m_s
 
     def halt(self) -> None:
-        """Stay at the present opening."""
         self._target_m = self._width_m
 
     def measure(self) -> GripperReading:
-        """The present opening, and whether it holds something."""
         return GripperReading(self._width_m)

@@ -78,7 +78,6 @@ class SimulatedRespondent(Respondent):
 
     @property
     def kind(self) -> Kind:
-        """``simulated person``."""
         return "simulated person"
 
     def answer(self, question: Question) -> FloatArray:
@@ -101,7 +100,6 @@ class PersonAtTerminal(Respondent):
 
     @property
     def kind(self) -> Kind:
-        """``person``."""
         return "person"
 
     def answer(self, question: Question) -> FloatArray | None:

@@ -107,17 +107,14 @@ class HttpSource(Source):
 
     @property
     def hold_s(self) -> float:
-        """As it was given, s."""
         return self._hold_s
 
     def read(self) -> Sequence[Sighting]:
-        """The newest post of each thing since the last call."""
         with self._lock:
             found, self._newest = self._newest, {}
         return tuple(found.values())
 
     def close(self) -> None:
-        """Stop listening."""
         with suppress(OSError):
             self._server.shutdown()
             self._server.server_close()

@@ -68,7 +68,6 @@ class Ros2Source(Source):
 
     @property
     def hold_s(self) -> float:
-        """Always the same, s."""
         return HOLD_S
 
     def read(self) -> Sequence[Sighting]:
@@ -80,7 +79,6 @@ class Ros2Source(Source):
         return tuple(found.values())
 
     def close(self) -> None:
-        """End the connection."""
         self._link.close()
 
     def _listen(self, topic: str, kind: str, hear: Callable[[Mapping[str, Any]], None]) -> None:

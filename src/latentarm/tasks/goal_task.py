@@ -24,32 +24,26 @@ class GoalTask(SceneTask):
 
     @property
     def name(self) -> str:
-        """That of the task."""
         return self._task.name
 
     @property
     def robot(self) -> Robot:
-        """That of the task."""
         return self._task.robot
 
     @property
     def choices(self) -> tuple[str, ...]:
-        """Names of the goals."""
         return tuple(goal.name for goal in self._task.goals)
 
     @property
     def goals(self) -> tuple[Goal, ...]:
-        """Those of the task."""
         return self._task.goals
 
     @property
     def obstacles(self) -> tuple[Obstacle, ...]:
-        """Those of the task."""
         return tuple(self._task.obstacles)
 
     @property
     def time_limit_s(self) -> float:
-        """As it was given."""
         return self._time_limit_s
 
     def begin(self, choice: int, rng: np.random.Generator) -> Beginning:

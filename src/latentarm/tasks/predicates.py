@@ -1,4 +1,7 @@
-"""Predicates of things: conditions for the steps of tasks, and failures that end a run."""
+"""Predicates of things: conditions for the steps of tasks, and failures that end a run.
+
+Called with the present state, a condition says whether it holds, and a failure what has happened, if it has.
+"""
 
 from dataclasses import dataclass, field
 from typing import final
@@ -22,7 +25,6 @@ class Above:
     highest_m: float  # largest, m
 
     def __call__(self, state: SceneState) -> bool:
-        """Whether it is so."""
         away = state.tool.position - state.poses[self.thing].position
         near = np.hypot(away[0], away[1]) <= self.aside_m
         return bool(near and self.lowest_m <= away[2] <= self.highest_m)
@@ -36,7 +38,6 @@ class Taken:
     thing: str
 
     def __call__(self, state: SceneState) -> bool:
-        """Whether it is so."""
         return self.thing in state.stabbed | state.gripped
 
 
@@ -49,7 +50,6 @@ class Stabbed:
     above_m: float  # least height of its middle in the base frame, m
 
     def __call__(self, state: SceneState) -> bool:
-        """Whether it is so."""
         return self.thing in state.stabbed and state.poses[self.thing].position[2] >= self.above_m
 
 
@@ -63,7 +63,6 @@ class CarriedOver:
     aside_m: float  # largest horizontal distance, m
 
     def __call__(self, state: SceneState) -> bool:
-        """Whether it is so."""
         away = state.poses[self.thing].position - state.poses[self.over].position
         return bool(Taken(self.thing)(state) and np.hypot(away[0], away[1]) <= self.aside_m)
 
@@ -77,7 +76,6 @@ class Holding:
     above_m: float  # least height of its frame in the base frame, m
 
     def __call__(self, state: SceneState) -> bool:
-        """Whether it is so."""
         return self.thing in state.gripped and state.poses[self.thing].position[2] >= self.above_m
 
 
@@ -92,7 +90,6 @@ class Poured:
     share: float  # of the grains, in (0, 1]
 
     def __call__(self, state: SceneState) -> bool:
-        """Whether it is so."""
         inside = state.inside(self.grains, self.container, self.interior)
         return bool(inside.mean() >= self.share)
 
@@ -106,7 +103,6 @@ class Apart:
     second: str
 
     def __call__(self, state: SceneState) -> bool:
-        """Whether it is so."""
         return (self.first, self.second) not in state.bonds
 
 
@@ -120,7 +116,6 @@ class Within:
     interior: Interior
 
     def __call__(self, state: SceneState) -> bool:
-        """Whether it is so."""
         pose = state.poses[self.container]
         x, y, z = (state.poses[self.thing].position - pose.position) @ pose.rotation
         inside = np.hypot(x, y) <= self.interior.radius_m
@@ -139,7 +134,6 @@ class Placed:
     still_m_s: float = 0.02  # slower than this it rests
 
     def __call__(self, state: SceneState) -> bool:
-        """Whether it is so."""
         away = np.abs(state.poses[self.thing].position - self.centre)
         held = self.let_go and self.thing in state.gripped | state.stabbed
         still = state.speed_m_s[self.thing] <= self.still_m_s
@@ -159,7 +153,6 @@ class Swept:
     _last: FloatArray | None = field(default=None, init=False)
 
     def __call__(self, state: SceneState) -> bool:
-        """Whether it is so."""
         place = state.poses[self.thing].position
         if Within(self.thing, self.container, self.interior)(state):
             if self._last is not None:
@@ -183,7 +176,6 @@ class Stirred:
     _last_rad: float | None = field(default=None, init=False)
 
     def __call__(self, state: SceneState) -> bool:
-        """Whether it is so."""
         pose = state.poses[self.container]
         x, y, z = (state.poses[self.thing].position - pose.position) @ pose.rotation
         if not (np.hypot(x, y) <= self.interior.radius_m and z <= self.interior.top_m):
@@ -209,7 +201,6 @@ class Dropped:
     below_m: float  # in the base frame, m
 
     def __call__(self, state: SceneState) -> Mishap | None:
-        """The mishap, if it is so."""
         fell = state.poses[self.thing].position[2] < self.below_m
         return Mishap("dropped", self.thing) if fell else None
 
@@ -223,7 +214,6 @@ class KnockedOver:
     angle_rad: float = float(np.deg2rad(60.0))  # largest lean
 
     def __call__(self, state: SceneState) -> Mishap | None:
-        """The mishap, if it is so."""
         up = state.poses[self.thing].rotation[2, 2]
         fallen = up < np.cos(self.angle_rad) and self.thing not in state.gripped
         return Mishap("knocked_over", self.thing) if fallen else None
@@ -240,7 +230,6 @@ class Spilled:
     share: float  # of the grains that may be spilled
 
     def __call__(self, state: SceneState) -> Mishap | None:
-        """The mishap, if it is so."""
         most = self.share * len(state.grains[self.grains])
         return Mishap("spilled", self.grains) if self.count(state) > most else None
 
@@ -261,7 +250,6 @@ class Pressed:
     most_n: float
 
     def __call__(self, state: SceneState) -> Mishap | None:
-        """The mishap, if it is so."""
         first, second = sorted((self.thing, TOOL))
         pressed = state.force_n.get((first, second), 0.0) > self.most_n
         return Mishap("pressed", self.thing) if pressed else None

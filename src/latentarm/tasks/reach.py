@@ -31,12 +31,10 @@ class Reach(Task):
 
     @property
     def name(self) -> str:
-        """``reach``."""
         return "reach"
 
     @property
     def robot(self) -> Robot:
-        """The arm."""
         return self._robot
 
     @property
@@ -69,7 +67,6 @@ class Reach(Task):
         return (self.goals[goal].pose,)
 
     def reached(self, pose: Pose, waypoint: Pose) -> bool:
-        """Within 0.03 m and 20 degrees."""
         return within(pose, waypoint)
 
     def demonstrate(self, episodes: int, rng: np.random.Generator) -> Demonstrations:

@@ -74,12 +74,10 @@ class Replay(GripperTask):
 
     @property
     def name(self) -> str:
-        """``held_out``."""
         return "held_out"
 
     @property
     def robot(self) -> Robot:
-        """The arm that was recorded."""
         return self._robot
 
     @property
@@ -120,7 +118,6 @@ class Replay(GripperTask):
         return tuple("open" if is_open else "close" for is_open in self._open_at[goal])
 
     def reached(self, pose: Pose, waypoint: Pose) -> bool:
-        """Within 0.03 m and 20 degrees."""
         return within(pose, waypoint)
 
     def demonstrate(self, episodes: int, rng: np.random.Generator) -> Demonstrations:

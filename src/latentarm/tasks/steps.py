@@ -115,62 +115,34 @@ class Progress:
     """
 
     def __init__(self, steps: Sequence[TaskStep], failures: Sequence[Failure] = ()) -> None:
-        self._steps = tuple(steps)
+        self.steps = tuple(steps)
+        self.done = 0  # number of steps done
+        self.failure: Mishap | None = None  # the irreversible one, if any
+        self.lost: int | None = None  # index of the step to repeat, as what it took is no longer held
+        self.tries = 0  # number of earlier tries of the step
         self._failures = tuple(failures)
-        self._done = self._waypoint = self._tries = 0
+        self._index = 0
         self._arrived_s: float | None = None
-        self._failure: Mishap | None = None
-        self._lost: int | None = None
         self._held_at: FloatArray | None = None
         self._away_s: float | None = None
-        self._at = self._next()
-
-    @property
-    def steps(self) -> tuple[TaskStep, ...]:
-        """All steps, in order."""
-        return self._steps
-
-    @property
-    def done(self) -> int:
-        """Number of steps done."""
-        return self._done
+        self.waypoint = self._next()  # the tool's present target; None where nothing is left
 
     @property
     def share(self) -> float:
         """Share of the steps done."""
-        return self._done / len(self._steps)
+        return self.done / len(self.steps)
 
     @property
     def succeeded(self) -> bool:
         """Whether all steps are done without a failure."""
-        return self._done == len(self._steps) and self._failure is None
-
-    @property
-    def failure(self) -> Mishap | None:
-        """The irreversible failure, if any."""
-        return self._failure
-
-    @property
-    def lost(self) -> int | None:
-        """Index of the step to repeat because the thing that it took is no longer held."""
-        return self._lost
+        return self.done == len(self.steps) and self.failure is None
 
     @property
     def step(self) -> TaskStep | None:
         """The present step; None where nothing is left."""
-        if self._lost is not None:
-            return self._steps[self._lost]
-        return self._steps[self._done] if self._done < len(self._steps) else None
-
-    @property
-    def waypoint(self) -> Waypoint | None:
-        """The tool's present target; None where nothing is left."""
-        return self._at
-
-    @property
-    def tries(self) -> int:
-        """Number of earlier tries of the step."""
-        return self._tries
+        if self.lost is not None:
+            return self.steps[self.lost]
+        return self.steps[self.done] if self.done < len(self.steps) else None
 
     @property
     def asks(self) -> GripperAsk | None:
@@ -185,24 +157,24 @@ class Progress:
 
     def update(self, state: SceneState) -> None:
         """Take the present state, at every tick of the loop."""
-        if self._failure is None:
-            self._failure = next((found for fails in self._failures if (found := fails(state))), None)
+        if self.failure is None:
+            self.failure = next((found for fails in self._failures if (found := fails(state))), None)
         before = self.step
-        while self._done < len(self._steps) and self._steps[self._done].done(state):
-            self._done += 1
-            self._held_at = self._away_s = self._lost = None
-        self._lost = self._slipped(state)
+        while self.done < len(self.steps) and self.steps[self.done].done(state):
+            self.done += 1
+            self._held_at = self._away_s = self.lost = None
+        self.lost = self._slipped(state)
         if self.step is not before:
-            self._waypoint, self._tries, self._arrived_s = 0, 0, None
-            self._at = self._next()
-        if self._at is not None:
-            self._go_on(self._at, state)
+            self._index, self.tries, self._arrived_s = 0, 0, None
+            self.waypoint = self._next()
+        if self.waypoint is not None:
+            self._go_on(self.waypoint, state)
 
     def again(self) -> None:
         """Try the step again from its first waypoint, with more care."""
-        self._waypoint, self._arrived_s = 0, None
-        self._tries += 1
-        self._at = self._next()
+        self._index, self._arrived_s = 0, None
+        self.tries += 1
+        self.waypoint = self._next()
 
     def _go_on(self, waypoint: Waypoint, state: SceneState) -> None:
         seen = waypoint.until is not None and waypoint.until(state)
@@ -217,25 +189,25 @@ class Progress:
             if waited_s >= max(waypoint.wait_s, PATIENCE_S):
                 self.again()
             return
-        last = self.step is not None and self._waypoint == len(self.step.waypoints) - 1
+        last = self.step is not None and self._index == len(self.step.waypoints) - 1
         if waited_s < (max(waypoint.wait_s, RETRY_S) if last else waypoint.wait_s):
             return
         if last:
             self.again()
             return
-        self._waypoint, self._arrived_s = self._waypoint + 1, None
-        self._at = self._next()
+        self._index, self._arrived_s = self._index + 1, None
+        self.waypoint = self._next()
 
     def _next(self) -> Waypoint | None:
         step = self.step
-        return None if step is None else step.waypoints[self._waypoint].closer(self._tries)
+        return None if step is None else step.waypoints[self._index].closer(self.tries)
 
     def _slipped(self, state: SceneState) -> int | None:
         """Index of the step that took the thing that should be held now and is not."""
-        if self._lost is not None:
-            return None if self._steps[self._lost].done(state) else self._lost
-        thing = self._steps[self._done].holds if self._done < len(self._steps) else None
-        done = enumerate(self._steps[: self._done])
+        if self.lost is not None:
+            return None if self.steps[self.lost].done(state) else self.lost
+        thing = self.steps[self.done].holds if self.done < len(self.steps) else None
+        done = enumerate(self.steps[: self.done])
         taking = [index for index, step in done if step.kind in _TAKES and step.thing == thing]
         if thing is None or not taking:
             return None

@@ -1,7 +1,8 @@
 """A Panda at a table with three food items, each to reach and then to stab or scoop."""
 
+from collections.abc import Mapping
 from functools import cached_property
-from typing import final
+from typing import Final, final
 
 import numpy as np
 
@@ -11,9 +12,9 @@ from latentarm.robots.catalogue import load_robot
 from latentarm.robots.kinematics.obstacles import HalfSpace, Obstacle
 from latentarm.robots.robot import Robot
 from latentarm.robots.scene.scene import Scene
+from latentarm.robots.scene.thing import Part, Thing
 from latentarm.tasks.demonstrator import Hand, demonstrate, demonstrations_of
 from latentarm.tasks.inverse_kinematics import solve
-from latentarm.tasks.table_food import food_on_dishes
 from latentarm.tasks.task import Task, within
 
 TABLE_HEIGHT = 0.0  # in the robot's base frame, m: the arm stands on the table
@@ -30,6 +31,19 @@ START_SPREAD = np.array([0.3, 0.05, 0.05, 0.05, 0.05, 0.05, 0.05])
 NEXT_BITE = 0.15  # share of demonstrations that begin above another item
 _VIA = 3  # configurations along a stab or scoop, so that the tool follows a line
 
+_PLATE_RADIUS_M: Final = 0.06
+_PLATE_HALF_M: Final = 0.005
+_HALF_M: Final = 0.014  # half the height of every item
+_CHINA: Final = (0.95, 0.95, 0.97, 1.0)
+_WOOD: Final = (0.62, 0.47, 0.33, 1.0)
+_ALONG_Y: Final = (float(np.sqrt(0.5)), float(np.sqrt(0.5)), 0.0, 0.0)
+_FOOD: Final[Mapping[str, Part]] = {
+    "carrot": Part("capsule", (_HALF_M, 0.025), quaternion=_ALONG_Y, colour=(0.93, 0.45, 0.10, 1.0)),
+    "tofu": Part("box", (0.020, 0.020, _HALF_M), colour=(0.93, 0.86, 0.66, 1.0)),
+    "melon": Part("sphere", (_HALF_M,), colour=(0.35, 0.62, 0.25, 1.0)),
+}
+"""The items as they are drawn, each on a dish of its own."""
+
 
 @final
 class TableTop(Task):
@@ -43,17 +57,14 @@ class TableTop(Task):
 
     @property
     def name(self) -> str:
-        """``table_top``."""
         return "table_top"
 
     @property
     def robot(self) -> Robot:
-        """A Panda."""
         return self._robot
 
     @property
     def manners(self) -> tuple[str, ...]:
-        """Stab or scoop."""
         return ("stab", "scoop")
 
     @property
@@ -63,8 +74,9 @@ class TableTop(Task):
 
     @property
     def shown(self) -> Scene:
-        """The food on its dishes."""
-        return food_on_dishes(ITEMS, TABLE_HEIGHT + ITEM_HEIGHT)
+        height_m = TABLE_HEIGHT + ITEM_HEIGHT
+        dishes = (_dish(name, *place, height_m - _HALF_M) for name, place in ITEMS.items())
+        return Scene((*dishes, *(_item(name, *place, height_m) for name, place in ITEMS.items())))
 
     @property
     def goals(self) -> tuple[Goal, ...]:
@@ -76,13 +88,11 @@ class TableTop(Task):
         return self.robot.home + rng.uniform(-START_SPREAD, START_SPREAD)
 
     def waypoints(self, goal: int, manner: str) -> tuple[Pose, ...]:
-        """The pose above the item, then the end of the stab or scoop."""
         if not 0 <= goal < len(ITEMS):
             raise UserError(f"The table has goals 0 to {len(ITEMS) - 1}, not {goal}.")
         return self.goals[goal].pose, self.robot.chain.forward(self._manipulation(goal, manner)[-1])
 
     def reached(self, pose: Pose, waypoint: Pose) -> bool:
-        """Within 0.03 m and 20 degrees."""
         return within(pose, waypoint)
 
     def demonstrate(self, episodes: int, rng: np.random.Generator) -> Demonstrations:
@@ -165,3 +175,15 @@ def _above(name: str, height: float, tilt: float = 0.0, outwards: float = 0.0) -
     rotation = np.stack([np.cross(side, points), side, points], axis=-1)
     position = np.array([x, y, TABLE_HEIGHT + ITEM_HEIGHT + height]) + outwards * out
     return Pose(position, rotation)
+
+
+def _dish(item: str, x: float, y: float, top_m: float) -> Thing:
+    half = (top_m - 2 * _PLATE_HALF_M) / 2
+    disc = Part("cylinder", (_PLATE_RADIUS_M, _PLATE_HALF_M), (0.0, 0.0, -_PLATE_HALF_M), colour=_CHINA)
+    below = -2 * _PLATE_HALF_M - half
+    stand = Part("cylinder", (0.5 * _PLATE_RADIUS_M, half), (0.0, 0.0, below), colour=_WOOD)
+    return Thing(f"{item} dish", (disc, stand), 0.5, Pose(np.array([x, y, top_m]), np.eye(3)), fixed=True)
+
+
+def _item(name: str, x: float, y: float, height_m: float) -> Thing:
+    return Thing(name, (_FOOD[name],), 0.02, Pose(np.array([x, y, height_m]), np.eye(3)))

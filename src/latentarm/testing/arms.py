@@ -48,12 +48,10 @@ class ArmContract(ArmLaws):
 
     @pytest.fixture
     def new_arm(self, make: ArmFactory, robot: Robot, clock: SimulatedClock) -> Arm:
-        """An arm at home that has just been made."""
         return make(robot, robot.home, clock.now_s)
 
     @pytest.fixture
     def arm(self, new_arm: Arm) -> Arm:
-        """The same arm, connected and enabled."""
         new_arm.connect()
         new_arm.enable()
         return new_arm

@@ -67,7 +67,6 @@ class _Stick(InputSource):
         self.pushed = False
 
     def latest(self, now_s: float) -> tuple[Input, float]:
-        """See the base class."""
         return Input(self._push if self.pushed else np.zeros_like(self._push)), 0.0
 
 

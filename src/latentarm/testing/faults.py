@@ -65,21 +65,17 @@ class FaultyArm(Arm):
 
     @property
     def spec(self) -> ArmSpec:
-        """See the base class."""
         return self.arm.spec
 
     def connect(self) -> None:
-        """See the base class."""
         self.arm.connect()
         self._waiting.clear()
         self._reached = self.arm.read()
 
     def close(self) -> None:
-        """See the base class."""
         self.arm.close()
 
     def read(self) -> Reading:
-        """See the base class."""
         newest = self.arm.read()
         reached = self._reached
         if reached is None:
@@ -91,7 +87,6 @@ class FaultyArm(Arm):
         return reached if self._frozen is None else replace(reached, q=self._frozen.q, dq=self._frozen.dq)
 
     def status(self) -> ArmStatus:
-        """See the base class."""
         status = self.arm.status()
         if status.phase == "off":
             return status
@@ -100,31 +95,25 @@ class FaultyArm(Arm):
         return self._broken or status
 
     def enable(self) -> None:
-        """See the base class."""
         if self.status().phase == "disabled":
             self.arm.enable()
 
     def disable(self) -> None:
-        """See the base class."""
         self.arm.disable()
 
     def recover(self) -> None:
-        """See the base class."""
         if self._broken is not None and self._broken.recoverable:
             self._broken = None
 
     def send(self, command: Command) -> None:
-        """See the base class."""
         if not self._cut:
             self.arm.send(command)
 
     def move_gripper(self, command: GripperCommand) -> None:
-        """See the base class."""
         if not self._cut:
             self.arm.move_gripper(command)
 
     def stop(self) -> None:
-        """See the base class."""
         if not self._cut:
             self.arm.stop()
 

@@ -83,14 +83,12 @@ class RealArmRig(ArmLaws):
 
     @pytest.fixture
     def new_arm(self, make: Callable[[], RealArm]) -> Iterator[RealArm]:
-        """A driver that has just been made."""
         arm = make()
         yield arm
         arm.close()
 
     @pytest.fixture
     def arm(self, new_arm: RealArm) -> RealArm:
-        """The same driver, connected and enabled."""
         new_arm.connect()
         self._enable(new_arm)
         return new_arm

@@ -56,7 +56,6 @@ class FrankaArm(GuidableArm):
 
     @property
     def spec(self) -> ArmSpec:
-        """The arm's fixed properties."""
         return self._spec
 
     def look(self) -> Findings:
@@ -70,7 +69,6 @@ class FrankaArm(GuidableArm):
             link.close()
 
     def connect(self) -> None:
-        """Connect; the arm is then disabled."""
         self._begin(self._ready_link)
 
     def watch(self) -> None:
@@ -91,7 +89,6 @@ class FrankaArm(GuidableArm):
             ) from error
 
     def close(self) -> None:
-        """Stop the arm and disconnect."""
         self._enabled = False
         if self._worker is not None:
             self._last = self.read()
@@ -102,7 +99,6 @@ class FrankaArm(GuidableArm):
             self._hand = None
 
     def read(self) -> Reading:
-        """The newest reading."""
         if self._worker is None:
             if self._last is None:
                 raise RuntimeError("the arm was never connected")
@@ -117,7 +113,6 @@ class FrankaArm(GuidableArm):
         return last
 
     def status(self) -> ArmStatus:
-        """Whether the arm can move, and if not, why."""
         worker = self._worker
         if worker is None:
             return ArmStatus("off", "The arm is not connected.")
@@ -133,14 +128,12 @@ class FrankaArm(GuidableArm):
         return ArmStatus("moving" if worker.running else "ready")
 
     def enable(self) -> None:
-        """Ask to take commands."""
         if self._worker is not None and self.status().phase == "disabled":
             if not self._enabled:
                 self._halt()
             self._enabled = True
 
     def disable(self) -> None:
-        """Stop, and take no commands."""
         self._enabled = False
         self._halt()
 
@@ -150,7 +143,6 @@ class FrankaArm(GuidableArm):
             self._worker.guide()
 
     def move_gripper(self, command: GripperCommand) -> None:
-        """Move the gripper of an arm that takes no commands."""
         if self._worker is not None and self._hand is not None and not self.status().takes_commands:
             self._hand.ask(command)
 
@@ -161,7 +153,6 @@ class FrankaArm(GuidableArm):
             self._worker.recover()
 
     def send(self, command: Command) -> None:
-        """Take a command; ignored unless enabled."""
         velocity = finite_velocity(command, 7)
         if not math.isfinite(command.duration_s):
             raise ValueError("a command needs a finite duration")
@@ -174,7 +165,6 @@ class FrankaArm(GuidableArm):
             self._hand.ask(command.gripper)
 
     def stop(self) -> None:
-        """Stop now, and stay enabled."""
         self._halt()
 
     def _halt(self) -> None:

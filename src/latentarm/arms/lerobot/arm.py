@@ -64,11 +64,9 @@ class LerobotArm(GuidableArm):
 
     @property
     def spec(self) -> ArmSpec:
-        """The arm's fixed properties."""
         return self._spec
 
     def look(self) -> Findings:
-        """Inspect the arm without moving it."""
         answer = self._ask("look")
         facts = {"arm": self._options.kind, "port": self._options.port}
         facts |= cast("dict[str, str]", answer["facts"])
@@ -80,7 +78,6 @@ class LerobotArm(GuidableArm):
         return Findings((*listed, compared((), self._robot)), (*self._misfits(), *answer["refusals"]))
 
     def connect(self) -> None:
-        """Connect; the arm is then disabled."""
         if self._open and self._alive:
             return
         if misfits := self._misfits():
@@ -104,14 +101,12 @@ class LerobotArm(GuidableArm):
         self._status = ArmStatus("off", "The arm is not connected.")
 
     def read(self) -> Reading:
-        """The newest reading."""
         if self._newest is None:
             raise RuntimeError("an arm has no reading before it is connected")
         self._drain()
         return self._newest
 
     def status(self) -> ArmStatus:
-        """Whether the arm can move, and if not, why."""
         self._drain()
         if self._open and keeper.now_s() - self._heard_s > _SILENT_S:
             return ArmStatus(
@@ -122,11 +117,9 @@ class LerobotArm(GuidableArm):
         return self._status
 
     def enable(self) -> None:
-        """Ask to take commands."""
         self._tell("enable")
 
     def disable(self) -> None:
-        """Stop, and take no commands."""
         self._tell("disable")
         if self._status.takes_commands:
             self._status = _DISABLED
@@ -140,11 +133,9 @@ class LerobotArm(GuidableArm):
         self._tell("grip", gripper=[command.width_m, command.speed_m_s])
 
     def recover(self) -> None:
-        """Ask to end a recoverable fault."""
         self._tell("recover")
 
     def send(self, command: Command) -> None:
-        """Take a command; ignored unless enabled."""
         velocity = finite_velocity(command, self._robot.dof)
         gripper = command.gripper
         self._tell(
@@ -156,7 +147,6 @@ class LerobotArm(GuidableArm):
         )
 
     def stop(self) -> None:
-        """Stop now, and stay enabled."""
         self._tell("stop")
 
     @property

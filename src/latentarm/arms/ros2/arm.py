@@ -77,11 +77,9 @@ class Ros2Arm(GuidableArm):
 
     @property
     def spec(self) -> ArmSpec:
-        """The arm's fixed properties."""
         return self._spec
 
     def look(self) -> Findings:
-        """Inspect the arm without moving it."""
         if self._open is not None:
             raise RuntimeError("the arm is connected; look before that")
         opened = self._opened()
@@ -91,7 +89,6 @@ class Ros2Arm(GuidableArm):
             opened.link.close()
 
     def connect(self) -> None:
-        """Connect; the arm is then disabled."""
         if self._open is not None and not self._out_of_reach():
             return
         self._begin(self._claimed)
@@ -109,7 +106,6 @@ class Ros2Arm(GuidableArm):
         self._heart.start()
 
     def close(self) -> None:
-        """Stop the arm and disconnect."""
         self._ended.set()
         self._arming = None
         if self._heart is not None:
@@ -121,14 +117,12 @@ class Ros2Arm(GuidableArm):
         self._reconnect.clear()
 
     def read(self) -> Reading:
-        """The newest reading."""
         self._take_reading()
         if self._reading is None:
             raise RuntimeError("an arm has no reading before it is connected")
         return self._reading
 
     def status(self) -> ArmStatus:
-        """Whether the arm can move, and if not, why."""
         opened = self._open
         if opened is None:
             return ArmStatus("off", "The arm is not connected.")
@@ -151,7 +145,6 @@ class Ros2Arm(GuidableArm):
         return ArmStatus("disabled", state.obstacle or "The arm is not enabled yet.")
 
     def enable(self) -> None:
-        """Ask to take commands."""
         if self._open is not None and self.status().phase == "disabled":
             if self._arming is None:
                 self._enablings += 1
@@ -159,7 +152,6 @@ class Ros2Arm(GuidableArm):
             self._open.session.tell("enable", arming=self._arming)
 
     def disable(self) -> None:
-        """Stop, and take no commands."""
         self._arming = None
         if self._open is not None:
             self._open.session.tell("disable")
@@ -173,13 +165,11 @@ class Ros2Arm(GuidableArm):
         )
 
     def move_gripper(self, command: GripperCommand) -> None:
-        """Move the gripper of an arm that takes no commands."""
         opened, status = self._open, self.status()
         if opened is not None and opened.gripper is not None and not (status.lost or status.takes_commands):
             opened.gripper.command(command)
 
     def recover(self) -> None:
-        """Ask to end a recoverable fault."""
         opened = self._open
         if opened is None or self.status().phase != "fault":
             return
@@ -191,7 +181,6 @@ class Ros2Arm(GuidableArm):
         opened.session.tell("recover")
 
     def send(self, command: Command) -> None:
-        """Take a command; ignored unless enabled."""
         velocity = finite_velocity(command, self._dof)
         if command.gripper is not None and self._gripper is None:
             raise ValueError("this arm has no gripper to command")
@@ -213,7 +202,6 @@ class Ros2Arm(GuidableArm):
             opened.gripper.command(command.gripper)
 
     def stop(self) -> None:
-        """Stop now, and stay enabled."""
         if self._open is not None:
             self._open.session.tell("stop")
             self._halt_gripper(self._open)

@@ -53,11 +53,9 @@ class XArm(GuidableArm):
 
     @property
     def spec(self) -> ArmSpec:
-        """The arm's fixed properties."""
         return self._spec
 
     def look(self) -> Findings:
-        """Inspect the arm without moving it."""
         session: Session | None = None
         try:
             session = Session(self._sdk, self._host, self._options, self._robot, self._now_s)
@@ -72,11 +70,9 @@ class XArm(GuidableArm):
                 session.close()
 
     def connect(self) -> None:
-        """Connect; the arm is then disabled."""
         self._begin(clears=True)
 
     def watch(self) -> None:
-        """Connect to read."""
         self._begin(clears=False)
 
     def _begin(self, *, clears: bool) -> None:
@@ -88,7 +84,6 @@ class XArm(GuidableArm):
         self._driver.start()
 
     def close(self) -> None:
-        """Stop the arm and disconnect."""
         driver, self._driver = self._driver, None
         if driver is None:
             return
@@ -100,7 +95,6 @@ class XArm(GuidableArm):
         driver.join(_JOIN_S)
 
     def read(self) -> Reading:
-        """The newest reading."""
         if self._driver is not None:
             self._last = self._newest(self._driver)
         if self._last is None:
@@ -109,7 +103,6 @@ class XArm(GuidableArm):
         return Reading(report.q.copy(), report.dq.copy(), report.measured_s, report.number, gripper)
 
     def status(self) -> ArmStatus:
-        """Whether the arm can move, and if not, why."""
         with self._shared.changed:
             condition, reason = self._shared.condition, self._shared.reason
             recoverable = self._shared.recoverable
@@ -132,14 +125,12 @@ class XArm(GuidableArm):
                 return ArmStatus("emergency_stop", reason, recoverable)
 
     def enable(self) -> None:
-        """Ask to take commands."""
         with self._shared.changed:
             if self._shared.condition == "disabled":
                 self._shared.become("enabling")
                 self._shared.requests.add("enable")
 
     def disable(self) -> None:
-        """Stop, and take no commands."""
         with self._shared.changed:
             if self._shared.condition in (*TAKES_COMMANDS, "enabling", "releasing", "guided"):
                 self._shared.become("disabled")
@@ -153,21 +144,18 @@ class XArm(GuidableArm):
                 self._shared.requests.add("guide")
 
     def move_gripper(self, command: GripperCommand) -> None:
-        """Move the gripper of an arm that takes no commands."""
         driver = self._driver
         takes_commands = self._shared.condition in TAKES_COMMANDS
         if driver is not None and driver.session.gripper is not None and not takes_commands:
             driver.session.gripper.send(command)
 
     def recover(self) -> None:
-        """Ask to end a recoverable fault."""
         with self._shared.changed:
             if self._shared.condition in ("fault", "lost") and self._shared.recoverable:
                 self._shared.requests.add("recover")
                 self._shared.changed.notify_all()
 
     def send(self, command: Command) -> None:
-        """Take a command; ignored unless enabled."""
         velocity = finite_velocity(command, self._robot.dof)
         driver = self._driver
         with self._shared.changed:
@@ -179,7 +167,6 @@ class XArm(GuidableArm):
             driver.session.gripper.send(command.gripper)
 
     def stop(self) -> None:
-        """Stop now, and stay enabled."""
         with self._shared.changed:
             self._shared.command = None
             if self._shared.condition in TAKES_COMMANDS:

@@ -34,7 +34,6 @@ class ControlSocket(Port):
         self.connected = True
 
     def flush(self) -> int:
-        """Forget answers that nobody waits for."""
         with contextlib.suppress(BlockingIOError):
             while self.connected and self._receive():
                 pass
@@ -77,7 +76,6 @@ class ControlSocket(Port):
         self.close()
 
     def close(self) -> None:
-        """End the connection."""
         self.connected = False
         with contextlib.suppress(OSError):
             self._socket.close()

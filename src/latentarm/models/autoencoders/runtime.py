@@ -31,7 +31,6 @@ class LatentDecoder(Runtime):
         (self._weight, self._bias), *self._rest = halve_hidden([(weight, bias), *layers[1:]])
 
     def __call__(self, z: FloatArray, context: FloatArray) -> FloatArray:
-        """See `Runtime`."""
         action = propagate(z @ self._weight + self._bias, self._rest)
         if context.ndim == 1:
             return action
@@ -39,7 +38,6 @@ class LatentDecoder(Runtime):
         return np.broadcast_to(action, (*shape, action.shape[-1]))
 
     def enclose(self, context: FloatArray, fineness: int = 1) -> Enclosure:
-        """See `Runtime`."""
         offset = np.broadcast_to(self._bias, (*context.shape[:-1], len(self._bias)))
         return network_enclosure(self._weight, offset, self._rest, fineness)
 
@@ -60,12 +58,10 @@ class ConditionedDecoder(Runtime):
         self._from_latent, self._from_context = weight[:d].copy(), weight[d:].copy()
 
     def __call__(self, z: FloatArray, context: FloatArray) -> FloatArray:
-        """See `Runtime`."""
         first = z @ self._from_latent + (context @ self._from_context + self._bias)
         return propagate(first, self._rest)
 
     def enclose(self, context: FloatArray, fineness: int = 1) -> Enclosure:
-        """See `Runtime`."""
         offset = context @ self._from_context + self._bias
         return network_enclosure(self._from_latent, offset, self._rest, fineness)
 

@@ -45,7 +45,6 @@ class CurveDecoder(SearchingRuntime, ABC):
 
     @final
     def __call__(self, z: FloatArray, context: FloatArray) -> FloatArray:
-        """See `Runtime`."""
         jacobian = self._contexts.jacobian(context[..., : self._joints])
         columns = self._columns(context, jacobian)
         radius = np.sqrt(np.vecdot(z, z))[..., None]

@@ -70,7 +70,6 @@ class TagSource(Source):
 
     @property
     def hold_s(self) -> float:
-        """As the tags file has it, s."""
         return self._hold_s
 
     def read(self) -> Sequence[Sighting]:
@@ -80,7 +79,6 @@ class TagSource(Source):
         return tuple(found.values())
 
     def close(self) -> None:
-        """Close the cameras."""
         self._closing.set()
         for camera in self._cameras.values():
             camera.end()

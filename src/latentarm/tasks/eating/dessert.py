@@ -43,17 +43,14 @@ class Dessert(ForkTask):
 
     @property
     def name(self) -> str:
-        """``dessert``."""
         return "dessert"
 
     @property
     def choices(self) -> tuple[str, ...]:
-        """One marshmallow."""
         return (MARSHMALLOW,)
 
     @property
     def time_limit_s(self) -> float:
-        """Three minutes."""
         return 180.0
 
     def begin(self, choice: int, rng: np.random.Generator) -> Beginning:

@@ -34,17 +34,14 @@ class Entree(ForkTask):
 
     @property
     def name(self) -> str:
-        """``entree``."""
         return "entree"
 
     @property
     def choices(self) -> tuple[str, ...]:
-        """One slice."""
         return ("slice",)
 
     @property
     def time_limit_s(self) -> float:
-        """Two minutes."""
         return 120.0
 
     def begin(self, choice: int, rng: np.random.Generator) -> Beginning:

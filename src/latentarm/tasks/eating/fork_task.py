@@ -29,7 +29,6 @@ class ForkTask(SceneTask):
     @property
     @final
     def robot(self) -> Robot:
-        """A Panda with a fork."""
         return load_robot("panda_fork")
 
     @property

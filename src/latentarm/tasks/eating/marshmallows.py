@@ -30,17 +30,14 @@ class Marshmallows(ForkTask):
 
     @property
     def name(self) -> str:
-        """``marshmallows``."""
         return "marshmallows"
 
     @property
     def choices(self) -> tuple[str, ...]:
-        """Which marshmallow."""
         return NAMES
 
     @property
     def time_limit_s(self) -> float:
-        """A minute."""
         return 60.0
 
     def begin(self, choice: int, rng: np.random.Generator) -> Beginning:

@@ -57,7 +57,6 @@ class ApplePie(CounterTask):
 
     @property
     def name(self) -> str:
-        """``apple_pie``."""
         return "apple_pie"
 
     @property
@@ -67,7 +66,6 @@ class ApplePie(CounterTask):
 
     @property
     def time_limit_s(self) -> float:
-        """Three minutes."""
         return 180.0
 
     def begin(self, choice: int, rng: np.random.Generator) -> Beginning:

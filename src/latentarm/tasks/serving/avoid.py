@@ -32,17 +32,14 @@ class Avoid(CounterTask):
 
     @property
     def name(self) -> str:
-        """``avoid``."""
         return "avoid"
 
     @property
     def choices(self) -> tuple[str, ...]:
-        """One place."""
         return ("place",)
 
     @property
     def time_limit_s(self) -> float:
-        """A minute."""
         return 60.0
 
     def begin(self, choice: int, rng: np.random.Generator) -> Beginning:

@@ -26,7 +26,6 @@ class CounterTask(SceneTask):
     @property
     @final
     def robot(self) -> Robot:
-        """A Panda with its hand."""
         return load_robot("panda")
 
     @property

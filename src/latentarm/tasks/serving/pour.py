@@ -30,17 +30,14 @@ class Pour(CounterTask):
 
     @property
     def name(self) -> str:
-        """``pour``."""
         return "pour"
 
     @property
     def choices(self) -> tuple[str, ...]:
-        """One cup."""
         return ("cup",)
 
     @property
     def time_limit_s(self) -> float:
-        """Two minutes."""
         return 120.0
 
     def begin(self, choice: int, rng: np.random.Generator) -> Beginning:

@@ -34,17 +34,14 @@ class ReachAndPour(CounterTask):
 
     @property
     def name(self) -> str:
-        """``reach_and_pour``."""
         return "reach_and_pour"
 
     @property
     def choices(self) -> tuple[str, ...]:
-        """One cup."""
         return ("cup",)
 
     @property
     def time_limit_s(self) -> float:
-        """Two minutes."""
         return 120.0
 
     def begin(self, choice: int, rng: np.random.Generator) -> Beginning:
