@@ -51,38 +51,21 @@ _TOOL_D = 0.1034  # hand -> the point between the fingertips
 # Mass, kg; centre of mass, m; inertia xx, yy, zz, xy, xz, yz about it, kg m². Links 1-7 as identified
 # by Gaz et al. (IEEE RA-L 4(4), 2019); the base likewise.
 _INERTIA = (
-    (0.629769, (-0.041018, -0.00014, 0.049974), (0.00315, 0.00388, 0.004285, 8.2904e-7, 0.00015, 8.2299e-6)),
-    (4.970684, (0.003875, 0.002081, -0.04762), (0.70337, 0.70661, 0.009117, -0.000139, 0.006772, 0.019169)),
-    (0.646926, (-0.003141, -0.02872, 0.003495), (0.007962, 0.02811, 0.025995, -0.003925, 0.010254, 0.000704)),
-    (
-        3.228604,
-        (0.027518, 0.039252, -0.066502),
-        (0.037242, 0.036155, 0.01083, -0.004761, -0.011396, -0.012805),
-    ),
-    (3.587895, (-0.05317, 0.104419, 0.027454), (0.025853, 0.019552, 0.028323, 0.007796, -0.001332, 0.008641)),
-    (
-        1.225946,
-        (-0.011953, 0.041065, -0.038437),
-        (0.035549, 0.029474, 0.008627, -0.002117, -0.004037, 0.000229),
-    ),
-    (
-        1.666555,
-        (0.060149, -0.014117, -0.010517),
-        (0.001964, 0.004354, 0.005433, 0.000109, -0.001158, 0.000341),
-    ),
-    (
-        0.735522,
-        (0.010517, -0.004252, 0.061597),
-        (0.012516, 0.010027, 0.004815, -0.000428, -0.001196, -0.000741),
-    ),
+    (0.629769, -0.041018, -0.00014, 0.049974, 0.00315, 0.00388, 0.004285, 8.2904e-07, 0.00015, 8.2299e-06),
+    (4.970684, 0.003875, 0.002081, -0.04762, 0.70337, 0.70661, 0.009117, -0.000139, 0.006772, 0.019169),
+    (0.646926, -0.003141, -0.02872, 0.003495, 0.007962, 0.02811, 0.025995, -0.003925, 0.010254, 0.000704),
+    (3.228604, 0.027518, 0.039252, -0.066502, 0.037242, 0.036155, 0.01083, -0.004761, -0.011396, -0.012805),
+    (3.587895, -0.05317, 0.104419, 0.027454, 0.025853, 0.019552, 0.028323, 0.007796, -0.001332, 0.008641),
+    (1.225946, -0.011953, 0.041065, -0.038437, 0.035549, 0.029474, 0.008627, -0.002117, -0.004037, 0.000229),
+    (1.666555, 0.060149, -0.014117, -0.010517, 0.001964, 0.004354, 0.005433, 0.000109, -0.001158, 0.000341),
+    (0.735522, 0.010517, -0.004252, 0.061597, 0.012516, 0.010027, 0.004815, -0.000428, -0.001196, -0.000741),
 )
-_HAND_INERTIA = (0.73, (-0.01, 0.0, 0.03), (0.001, 0.0025, 0.0017, 0.0, 0.0, 0.0))
+_HAND_INERTIA = (0.73, -0.01, 0.0, 0.03, 0.001, 0.0025, 0.0017, 0.0, 0.0, 0.0)
 GRIPPER = Gripper(joints=("finger_joint1", "finger_joint2"), width_m=0.08, speed_m_s=0.1, force_n=70.0)
 """The Franka Hand: its datasheet's stroke, speed for each change of the opening, and continuous force."""
 
 _FINGER_Z = 0.0584  # hand -> finger, m
-_FINGER_KG = 0.015
-_FINGER_INERTIA = 2.375e-6, 2.375e-6, 7.5e-7  # kg m²
+_FINGER_INERTIA = (0.015, 0.0, 0.01, 0.025, 2.375e-6, 2.375e-6, 7.5e-7, 0.0, 0.0, 0.0)
 _FINGER_ARMATURE = 0.1  # kg: what the motor and its gear add
 # A finger in its own frame: at zero its pad lies in the plane y = 0. What the capsule covers is the shell of
 # the real finger; the pad is what grips, and makes the capsule about both fingers no thicker.
@@ -208,7 +191,7 @@ def _add_fingers(spec: mujoco.MjSpec, hand: mujoco.MjsBody) -> None:
             pos=[0.0, 0.0, _FINGER_Z],
             quat=[np.cos(turn / 2), 0.0, 0.0, np.sin(turn / 2)],
         )
-        _give_inertia(finger, _FINGER_KG, (0.0, 0.01, 0.025), (*_FINGER_INERTIA, 0.0, 0.0, 0.0))
+        _give_inertia(finger, *_FINGER_INERTIA)
         finger.add_joint(
             name=joint,
             type=mujoco.mjtJoint.mjJNT_SLIDE,
@@ -244,10 +227,8 @@ def _add_fingers(spec: mujoco.MjSpec, hand: mujoco.MjsBody) -> None:
     coupling.solref = [0.002, 1.0]
 
 
-def _give_inertia(
-    body: mujoco.MjsBody, mass: float, centre: tuple[float, ...], inertia: tuple[float, ...]
-) -> None:
+def _give_inertia(body: mujoco.MjsBody, mass: float, x: float, y: float, z: float, *inertia: float) -> None:
     body.explicitinertial = True
     body.mass = mass
-    body.ipos = list(centre)
+    body.ipos = [x, y, z]
     body.fullinertia = list(inertia)
