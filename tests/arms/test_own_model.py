@@ -22,8 +22,7 @@ from latentarm.arms.checking import look_at
 from latentarm.arms.franka.limits import FR3, FrankaLimits
 from latentarm.arms.franka.link import Link, refusals
 from latentarm.arms.franka.options import FrankaOptions
-from latentarm.arms.kinds import kind_misfit
-from latentarm.arms.own_pose import OwnPose, compared, misfits, poses_about
+from latentarm.arms.own_pose import OwnPose, compared, kind_misfit, misfits, poses_about
 from latentarm.arms.real import Findings
 from latentarm.arms.ros2.options import read_options
 from latentarm.arms.ros2.own_model import Description

@@ -16,8 +16,7 @@ from latentarm.arms.xarm.control_socket import ControlSocket
 from latentarm.arms.xarm.controller import LinkLostError
 from latentarm.arms.xarm.gripper import units_of, width_of
 from latentarm.arms.xarm.identity import read_identity
-from latentarm.arms.xarm.report_clock import ReportClock
-from latentarm.arms.xarm.reports import JointReport
+from latentarm.arms.xarm.reports import JointReport, ReportClock
 from latentarm.arms.xarm.sdk import load_sdk
 from latentarm.arms.xarm.session import read_options
 from latentarm.arms.xarm.watch import Watch

@@ -5,8 +5,7 @@ from figure_faults import faults
 from latentarm.core.errors import UserError
 from latentarm.core.style import COLUMN_MM, MM_PER_INCH, save_figure
 from latentarm.evaluation.effects import axis_effects, axis_grid, held_paths
-from latentarm.evaluation.latent_effect_figure import AWAY_M, latent_effect_figure
-from latentarm.evaluation.properties_figure import properties_figure
+from latentarm.evaluation.figures import AWAY_M, latent_effect_figure, properties_figure
 
 GRID = axis_grid(7)
 

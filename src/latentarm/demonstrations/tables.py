@@ -1,8 +1,8 @@
-"""The dataset's Parquet tables: samples, episodes and tasks, in the columns of LeRobot v3.0."""
+"""The dataset's Parquet tables, in the columns of LeRobot v3.0: samples, episodes, tasks, statistics."""
 
 import json
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, BinaryIO, Final, TypeAlias, cast
 
@@ -15,7 +15,6 @@ from latentarm.core.types import Episode, FloatArray, IntArray
 from latentarm.core.untrusted.memory import bounded_memory
 from latentarm.core.untrusted.opening import is_missing, opened
 from latentarm.demonstrations.bounds import MAX_FILE_BYTES, check_values
-from latentarm.demonstrations.feature_statistics import MEASURES, episode_statistics, pooled
 from latentarm.demonstrations.info import ACTION, INDEX_DTYPES, STATE, Feature
 
 Table: TypeAlias = Any  # a `pyarrow.Table`: the library ships no types
@@ -191,3 +190,43 @@ def integer_column(table: Table, name: str, path: Path) -> IntArray:
     if column.null_count or not pa.types.is_integer(column.type):
         raise UserError(f"{path}: the column {name} must hold whole numbers.")
     return column.to_numpy().astype(np.int64)
+
+
+# Statistics of a feature, in the form of `meta/stats.json`.
+QUANTILES: Final = {"q01": 0.01, "q10": 0.1, "q50": 0.5, "q90": 0.9, "q99": 0.99}
+MEASURES: Final = ("min", "max", "mean", "std", "count", *QUANTILES)
+
+
+def episode_statistics(columns: Mapping[str, FloatArray]) -> dict[str, dict[str, FloatArray]]:
+    """For each feature, (T, k), and each of `MEASURES` an array (k,); ``count`` is (1,)."""
+    return {
+        name: {
+            "min": values.min(axis=0),
+            "max": values.max(axis=0),
+            "mean": values.mean(axis=0),
+            "std": values.std(axis=0),
+            "count": np.array([float(len(values))]),
+            **dict(zip(QUANTILES, np.quantile(values, list(QUANTILES.values()), axis=0), strict=True)),
+        }
+        for name, values in columns.items()
+    }
+
+
+def pooled(measures: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
+    """Pool the episodes' measures (E, k) of one feature into (k,), without their samples.
+
+    Minimum, maximum, mean and deviation are exact; quantiles are means of the episodes' quantiles weighted by
+    samples, as by other writers of the layout.
+    """
+    count = measures["count"]
+    weight = count / count.sum()
+    mean = (weight * measures["mean"]).sum(axis=0)
+    variance = (weight * (measures["std"] ** 2 + (measures["mean"] - mean) ** 2)).sum(axis=0)
+    return {
+        "min": measures["min"].min(axis=0),
+        "max": measures["max"].max(axis=0),
+        "mean": mean,
+        "std": np.sqrt(variance),
+        "count": count.sum(axis=0),
+        **{name: (weight * measures[name]).sum(axis=0) for name in QUANTILES},
+    }

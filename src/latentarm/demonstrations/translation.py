@@ -10,11 +10,17 @@ import numpy as np
 from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations, Episode
 from latentarm.demonstrations.columns import Columns, find_columns, is_width
-from latentarm.demonstrations.gripper import ACTION_GRIPPER, GRIPPER, GRIPPER_OPENING, GRIPPER_WIDTH, OBSERVED
+from latentarm.demonstrations.gripper import (
+    ACTION_GRIPPER,
+    GRIPPER,
+    GRIPPER_OPENING,
+    GRIPPER_WIDTH,
+    OBSERVED,
+    widths_from_toggles,
+)
 from latentarm.demonstrations.import_options import ImportOptions
 from latentarm.demonstrations.robot_names import is_so_arm, may_be
 from latentarm.demonstrations.source import SourceData
-from latentarm.demonstrations.toggles import widths_from_toggles
 from latentarm.demonstrations.turns import unwrapped
 from latentarm.demonstrations.unit_evidence import check_degrees, radians_after_all
 from latentarm.demonstrations.units import TARGET_POSITION, Conversion, Unit, conversion, parse_units

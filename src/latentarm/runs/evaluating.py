@@ -29,8 +29,7 @@ from latentarm.evaluation.evaluation import (
     measure_behaviour,
     take_probe,
 )
-from latentarm.evaluation.latent_effect_figure import latent_effect_figure
-from latentarm.evaluation.properties_figure import properties_figure
+from latentarm.evaluation.figures import latent_effect_figure, properties_figure
 from latentarm.evaluation.results import as_document
 from latentarm.evaluation.samples import evenly_spread, moving_episodes, spread_contexts
 from latentarm.evaluation.search import nearest_latents

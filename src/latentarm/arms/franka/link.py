@@ -12,8 +12,7 @@ import numpy as np
 from latentarm.arms.franka.limits import SHARE, FrankaLimits, limits_of
 from latentarm.arms.franka.options import FrankaOptions
 from latentarm.arms.franka.words import plain
-from latentarm.arms.kinds import kind_misfit
-from latentarm.arms.own_pose import OwnPose, compared, misfits
+from latentarm.arms.own_pose import OwnPose, compared, kind_misfit, misfits
 from latentarm.arms.real import Fact, Findings
 from latentarm.core.errors import UserError
 from latentarm.robots.robot import Robot

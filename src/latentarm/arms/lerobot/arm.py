@@ -10,10 +10,9 @@ import numpy as np
 from latentarm.arms.address import ArmAddress
 from latentarm.arms.contract import ArmPhase, ArmSpec, ArmStatus, finite_velocity
 from latentarm.arms.helper_process import HelperProcess
-from latentarm.arms.kinds import kind_misfit
 from latentarm.arms.lerobot import keeper
 from latentarm.arms.lerobot.options import Options
-from latentarm.arms.own_pose import compared
+from latentarm.arms.own_pose import compared, kind_misfit
 from latentarm.arms.real import Fact, Findings, GuidableArm
 from latentarm.core.errors import UserError
 from latentarm.core.types import Command, GripperCommand, GripperReading, Reading

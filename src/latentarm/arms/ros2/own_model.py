@@ -10,8 +10,7 @@ from xml.etree import ElementTree as Xml
 import mujoco
 import numpy as np
 
-from latentarm.arms.kinds import kind_misfit
-from latentarm.arms.own_pose import OwnPose, poses_about
+from latentarm.arms.own_pose import OwnPose, kind_misfit, poses_about
 from latentarm.arms.real import FoundLimits
 from latentarm.arms.ros2.link import Link
 from latentarm.arms.ros2.options import Ros2Options

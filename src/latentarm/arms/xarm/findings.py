@@ -6,8 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from latentarm.arms.kinds import kind_misfit
-from latentarm.arms.own_pose import OwnPose, compared, misfits
+from latentarm.arms.own_pose import OwnPose, compared, kind_misfit, misfits
 from latentarm.arms.real import Fact, Findings
 from latentarm.arms.xarm.controller import ANSWER_S
 from latentarm.arms.xarm.identity import BOUNDED_COMMANDS, GRIPPER_PORT, Identity
