@@ -142,17 +142,7 @@ def read_dataset(path: StrPath) -> Demonstrations:
     """
     path = Path(path)
     info = _native_info(path)
-    demonstrations = Demonstrations(
-        episodes=read_episodes(path, info),
-        rate_hz=info.rate_hz,
-        joint_names=info.joint_names,
-        robot=info.robot,
-        goals=info.goals,
-        import_record=info.import_record,
-        end_effector=info.end_effector,
-        limits=info.limits,
-        objects=info.objects,
-    )
+    demonstrations = info.demonstrations(read_episodes(path, info))
     validate(demonstrations, str(path))
     return demonstrations
 

@@ -12,7 +12,7 @@ from typing import Any, Final, TypeVar, cast, final
 import numpy as np
 
 from latentarm.core.errors import UserError
-from latentarm.core.types import Demonstrations, Goal, Pose, Provenance, StatedLimits
+from latentarm.core.types import Demonstrations, Episode, Goal, Pose, Provenance, StatedLimits
 from latentarm.core.untrusted.documents import read_object
 from latentarm.core.untrusted.opening import is_missing
 from latentarm.demonstrations.bounds import check_values
@@ -80,6 +80,20 @@ class Info:
     def objects(self) -> tuple[str, ...]:
         """Names of the things with poses in the dataset; empty if the entries' names do not tell."""
         return next((object_names(one.names or ()) for one in self.features if one.name == ENVIRONMENT), ())
+
+    def demonstrations(self, episodes: tuple[Episode, ...]) -> Demonstrations:
+        """The dataset with these episodes."""
+        return Demonstrations(
+            episodes=episodes,
+            rate_hz=self.rate_hz,
+            joint_names=self.joint_names,
+            robot=self.robot,
+            goals=self.goals,
+            import_record=self.import_record,
+            end_effector=self.end_effector,
+            limits=self.limits,
+            objects=self.objects,
+        )
 
     def provenance_of(self, episode: int) -> Provenance | None:
         """Provenance of an episode; None where unknown, as after another program's append."""

@@ -4,7 +4,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
-from latentarm.core.types import Demonstrations
 from latentarm.demonstrations.info import ACTION, OLDER_VERSIONS, STATE, Info, read_info
 from latentarm.demonstrations.reader import read_episodes, read_episodes_v2
 from latentarm.demonstrations.source import ActionKind, SourceData
@@ -27,18 +26,9 @@ def read_lerobot(source: Path) -> SourceData:
     kind = None if by_plugin else _actions(info)
     if kind is None:
         episodes = tuple(replace(episode, action=None) for episode in episodes)
+    read = info.demonstrations(episodes)
     return SourceData(
-        Demonstrations(
-            episodes=episodes,
-            rate_hz=info.rate_hz,
-            joint_names=info.joint_names,
-            robot="" if by_plugin else info.robot,
-            goals=info.goals,
-            end_effector=info.end_effector,
-            limits=info.limits,
-            import_record=info.import_record,
-            objects=info.objects,
-        ),
+        replace(read, robot="") if by_plugin else read,
         layout=_layout(info),
         in_rad=info.native or by_plugin,
         actions=kind or "unknown",
