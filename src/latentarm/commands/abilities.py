@@ -8,7 +8,6 @@ import numpy as np
 
 from latentarm.arms.real import Fact
 from latentarm.core.errors import UserError
-from latentarm.robots.limits import JointLimits
 from latentarm.robots.robot import Robot
 from latentarm.safety.bounds import Bounds
 from latentarm.web.arm_process.drive_setup import PERIOD_S, safety_limits
@@ -68,13 +67,7 @@ def _quicker(robot: Robot) -> str | None:
     """The least factor of the stated figures that slow driving needs, in words; None if they are enough."""
     limits = robot.limits
     for acceleration, jerk in product(_TIMES, _TIMES):
-        quicker = JointLimits(
-            limits.lower,
-            limits.upper,
-            limits.velocity,
-            acceleration * limits.acceleration,
-            jerk * limits.jerk,
-        )
+        quicker = replace(limits, acceleration=acceleration * limits.acceleration, jerk=jerk * limits.jerk)
         if isinstance(_bounds(replace(robot, limits=quicker), _SLOW), Bounds):
             times = f"{acceleration:g} times the acceleration and {jerk:g} times the jerk"
             return f"{_SLOW.joint:g} rad/s needs {times}"

@@ -26,30 +26,8 @@ _SOURCES: dict[Source, str] = {
 }
 
 
-def describe(
-    name: str | None, end_effector: str | None = None, limits: Path | None = None
-) -> list[dict[str, object]]:
-    """Robots, one by name or model file or all built-in ones, as plain data.
-
-    Raises UserError where there is no such robot, or its model cannot be used.
-    """
-    return [_facts(robot) for robot in _robots(name, end_effector, limits)]
-
-
-def sheets(name: str | None, end_effector: str | None = None, limits: Path | None = None) -> list[Table]:
-    """Robots as tables, see `describe`."""
-    robots = _robots(name, end_effector, limits)
-    if name is None:
-        table = Table("robot", "joints", "arms", "joint speed limits, rad/s", title="Built-in robots")
-        for robot in robots:
-            low, high = robot.limits.velocity.min(), robot.limits.velocity.max()
-            table.add_row(robot.name, str(robot.dof), str(len(robot.chain.tools)), f"{low:.3g} to {high:.3g}")
-        table.caption = "Any MJCF or URDF file works too: latentarm robots PATH --end-effector NAME"
-        return [table]
-    return [_sheet(robot) for robot in robots]
-
-
 def _robots(name: str | None, end_effector: str | None, limits: Path | None) -> list[Robot]:
+    """One robot by name or model file, or all built-in ones."""
     from latentarm.robots.catalogue import ROBOTS, load_robot
     from latentarm.robots.limits_file import read_limits
 
@@ -75,6 +53,15 @@ def _written(name: str | None, end_effector: str | None, limits: Path | None, pa
     write_text(path, limits_template(robot))
     missing = assumed_limits(robot)
     return f"Wrote {path}. " + (f"Fill in: {missing}." if missing else "It states all limits.")
+
+
+def _overview(robots: list[Robot]) -> Table:
+    table = Table("robot", "joints", "arms", "joint speed limits, rad/s", title="Built-in robots")
+    for robot in robots:
+        low, high = robot.limits.velocity.min(), robot.limits.velocity.max()
+        table.add_row(robot.name, str(robot.dof), str(len(robot.chain.tools)), f"{low:.3g} to {high:.3g}")
+    table.caption = "Any MJCF or URDF file works too: latentarm robots PATH --end-effector NAME"
+    return table
 
 
 def _facts(robot: Robot) -> dict[str, object]:
@@ -106,7 +93,6 @@ def _facts(robot: Robot) -> dict[str, object]:
 
 
 def _sheet(robot: Robot) -> Table:
-
     table = Table(title=robot.name)
     for heading in ("joint", "lower", "upper", "home", "velocity", "acceleration", "jerk"):
         table.add_column(heading, justify="left" if heading == "joint" else "right")
@@ -165,8 +151,9 @@ def robots(
     if write_limits is not None:
         say(_written(robot, end_effector, limits, write_limits), json)
         return 0
+    found = _robots(robot, end_effector, limits)
     if json:
-        print(json_format.dumps(describe(robot, end_effector, limits), indent=2))
+        print(json_format.dumps([_facts(one) for one in found], indent=2))
     else:
-        print_renderables(*sheets(robot, end_effector, limits))
+        print_renderables(_overview(found) if robot is None else _sheet(found[0]))
     return 0
