@@ -12,6 +12,7 @@ from collections.abc import Callable, Mapping, Sequence
 from contextvars import ContextVar
 from dataclasses import fields, is_dataclass
 from pathlib import Path
+from types import UnionType
 from typing import Annotated, Any, Final, cast, get_args, get_origin, get_type_hints
 
 from tyro.conf import arg
@@ -146,7 +147,8 @@ def _is_tuple(annotation: object) -> bool:
     """Whether an option takes several values; one name may then stand for a list of one."""
     if get_origin(annotation) is Annotated:
         annotation = get_args(annotation)[0]
-    return get_origin(annotation) is tuple
+    kinds = get_args(annotation) if isinstance(annotation, UnionType) else (annotation,)
+    return any(get_origin(kind) is tuple for kind in kinds)
 
 
 def write_options(folder: Path, name: str, **resolved: object) -> None:

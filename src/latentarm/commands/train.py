@@ -17,9 +17,16 @@ def train(options: TrainOptions) -> int:
     with epoch_bar(options.bars) as report:
         training = train_run(options, report)
     folder, json = options.folder, options.json
-    write_options(folder, "train")
+    write_options(folder, "train", context=training.context)
     note(training.import_warnings)
     show(training.rows, json)
+    if options.context is None and training.objects:
+        things = ", ".join(training.objects)
+        say(
+            f"The decoder also sees where the {things} are, and is driven only where that is known. To train"
+            " one that sees the joints alone: --context joints.",
+            json,
+        )
     if advice := model_advice(options.model, training.episodes):
         say(advice, json)
     say(f"The run is {folder}/; next: latentarm evaluate {folder}", json)

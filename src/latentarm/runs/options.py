@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from tyro.conf import Positional, arg
 
 from latentarm.assistance.catalogue import BELIEFS
-from latentarm.core.context import JOINTS, FeatureName
+from latentarm.core.context import FeatureName
 from latentarm.models.catalogue import DEFAULT_MODEL, KINDS
 from latentarm.runs.checks import check_seed
 from latentarm.tasks.catalogue import HELD_OUT, SCENE_TASKS, TASKS
@@ -51,13 +51,14 @@ class TrainOptions:
     model: Annotated[ModelName, arg(help="The latent action model.")] = DEFAULT_MODEL
     latent_dim: Annotated[int, arg(help="d, the number of axes of the person's interface.")] = 2
     context: Annotated[
-        tuple[FeatureName | Literal["state", "state_belief"], ...],
+        tuple[FeatureName | Literal["state", "state_belief"], ...] | None,
         arg(
             metavar="FEATURE ...",
             help="What the decoder sees, in order, the joints first: joints, belief, gripper, objects,"
-            " objects_in_tool. state and state_belief stand for joints and joints belief.",
+            " objects_in_tool. state and state_belief stand for joints and joints belief. By default joints,"
+            " and objects_in_tool too where every episode says where things are and they were moved.",
         ),
-    ] = (JOINTS,)
+    ] = None
     seeds: Annotated[int, arg(help="Models trained side by side, from different seeds.")] = 5
     seed: Seed = 0
     window: Annotated[int, arg(help="An action leads to a state at most this many samples away.")] = 5

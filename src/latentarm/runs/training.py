@@ -15,21 +15,24 @@ import numpy as np
 from latentarm.alignment.frame_file import save_frames
 from latentarm.assistance.annotation import prepared
 from latentarm.assistance.entropy import GoalEntropy
-from latentarm.core.context import Named, feature_names
+from latentarm.core.context import JOINTS, OBJECTS_IN_TOOL, Named, feature_names
 from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations, Row
 from latentarm.core.untrusted.opening import is_missing
 from latentarm.demonstrations.dataset import read_dataset, write_dataset
 from latentarm.demonstrations.source import join
 from latentarm.demonstrations.split import select_episodes, split_episodes
+from latentarm.demonstrations.things import ENVIRONMENT
 from latentarm.demonstrations.timing import check_one_rate
 from latentarm.models.catalogue import KINDS
 from latentarm.models.estimators import MODELS
 from latentarm.models.model import LatentActionModel
 from latentarm.models.neural import NeuralModel
+from latentarm.models.scaling import STILL
 from latentarm.models.training import Report
 from latentarm.robots.catalogue import ROBOTS, load_recorded_robot
 from latentarm.robots.kinematics.chain import Chain
+from latentarm.robots.kinematics.pose_rows import STORED
 from latentarm.robots.model_copy import copy_model
 from latentarm.robots.robot import Robot
 from latentarm.runs.folder import ROBOT, Run, fingerprint, git_commit, run_facts
@@ -52,6 +55,8 @@ class TrainedRun:
     rows: list[Row]  # the normalised loss on the validation episodes: mean and SD over seeds
     episodes: int
     import_warnings: list[str]
+    context: tuple[str, ...]  # what the decoder sees
+    objects: tuple[str, ...]  # the things among it, which a drive must know where to find
 
 
 def train_run(options: TrainOptions, report: Report | None = None) -> TrainedRun:
@@ -63,7 +68,7 @@ def train_run(options: TrainOptions, report: Report | None = None) -> TrainedRun
     folder = options.folder
     _check_folder(folder, options.resume)
     dataset = _joined_dataset(options.demonstrations, folder)
-    demonstrations = prepared(read_dataset(dataset), options.context)
+    demonstrations = read_dataset(dataset)
     robot = None
     if options.end_effector is not None:
         demonstrations = replace(demonstrations, end_effector=options.end_effector)
@@ -71,10 +76,12 @@ def train_run(options: TrainOptions, report: Report | None = None) -> TrainedRun
         # Fails now rather than in `evaluate`.
         robot = load_recorded_robot(demonstrations, str(dataset))
     chain = None if robot is None else robot.chain
+    context = feature_names(options.context or _usual_context(options.model, demonstrations, chain))
+    demonstrations = prepared(demonstrations, context)
     training, held_out = split_episodes(
         demonstrations, options.held_out, np.random.default_rng([HOLD_OUT_STREAM, options.seed])
     )
-    model = _model(options, arm_known=robot is not None)
+    model = _model(options, context, arm_known=robot is not None)
     checkpoint = folder / CHECKPOINT
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
@@ -91,7 +98,7 @@ def train_run(options: TrainOptions, report: Report | None = None) -> TrainedRun
         demonstrations=dataset,
         held_out=tuple(int(index) for index in held_out),
         model=options.model,
-        context=feature_names(options.context),
+        context=context,
         robot=demonstrations.robot,
         end_effector=demonstrations.end_effector if robot is None else robot.end_effector,
         fingerprint=fingerprint(demonstrations),
@@ -107,7 +114,7 @@ def train_run(options: TrainOptions, report: Report | None = None) -> TrainedRun
         if samples.motions is not None and model.latent_dim == 2:
             decoders = [model.decoder(seed) for seed in range(model.seeds)]
             facts["frame"] = save_frames(folder, decoders, robot.chain, samples.motions.context)
-        routes = _routes(robot, select_episodes(demonstrations, held_out), options.context)
+        routes = _routes(robot, select_episodes(demonstrations, held_out), context)
         run = replace(run, robot_model=_copy_of(robot, folder), **routes)
     facts |= run_facts(run)
     model.save(folder, run={**facts, "warnings": said, "git_commit": git_commit()})
@@ -117,7 +124,8 @@ def train_run(options: TrainOptions, report: Report | None = None) -> TrainedRun
     loss = model.validation_loss_
     spread = float(loss.std(ddof=1)) if len(loss) > 1 else None
     row = Row("train", "validation_loss", "1", float(loss.mean()), spread, len(loss), model=options.model)
-    return TrainedRun([row], len(demonstrations.episodes), demonstrations.warnings)
+    objects = model.trained_.layout.objects
+    return TrainedRun([row], len(demonstrations.episodes), demonstrations.warnings, context, objects)
 
 
 def _joined_dataset(datasets: Sequence[Path], run: Path) -> Path:
@@ -134,7 +142,20 @@ def _joined_dataset(datasets: Sequence[Path], run: Path) -> Path:
     return run / JOINED
 
 
-def _model(options: TrainOptions, *, arm_known: bool) -> LatentActionModel:
+def _usual_context(model: str, demonstrations: Demonstrations, chain: Chain | None) -> tuple[str, ...]:
+    """What a decoder sees unless features are named: the joints, and the things that were moved.
+
+    A thing that stood still all the time tells nothing, and would be asked for in every drive.
+    """
+    things = [episode.extras.get(ENVIRONMENT) for episode in demonstrations.episodes]
+    told = [one for one in things if one is not None]
+    if not (KINDS[model].sees_context and chain and demonstrations.objects and len(told) == len(things)):
+        return (JOINTS,)
+    place = np.concatenate(told).reshape(-1, len(demonstrations.objects), STORED)[..., :3]
+    return (JOINTS, OBJECTS_IN_TOOL) if (place.std(axis=0) > STILL[OBJECTS_IN_TOOL]).any() else (JOINTS,)
+
+
+def _model(options: TrainOptions, context: tuple[str, ...], *, arm_known: bool) -> LatentActionModel:
     """The model of these options, with those of its parameters that are options and not None.
 
     A way back needs the arm's kinematics, so it is a default only where the arm is known.
@@ -154,7 +175,7 @@ def _model(options: TrainOptions, *, arm_known: bool) -> LatentActionModel:
         )
     if options.way_back_m is None and arm_known:
         given["way_back_m"] = KINDS[options.model].way_back_m
-    given |= {"context": feature_names(options.context), "data_seed": options.seed}
+    given |= {"context": context, "data_seed": options.seed}
     return model_class(**{name: value for name, value in given.items() if name in parameters})
 
 

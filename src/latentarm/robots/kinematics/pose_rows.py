@@ -24,7 +24,10 @@ def object_rows(poses: Mapping[str, Pose], names: Sequence[str]) -> FloatArray:
     for name in names:
         if name not in poses:
             there = ", ".join(poses) or "nothing"
-            raise UserError(f"The model looks at {name!r}, which is not here; there is: {there}.")
+            raise UserError(
+                f"The model looks at {name!r}, which is not here; there is: {there}. Name a task with it"
+                " (--task), or train a model that sees the joints alone (--context joints)."
+            )
     return np.array([pose_rows(poses[name]) for name in names]).reshape(len(names), OBJECT)
 
 
