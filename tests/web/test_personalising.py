@@ -19,14 +19,11 @@ from latentarm.web.protocol.page_messages import parse_message
 from latentarm.web.protocol.personalise_messages import (
     AnswerQuestion,
     BeginPersonalise,
-    CancelPersonalise,
-    DiscardAlignment,
-    KeepAlignment,
     Personalise,
+    PressPersonalise,
     QuestionBefore,
     ShownMotion,
     SkipQuestion,
-    TryAlignment,
 )
 from latentarm.web.server import personalising
 from latentarm.web.server.personalising import Driven, Personalising
@@ -296,10 +293,10 @@ def learned(desk, monkeypatch):
     return desk
 
 
-TRY = TryAlignment(type="try_alignment")
-KEEP = KeepAlignment(type="keep_alignment")
-DISCARD = DiscardAlignment(type="discard_alignment")
-CANCEL = CancelPersonalise(type="cancel_personalise")
+TRY = PressPersonalise(type="try_alignment")
+KEEP = PressPersonalise(type="keep_alignment")
+DISCARD = PressPersonalise(type="discard_alignment")
+CANCEL = PressPersonalise(type="cancel_personalise")
 
 
 def test_what_was_learned_is_tried_and_kept(learned, run):

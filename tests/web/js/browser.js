@@ -185,7 +185,7 @@ export function welcomeOf(fields = {}) {
   return {
     type: "welcome", version: 1, id: "me", server: "first", dof: 7, latent_dim: 2, robot: "panda", run: "one", profiles: [],
     modes: ["latent", "assisted", "end_effector"], goals: [], end_effector_modes: ["x-y", "z-yaw", "roll-pitch"],
-    limits: { latch_max_s: 5 }, gripper_width_m: null, things: [], real: null, poses: [], zones: [], keep_out: [],
+    latch_max_s: 5, gripper_width_m: null, things: [], real: null, poses: [], zones: [], keep_out: [],
     task: { name: "reach", seed: 0, choices: [], choice: 0, steps: [] }, ...fields,
   };
 }

@@ -69,7 +69,7 @@ test("everybody is told who the co-pilot is, and what they leave of the speed", 
 
 for (const [latchS, most, ends] of [[3, 10, 3000], [10, 5, 5000]]) {
   test(`a latched motion ends after ${latchS} s, or the server's ${most} s where that is shorter`, () => {
-    socket.says(welcomeOf({ limits: { latch_max_s: most } }));
+    socket.says(welcomeOf({ latch_max_s: most }));
     settings.change({ latchS });
     const input = new Deflection();
     attachLatchLimit(input, connection, settings);

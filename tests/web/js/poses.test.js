@@ -34,7 +34,7 @@ test("a real arm is enabled once everything was confirmed, a simulated one at on
   const connection = Object.assign(new EventTarget(), { welcome: welcomeOf({ real: null }) });
   const checklist = attachChecklist(parts, connection, () => {});
   assert.ok(checklist.done());
-  connection.welcome = welcomeOf({ real: { facts: [{ name: "firmware", value: "2.1" }], shadow: false } });
+  connection.welcome = welcomeOf({ real: { facts: [["firmware", "2.1"]], shadow: false } });
   const told = [];
   connection.send = (message) => told.push(message.arm_start);
   connection.state = stateOf({ arm_start: 0, lost: false });

@@ -445,5 +445,6 @@ class Drive:
             belief=tuple(record.belief.tolist()),
             alpha=record.alpha,
             recording=self._writer.status,
+            journal=self._writer.journal,
             late_share=self._late_share,
         )

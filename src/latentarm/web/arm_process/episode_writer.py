@@ -71,8 +71,12 @@ class EpisodeWriter:
             samples=self._samples,
             episodes=self._episodes,
             problem=self._problem,
-            journal=str(self._path),
         )
+
+    @property
+    def journal(self) -> str | None:
+        """Path of the journal that is or was last recorded to; None if nothing was ever recorded."""
+        return None if self._thread is None else str(self._path)
 
     def begin(self, header: EpisodeHeader) -> None:
         """Begin an episode, unless one is under way."""

@@ -8,13 +8,6 @@ from latentarm.web.protocol.notice import Message, PersonName
 
 
 @final
-class AskToCopilot(Message):
-    """A watcher asks to be the driver's co-pilot."""
-
-    type: Literal["ask_to_copilot"]
-
-
-@final
 class AcceptCopilot(Message):
     """The driver accepts the page that has asked; the arm stops, and must be enabled again."""
 
@@ -23,10 +16,13 @@ class AcceptCopilot(Message):
 
 
 @final
-class EndCopilot(Message):
-    """The driver or the co-pilot ends the role or the request; the arm stops if there was a co-pilot."""
+class PressCopilot(Message):
+    """A watcher asks to be the driver's co-pilot, or one of the two ends the role or the request.
 
-    type: Literal["end_copilot"]
+    The arm stops if there was a co-pilot.
+    """
+
+    type: Literal["ask_to_copilot", "end_copilot"]
 
 
 @final
@@ -38,7 +34,7 @@ class CopilotPace(Message):
     nonce: Annotated[str, Field(max_length=64)]  # of the newest `State` that the page has seen
 
 
-CopilotMessage = AskToCopilot | AcceptCopilot | EndCopilot | CopilotPace
+CopilotMessage = AcceptCopilot | PressCopilot | CopilotPace
 
 
 @final

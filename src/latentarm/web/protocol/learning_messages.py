@@ -32,13 +32,6 @@ class Train(Message):
 
 
 @final
-class CancelTraining(Message):
-    """Cancel the training and discard it. From the page that drives."""
-
-    type: Literal["cancel_training"]
-
-
-@final
 class PickRun(Message):
     """Drive another run of `LearningState.runs`; from the page that drives, while the arm is not enabled."""
 

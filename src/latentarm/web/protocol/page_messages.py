@@ -10,7 +10,7 @@ from pydantic import Field, TypeAdapter
 
 from latentarm.core.types import GripperAsk
 from latentarm.web.protocol.copilot_messages import CopilotMessage
-from latentarm.web.protocol.learning_messages import CancelTraining, PickRun, Train
+from latentarm.web.protocol.learning_messages import PickRun, Train
 from latentarm.web.protocol.notice import Message
 from latentarm.web.protocol.orders import BuiltInPose, DriverOrder
 from latentarm.web.protocol.personalise_messages import PersonaliseMessage
@@ -58,20 +58,13 @@ class DriverInput(Message):
 
 @final
 class ConfirmChecklist(Message):
-    """A person confirms all points about a real arm. Without this, no `PressEnable` of this page counts."""
+    """A person confirms all points about a real arm. Without this, no ``enable`` of this page counts."""
 
     type: Literal["confirm"]
     arm_start: int  # of the `State` that they saw; counts only as long as it is the newest
     stop: Literal[True]
     area: Literal[True]
     payload: Literal[True]
-
-
-@final
-class PressEnable(Message):
-    """Let the arm move. A fresh neutral input must come within 0.3 s, before or after."""
-
-    type: Literal["enable"]
 
 
 @final
@@ -85,10 +78,16 @@ class PressStop(Message):
 
 
 @final
-class AskToDrive(Message):
-    """Drive if nobody does, else ask the driver to hand over."""
+class Press(Message):
+    """A press of a button.
 
-    type: Literal["ask_to_drive"]
+    ``enable`` lets the arm move: a fresh neutral input must come within 0.3 s, before or after. ``release``
+    lets others drive; ``cancel_training`` ends the training and discards it. These three come from the page
+    that drives. ``ask_to_drive`` drives if nobody does, else it asks the driver to hand over;
+    ``trail_clear`` empties the trail of the tool on every page.
+    """
+
+    type: Literal["enable", "ask_to_drive", "release", "trail_clear", "cancel_training"]
 
 
 @final
@@ -97,20 +96,6 @@ class HandOver(Message):
 
     type: Literal["hand_over"]
     to: Id
-
-
-@final
-class Release(Message):
-    """Let others drive."""
-
-    type: Literal["release"]
-
-
-@final
-class TrailClear(Message):
-    """Empty the trail of the tool on every page."""
-
-    type: Literal["trail_clear"]
 
 
 @final
@@ -171,28 +156,10 @@ class DeletePose(Message):
 
 
 ClientMessage = (
-    Hello
-    | DriverInput
-    | ConfirmChecklist
-    | PressEnable
-    | PressStop
-    | AskToDrive
-    | HandOver
-    | Release
-    | TrailClear
-    | RecordEpisode
-    | GuideArm
-    | ReturnArm
-    | GoToPose
-    | SavePose
-    | DeletePose
-    | Train
-    | CancelTraining
-    | PickRun
-    | PersonaliseMessage
-    | CopilotMessage
+    Hello | DriverInput | ConfirmChecklist | Press | PressStop | HandOver | RecordEpisode | GuideArm
+    | ReturnArm | GoToPose | SavePose | DeletePose | Train | PickRun | PersonaliseMessage | CopilotMessage
     | DriverOrder
-)
+)  # fmt: skip
 _CLIENT: Final[TypeAdapter[ClientMessage]] = TypeAdapter(
     Annotated[ClientMessage, Field(discriminator="type")]
 )

@@ -55,37 +55,19 @@ class QuestionBefore(Message):
 
 
 @final
-class CancelPersonalise(Message):
-    """Stop asking, and discard the answers; from the page that drives."""
+class PressPersonalise(Message):
+    """A press on the Personalise page; from the page that drives.
 
-    type: Literal["cancel_personalise"]
+    ``cancel_personalise`` stops asking, and discards the answers. ``try_alignment`` tries the new alignment,
+    while the arm is not enabled; ``keep_alignment`` keeps it under the person's name; ``discard_alignment``
+    discards it, and the person drives as before.
+    """
 
-
-@final
-class TryAlignment(Message):
-    """Try the new alignment; from the page that drives, while the arm is not enabled."""
-
-    type: Literal["try_alignment"]
-
-
-@final
-class KeepAlignment(Message):
-    """Keep the new alignment under the person's name; from the page that drives."""
-
-    type: Literal["keep_alignment"]
-
-
-@final
-class DiscardAlignment(Message):
-    """Discard the new alignment, and drive as before; from the page that drives."""
-
-    type: Literal["discard_alignment"]
+    type: Literal["cancel_personalise", "try_alignment", "keep_alignment", "discard_alignment"]
 
 
 QuestionReply = AnswerQuestion | SkipQuestion | QuestionBefore
-PersonaliseMessage = (
-    BeginPersonalise | QuestionReply | CancelPersonalise | TryAlignment | KeepAlignment | DiscardAlignment
-)
+PersonaliseMessage = BeginPersonalise | QuestionReply | PressPersonalise
 
 
 @final

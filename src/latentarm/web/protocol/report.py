@@ -42,7 +42,6 @@ class Recording(Message):
     samples: int  # of this episode so far
     episodes: int  # complete ones in the journal
     problem: Notice | None  # why the last episode was broken off, or None
-    journal: str
 
 
 @final
@@ -153,6 +152,7 @@ class ArmState(Message):
     ghosts: Ghosts | None  # None, only in a `State`, while the last ones hold
     alpha: float  # the robot's share, in [0, 1]
     late_share: float  # share of the control loop's deadlines that were missed
+    recording: Recording | None  # None before the first
 
 
 @final
@@ -168,7 +168,7 @@ class Report(ArmState):
     q: tuple[float, ...]  # (n,), joint positions as last read, rad
     reading_age_s: float  # how long ago that was, s
     belief: tuple[float, ...]  # over the goals; empty for a task without goals
-    recording: Recording | None  # None before the first
+    journal: str | None  # path of the journal that is or was last recorded to; None before the first
 
 
 def parse_report(message: bytes) -> Report | None:

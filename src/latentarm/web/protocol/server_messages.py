@@ -30,25 +30,10 @@ class NamedZone(Message):
 
 
 @final
-class Limits(Message):
-    """Limits that a page must know."""
-
-    latch_max_s: float
-
-
-@final
-class FoundFact(Message):
-    """A fact found out about a real arm before it was driven, in English."""
-
-    name: str
-    value: str
-
-
-@final
 class RealArm(Message):
     """A real arm."""
 
-    facts: tuple[FoundFact, ...]
+    facts: tuple[tuple[str, str], ...]  # names and values, found out before it was driven, in English
     shadow: bool  # whether it is only read, and nothing is sent to it
 
 
@@ -90,21 +75,11 @@ class Welcome(Message):
     zones: tuple[NamedZone, ...]  # where the arm is slow
     keep_out: tuple[str, ...]  # names of obstacles that a person has added
     end_effector_modes: tuple[str, ...]  # names of the pairs of axes
-    limits: Limits
+    latch_max_s: float  # how long a latched deflection counts, s
     gripper_width_m: float | None  # its widest opening, m, or null where no gripper can be driven
     task: TaskToDo
     real: RealArm | None  # null if the arm is simulated
     poses: tuple[BuiltInPose, ...]  # of the robot's model
-
-
-@final
-class RecordingState(Message):
-    """See `latentarm.web.protocol.report.Recording`."""
-
-    on: bool
-    samples: int
-    episodes: int
-    problem: Notice | None
 
 
 @final
@@ -121,7 +96,6 @@ class State(ArmState):
     asking_name: PersonName | None
     copilot: CopilotState | None
     copilot_asking: Person | None  # the person who asks to be the co-pilot, or null
-    recording: RecordingState | None  # null before the first
     trail: int  # counts how often the trail was emptied
     arm_start: int  # counts how often the connection to the arm was lost; see `ConfirmChecklist`
     you: bool  # whether this page drives

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Final, Literal, final
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from latentarm.web.protocol import orders, page_messages
-from latentarm.web.protocol.copilot_messages import AcceptCopilot, AskToCopilot, CopilotPace, EndCopilot
-from latentarm.web.protocol.learning_messages import CancelTraining, PickRun, Train
+from latentarm.web.protocol.copilot_messages import AcceptCopilot, CopilotPace, PressCopilot
+from latentarm.web.protocol.learning_messages import PickRun, Train
 from latentarm.web.protocol.notice import Notice, NoticeCode
-from latentarm.web.protocol.personalise_messages import AnswerQuestion, KeepAlignment, PersonaliseMessage
+from latentarm.web.protocol.personalise_messages import AnswerQuestion, PersonaliseMessage
 from latentarm.web.protocol.server_messages import Refused
 from latentarm.web.records.drive_record import Ending
 from latentarm.web.records.people import People
@@ -176,28 +176,31 @@ class DriveSocket:
     def _take(self, page: Page, message: page_messages.ClientMessage) -> None:
         if isinstance(message, page_messages.Hello) or not self._suits(message):
             raise ViolationError
-        if isinstance(message, page_messages.PressStop):
-            self.stop(page, message.why)
-        elif isinstance(message, page_messages.AskToDrive):
-            self._sessions.ask(page)
-        elif isinstance(message, AskToCopilot | CopilotPace | EndCopilot) and not self._sessions.drives(page):
-            self._take_from_copilot(page, message)
-        elif isinstance(message, page_messages.ConfirmChecklist):
-            self._confirmed[page.id] = message.arm_start
-        elif isinstance(message, page_messages.TrailClear):
-            self._states.clear_trail()
-        elif self._sessions.drives(page) and not self._lock.refuses(page.person, message):
-            self._take_from_driver(page, message)
+        match message:
+            case page_messages.PressStop(why=why):
+                self.stop(page, why)
+            case page_messages.Press(type="ask_to_drive"):
+                self._sessions.ask(page)
+            case page_messages.Press(type="trail_clear"):
+                self._states.clear_trail()
+            case page_messages.ConfirmChecklist(arm_start=arm_start):
+                self._confirmed[page.id] = arm_start
+            case CopilotPace() | PressCopilot() if not self._sessions.drives(page):
+                self._take_from_copilot(page, message)
+            case _ if self._sessions.drives(page) and not self._lock.refuses(page.person, message):
+                self._take_from_driver(page, message)
+            case _:
+                pass
 
-    def _take_from_copilot(self, page: Page, message: AskToCopilot | CopilotPace | EndCopilot) -> None:
+    def _take_from_copilot(self, page: Page, message: CopilotPace | PressCopilot) -> None:
         copilot = self._sessions.copilot
         match message:
-            case AskToCopilot():
-                if self._sessions.driver is not None:
-                    copilot.ask(page.id)
             case CopilotPace(pace=pace, nonce=nonce):
                 copilot.says(page.id, pace, nonce)
-            case EndCopilot():
+            case PressCopilot(type="ask_to_copilot"):
+                if self._sessions.driver is not None:
+                    copilot.ask(page.id)
+            case PressCopilot():
                 if copilot.leaves(page.id):
                     self._copilot_changed("copilot_ended", page)
 
@@ -211,17 +214,17 @@ class DriveSocket:
         match message:
             case page_messages.DriverInput():
                 self._give(message)
-            case page_messages.PressEnable() | page_messages.GuideArm(on=True) if self._stands_still:
+            case page_messages.Press(type="enable") | page_messages.GuideArm(on=True) if self._stands_still:
                 pass
-            case page_messages.PressEnable() if not self._confirmed_by(page):
+            case page_messages.Press(type="enable") if not self._confirmed_by(page):
                 self._states.say(Notice(code="checklist_first"))
-            case page_messages.PressEnable():
+            case page_messages.Press(type="enable"):
                 self._control.order(orders.Enable(driver=self._sessions.turn, stops=self._control.stops))
             case AcceptCopilot(to=to):
                 copilot = self._sessions.named(to)
                 if copilot is not None and self._sessions.copilot.accept(to):
                     self._copilot_changed("copilot_began", copilot)
-            case EndCopilot():
+            case PressCopilot(type="end_copilot"):
                 copilot = self._sessions.named(self._sessions.copilot.page)
                 if self._sessions.copilot.end() and copilot is not None:
                     self._copilot_changed("copilot_ended", copilot)
@@ -247,14 +250,14 @@ class DriveSocket:
                 self._poses.delete(page.person, self._states.loaded.robot_name, name)
             case Train():
                 self._learning.train(message)
-            case CancelTraining():
+            case page_messages.Press(type="cancel_training"):
                 self._learning.cancel()
             case PickRun(run=run):
                 self._learning.choose_run(run)
             case page_messages.HandOver(to=to):
                 if self._sessions.hand_over(page, to):
                     self._driver_changed(_of(page, "handed_over"))
-            case page_messages.Release():
+            case page_messages.Press(type="release"):
                 if self._sessions.release(page):
                     self._driver_changed(_of(page, "driver_released"))
             case _ if isinstance(message, orders.DriverOrder):
@@ -266,7 +269,7 @@ class DriveSocket:
             case _ if isinstance(message, PersonaliseMessage):
                 before = self._learning.personalising.look()
                 self._learning.personalising.take(message)
-                if isinstance(message, KeepAlignment) and before is not None and before.phase == "learned":
+                if message.type == "keep_alignment" and before is not None and before.phase == "learned":
                     self._note_profile(page)
             case _:
                 pass

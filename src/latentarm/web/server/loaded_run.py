@@ -8,19 +8,10 @@ from latentarm.alignment.profile import profile_names
 from latentarm.core.types import FloatArray
 from latentarm.web.arm_process.drive_setup import DriveSetup, Spec, load_setup
 from latentarm.web.arm_process.page_inputs import LATCH_MAX_S
+from latentarm.web.protocol import server_messages as messages
 from latentarm.web.protocol.orders import BuiltInPose, PoseToGoTo
 from latentarm.web.protocol.report import Report
 from latentarm.web.protocol.scene import drawable
-from latentarm.web.protocol.server_messages import (
-    FoundFact,
-    Limits,
-    NamedPlace,
-    NamedZone,
-    RealArm,
-    StepToDo,
-    TaskToDo,
-    Welcome,
-)
 
 Beginning = tuple[str | None, bool, int, int]
 """The run, whether at its own task, its seed and what is to be done: how everything stands at first."""
@@ -66,11 +57,11 @@ class LoadedRun:
         run = None if self.spec.run is None else str(self.spec.run)
         return beginning_of(report) == (run, self.spec.own_task, self.spec.seed, self.spec.choice)
 
-    def welcome(self, page: str, server: str) -> Welcome:
+    def welcome(self, page: str, server: str) -> messages.Welcome:
         """The first message to a page."""
         setup = self._setup
         gripper = setup.task.robot.gripper
-        return Welcome(
+        return messages.Welcome(
             id=page,
             server=server,
             dof=setup.task.robot.dof,
@@ -80,31 +71,26 @@ class LoadedRun:
             profiles=self.profiles,
             modes=setup.modes,
             goals=tuple(
-                NamedPlace(name=goal.name, position=tuple(goal.pose.position.tolist()))
+                messages.NamedPlace(name=goal.name, position=tuple(goal.pose.position.tolist()))
                 for goal in setup.task.goals
             ),
             things=tuple(
-                NamedPlace(name=thing.name, position=tuple(thing.pose.position.tolist()))
+                messages.NamedPlace(name=thing.name, position=tuple(thing.pose.position.tolist()))
                 for thing in (() if setup.shown is None else setup.shown.things)
             ),
-            zones=tuple(NamedZone(name=zone.name, speed=zone.speed) for zone in setup.spec.zones),
+            zones=tuple(messages.NamedZone(name=zone.name, speed=zone.speed) for zone in setup.spec.zones),
             keep_out=tuple(one.name for one in setup.spec.keep_out),
             end_effector_modes=setup.axes,
-            limits=Limits(latch_max_s=LATCH_MAX_S),
-            real=RealArm(
-                facts=tuple(FoundFact(name=name, value=value) for name, value in setup.spec.found),
-                shadow=setup.spec.shadow,
-            )
-            if self.real
-            else None,
+            latch_max_s=LATCH_MAX_S,
+            real=messages.RealArm(facts=setup.spec.found, shadow=setup.spec.shadow) if self.real else None,
             poses=tuple(self._poses),
             gripper_width_m=None if gripper is None else gripper.width_m,
-            task=TaskToDo(
+            task=messages.TaskToDo(
                 name=setup.todo.task,
                 seed=setup.spec.seed,
                 choices=setup.todo.choices,
                 choice=setup.todo.choice,
-                steps=tuple(StepToDo(kind=step.kind, thing=step.thing) for step in setup.todo.steps),
+                steps=tuple(messages.StepToDo(kind=step.kind, thing=step.thing) for step in setup.todo.steps),
             ),
         )
 

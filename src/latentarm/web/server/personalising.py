@@ -20,20 +20,10 @@ from latentarm.alignment.profile import (
 from latentarm.core.errors import UserError
 from latentarm.core.untrusted.names import clean_name
 from latentarm.web.jobs.personalise import PersonaliseJob, PersonalisePlan
+from latentarm.web.protocol import personalise_messages as messages
 from latentarm.web.protocol.notice import Notice, NoticeError, notice_of
 from latentarm.web.protocol.orders import ChooseProfile
-from latentarm.web.protocol.personalise_messages import (
-    AnswerQuestion,
-    BeginPersonalise,
-    CancelPersonalise,
-    DiscardAlignment,
-    KeepAlignment,
-    Personalise,
-    PersonaliseMessage,
-    QuestionBefore,
-    SkipQuestion,
-    TryAlignment,
-)
+from latentarm.web.protocol.personalise_messages import Personalise
 from latentarm.web.protocol.report import Report
 
 if TYPE_CHECKING:
@@ -93,7 +83,7 @@ class Personalising:
             self._state = self._job.look()
         return self._state
 
-    def take(self, message: PersonaliseMessage) -> None:
+    def take(self, message: messages.PersonaliseMessage) -> None:
         """Carry out an order of the driver's page, or report in `look` why it cannot be done."""
         try:
             self._obey(message)
@@ -110,24 +100,30 @@ class Personalising:
     def _under_way(self) -> bool:
         return self._job is not None and self._job.under_way
 
-    def _obey(self, message: PersonaliseMessage) -> None:
+    @property
+    def _learned(self) -> bool:
+        return self._state is not None and self._state.phase == "learned"
+
+    def _obey(self, message: messages.PersonaliseMessage) -> None:
         match message:
-            case BeginPersonalise():
+            case messages.BeginPersonalise():
                 self._begin(message)
-            case AnswerQuestion() | SkipQuestion() | QuestionBefore():
+            case messages.PressPersonalise(type="cancel_personalise"):
+                if not self._learned:
+                    self._forget()
+            case messages.PressPersonalise() if not self._learned:
+                pass
+            case messages.PressPersonalise(type="try_alignment"):
+                self._try()
+            case messages.PressPersonalise(type="keep_alignment"):
+                self._keep()
+            case messages.PressPersonalise():
+                self._discard()
+            case _:
                 if self._job is not None:
                     self._job.reply(message)
-            case CancelPersonalise():
-                if self._state is None or self._state.phase != "learned":
-                    self._forget()
-            case TryAlignment():
-                self._try()
-            case KeepAlignment():
-                self._keep()
-            case DiscardAlignment():
-                self._discard()
 
-    def _begin(self, wish: BeginPersonalise) -> None:
+    def _begin(self, wish: messages.BeginPersonalise) -> None:
         if self._under_way or (self._ending is not None and not self._ending.done()):
             raise NoticeError("asking_already")
         driven, name = self._driven(), wish.name.strip()
@@ -139,7 +135,7 @@ class Personalising:
                 raise NoticeError("profile_exists", name=name)
             self._give_back(driven)
         except UserError as error:
-            if self._state is not None and self._state.phase == "learned":
+            if self._learned:
                 raise
             self._state = Personalise(phase="failed", name=name, of=wish.questions, why=notice_of(error))
             return
@@ -153,8 +149,6 @@ class Personalising:
 
     def _try(self) -> None:
         driven = self._driven()
-        if self._state is None or self._state.phase != "learned":
-            return
         _check_at_rest(driven)
         if not self._tried:
             self._before = driven.profile
@@ -162,7 +156,7 @@ class Personalising:
         self._why(None)
 
     def _keep(self) -> None:
-        if self._run is None or self._state is None or self._state.phase != "learned":
+        if self._run is None or self._state is None:
             return
         if self._tried:
             _check_at_rest(self._driven())
@@ -174,8 +168,6 @@ class Personalising:
         self._state = self._state.model_copy(update={"phase": "kept", "why": None})
 
     def _discard(self) -> None:
-        if self._state is None or self._state.phase != "learned":
-            return
         self._give_back(self._driven())
         self._job = self._run = self._state = None
 

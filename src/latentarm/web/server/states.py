@@ -15,10 +15,10 @@ from latentarm.core.errors import UserError
 from latentarm.core.untrusted.terminal import one_line
 from latentarm.robots.kinematics.pose_rows import STORED
 from latentarm.web.protocol.copilot_messages import CopilotState, Person
-from latentarm.web.protocol.notice import Message, Notice, notice_of
+from latentarm.web.protocol.notice import Notice, notice_of
 from latentarm.web.protocol.report import ArmState, Ghosts, Report, Things
 from latentarm.web.protocol.scene import pose_of
-from latentarm.web.protocol.server_messages import RecordingState, State
+from latentarm.web.protocol.server_messages import State
 from latentarm.web.server.loaded_run import (
     Beginning,
     LoadedRun,
@@ -153,8 +153,8 @@ class States:
 
     def journal(self) -> Path | None:
         """The journal that is or was last recorded to; None if nothing ever was."""
-        recording = None if self.report is None else self.report.recording
-        return None if recording is None else Path(recording.journal)
+        journal = None if self.report is None else self.report.journal
+        return None if journal is None else Path(journal)
 
     def text(self, page: Page, shown: PageMemory) -> str:
         """The newest state as JSON, for a page."""
@@ -217,9 +217,8 @@ class States:
     def _state(self, report: Report, *, ghosts: bool, things: bool) -> State:
         driver, asking = self._sessions.driver, self._sessions.asking
         would = self._sessions.named(self._sessions.copilot.asking)
-        recording = report.recording
         away = self.away
-        arm = _fields_of(ArmState, report)
+        arm: dict[str, Any] = {name: getattr(report, name) for name in ArmState.model_fields}
         if away is not None:
             arm |= _UNKNOWN | {"guiding": "offered" if report.guiding == "on" else report.guiding}
         arm |= {
@@ -244,7 +243,6 @@ class States:
             asking_name=None if asking is None else asking.name,
             copilot=self._copilot(),
             copilot_asking=None if would is None else Person(id=would.id, name=would.name),
-            recording=recording and RecordingState(**_fields_of(RecordingState, recording)),
             trail=self._trail,
             arm_start=self.arm_start,
             you=False,
@@ -277,11 +275,6 @@ class States:
         links = self.loaded.chain.link_transforms(np.array(report.q))
         frames = np.concatenate([np.eye(4)[None], links])
         return tuple(tuple(round(value, 4) for value in pose) for pose in pose_of(frames).tolist())
-
-
-def _fields_of(kind: type[Message], message: Message) -> dict[str, Any]:
-    """The fields of a message that another kind has, too."""
-    return {name: getattr(message, name) for name in kind.model_fields}
 
 
 def _moved(before: Ghosts, after: Ghosts) -> float:

@@ -11,14 +11,6 @@ export interface AnswerQuestion {
   u: number[];
 }
 
-export interface AskToCopilot {
-  type: "ask_to_copilot";
-}
-
-export interface AskToDrive {
-  type: "ask_to_drive";
-}
-
 export interface BeginPersonalise {
   type: "personalise";
   name: string;
@@ -30,14 +22,6 @@ export interface BeginTask {
   type: "begin_run";
   choice?: number | null;
   anew: boolean;
-}
-
-export interface CancelPersonalise {
-  type: "cancel_personalise";
-}
-
-export interface CancelTraining {
-  type: "cancel_training";
 }
 
 export interface ChooseHelp {
@@ -87,10 +71,6 @@ export interface DeletePose {
   name: string;
 }
 
-export interface DiscardAlignment {
-  type: "discard_alignment";
-}
-
 export interface DriverInput {
   type: "input";
   seq: number;
@@ -104,19 +84,10 @@ export interface DriverInput {
   opens?: boolean;
 }
 
-export interface EndCopilot {
-  type: "end_copilot";
-}
-
 export interface Fill {
   thing: string;
   share: number;
   enough: number | null;
-}
-
-export interface FoundFact {
-  name: string;
-  value: string;
 }
 
 export interface Ghosts {
@@ -156,10 +127,6 @@ export interface Hello {
   person?: string | null;
 }
 
-export interface KeepAlignment {
-  type: "keep_alignment";
-}
-
 export interface KeepGuiding {
   type: "guided";
   gripper?: "open" | "close" | "toggle" | null;
@@ -181,10 +148,6 @@ export interface Lesson {
   short: number[];
   speeds_m_s: number[];
   weak: number[];
-}
-
-export interface Limits {
-  latch_max_s: number;
 }
 
 export interface Lost {
@@ -238,8 +201,16 @@ export interface Poses {
   problem: Notice | null;
 }
 
-export interface PressEnable {
-  type: "enable";
+export interface Press {
+  type: "enable" | "ask_to_drive" | "release" | "trail_clear" | "cancel_training";
+}
+
+export interface PressCopilot {
+  type: "ask_to_copilot" | "end_copilot";
+}
+
+export interface PressPersonalise {
+  type: "cancel_personalise" | "try_alignment" | "keep_alignment" | "discard_alignment";
 }
 
 export interface PressStop {
@@ -253,7 +224,7 @@ export interface QuestionBefore {
 }
 
 export interface RealArm {
-  facts: FoundFact[];
+  facts: [string, string][];
   shadow: boolean;
 }
 
@@ -278,7 +249,7 @@ export interface Recorded {
   earlier: boolean;
 }
 
-export interface RecordingState {
+export interface Recording {
   on: boolean;
   samples: number;
   episodes: number;
@@ -288,10 +259,6 @@ export interface RecordingState {
 export interface Refused {
   type: "refused";
   notice: Notice;
-}
-
-export interface Release {
-  type: "release";
 }
 
 export interface Reset {
@@ -352,6 +319,7 @@ export interface State {
   ghosts: Ghosts | null;
   alpha: number;
   late_share: number;
+  recording: Recording | null;
   type: "state";
   bodies: number[][];
   belief: number[] | null;
@@ -362,7 +330,6 @@ export interface State {
   asking_name: string | number | null;
   copilot: CopilotState | null;
   copilot_asking: Person | null;
-  recording: RecordingState | null;
   trail: number;
   arm_start: number;
   you: boolean;
@@ -411,10 +378,6 @@ export interface TouchThing {
   kind: "place" | "front" | "undo";
 }
 
-export interface TrailClear {
-  type: "trail_clear";
-}
-
 export interface Train {
   type: "train";
   name: string;
@@ -434,10 +397,6 @@ export interface Training {
   lesson: Lesson | null;
 }
 
-export interface TryAlignment {
-  type: "try_alignment";
-}
-
 export interface Welcome {
   type: "welcome";
   version: 1;
@@ -454,7 +413,7 @@ export interface Welcome {
   zones: NamedZone[];
   keep_out: string[];
   end_effector_modes: string[];
-  limits: Limits;
+  latch_max_s: number;
   gripper_width_m: number | null;
   task: TaskToDo;
   real: RealArm | null;
@@ -466,6 +425,6 @@ export interface Why {
   thing: string;
 }
 
-export type ClientMessage = Hello | DriverInput | ConfirmChecklist | PressEnable | PressStop | AskToDrive | HandOver | Release | TrailClear | RecordEpisode | GuideArm | ReturnArm | GoToPose | SavePose | DeletePose | Train | CancelTraining | PickRun | BeginPersonalise | AnswerQuestion | SkipQuestion | QuestionBefore | CancelPersonalise | TryAlignment | KeepAlignment | DiscardAlignment | AskToCopilot | AcceptCopilot | EndCopilot | CopilotPace | ChooseMode | ChooseHelp | ChooseProfile | KeepGuiding | Reconnect | TouchThing | Reset | BeginTask;
+export type ClientMessage = Hello | DriverInput | ConfirmChecklist | Press | PressStop | HandOver | RecordEpisode | GuideArm | ReturnArm | GoToPose | SavePose | DeletePose | Train | PickRun | BeginPersonalise | AnswerQuestion | SkipQuestion | QuestionBefore | PressPersonalise | AcceptCopilot | PressCopilot | CopilotPace | ChooseMode | ChooseHelp | ChooseProfile | KeepGuiding | Reconnect | TouchThing | Reset | BeginTask;
 
 export type ServerMessage = Welcome | State | LearningState | Poses | Refused;

@@ -27,7 +27,7 @@ export function attachChecklist(parts, connection) {
     const real = connection.welcome?.real ?? null;
     // An arm that is not connected is connected first.
     parts.panel.hidden = done() || lost;
-    parts.facts.replaceChildren(...(real?.facts ?? []).flatMap(({ name, value }) => [create("dt", { textContent: name }), create("dd", { textContent: value })]));
+    parts.facts.replaceChildren(...(real?.facts ?? []).flatMap(([name, value]) => [create("dt", { textContent: name }), create("dd", { textContent: value })]));
   };
   for (const box of parts.boxes) {
     box.addEventListener("change", () => {

@@ -30,7 +30,7 @@ export function attachLatchLimit(input, connection, settings, said = () => {}) {
     timers.forEach(clearTimeout);
     said(false);
     if (source === null) return;
-    const mostS = connection.welcome?.limits.latch_max_s ?? settings.values.latchS;
+    const mostS = connection.welcome?.latch_max_s ?? settings.values.latchS;
     const longestS = latched ? Math.min(settings.values.latchS, mostS) : mostS - EARLY_S;
     timers = [setTimeout(() => said(true), 1000 * (longestS - SAID_S)), setTimeout(() => {
       input.neutral();

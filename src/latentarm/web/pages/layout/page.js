@@ -57,11 +57,11 @@ export function attachPage({ drop = () => {}, repaint = () => {}, runChanged = (
   settings.addEventListener("person", () => connection.become(settings.person));
   connection.addEventListener("welcome", () => {
     if (!connection.welcome) return;
-    const { run, limits, profiles, real } = connection.welcome;
+    const { run, latch_max_s, profiles, real } = connection.welcome;
     setHidden(byId("shadow"), !real?.shadow);
     const robot = robotWords(connection.welcome.robot);
     setText(byId("about"), run ? say("layout.about_run", { robot, run }) : say("layout.about_no_run", { robot }));
-    /** @type {HTMLInputElement | null} */ (document.querySelector("input[name=latchS]"))?.setAttribute("max", String(limits.latch_max_s));
+    /** @type {HTMLInputElement | null} */ (document.querySelector("input[name=latchS]"))?.setAttribute("max", String(latch_max_s));
     dialog.offer(profiles);
   });
   connection.addEventListener("run_changed", runChanged);
