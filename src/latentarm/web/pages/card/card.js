@@ -1,7 +1,7 @@
 /** The card to print: how to move, Enable and Stop, for the input that the person has chosen. */
 
 import { isSwitch } from "../inputs/keys.js";
-import { byId, setText } from "../layout/dom.js";
+import { byId, setText, whenever } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 import { stepKey } from "../practice/step_words.js";
 
@@ -21,7 +21,6 @@ export function attachCard(connection, settings) {
     setText(byId("card-keys"), say(isSwitch(settings.values, "Space") ? "card.stop_escape" : "card.stop_keys"));
   };
   byId("card-print").addEventListener("click", () => print());
-  settings.addEventListener("change", show);
   connection.addEventListener("welcome", show);
-  show();
+  whenever(settings, ["change"], show);
 }

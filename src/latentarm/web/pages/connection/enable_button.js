@@ -1,6 +1,6 @@
 /** The large button next to Stop: it enables the arm, or asks to drive where another page drives, and says which. */
 
-import { setText } from "../layout/dom.js";
+import { setDisabled, setText, whenever } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 import { whoAsks } from "./driver_lease.js";
 
@@ -33,14 +33,12 @@ export function attachEnableButton(button, connection, enable) {
     // Enter enables; it does not ask.
     if (label === "layout.enable") button.setAttribute("aria-keyshortcuts", "Enter");
     else button.removeAttribute("aria-keyshortcuts");
-    if (button.getAttribute("aria-disabled") !== String(does === null)) button.setAttribute("aria-disabled", String(does === null));
+    setDisabled(button, does === null);
   };
   button.addEventListener("click", () => {
     const { does } = enableButtonOf(connection);
     if (does === "enable") enable();
     if (does === "ask") connection.send({ type: "ask_to_drive" });
   });
-  connection.addEventListener("state", show);
-  connection.addEventListener("open", show);
-  show();
+  whenever(connection, ["state", "open"], show);
 }

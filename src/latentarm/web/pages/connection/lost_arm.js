@@ -1,6 +1,6 @@
 /** Where the connection to a real arm is lost: a button that makes it again. The arm does not move for it. */
 
-import { byId, setHidden, setText } from "../layout/dom.js";
+import { byId, setDisabled, setHidden, setText, whenever } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 
 /** @import {Connection} from "./connection.js" */
@@ -20,12 +20,10 @@ export function attachLostArm(connection, lease) {
   const show = () => {
     setHidden(byId("lost"), !connection.state?.lost);
     setText(byId("lost-why"), say(free() ? "connection.help" : "connection.driver_only"));
-    if (button.getAttribute("aria-disabled") !== String(!free())) button.setAttribute("aria-disabled", String(!free()));
+    setDisabled(button, !free());
   };
   button.addEventListener("click", again);
-  connection.addEventListener("state", show);
-  connection.addEventListener("open", show);
-  show();
+  whenever(connection, ["state", "open"], show);
 
   return {
     again,

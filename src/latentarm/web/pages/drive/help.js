@@ -52,18 +52,16 @@ export function attachHelp(parts, connection, settings) {
     }
     setText(parts.text, helpWords(state));
   };
+  const follow = () => {
+    ask();
+    show();
+  };
   for (const radio of radios) {
     radio.addEventListener("change", () => choose(/** @type {Values["help"]} */ (radio.value)));
   }
   connection.addEventListener("welcome", () => {
     asked = null;
   });
-  connection.addEventListener("state", () => {
-    ask();
-    show();
-  });
-  settings.addEventListener("change", () => {
-    ask();
-    show();
-  });
+  connection.addEventListener("state", follow);
+  settings.addEventListener("change", follow);
 }

@@ -87,9 +87,7 @@ function fill(fieldset, name, labels, chosen) {
   const options = labels.map((textContent, index) => {
     const input = create("input", { type: "radio", name, value: String(index) });
     input.addEventListener("change", () => chosen(index));
-    const label = create("label");
-    label.append(input, create("span", { textContent }));
-    return label;
+    return create("label", {}, input, create("span", { textContent }));
   });
   fieldset.querySelector(".options")?.replaceChildren(...options);
 }

@@ -1,6 +1,6 @@
 /** Poses, the robot's own and saved ones: a button for each drives the arm there; where it stands can be saved as another one. */
 
-import { create, setText } from "../layout/dom.js";
+import { create, createButton, setDisabled, setText, whenever } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 import { sayTo } from "../connection/notices.js";
 
@@ -52,42 +52,30 @@ export function attachPoses(parts, connection) {
       parts.name.value = "";
     }
   };
-  const disable = (/** @type {Element} */ button, /** @type {boolean} */ off) => {
-    if (button.getAttribute("aria-disabled") !== String(off)) button.setAttribute("aria-disabled", String(off));
-  };
   const show = () => {
     const { goes, why } = goingOf(connection);
     const problem = connection.poses?.problem ?? null;
     setText(parts.why, problem === null ? say(why) : sayTo(problem, { you: true, own: connection.own, late: null, absent: false }));
-    for (const button of parts.list.querySelectorAll("[data-go]")) disable(button, !goes);
-    for (const button of parts.list.querySelectorAll("[data-delete]")) disable(button, !connection.driving);
-    disable(parts.save, !savesOf(connection));
+    for (const button of parts.list.querySelectorAll("[data-go]")) setDisabled(button, !goes);
+    for (const button of parts.list.querySelectorAll("[data-delete]")) setDisabled(button, !connection.driving);
+    setDisabled(parts.save, !savesOf(connection));
   };
   const list = () => {
     const rows = all().map(([name, own]) => {
-      const there = create("button", { type: "button", textContent: say("poses.go", { pose: name }) });
+      const there = createButton(say("poses.go", { pose: name }), () => go(name, own));
       there.dataset.go = name;
-      there.addEventListener("click", () => go(name, own));
-      const row = create("li", { className: "row" });
-      row.append(there);
-      if (own !== null) return row;
-      const forget = create("button", { type: "button", className: "quiet", textContent: "×", ariaLabel: say("poses.delete", { pose: name }) });
-      forget.dataset.delete = name;
-      forget.addEventListener("click", () => {
+      const forget = createButton("×", () => {
         if (connection.driving) connection.send({ type: "delete_pose", name });
-      });
-      row.append(forget);
-      return row;
+      }, { className: "quiet", ariaLabel: say("poses.delete", { pose: name }) });
+      forget.dataset.delete = name;
+      return create("li", { className: "row" }, there, ...(own === null ? [forget] : []));
     });
     parts.list.replaceChildren(...rows);
     show();
   };
   parts.save.addEventListener("click", save);
-  connection.addEventListener("poses", list);
-  connection.addEventListener("welcome", list);
-  connection.addEventListener("state", show);
-  connection.addEventListener("open", show);
-  list();
+  whenever(connection, ["poses", "welcome"], list);
+  whenever(connection, ["state", "open"], show);
 
   return {
     /** All of them among the choices of a switch, where the arm can go to them. @returns {Choice[]} */

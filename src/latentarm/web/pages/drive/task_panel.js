@@ -1,6 +1,6 @@
 /** The task: its steps tick off, its end is said and heard, and another run is begun. */
 
-import { create, setText } from "../layout/dom.js";
+import { create, setDisabled, setText } from "../layout/dom.js";
 import { thingWords } from "../layout/thing_words.js";
 import { say } from "../layout/words.js";
 import { awayWords, blockedWords, fillWords, outcomeWords, stepNow, stepWords, stuck, stuckWords, wholeSeconds } from "./task_words.js";
@@ -63,10 +63,8 @@ export function attachTask(parts, connection, ended) {
     const { task } = /** @type {NonNullable<Connection["welcome"]>} */ (connection.welcome);
     parts.panel.hidden = task.steps.length === 0;
     parts.steps.replaceChildren(...task.steps.map((step) => {
-      const item = create("li");
       const spoken = create("span", { className: "visually-hidden" });
-      item.append(create("span", { textContent: stepWords(step) }), spoken, create("span", { className: "step-away" }));
-      return item;
+      return create("li", {}, create("span", { textContent: stepWords(step) }), spoken, create("span", { className: "step-away" }));
     }));
     parts.chooser.hidden = task.choices.length < 2;
     parts.choice.replaceChildren(...task.choices.map((name, index) =>
@@ -120,7 +118,7 @@ export function attachTask(parts, connection, ended) {
     before = task;
     const why = blocked();
     setText(parts.why, why);
-    for (const button of [parts.next, parts.again]) button.setAttribute("aria-disabled", String(why !== ""));
+    for (const button of [parts.next, parts.again]) setDisabled(button, why !== "");
     parts.choice.disabled = why !== "";
     if (performance.now() - wordsAt < WORDS_MS) return;
     wordsAt = performance.now();

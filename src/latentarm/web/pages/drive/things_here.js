@@ -1,6 +1,6 @@
 /** Where the things are: how each place is known, and buttons by which a person says that the tool is at a thing. */
 
-import { create, setHidden, setText } from "../layout/dom.js";
+import { create, createButton, setHidden, setText } from "../layout/dom.js";
 import { capital, theThing, thingWords } from "../layout/thing_words.js";
 import { say } from "../layout/words.js";
 
@@ -35,14 +35,8 @@ export function attachThingsHere(parts, connection) {
     if (now !== shown || !parts.list.children.length) {
       shown = now;
       parts.list.replaceChildren(...seen().map(({ name }) => {
-        const row = create("li", { className: "row" });
-        const buttons = offered.filter(({ id }) => id.endsWith(`-${name}`)).map(({ label, act }) => {
-          const button = create("button", { type: "button", textContent: label });
-          button.addEventListener("click", act);
-          return button;
-        });
-        row.append(create("p", { className: "small" }), ...buttons);
-        return row;
+        const buttons = offered.filter(({ id }) => id.endsWith(`-${name}`)).map(({ label, act }) => createButton(label, act));
+        return create("li", { className: "row" }, create("p", { className: "small" }), ...buttons);
       }));
     }
     seen().forEach((thing, index) => setText(parts.list.children[index].children[0], seenWords(thing) || say("things.now", { thing: capital(thingWords(thing.name)) })));

@@ -115,10 +115,8 @@ export function attachToGo(list, choice, connection, shaped, switches) {
   connection.addEventListener("welcome", () => {
     const { end_effector_modes } = /** @type {NonNullable<Connection["welcome"]>} */ (connection.welcome);
     list.replaceChildren(...end_effector_modes.map((name) => {
-      const item = create("li");
       const pair = say("to_go.pair", { pair: say(/** @type {WordKey} */ (`axes.${name}`)) });
-      item.append(create("span", { className: "to-go-pair", textContent: pair }), create("span"), create("span"));
-      return item;
+      return create("li", {}, create("span", { className: "to-go-pair", textContent: pair }), create("span"), create("span"));
     }));
     wordsAt = -Infinity;
   });

@@ -1,6 +1,6 @@
 /** The button that drives the arm back to its start, and in words why it cannot. */
 
-import { setText } from "../layout/dom.js";
+import { setDisabled, setText, whenever } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 
 /** @import {Connection} from "../connection/connection.js" */
@@ -35,12 +35,10 @@ export function attachWayBack(parts, connection) {
     const { does, why } = wayBackOf(connection);
     setText(parts.button, say(does === "end" ? "way_back.end" : "way_back.begin"));
     setText(parts.why, say(why));
-    if (parts.button.getAttribute("aria-disabled") !== String(does === null)) parts.button.setAttribute("aria-disabled", String(does === null));
+    setDisabled(parts.button, does === null);
   };
   parts.button.addEventListener("click", press);
-  connection.addEventListener("state", show);
-  connection.addEventListener("open", show);
-  show();
+  whenever(connection, ["state", "open"], show);
 
   return {
     /** Its place among the choices of a switch, where it can begin. @returns {Choice[]} */

@@ -42,13 +42,9 @@ export function charts(drives) {
  * @param {(day: string, value: string) => string} told a period in a sentence
  */
 function chart(title, periods, value, words, told) {
-  const figure = create("figure", { className: "chart" });
-  figure.append(create("figcaption", { textContent: title }));
   const known = periods.filter((period) => value(period) !== null);
-  if (!known.length) {
-    figure.append(create("p", { className: "muted small", textContent: say("history.chart_nothing") }));
-    return figure;
-  }
+  const figure = (/** @type {Element} */ content) => create("figure", { className: "chart" }, create("figcaption", { textContent: title }), content);
+  if (!known.length) return figure(create("p", { className: "muted small", textContent: say("history.chart_nothing") }));
   const svg = part("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img" });
   const sentences = known.map((period) => told(date(period.first), words(Number(value(period)))));
   svg.setAttribute("aria-label", `${title}. ${sentences.join(" ")}`);
@@ -70,8 +66,7 @@ function chart(title, periods, value, words, told) {
     }
   });
   svg.append(part("line", { class: "base", x1: 0, x2: WIDTH, y1: HEIGHT - FOOT, y2: HEIGHT - FOOT }));
-  figure.append(svg);
-  return figure;
+  return figure(svg);
 }
 
 /** @param {string} day `YYYY-MM-DD` */

@@ -1,10 +1,10 @@
 /** The History page: drives to filter, to look at again, to compare, to print, to rename and to delete. */
 
 import { attachWholePage } from "../inputs/whole_page.js";
-import { byId, create, setText } from "../layout/dom.js";
+import { byId, create, createButton, setText } from "../layout/dom.js";
 import { attachPage } from "../layout/page.js";
 import { say, sayNotice, sayNumber } from "../layout/words.js";
-import { ask, sayTime } from "../records/ask.js";
+import { ask, attempt, sayTime, showProblem } from "../records/ask.js";
 import { charts, chartsTitle } from "./charts.js";
 import { figureWords, inputWords, outcomeWords, taskWords } from "./drive_words.js";
 import { attachReplay } from "./replay_panel.js";
@@ -43,22 +43,6 @@ let rename = async () => {};
 /** @type {() => Promise<unknown>} */
 let undo = async () => {};
 
-/** Do it, show what there is then, or say what went wrong. @param {() => Promise<unknown>} act */
-async function attempt(act) {
-  byId("problem").hidden = true;
-  try {
-    await act();
-  } catch (error) {
-    tell(error instanceof Error ? error.message : String(error));
-  }
-}
-
-/** @param {string} text */
-function tell(text) {
-  setText(byId("problem"), text);
-  byId("problem").hidden = false;
-}
-
 function query() {
   const given = Object.entries(fields).filter(([name]) => Number.isNaN(Number(name)));
   const asked = new URLSearchParams();
@@ -76,8 +60,8 @@ async function refresh() {
   byId("charts").replaceChildren(...charts(drives));
   byId("report").replaceChildren(...report(drives, whose()));
   setText(byId("drives-title"), say("history.drives", { count: drives.length }));
-  if (found.problem) tell(sayNotice(found.problem));
-  else if (found.problems.length) tell(found.problems.map(sayNotice).join(" "));
+  const problems = found.problem ? [found.problem] : found.problems;
+  if (problems.length) showProblem(problems.map(sayNotice).join(" "));
   showDrives();
 }
 
@@ -121,15 +105,11 @@ function titleOf(drive) {
 /** @param {Drive} drive */
 function driveRow(drive) {
   const when = sayTime(drive.started);
-  const name = create("span", { className: "drive-name" });
-  name.append(create("bdi", { textContent: titleOf(drive) }), create("small", { textContent: `${when} · ${nameOf(drive.person)}` }));
-  const figures = create("span", { className: "drive-figures" });
   const outcome = create("strong", { textContent: outcomeWords(drive) });
   outcome.dataset.outcome = drive.outcome ?? "";
-  figures.append(outcome, ` · ${figureWords(drive)}`);
   const label = `${titleOf(drive)}, ${when}`;
   const path = `/records/drives/${drive.id}`;
-  const row = rowOf(name, figures, [
+  const row = rowOf(titleOf(drive), `${when} · ${nameOf(drive.person)}`, [outcome, ` · ${figureWords(drive)}`], [
     ...(drive.scene ? [button("history.show", label, () => open(drive))] : []),
     ...changing(label, path, drive.title),
   ]);
@@ -147,18 +127,15 @@ async function open(drive) {
 async function showRecordings() {
   const { recordings } = await ask("GET", "/records/recordings");
   const rows = /** @type {Recording[]} */ (recordings).map((one) => {
-    const name = create("span", { className: "drive-name" });
     const by = [...new Set(one.episodes.map(({ person }) => people[person] ?? person))].filter(Boolean).join(", ");
-    name.append(create("bdi", { textContent: one.title || one.name }), create("small", { textContent: [one.title ? one.name : "", by].filter(Boolean).join(" · ") }));
     const seconds = one.episodes.reduce((total, episode) => total + episode.seconds, 0);
-    const figures = create("span", { className: "drive-figures" });
-    figures.textContent = one.problem ? sayNotice(one.problem) : say("history.recorded", {
+    const figures = one.problem ? sayNotice(one.problem) : say("history.recorded", {
       count: one.episodes.length, seconds: sayNumber(seconds, 0), megabytes: sayNumber(one.bytes / 1e6, 1),
     });
     const path = `/records/recordings/${encodeURIComponent(one.name)}`;
     const tools = changing(one.title || one.name, path, one.title);
     if (one.in_use) tools[1].disabled = true;
-    return rowOf(name, figures, tools);
+    return rowOf(one.title || one.name, [one.title ? one.name : "", by].filter(Boolean).join(" · "), [figures], tools);
   });
   byId("recordings").replaceChildren(...rows);
   if (!rows.length) byId("recordings").append(create("p", { className: "muted", textContent: say("history.no_recordings") }));
@@ -183,21 +160,15 @@ function changing(label, path, title) {
   ];
 }
 
-/** @param {HTMLElement} name @param {HTMLElement} figures @param {HTMLElement[]} tools */
-function rowOf(name, figures, tools) {
-  const row = create("li");
-  const buttons = create("div", { className: "row" });
-  buttons.append(...tools);
-  row.append(name, figures, buttons);
-  return row;
+/** @param {string} title @param {string} about @param {(Node | string)[]} figures @param {HTMLElement[]} tools */
+function rowOf(title, about, figures, tools) {
+  const name = create("span", { className: "drive-name" }, create("bdi", { textContent: title }), create("small", { textContent: about }));
+  return create("li", {}, name, create("span", { className: "drive-figures" }, ...figures), create("div", { className: "row" }, ...tools));
 }
 
 /** @param {"history.show" | "history.rename" | "history.delete"} word @param {string} label @param {() => Promise<unknown>} act */
 function button(word, label, act) {
-  const made = create("button", { type: "button", textContent: say(word) });
-  made.setAttribute("aria-label", `${say(word)}: ${label}`);
-  made.addEventListener("click", () => attempt(act));
-  return made;
+  return createButton(say(word), () => attempt(act), { ariaLabel: `${say(word)}: ${label}` });
 }
 
 async function all() {

@@ -29,27 +29,20 @@ export function report(drives, name) {
     ? say("report.period", { since: date(drives[drives.length - 1].started), until: date(drives[0].started) })
     : say("report.nothing");
   const honest = say(drives.some(({ real }) => real) ? "report.real" : "report.simulated");
-  /** @type {HTMLElement[]} */
   const parts = [head, create("p", { textContent: period }), create("p", { className: "honest", textContent: honest })];
   if (!drives.length) return parts;
-  const weekly = create("div", { className: "charts" });
-  weekly.append(...charts(drives));
-  parts.push(summary(drives), titled(chartsTitle(drives), weekly), titled(say("report.tasks"), taskTable(drives)));
-  parts.push(titled(say("report.latest"), driveTable(drives)));
-  parts.push(create("p", { className: "small", textContent: FIGURES.map((figure) => say(/** @type {WordKey} */ (`report.${figure}_means`))).join(" ") }));
-  parts.push(create("p", { className: "small", textContent: say("report.made", { when: sayTime(new Date().toISOString()) }) }));
-  return parts;
+  return [
+    ...parts, summary(drives), titled(chartsTitle(drives), create("div", { className: "charts" }, ...charts(drives))),
+    titled(say("report.tasks"), taskTable(drives)), titled(say("report.latest"), driveTable(drives)),
+    create("p", { className: "small", textContent: FIGURES.map((figure) => say(/** @type {WordKey} */ (`report.${figure}_means`))).join(" ") }),
+    create("p", { className: "small", textContent: say("report.made", { when: sayTime(new Date().toISOString()) }) }),
+  ];
 }
 
 /** @param {Drive[]} drives */
 function summary(drives) {
-  const list = create("dl", { className: "figures" });
-  for (const figure of FIGURES) {
-    const row = create("div");
-    row.append(create("dt", { textContent: title(figure) }), create("dd", { textContent: figureOf(figure, drives) }));
-    list.append(row);
-  }
-  return list;
+  return create("dl", { className: "figures" }, ...FIGURES.map((figure) => (
+    create("div", {}, create("dt", { textContent: title(figure) }), create("dd", { textContent: figureOf(figure, drives) })))));
 }
 
 /** @param {Figure} figure */
@@ -78,22 +71,11 @@ function driveTable(drives) {
 
 /** @param {string[]} heads @param {string[][]} rows */
 function table(heads, rows) {
-  const made = create("table");
-  const row = (/** @type {string[]} */ texts, /** @type {"th" | "td"} */ tag) => {
-    const line = create("tr");
-    line.append(...texts.map((textContent) => create(tag, { textContent, dir: "auto" })));
-    return line;
-  };
-  const [head, body] = [create("thead"), create("tbody")];
-  head.append(row(heads, "th"));
-  body.append(...rows.map((texts) => row(texts, "td")));
-  made.append(head, body);
-  return made;
+  const row = (/** @type {string[]} */ texts, /** @type {"th" | "td"} */ tag) => create("tr", {}, ...texts.map((textContent) => create(tag, { textContent, dir: "auto" })));
+  return create("table", {}, create("thead", {}, row(heads, "th")), create("tbody", {}, ...rows.map((texts) => row(texts, "td"))));
 }
 
 /** @param {string} title @param {HTMLElement} content */
 function titled(title, content) {
-  const section = create("section");
-  section.append(create("h3", { textContent: title }), content);
-  return section;
+  return create("section", {}, create("h3", { textContent: title }), content);
 }

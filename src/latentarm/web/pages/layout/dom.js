@@ -25,14 +25,35 @@ export function setHidden(element, hidden) {
   if (element.hidden !== hidden) element.hidden = hidden;
 }
 
+/** Say whether it can be pressed: it keeps the focus, and its place for a screen reader. @param {Element} element @param {boolean} off */
+export function setDisabled(element, off) {
+  if (element.getAttribute("aria-disabled") !== String(off)) element.setAttribute("aria-disabled", String(off));
+}
+
+/** Do it now, and again at each of these events. @param {EventTarget} target @param {string[]} types @param {() => void} act */
+export function whenever(target, types, act) {
+  for (const type of types) target.addEventListener(type, act);
+  act();
+}
+
 /**
  * @template {keyof HTMLElementTagNameMap} K
  * @param {K} tag
  * @param {Partial<HTMLElementTagNameMap[K]>} [properties]
+ * @param {(Node | string)[]} children
  * @returns {HTMLElementTagNameMap[K]}
  */
-export function create(tag, properties = {}) {
-  return Object.assign(document.createElement(tag), properties);
+export function create(tag, properties = {}, ...children) {
+  const made = Object.assign(document.createElement(tag), properties);
+  if (children.length) made.append(...children);
+  return made;
+}
+
+/** A button that does something when it is pressed. @param {string} textContent @param {() => void} act @param {Partial<HTMLButtonElement>} [properties] */
+export function createButton(textContent, act, properties = {}) {
+  const made = create("button", { type: "button", textContent, ...properties });
+  made.addEventListener("click", act);
+  return made;
 }
 
 /** A part of a drawing in SVG. @param {string} name @param {Record<string, string | number>} attributes @param {string} [text] */

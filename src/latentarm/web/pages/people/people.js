@@ -1,10 +1,10 @@
 /** The People page: who drives, adding, renaming, taking along, bringing and deleting. */
 
 import { attachWholePage } from "../inputs/whole_page.js";
-import { byId, create, setText } from "../layout/dom.js";
+import { byId, create, createButton, setText } from "../layout/dom.js";
 import { attachPage } from "../layout/page.js";
 import { say, sayNotice } from "../layout/words.js";
-import { ask, sayTime } from "../records/ask.js";
+import { ask, attempt, sayTime, showProblem } from "../records/ask.js";
 import { attachPinDialog } from "./pin_dialog.js";
 
 /** @typedef {{id: string, name: string, pin: boolean, drives: number, last: string | null}} Person */
@@ -27,17 +27,6 @@ let pins = false;
 /** The person whom another page led here to choose, until they were looked for. */
 let asked = location.hash.slice(1);
 
-/** Do it, and say what went wrong where the person looks. @param {() => Promise<void>} act @param {string} [where] */
-async function attempt(act, where = "problem") {
-  byId(where).hidden = true;
-  try {
-    await act();
-  } catch (error) {
-    setText(byId(where), error instanceof Error ? error.message : String(error));
-    byId(where).hidden = false;
-  }
-}
-
 /** @param {Person | null} person null for a guest */
 function choose(person) {
   settings.become(person && { id: person.id, name: person.name });
@@ -54,24 +43,15 @@ async function refresh() {
   const wanted = /** @type {Person[]} */ (people).find(({ id }) => id === asked);
   asked = "";
   if (wanted) pin.opened(wanted, () => choose(wanted));
-  if (problems.length) {
-    setText(byId("problem"), problems.map(sayNotice).join(" "));
-    byId("problem").hidden = false;
-  }
+  if (problems.length) showProblem(problems.map(sayNotice).join(" "));
 }
 
 /** @param {Person | null} person null for a guest @returns {HTMLElement} */
 function rowOf(person) {
   const here = (settings.person?.id ?? null) === (person?.id ?? null);
-  const row = create("li");
-  row.dataset.person = person?.id ?? "";
-  row.dataset.here = String(here);
-  // The row's name for a switch.
-  row.ariaLabel = person?.name ?? say("settings.guest");
-  const name = create("span", { className: "person-name" });
-  name.append(create("bdi", { textContent: person?.name ?? say("settings.guest") }), create("small", { textContent: person ? driven(person) : say("people.guest_help") }));
-  const tools = create("div", { className: "row" });
-  tools.append(button("people.choose", person, () => pin.opened(person, () => choose(person)), { pressed: here }));
+  const called = person?.name ?? say("settings.guest");
+  const name = create("span", { className: "person-name" }, create("bdi", { textContent: called }), create("small", { textContent: person ? driven(person) : say("people.guest_help") }));
+  const tools = create("div", { className: "row" }, button("people.choose", person, () => pin.opened(person, () => choose(person)), { pressed: here }));
   if (person) {
     tools.append(
       button("people.rename", person, () => pin.opened(person, () => openRename(person))),
@@ -80,7 +60,10 @@ function rowOf(person) {
     );
     if (pins) tools.append(person.pin ? button("people.pin_remove", person, () => removePin(person)) : button("people.pin_set", person, () => setPin(person)));
   }
-  row.append(name, tools);
+  // Its label is the row's name for a switch.
+  const row = create("li", { ariaLabel: called }, name, tools);
+  row.dataset.person = person?.id ?? "";
+  row.dataset.here = String(here);
   return row;
 }
 
@@ -132,10 +115,8 @@ function driven({ drives, last }) {
  * @param {{pressed?: boolean}} [state]
  */
 function button(word, person, act, { pressed } = {}) {
-  const made = create("button", { type: "button", textContent: pressed ? say("people.chosen") : say(word) });
-  made.setAttribute("aria-label", say(`${word}_of`, { name: person?.name ?? say("settings.guest") }));
-  if (pressed !== undefined) made.setAttribute("aria-pressed", String(pressed));
-  made.addEventListener("click", act);
+  const made = createButton(say(pressed ? "people.chosen" : word), act, { ariaLabel: say(`${word}_of`, { name: person?.name ?? say("settings.guest") }) });
+  if (pressed !== undefined) made.ariaPressed = String(pressed);
   return made;
 }
 
@@ -143,7 +124,7 @@ function button(word, person, act, { pressed } = {}) {
 function openRename(person) {
   about = person;
   newName.value = person.name;
-  byId("rename-problem").hidden = true;
+  showProblem("", "rename-problem");
   renaming.showModal();
 }
 
@@ -160,7 +141,7 @@ function openErase(person) {
       kept.episodes ? say("people.erase_episodes", { count: kept.episodes }) : "",
     ].filter(Boolean);
     byId("erase-list").replaceChildren(...lines.map((textContent) => create("li", { textContent })));
-    byId("erase-problem").hidden = true;
+    showProblem("", "erase-problem");
     erasing.showModal();
   });
 }

@@ -2,7 +2,7 @@
 
 import { byId, setText } from "../layout/dom.js";
 import { say } from "../layout/words.js";
-import { ask } from "../records/ask.js";
+import { ask, attempt, showProblem } from "../records/ask.js";
 
 /** @typedef {{id: string, name: string, pin: boolean}} Pinned */
 
@@ -16,7 +16,7 @@ export function attachPinDialog() {
   const open = (title, help, type, then) => {
     setText(byId("pin-title"), title);
     setText(byId("pin-help"), help);
-    byId("pin-problem").hidden = true;
+    showProblem("", "pin-problem");
     field.type = type;
     field.value = "";
     take = then;
@@ -37,14 +37,12 @@ export function attachPinDialog() {
   });
   dialog.querySelector("form")?.addEventListener("submit", async (event) => {
     event.preventDefault();
-    try {
-      await take(field.value);
-      dialog.close();
-    } catch (error) {
+    await attempt(async () => {
+      const pin = field.value;
       field.value = "";
-      setText(byId("pin-problem"), error instanceof Error ? error.message : String(error));
-      byId("pin-problem").hidden = false;
-    }
+      await take(pin);
+      dialog.close();
+    }, "pin-problem");
   });
 
   return {

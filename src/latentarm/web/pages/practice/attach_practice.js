@@ -40,18 +40,14 @@ export function attachPractice(connection, input, settings) {
       return item;
     }));
   };
-  const begin = () => {
-    practice = new Practice();
-    open = true;
+  const become = (/** @type {Practice | null} */ now) => {
+    practice = now;
+    open = now !== null;
     settings.change({ practised: true });
     show();
   };
-  const close = () => {
-    practice = null;
-    open = false;
-    settings.change({ practised: true });
-    show();
-  };
+  const begin = () => become(new Practice());
+  const close = () => become(null);
 
   byId("practice-begin").addEventListener("click", begin);
   byId("practice-again").addEventListener("click", begin);

@@ -1,5 +1,6 @@
 /** Requests about what the server keeps: JSON both ways. */
 
+import { byId, setText } from "../layout/dom.js";
 import { say, sayNotice } from "../layout/words.js";
 
 /**
@@ -21,6 +22,22 @@ export async function ask(method, path, body) {
   const told = answer.status === 204 ? null : await answer.json().catch(() => null);
   if (answer.ok) return told;
   throw new Error(answer.status === 413 ? say("records.too_large") : told?.notice ? sayNotice(told.notice) : say("records.no_answer"));
+}
+
+/** Say what went wrong where the person looks; nothing where the text is empty. @param {string} text @param {string} [where] */
+export function showProblem(text, where = "problem") {
+  setText(byId(where), text);
+  byId(where).hidden = text === "";
+}
+
+/** Do it, and say what went wrong. @param {() => Promise<unknown>} act @param {string} [where] */
+export async function attempt(act, where) {
+  showProblem("", where);
+  try {
+    await act();
+  } catch (error) {
+    showProblem(error instanceof Error ? error.message : String(error), where);
+  }
 }
 
 /** A moment as people write it. @param {string} iso @param {Intl.DateTimeFormatOptions} [style] */

@@ -1,7 +1,7 @@
 /** Guiding a real arm by hand: begun and ended here, recorded meanwhile, and the gripper moved by two buttons. */
 
 import { recordingWords } from "../drive/recording.js";
-import { setHidden, setText } from "../layout/dom.js";
+import { setDisabled, setHidden, setText } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 
 /** @import {Connection} from "../connection/connection.js" */
@@ -30,24 +30,10 @@ export function guidingOf(state, { waiting, confirmed }) {
   return { does: confirmed ? "begin" : null, why: own ? "guiding.own" : "guiding.off", records: own };
 }
 
-/**
- * @typedef {object} Parts
- * @property {HTMLElement} panel
- * @property {HTMLElement} check
- * @property {HTMLInputElement} confirmed
- * @property {HTMLElement} button
- * @property {HTMLElement} why
- * @property {HTMLElement} doing
- * @property {HTMLInputElement} task
- * @property {HTMLElement} record
- * @property {HTMLElement} recorded
- * @property {HTMLElement} gripper
- * @property {HTMLElement} open
- * @property {HTMLElement} close
- */
+/** @typedef {"panel" | "check" | "button" | "why" | "doing" | "record" | "recorded" | "gripper" | "open" | "close"} Part */
 
 /**
- * @param {Parts} parts
+ * @param {Record<Part, HTMLElement> & Record<"confirmed" | "task", HTMLInputElement>} parts
  * @param {Connection} connection
  * @param {DriverLease} lease
  */
@@ -98,13 +84,13 @@ export function attachGuiding(parts, connection, lease) {
     const recording = Boolean(state.recording?.on);
     setHidden(parts.panel, state.guiding === null);
     setText(parts.button, say(does === "end" ? "guiding.end" : "guiding.begin"));
-    disable(parts.button, does === null);
+    setDisabled(parts.button, does === null);
     setText(parts.why, say(why));
     setHidden(parts.check, does === "end");
     setHidden(parts.doing, !(records || recording));
     setText(parts.record, say(recording ? "recording.stop" : "recording.start"));
     parts.record.setAttribute("aria-pressed", String(recording));
-    disable(parts.record, !state.you);
+    setDisabled(parts.record, !state.you);
     setText(parts.recorded, recordingWords(state));
     setHidden(parts.gripper, welcome.gripper_width_m === null || state.guiding !== "on");
   };
@@ -141,9 +127,4 @@ export function attachGuiding(parts, connection, lease) {
       asked = begun = false;
     },
   };
-}
-
-/** @param {HTMLElement} button @param {boolean} off */
-function disable(button, off) {
-  if (button.getAttribute("aria-disabled") !== String(off)) button.setAttribute("aria-disabled", String(off));
 }

@@ -2,7 +2,7 @@
 
 import { attachLostArm } from "../connection/lost_arm.js";
 import { attachWholePage } from "../inputs/whole_page.js";
-import { byId, create, fillBar, setText } from "../layout/dom.js";
+import { byId, create, createButton, fillBar, setText } from "../layout/dom.js";
 import { attachPage } from "../layout/page.js";
 import { say, sayNotice, sayNumber } from "../layout/words.js";
 import { sayTime } from "../records/ask.js";
@@ -128,17 +128,12 @@ function row(recorded, short) {
     picked.set(keyOf(recorded), box.checked);
     show();
   });
-  const label = create("label", { className: "check" });
-  label.append(
-    box,
+  const label = create("label", { className: "check" }, box,
     create("span", { textContent: task ? say("teach.episode_task", { number, task }) : say("teach.episode", { number }) }),
-    create("span", { textContent: say("unit.seconds", { value: sayNumber(seconds, 1) }) }),
-  );
+    create("span", { textContent: say("unit.seconds", { value: sayNumber(seconds, 1) }) }));
   if (earlier && started) label.append(create("small", { className: "muted", textContent: sayTime(started) }));
   if (short.includes(number)) label.append(create("strong", { className: "short", textContent: say("teach.short") }));
-  const item = create("li");
-  item.append(label);
-  return item;
+  return create("li", {}, label);
 }
 
 /** Of the training, as it was shown last. */
@@ -195,12 +190,7 @@ function showRuns({ runs, run }) {
   byId("runs").replaceChildren(...runs.map((name) => {
     const label = create("span", { textContent: name });
     if (name === run) label.append(create("small", { textContent: say("teach.loaded") }));
-    const button = create("button", { type: "button", textContent: say("teach.drive"), disabled: watching });
-    button.setAttribute("aria-label", say("teach.drive_run", { run: name }));
-    button.addEventListener("click", () => drive(name));
-    const row = create("li");
-    row.append(label, button);
-    return row;
+    return create("li", {}, label, createButton(say("teach.drive"), () => drive(name), { disabled: watching, ariaLabel: say("teach.drive_run", { run: name }) }));
   }));
 }
 

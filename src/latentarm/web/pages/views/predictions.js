@@ -76,9 +76,8 @@ export function attachPredictions(list) {
     const sign = create("span", { className: "ghost-mark", textContent: MARKS[direction] });
     sign.setAttribute("aria-hidden", "true");
     const words = create("span");
-    const item = create("li");
+    const item = create("li", {}, sign, create("span", { textContent: say(`directions.${direction}`) }), words);
     item.dataset.ghost = direction;
-    item.append(sign, create("span", { textContent: say(`directions.${direction}`) }), words);
     list.append(item);
     return { direction, item, words };
   });
