@@ -48,9 +48,6 @@ class AlignmentLoss:
 
     Everything is relative to the mean squared length of the motions that a run was asked about, so that the
     weights have no units and 1 is the loss of an arm that does not move.
-
-    Raises:
-        UserError: the answers do not fit the decoder or each other, or the motions do not move.
     """
 
     def __init__(
@@ -138,11 +135,7 @@ def _rows(values: Tensor, rows: Tensor) -> Tensor:
 
 
 def _check(decoder: TorchDecoder, chain: Chain, answers: Sequence[Answers], unlabelled: FloatArray) -> None:
-    """Refuse what does not fit.
-
-    Raises:
-        UserError: see `AlignmentLoss`.
-    """
+    """Refuse what does not fit."""
     if not answers:
         raise UserError("An alignment is learned from the answers of at least one run.")
     if chain.dof != decoder.action_dim:

@@ -21,9 +21,6 @@ class HeightAndTilt:
     """A simulated person for whom one axis of the stick is up, and the other tilts about the base's x axis.
 
     They ignore all other motion of the tool.
-
-    Raises:
-        UserError: a speed is not positive.
     """
 
     chain: Chain  # the arm, of which the first tool counts
@@ -60,11 +57,7 @@ class ByPlace:
 @final
 @dataclass(frozen=True, eq=False)
 class Imprecise:
-    """A simulated person whose deflection of each axis varies randomly.
-
-    Raises:
-        UserError: the variation is negative or not finite.
-    """
+    """A simulated person whose deflection of each axis varies randomly."""
 
     preference: Preference
     variation: float  # coefficient of variation, the SD of an answer as a share of it

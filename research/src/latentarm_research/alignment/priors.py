@@ -20,11 +20,7 @@ if TYPE_CHECKING:
 @final
 @dataclass(frozen=True)
 class Priors:
-    """Weight of each prior relative to the answers (equation 23); without units.
-
-    Raises:
-        UserError: a weight is negative or not finite.
-    """
+    """Weight of each prior relative to the answers (equation 23); without units."""
 
     proportional: float = 1.0  # lambda_1
     reversible: float = 1.0  # lambda_2

@@ -75,12 +75,7 @@ def fit_alignments(
     seed_index: int = 0,
     seeds: Sequence[int] | None = None,  # S, of the weights and draws of each run; 0..S-1 where None
 ) -> FittedAlignments:
-    """Learn an alignment for each run, all runs together.
-
-    Raises:
-        UserError: the model is not fitted or has no such seed, it looks at poses in the tool's frame, the
-            answers do not fit it, or the training diverged.
-    """
+    """Learn an alignment for each run, all runs together."""
     config = config or FitConfig()
     seeds = range(len(answers)) if seeds is None else seeds
     decoder = model.torch_decoder(seed_index)

@@ -38,31 +38,21 @@ _TINY = 1e-300
 
 
 def furthest(state: FloatArray, belief: FloatArray, goals: FloatArray, goal: ArrayLike) -> FloatArray:
-    """``(1 - b(g*)) sigma_r``, all help as towards the furthest other goal (equation 14).
-
-    Returns:
-        (...,), rad, with ``sigma_r = max ‖g - s‖``; 0 where there is no other goal.
-    """
+    """``(1 - b(g*)) sigma_r`` with ``sigma_r = max ‖g - s‖``, (...,), rad (equation 14); 0 with one goal."""
     other = _is_other(goals, goal)
     return np.vecdot(belief, other) * (other * _length(goals - state[..., None, :])).max(axis=-1)
 
 
 def weighted(state: FloatArray, belief: FloatArray, goals: FloatArray, goal: ArrayLike) -> FloatArray:
-    """``Σ b(g) ‖g - s‖`` over the other goals, each at its own distance (equation 13).
-
-    Returns:
-        (...,), rad.
-    """
+    """``Σ b(g) ‖g - s‖`` over the other goals, each at its own distance, (...,), rad (equation 13)."""
     return np.vecdot(belief * _is_other(goals, goal), _length(goals - state[..., None, :]))
 
 
 def known_help(state: FloatArray, belief: FloatArray, goals: FloatArray, goal: ArrayLike) -> FloatArray:
-    """``-Σ b(g) (g - s)·e / ‖e‖`` over the other goals: the robot knows where it helps to.
+    """``-Σ b(g) (g - s)·e / ‖e‖`` over the other goals, (...,), rad: the robot knows where it helps to.
 
-    No smaller one would do: a person who steers straight away from the goal at ``sigma_h`` meets it.
-
-    Returns:
-        (...,), rad; negative where help towards the other goals leads to this one too.
+    Negative where help towards the other goals leads to this one too. No smaller one would do: a person who
+    steers straight away from the goal at ``sigma_h`` meets it.
     """
     other = _is_other(goals, goal)
     away = goals - state[..., None, :]
@@ -80,10 +70,9 @@ def delta(
     gain_per_s: ArrayLike = 1.0,
     others: Others = furthest,
 ) -> FloatArray:
-    """``(1 - alpha) / (alpha k) sigma_h + others``: what ``b(g*) ‖e‖`` must exceed (equation 14).
+    """``(1 - alpha) / (alpha k) sigma_h + others``, (...,), rad: ``b(g*) ‖e‖`` must exceed it (equation 14).
 
-    Returns:
-        (...,), rad; inf where alpha is zero.
+    Infinite where alpha is zero.
     """
     sigma_h, alpha, gain = _checked(sigma_h, alpha, gain_per_s)
     with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
@@ -101,11 +90,7 @@ def certified(
     gain_per_s: ArrayLike = 1.0,
     others: Others = furthest,
 ) -> BoolArray:
-    """Where ``dV/dt < 0`` whatever the person does: the arm comes nearer to ``g*``.
-
-    Returns:
-        (...,), ``b(g*) ‖e‖ > delta``.
-    """
+    """Where ``dV/dt < 0`` whatever the person does, ``b(g*) ‖e‖ > delta``: the arm comes nearer to ``g*``."""
     wanted = ~_is_other(goals, goal)
     pull = np.vecdot(belief * wanted, _length(goals - state[..., None, :]))
     return pull > delta(sigma_h, state, belief, goals, goal, alpha, gain_per_s, others)
@@ -135,11 +120,7 @@ def certified_along(
     wherever it does not certify some input makes ``dV/dt >= 0``. For M = 1 it certifies whatever `known_help`
     does, because ``sup_z (-e·phi) <= ‖e‖ sigma_h``.
 
-    Returns:
-        (...,); false where alpha is zero or a number is not finite.
-
-    Raises:
-        UserError: alpha or the gain is out of its range.
+    The result (...,) is false where alpha is zero or a number is not finite.
     """
     _, share, gain = _checked(0.0, alpha, gain_per_s)
     with np.errstate(over="ignore", invalid="ignore"):
@@ -158,12 +139,10 @@ def radius(
     alpha: ArrayLike,
     gain_per_s: ArrayLike = 1.0,
 ) -> FloatArray:
-    """``delta / b(g*)``: how far from ``g*`` the arm may stay, by equation 14.
+    """``delta / b(g*)``, (...,), rad: how far from ``g*`` the arm may stay, by equation 14.
 
-    The arm moves with ``sigma_r``: this is the radius of the ball as seen from here.
-
-    Returns:
-        (...,), rad; inf where alpha or ``b(g*)`` is zero.
+    Infinite where alpha or ``b(g*)`` is zero. The arm moves with ``sigma_r``: this is the radius of the ball
+    as seen from here.
     """
     reach = delta(sigma_h, state, belief, goals, goal, alpha, gain_per_s)
     sure = np.vecdot(belief, ~_is_other(goals, goal))

@@ -71,11 +71,9 @@ class GoalPoses:
         self._goals = goals
 
     def advantage(self, at: Pose, after: Pose) -> FloatArray:
-        """``Q_g - V_g`` of inputs that lead from tool poses (...) to others, held for `LOOK_AHEAD_S`.
+        """``Q_g - V_g``, (..., G), of inputs from tool poses (...) to others, held for `LOOK_AHEAD_S`.
 
-        Returns:
-            (..., G): what the way to ``after`` costs, and by how much the cost-to-go is more there than at
-            ``at``.
+        It is the cost of the way, and by how much the cost-to-go is higher at its end.
         """
         (shift_at, turn_at), (shift, turn) = _away(self._goals, at), _away(self._goals, after)
         far_at, turned_at = _length(shift_at), _length(turn_at)
@@ -85,10 +83,9 @@ class GoalPoses:
         return cost + gain - TRANSLATION.value(far_at) - ROTATION.value(turned_at)
 
     def twists(self, after: Pose) -> FloatArray:
-        """The robot's best action towards each goal: down the slope of Q, from where an input leads.
+        """The robot's best action towards each goal, (..., G, 6), m/s and rad/s, in the base frame.
 
-        Returns:
-            (..., G, 6), m/s and rad/s, in the base frame.
+        It goes down the slope of Q from where an input leads.
         """
         shift, turn = _away(self._goals, after)
         return np.concatenate([_towards(shift, TRANSLATION), _towards(turn, ROTATION)], axis=-1)

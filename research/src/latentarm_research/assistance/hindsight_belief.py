@@ -30,9 +30,6 @@ class HindsightBelief(Belief):
         goals: (G, n), the goals' configurations, rad.
         robot: the arm; only its first tool counts.
         options: see `Belief`; the period is 1/40 s, the floor 0 and the most 0.99 where they are not given.
-
-    Raises:
-        UserError: a parameter is not finite or out of its range.
     """
 
     def __init__(self, goals: FloatArray, robot: Robot, **options: Unpack[BeliefOptions]) -> None:

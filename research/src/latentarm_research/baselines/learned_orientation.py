@@ -50,11 +50,7 @@ class OrientationMap:
     layers: Sequence[Layer]
 
     def __call__(self, position: FloatArray, context: Context) -> FloatArray:
-        """Rotations (..., 3, 3) in the base frame for positions of the tool (..., 3), m.
-
-        Raises:
-            UserError: other things are there than those that it learned from.
-        """
+        """Rotations (..., 3, 3) in the base frame for positions of the tool (..., 3), m."""
         gripper = context.gripper if self.sees_gripper else np.zeros(0)
         values = features(position, context.objects, gripper)
         if values.shape[-1] != len(self.layers[0][0]):
@@ -77,9 +73,6 @@ class LearnedOrientationController(AxisController):
     """The person moves the tool along the axes of the base frame, and its orientation follows.
 
     The tool turns in proportion to the push, in either direction of it: at rest nothing moves.
-
-    Raises:
-        UserError: a speed is not positive and finite.
     """
 
     def __init__(
@@ -101,11 +94,7 @@ class LearnedOrientationController(AxisController):
         return self._orientation.objects
 
     def action(self, z: FloatArray, context: Context, mode: int) -> FloatArray:
-        """Joint velocities that move the tool along the mode's axes and turn it as learned, (..., n), rad/s.
-
-        Raises:
-            UserError: other things are there than those that the orientation was learned from.
-        """
+        """Joint velocities (..., n), rad/s, that move the tool along the axes and turn it as learned."""
         transforms = self._chain.link_transforms(context.state)
         pose = self._chain.tool_pose(transforms)
         asked = np.vecmat(z, self._modes.twists(mode, self._scale, pose.rotation))[..., :3]

@@ -46,9 +46,6 @@ class RetargetingController(AxisController):
     arm onto the robot's, which a stick has no use for; jerk, which the loop's filters limit; and collisions
     with the arm itself, which they prevent. Modes are those of end-effector control, because two axes
     cannot command six.
-
-    Raises:
-        UserError: a speed is not positive and finite.
     """
 
     def __init__(

@@ -48,14 +48,7 @@ SPREAD_RAD = 0.1  # further goals surround the task's own, so that the arm moves
 
 
 def run_bench(repeats: int, seed: int, progress: bool, pairs: int = PAIRS) -> list[Row]:
-    """Time the online step and the batched fit.
-
-    Returns:
-        One row per figure; where many times were taken, the row gives their number.
-
-    Raises:
-        UserError: there are no steps to time, or the seed is out of its range.
-    """
+    """Time the online step and the batched fit: a row per figure, with the number of times."""
     check_count("timed steps", repeats)
     check_seed(seed)
     task = TableTop()

@@ -74,10 +74,7 @@ def time_training(demonstrations: Demonstrations, seeds: int, epochs: int, repea
 
     The two take turns, and the median of each counts. A run of the plain loop is timed without any
     validation; the fit with its own after every epoch, and with all that comes before and after its loop.
-
-    Returns:
-        Times and their ratio per seed, and how long each way takes to a loss that every run of the plain loop
-        reaches.
+    Times are per seed; each way is also timed to a loss that every run of the plain loop reaches.
     """
     data = _normalised_pairs(demonstrations)
     plain_s: list[float] = []

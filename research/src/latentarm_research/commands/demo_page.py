@@ -33,11 +33,7 @@ class Filmed:
 
 
 def film(out: Path, model: str, planned: Sequence[Planned], driven: Sequence[Trace]) -> Filmed:
-    """Film the first drive that succeeded, where this machine renders.
-
-    Raises:
-        UserError: the file cannot be written.
-    """
+    """Film the first drive that succeeded, where this machine renders."""
     first = next((index for index, trace in enumerate(driven) if trace.figures.success), None)
     if first is None:
         return Filmed("", f"No drive with the model {model} succeeded, so there is no {FILM}.")

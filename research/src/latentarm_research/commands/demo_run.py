@@ -93,11 +93,7 @@ class Shown:
 
 
 def run_demo(config: "DemoOptions", sizes: Sizes = USUAL) -> Shown:
-    """Run the whole demo and write its results to ``config.out``.
-
-    Raises:
-        UserError: the folder holds something else, or cannot be written.
-    """
+    """Run the whole demo and write its results to ``config.out``."""
     _claim(config, sizes)
     console = VisibleConsole(stderr=True, quiet=config.json)
     task = TASK
@@ -266,11 +262,7 @@ def _about(config: "DemoOptions", sizes: Sizes) -> dict[str, object]:
 
 
 def _claim(config: "DemoOptions", sizes: Sizes) -> None:
-    """Prepare the folder: a demo with the same options is replaced, anything else is left alone.
-
-    Raises:
-        UserError: the folder holds something else, or profiles of people.
-    """
+    """Prepare the folder: a demo with the same options is replaced, anything else is left alone."""
     runs = [config.out / "runs" / model for model in MODELS]
     for run in runs:
         if profile_names(run):

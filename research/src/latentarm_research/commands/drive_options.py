@@ -24,11 +24,7 @@ MODE_SWITCHED: Final[tuple[ControllerName, ...]] = ("end_effector", "two_sticks"
 
 @dataclass(frozen=True)
 class DriveOptions:
-    """Options of `latentarm drive`.
-
-    Raises:
-        UserError: a figure is out of its range, or options contradict each other.
-    """
+    """Options of `latentarm drive`."""
 
     run: Annotated[
         Positional[Path | None], arg(metavar="RUN", help="A trained run; without one, mode switching drives.")

@@ -69,11 +69,7 @@ class DriveRecording:
 
 
 def check_recordable(config: DriveOptions) -> None:
-    """Fail before anything is computed where a recording would overwrite something.
-
-    Raises:
-        UserError: the dataset or the journal is there already.
-    """
+    """Fail before anything is computed where a recording would overwrite something."""
     if config.record is None:
         return
     check_vacant(config.record)
@@ -85,11 +81,7 @@ def check_recordable(config: DriveOptions) -> None:
 def recording(
     config: DriveOptions, dataset: Path, robot: Robot, controller: Controller
 ) -> Generator[DriveRecording]:
-    """Record drives; export them as a dataset once all are done.
-
-    Raises:
-        UserError: a file cannot be written.
-    """
+    """Record drives; export them as a dataset once all are done."""
     recorder = Recorder(_journal(config))
     try:
         yield DriveRecording(config, robot, controller, recorder)

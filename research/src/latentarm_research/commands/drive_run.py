@@ -46,12 +46,7 @@ OF_THE_TASK: Final = {
 
 
 def drive_run(config: DriveOptions, tell: Callable[[Sequence[str]], None] = lambda sentences: None) -> Driven:
-    """Drive every choice of a task several times and write ``drives.json``, ``drives.csv`` and a figure.
-
-    Raises:
-        UserError: the run, the robot or the task does not exist, they do not fit each other, an option makes
-            no sense at the task, or the folder holds something else.
-    """
+    """Drive every choice of a task several times and write ``drives.json``, ``drives.csv`` and a figure."""
     run = None if config.run is None else read_run(config.run)
     in_each_manner = _tasks(config, run)
     task = in_each_manner[0]

@@ -73,11 +73,7 @@ class Steering:
         return None if self.run is None or self.config.driver in MODE_SWITCHED else self.run.model
 
     def about(self, time_limit_s: float) -> dict[str, object]:
-        """What the figures depend on.
-
-        Raises:
-            UserError: the run has no model.
-        """
+        """What the figures depend on."""
         config, robot, run = self.config, self.robot, self.run
         return {
             "study": "drive",
@@ -110,11 +106,7 @@ def steering_of(
     task: str,
     robot: Robot,
 ) -> Steering:
-    """What steers an arm as was asked for.
-
-    Raises:
-        UserError: the run's model or profile cannot be used, or is for another arm.
-    """
+    """What steers an arm as was asked for."""
     arbitration = _arbitration(config)
     return Steering(config, task, robot, run, _controller(config, robot), arbitration)
 

@@ -33,9 +33,6 @@ def draw_task(task: Place, demonstrations: Demonstrations, path: Path) -> None:
         demonstrations: of that task, each with the name of its goal in its text; the first `DRAWN_EPISODES`
             are drawn.
         path: the PNG to write.
-
-    Raises:
-        UserError: the file cannot be written.
     """
     figure = new_figure(height_mm=95.0, width_mm=120.0)
     axes: Axes3D = figure.add_subplot(projection="3d", computed_zorder=False)
@@ -62,11 +59,7 @@ def draw_task(task: Place, demonstrations: Demonstrations, path: Path) -> None:
 
 
 def draw_arm(axes: "Axes3D", robot: Robot, state: FloatArray) -> FloatArray:
-    """Draw the robot's capsules in one state (n,).
-
-    Returns:
-        (K, 3), places that they take, m.
-    """
+    """Draw the robot's capsules in one state (n,), and return the places that they take, (K, 3), m."""
     transforms = robot.chain.link_transforms(state)
     start, end = robot.capsules.placed(robot.chain, transforms)
     # From far to near, because the drawing has no depth buffer.

@@ -64,9 +64,6 @@ def demonstrate_once(
 
     Nothing but the arm itself stands between the person's hand and the joints: as in a real kinesthetic
     demonstration there is no stick, no `Step` and no safety filter.
-
-    Raises:
-        UserError: the arm cannot be used.
     """
     begun = task.begin(choice, rng)
     person = _Person(task, begun, rng)
@@ -102,14 +99,7 @@ def demonstrate_once(
 def demonstrate(
     task: SceneTask, episodes: int, seed: int, jobs: int = 1, *, bars: bool = False
 ) -> tuple[Demonstrations, list[Demonstration]]:
-    """Demonstrations of a task, its choices in turn, in processes side by side.
-
-    Returns:
-        Those that succeeded, as a dataset; and all.
-
-    Raises:
-        UserError: the arm cannot be used.
-    """
+    """Demonstrations of a task, its choices in turn: the dataset of those that succeeded, and all."""
     calls = [_Call(task, index, seed) for index in range(episodes)]
     all_of_them = run_grid(_demonstrate, calls, jobs=jobs, label=_name_of, bars=bars, unit="demonstrations")
     succeeded = [one.episode for one in all_of_them if one.progress.succeeded]

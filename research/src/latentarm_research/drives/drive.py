@@ -71,11 +71,7 @@ def drive(
     # in its order
     record: Record | None = None,
 ) -> Trace:
-    """Drive once, until the task is done, has failed, or the time is over.
-
-    Raises:
-        UserError: the task is done where the arm starts, or the arm cannot be used.
-    """
+    """Drive once, until the task is done, has failed, or the time is over."""
     task, controller = setup.task, setup.controller
     begun = task.begin(choice, rng)
     note = None if record is None else record(begun)

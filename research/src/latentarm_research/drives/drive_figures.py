@@ -49,11 +49,7 @@ def marks_of_first_steps(traces: Sequence[Trace]) -> list[Mark]:
 
 
 def draw_drives(traces: Mapping[str, Sequence[Trace]], marks: Sequence[Mark], path: Path) -> None:
-    """Draw where the tool went, from above and from the side, one column per condition.
-
-    Raises:
-        UserError: the file cannot be written.
-    """
+    """Draw where the tool went, from above and from the side, one column per condition."""
     figure = new_figure(height_mm=2 * PANEL_MM, width_mm=max(WIDTH_MM * len(traces) / 3, 85.0))
     panels = figure.subplots(2, len(traces), squeeze=False, sharex="row", sharey="row")
     for column, (condition, drives) in enumerate(traces.items()):
@@ -110,9 +106,6 @@ def draw_inputs(traces: Mapping[str, Sequence[Trace]], path: Path) -> None:
     """Draw the typical drive of each condition over time: what the person did, and when they changed modes.
 
     Typical is the drive that takes the median time.
-
-    Raises:
-        UserError: the file cannot be written.
     """
     figure = new_figure(height_mm=30.0 * len(traces) + 15.0, width_mm=WIDTH_MM)
     panels = figure.subplots(len(traces), 1, sharex=True, squeeze=False)[:, 0]

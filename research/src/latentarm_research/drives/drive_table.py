@@ -98,11 +98,7 @@ def _entry(number: int, plan: Planned, trace: Trace, controller: str, operator: 
 
 
 def write_drives_csv(path: Path, entries: Sequence[Mapping[str, object]]) -> None:
-    """Write one line per drive under a line of column names, whole or not at all.
-
-    Raises:
-        UserError: the file cannot be written.
-    """
+    """Write one line per drive under a line of column names, whole or not at all."""
     stream = io.StringIO()
     table = csv.DictWriter(stream, list(entries[0]), lineterminator="\n")
     table.writeheader()

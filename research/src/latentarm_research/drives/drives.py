@@ -32,11 +32,7 @@ class Planned:
     seed: int  # of the start, of the things' places and of the simulated operator
 
     def drive(self, watch: Callable[[Arm], None] | None = None, record: Record | None = None) -> Trace:
-        """Drive; see `latentarm_research.drives.drive.drive`.
-
-        Raises:
-            UserError: the task is done where the arm starts, or the arm cannot be used.
-        """
+        """Drive; see `latentarm_research.drives.drive.drive`."""
         stream = AT_GOALS if isinstance(self.setup.task, GoalTask) else WITH_THINGS
         rng = np.random.default_rng([stream, self.seed, self.choice, self.repeat])
         return drive(self.setup, self.choice, rng, watch, record)
@@ -60,11 +56,7 @@ def plan_drives(setups: Sequence[Sequence[Setup]], drives: int, seed: int) -> li
 
 
 def drive_all(conditions: Sequence[Sequence[Planned]], jobs: int, *, bars: bool = False) -> list[list[Trace]]:
-    """Drive in each condition, processes side by side.
-
-    Raises:
-        UserError: the task is done where an arm starts, or an arm cannot be used.
-    """
+    """Drive in each condition, processes side by side."""
     traces = iter(
         run_grid(
             Planned.drive,

@@ -81,11 +81,7 @@ class Film:
         self._positions: list[FloatArray] = []
 
     def sees(self, arm: Arm) -> None:
-        """Remember where everything is.
-
-        Raises:
-            UserError: the arm is not simulated by MuJoCo.
-        """
+        """Remember where everything is."""
         if not isinstance(arm, MujocoArm):
             raise UserError(f"A film needs an arm in MuJoCo, not {type(arm).__name__}: take the arm mujoco.")
         time_s = float(arm.data.time)
@@ -95,16 +91,7 @@ class Film:
             self._positions.append(arm.data.qpos.copy())
 
     def frames(self, camera: Camera, count: int = FRAMES) -> tuple[list[float], list[Image]]:
-        """Moments of the drive, evenly spaced: all of the arm, and in a corner what is done, from close by.
-
-        The picture of ``camera`` stands in the lower left corner.
-
-        Returns:
-            When each was, s, and the pictures.
-
-        Raises:
-            UserError: nothing was seen, or this machine cannot render.
-        """
+        """Moments of the drive, evenly spaced: when each was, s, and the arm, with a close-up in a corner."""
         if self._model is None:
             raise UserError("There is nothing to show: no drive was watched.")
         chosen = np.linspace(0, len(self._time_s) - 1, count).round().astype(int)
@@ -163,11 +150,7 @@ def _render(model: mujoco.MjModel, positions: Sequence[FloatArray], camera: Came
 
 
 def _renderer(model: mujoco.MjModel, camera: Camera) -> mujoco.Renderer:
-    """What renders here.
-
-    Raises:
-        UserError: OpenGL is missing.
-    """
+    """What renders here."""
     with warnings.catch_warnings():
         # Without a screen GLFW warns before MuJoCo fails.
         warnings.simplefilter("ignore")

@@ -77,12 +77,8 @@ def point(
 ) -> float:
     """Move once from the arm's home, in physics, through Algorithm 1 and its filters.
 
-    Returns:
-        Time from the start until the tool came into the target to stay for `DWELL_S`, s; infinity where that
-        took too long.
-
-    Raises:
-        UserError: the arm cannot be used.
+    Returns the time until the tool came into the target to stay for `DWELL_S`, s; infinity where that took
+    too long.
     """
     dt_s = 1.0 / RATE_HZ
     clock = SimulatedClock()

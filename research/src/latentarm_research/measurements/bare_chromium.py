@@ -96,11 +96,7 @@ class Tab:
 
 @final
 class Browser:
-    """A running Chromium and its tabs.
-
-    Raises:
-        UserError: there is no Chromium here, or it does not start.
-    """
+    """A running Chromium and its tabs."""
 
     def __init__(self, folder: Path, *arguments: str) -> None:
         found = next((path for name in NAMES if (path := shutil.which(name))), None)

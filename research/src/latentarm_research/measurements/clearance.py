@@ -75,11 +75,7 @@ def _shipped(package: str, file: str) -> str:
 
 
 def drive(robot: Robot, harm: str, period_s: float, rng: np.random.Generator) -> float:
-    """Push, then stop.
-
-    Returns:
-        The least distance of the drive, m.
-    """
+    """Push, then stop, and return the least distance of the drive, m."""
     obstacles, judge, q, push = scene(robot, harm, rng)
     controller = Pusher(robot.dof)
     step = Step(robot, controller, SafetyConfig(obstacles=obstacles), dt_s=period_s)

@@ -109,9 +109,8 @@ def drive(
 ) -> FloatArray | None:
     """Push down once.
 
-    Returns:
-        From touch to stop, s; the peak, and the forces at `AFTER_S`, N; whether the arm stopped by itself.
-        None where it touched nothing.
+    Returns the time from touch to stop, s; the peak, and the forces at `AFTER_S`, N; whether the arm stopped
+    by itself. None where it touched nothing.
     """
     late, robot, rng = LATE_TICKS[cell[1] % len(LATE_TICKS)], panda(), np.random.default_rng(cell)
     clock = SimulatedClock()

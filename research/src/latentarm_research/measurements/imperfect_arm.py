@@ -35,14 +35,7 @@ def enabled(
     late_ticks: int,  # how old its readings are, ticks of the step
     inputs: int = 1,
 ) -> int:
-    """Connect an arm, read it until its first late reading is there, and enable it.
-
-    Returns:
-        The first tick in which it may move.
-
-    Raises:
-        RuntimeError: it cannot be enabled.
-    """
+    """Connect an arm, read it until its first late reading is there, enable it; the tick it may move from."""
     arm.connect()
     for tick in range(late_ticks + 2):
         clock.wait_until(step.dt_s * tick)

@@ -58,11 +58,7 @@ def late_of(number: int) -> int:
 
 
 def drive(cell: tuple[int, int]) -> tuple[FloatArray, bool]:
-    """Push once, and let go.
-
-    Returns:
-        By how much each limit is passed, negative within it, (ticks, 4); and whether a check stopped the arm.
-    """
+    """By how much a push passes each limit, (ticks, 4), negative within it; whether a check stopped it."""
     robot, rng, late = panda(), np.random.default_rng(cell), late_of(cell[1])
     obstacles, judge, start, push = scene(robot, HARMS[cell[1] % len(HARMS)], rng)
     config = SafetyConfig(obstacles=obstacles)

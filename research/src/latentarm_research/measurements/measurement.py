@@ -67,14 +67,9 @@ class Outcome:
 def line(
     study: str, condition: str | None, n: int, figures: Mapping[str, Any], task: str | None = None
 ) -> list[Row]:
-    """Rows of one condition.
+    """Rows of one condition: by measure a figure, a mean with its SD, or None where it could not be measured.
 
-    Args:
-        study: name of the measurement.
-        condition: what was measured; None where there is one condition.
-        n: number of runs.
-        figures: by measure; a figure, a mean with its SD, or None where it could not be measured.
-        task: table that the line belongs to.
+    ``task`` is the table that the line belongs to; ``condition`` is None where there is one.
     """
     rows: list[Row] = []
     for measure, figure in figures.items():

@@ -188,11 +188,7 @@ def send(tab: Tab, kind: str, **fields: object) -> None:
 
 
 def halt(episode: JournalEpisode, fault_s: float) -> tuple[float, float] | None:
-    """Times from a fault to the last command and to rest, s; None where the arm had stopped before it.
-
-    Raises:
-        RuntimeError: the arm had not stopped when the episode ended.
-    """
+    """Times from a fault to the last command and to rest, s; None where the arm had stopped before it."""
     times = np.array([record.time_s for record in episode.records])
     commands = np.array([np.abs(record.command.velocity).max() for record in episode.records])
     moves = np.abs(np.diff([record.state for record in episode.records], axis=0)).max(axis=1)

@@ -65,9 +65,8 @@ def parts(robot: Robot, q: FloatArray) -> tuple[FloatArray, FloatArray, FloatArr
 def drive(cell: tuple[int, int]) -> tuple[bool, int, int, float]:
     """Push in, then out.
 
-    Returns:
-        Whether a check stopped the arm, in how many ticks a part was in the zone, and in how many one was too
-        fast there; and the fastest, m/s.
+    Returns whether a check stopped the arm, in how many ticks a part was in the zone, in how many one was too
+    fast there, and the fastest, m/s.
     """
     robot, rng = panda(), np.random.default_rng(cell)
     late_ticks, speed = CONDITIONS[cell[1] % len(CONDITIONS)]

@@ -90,9 +90,8 @@ def goal_error(
 ) -> tuple[float, float]:
     """*Goal Error* of the paper's third user study: the "total distance to the closest plate".
 
-    Returns:
-        The integral over time, m s, and the mean, m; for a drive that took no time, 0 and the distance;
-        without goals NaN.
+    The integral over time, m s, and the mean, m; for a drive that took no time, 0 and the distance; NaN
+    without goals.
     """
     if not len(goals):
         return np.nan, np.nan

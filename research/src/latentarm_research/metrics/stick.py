@@ -21,14 +21,11 @@ def turned_round_share(
     time_s: FloatArray,  # (T,), when each input began, s, at a constant period; each holds until the next
     u: FloatArray,  # (T, d), inputs as they were used, zero within the dead zone
 ) -> float:
-    """Share of the time in which the stick points away from where it pointed a moment ago.
+    """Share of the time, in [0, 1], in which the stick points away from where it pointed a moment ago.
 
     *Undo* of the paper's fourth user study: "the percentage of the time that users undo their actions by
     significantly changing the joystick direction". The paper names no threshold. Here a moment counts where
     the input is more than 90° from one within the last `TURNED_ROUND_S`.
-
-    Returns:
-        In [0, 1]; 0 for a drive that took no time.
     """
     if len(u) < 2:
         return 0.0

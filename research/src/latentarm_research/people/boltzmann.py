@@ -15,7 +15,7 @@ from latentarm_research.people.density import CostModel, InputDensity, Lattice
 
 
 def boltzmann(cost: FloatArray, beta: FloatArray | float) -> FloatArray:
-    """``p ∝ exp(-beta cost)`` over options, for any number of people at once.
+    """``p ∝ exp(-beta cost)`` over options, (..., K), for any number of people at once.
 
     An option whose cost is not finite is never taken; where all are such, the first is taken for
     certain, so the first should be to do nothing. At beta = infinity the cheapest option gets all,
@@ -25,12 +25,6 @@ def boltzmann(cost: FloatArray, beta: FloatArray | float) -> FloatArray:
         cost: (..., K), what each option costs, such as squared distances, m².
         beta: (...), rationality, zero or more, 1 over the unit of the cost; its axes broadcast
             against the leading axes of ``cost``.
-
-    Returns:
-        (..., K), each row sums to one.
-
-    Raises:
-        UserError: there are no options, or a beta is negative or not a number.
     """
     rationality = np.asarray(beta, dtype=np.float64)[..., None]
     if not cost.ndim or not cost.shape[-1]:
@@ -52,11 +46,7 @@ def boltzmann(cost: FloatArray, beta: FloatArray | float) -> FloatArray:
 @final
 @dataclass(frozen=True)
 class BoltzmannConfig:
-    """Parameters of a simulated person who looks one step ahead; all values are assumptions.
-
-    Raises:
-        UserError: a figure is out of its range.
-    """
+    """Parameters of a simulated person who looks one step ahead; all values are assumptions."""
 
     # rationality of equation 24, 1/m², at the start of a drive; 0 acts at random, infinity always takes the
     # best
@@ -142,9 +132,6 @@ class OneStep(Decision):
     Where the controller has several modes, they first decide whether to ask for the next one. To stay
     counts as the best input of the present mode, and to switch as the best input of the best other one with
     ``switch_cost`` added to the distance that it leaves, so that a switch is worth a gain of more than that.
-
-    Raises:
-        UserError: the period is not positive and finite.
     """
 
     def __init__(self, config: BoltzmannConfig, period_s: float, dead_zone: float = 0.0) -> None:

@@ -138,9 +138,6 @@ class InputDensity:
     Args:
         model: what inputs cost, nearly.
         beta: zero or more, 1/m²; infinity leaves only the best input.
-
-    Raises:
-        UserError: beta is negative or not a number.
     """
 
     def __init__(self, model: CostModel, beta: float) -> None:

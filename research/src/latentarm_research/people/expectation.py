@@ -22,9 +22,6 @@ class Expectation:
     They answer questions by it (`inputs`), and they steer by it (a
     `latentarm_research.people.contract.Foresight`): they see where the tool is, and know nothing of decoder,
     alignment and arm. They ignore how the tool turns and any motion outside their directions.
-
-    Raises:
-        UserError: the directions are invalid, or the speed is not positive.
     """
 
     chain: Chain  # the arm; only its first tool counts
@@ -45,9 +42,6 @@ class Expectation:
 
         The first axis is where ``(cos, sin)`` of the angle was; the second, a quarter turn clockwise of it,
         is mirrored.
-
-        Raises:
-            UserError: the stick has not two axes.
         """
         if len(self.directions) != 2:
             raise UserError(f"A stick is turned in its two axes, and this one has {len(self.directions)}.")

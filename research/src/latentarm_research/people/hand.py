@@ -16,11 +16,7 @@ SINUSOIDS: Final = 24  # of which a tremor is the sum
 @final
 @dataclass(frozen=True)
 class HandConfig:
-    """How late and how unsteady a simulated person's hand is; by default neither.
-
-    Raises:
-        UserError: a figure is out of its range.
-    """
+    """How late and how unsteady a simulated person's hand is; by default neither."""
 
     reaction_s: float = 0.0  # time from what can be seen to the input that answers it, s
     tremor: float = 0.0  # RMS of each axis's tremor as a share of full deflection, while the stick is pushed
@@ -63,9 +59,6 @@ class Hand:
 
     The noise of a push is in proportion to it (Harris and Wolpert, Nature 394:780, 1998). The next pushes
     correct what comes of it: the more of them, the narrower the target (Crossman and Goodeve 1963).
-
-    Raises:
-        UserError: calls are too rare for the tremor's band.
     """
 
     def __init__(self, config: HandConfig, period_s: float) -> None:

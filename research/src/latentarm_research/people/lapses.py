@@ -18,11 +18,7 @@ Methods Instrum. Comput. 17:652, 1985), s."""
 @final
 @dataclass(frozen=True)
 class LapseConfig:
-    """How often a simulated person's attention lapses, and for how long.
-
-    Raises:
-        UserError: a figure is out of its range.
-    """
+    """How often a simulated person's attention lapses, and for how long."""
 
     per_minute: float  # mean number of lapses that begin in a minute of attention
     mean_s: float  # mean duration, s: `SHORTEST_S`, and an exponential share beyond it

@@ -78,9 +78,6 @@ class LinearGuess(Imagination):
     The decoder's map changes with the state, so what was seen far away is forgotten. They act on a guess
     drawn from what they believe (Thompson sampling, 1933): at first they try all sorts of pushes, and later
     those that they have seen to work.
-
-    Raises:
-        UserError: in a drive, where they expect something of another number of axes.
     """
 
     def __init__(self, chain: Chain, config: LinearGuessConfig, period_s: float) -> None:

@@ -51,9 +51,6 @@ class OwnDirections:
 
         Args:
             usual: (6, 2), what others expect.
-
-        Raises:
-            UserError: the stick has not two axes.
         """
         _check_axes(usual.shape[1])
         return usual @ self.matrix.T
@@ -68,11 +65,7 @@ class InOwnDirections:
     directions: OwnDirections  # how this person's directions differ
 
     def inputs(self, motions: Motions) -> FloatArray:
-        """The inputs (N, 2) by which they would ask for N motions, each in [-1, 1].
-
-        Raises:
-            UserError: the stick has not two axes.
-        """
+        """The inputs (N, 2) by which they would ask for N motions, each in [-1, 1]."""
         usual = self.preference.inputs(motions)
         _check_axes(usual.shape[1])
         return np.clip(usual @ self.directions.matrix.T, -1.0, 1.0)

@@ -24,11 +24,7 @@ from latentarm_research.people.ring_reading import RingDecision, RingReading, Ri
 @final
 @dataclass(frozen=True)
 class Person:
-    """A simulated person, put together from parts.
-
-    Raises:
-        UserError: they are to plan or anticipate with an arm that they do not know.
-    """
+    """A simulated person, put together from parts."""
 
     # how they think of one step (equation 24)
     decides: BoltzmannConfig = field(default_factory=BoltzmannConfig)
@@ -61,9 +57,6 @@ class SimulatedPerson(contract.Operator):
         limits: what the loop makes of inputs. They mean no push that it takes for rest, but a tremor may make
             one so; of its limits on speed only those people know who know the arm, or are shown where
             it leads.
-
-    Raises:
-        UserError: the period is not positive and finite, or too long for the hand's tremor.
     """
 
     def __init__(

@@ -49,9 +49,6 @@ class Planning(Decision):
     given, and planned anew after it, until the plan is through. If no plan leads closer either, they take an
     ordinary step. They predict with the controller itself; no person is that good, but it is the same for
     all controllers.
-
-    Raises:
-        UserError: the period is not positive and finite.
     """
 
     def __init__(

@@ -162,9 +162,6 @@ def draw_people(number: int, seed: int, calibration: Calibration = CALIBRATED) -
 
     The same seed gives the same people, however many are drawn. With another calibration each of them keeps
     their place among all people in every trait.
-
-    Raises:
-        UserError: there is no person, or the seed is negative.
     """
     if number < 1 or seed < 0:
         raise UserError(

@@ -65,9 +65,6 @@ class Traits:
             trial: number of trials before this one.
             practice_s: time practised before the first trial, s.
             page: what they drive through; None sees and is heard at once.
-
-        Raises:
-            UserError: a figure is negative or not finite.
         """
         plans = PlanningConfig()
         pieces = max(round(self.plan_s / plans.piece_s), 1)
@@ -94,9 +91,6 @@ class Traits:
             trial: number of trials before this one.
             practice_s: time practised before the first trial, s.
             page: what they drive through; None sees and is heard at once.
-
-        Raises:
-            UserError: a figure is negative or not finite, or the stick has not two axes.
         """
         expected = tuple(tuple(twist) for twist in self.directions.expected(usual).T.tolist())
         return Person(

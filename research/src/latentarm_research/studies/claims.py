@@ -23,11 +23,7 @@ NAMED: Final = 16  # claims that a verdict names at most; the table of claims ha
 @final
 @dataclass(frozen=True)
 class Claim:
-    """That there is less, or more, or as much of a measure under some conditions as under others.
-
-    Raises:
-        UserError: a condition stands on both sides, or a margin is missing or stands where none belongs.
-    """
+    """That there is less, or more, or as much of a measure under some conditions as under others."""
 
     measure: str  # a measure of the study, or a scale of its questionnaire
     # conditions, methods or models; with several, the mean over them, as in a main effect

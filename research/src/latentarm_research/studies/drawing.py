@@ -162,11 +162,7 @@ def arm_line(
     state: FloatArray,  # (..., n), rad
     tool: int = 0,
 ) -> FloatArray:
-    """The joints of one arm from its base outwards and its tool, in the plane.
-
-    Returns:
-        (..., J + 1, 2), m.
-    """
+    """The joints of one arm from its base outwards and its tool, in the plane, (..., J + 1, 2), m."""
     chain = robot.chain
     transforms = chain.link_transforms(state)
     link = chain.tools[tool].link

@@ -32,20 +32,7 @@ def fit_model(
     fit: dict[str, Any] | None = None,
     **parameters: Any,
 ) -> LatentActionModel:
-    """A model of a kind, fitted.
-
-    Args:
-        kind: a name of `MODELS`.
-        demonstrations: to learn from.
-        validation: episodes that say which epoch was best, such as `validation_episodes`; the model draws its
-            own where None.
-        kl_weight: for models that have one.
-        fit: further arguments of ``fit``, such as the chain.
-        parameters: of the model.
-
-    Raises:
-        UserError: the parameters or the demonstrations make no sense to the model.
-    """
+    """A model of a kind, fitted; episodes of ``validation`` say which epoch was best."""
     with warnings.catch_warnings():
         # Studies show what models fail at: a dead axis shows in every figure.
         warnings.simplefilter("ignore", CollapseWarning)
@@ -61,14 +48,7 @@ def fit_each(
     kl_weight: float | None = None,
     **parameters: Any,
 ) -> list[LatentActionModel]:
-    """Models of a kind, each fitted to demonstrations of its own; those trained by gradient in one training.
-
-    Returns:
-        As many models of one seed each as there are demonstrations.
-
-    Raises:
-        UserError: the parameters or the demonstrations make no sense to the model.
-    """
+    """A model of one seed for each of some demonstrations; those trained by gradient in one training."""
     model = _model(kind, kl_weight, {**parameters, "seed": seed, "seeds": len(demonstrations)})
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", CollapseWarning)

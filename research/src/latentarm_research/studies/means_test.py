@@ -111,8 +111,7 @@ class MeansTest:
 def one_sample_test(values: FloatArray, fixed: float = 0.0) -> MeansTest | None:
     """Test figures (n,) against a fixed one; of differences of pairs this is the paired test.
 
-    Returns:
-        None for fewer than two figures, or where all are the same.
+    None for fewer than two figures, or where all are the same.
     """
     if not spreads(values):
         return None
@@ -123,8 +122,7 @@ def one_sample_test(values: FloatArray, fixed: float = 0.0) -> MeansTest | None:
 def welch_test(subject: FloatArray, against: FloatArray) -> MeansTest | None:
     """Test two independent samples (n,) and (m,) by Welch's t (Biometrika 34:28, 1947).
 
-    Returns:
-        None for fewer than two figures on either side, or where neither side varies.
+    None for fewer than two figures on either side, or where neither side varies.
     """
     n, m = len(subject), len(against)
     if min(n, m) < 2 or not (spreads(subject) or spreads(against)):

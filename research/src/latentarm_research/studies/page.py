@@ -135,14 +135,7 @@ def find_browser() -> str | None:
 
 
 def print_page(page: Path, pdf: Path) -> str:
-    """Print a page to a PDF, whole or not at all.
-
-    Returns:
-        Why there is no PDF, in a sentence; empty where there is one.
-
-    Raises:
-        UserError: the file cannot be written.
-    """
+    """Print a page to a PDF, whole or not at all; return why there is none, in a sentence."""
     browser = find_browser()
     if browser is None:
         return WITHOUT

@@ -78,13 +78,10 @@ def holm(p: Sequence[float | None]) -> list[float | None]:
 def bootstrap_interval(
     values: FloatArray,  # (N, ...), one of N units along the first axis
 ) -> tuple[FloatArray, FloatArray]:
-    """The 95 % percentile bootstrap interval for the mean of independent units (Efron 1979).
+    """Ends (...) of the 95 % percentile bootstrap interval for the mean of independent units (Efron 1979).
 
     Every resampled mean lies between the lowest and the highest value: an interval for a probability
     stays within [0, 1] and one for a positive quantity above 0, which mean ± t SE does not.
-
-    Returns:
-        Lower and upper ends, (...); both the value itself for one unit.
     """
     units = len(values)
     draws = (

@@ -4,13 +4,7 @@ import numpy as np
 
 
 def sequence(seed: int, task: str, *use: int) -> np.random.SeedSequence:
-    """Where one use of randomness begins.
-
-    Args:
-        seed: of the whole study.
-        task: name of the task; its streams are the same whatever other tasks there are.
-        use: what the randomness is for.
-    """
+    """Where one use of a task's randomness begins; the same whatever other tasks there are."""
     return np.random.SeedSequence([seed, int.from_bytes(task.encode()), *use])
 
 

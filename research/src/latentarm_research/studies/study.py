@@ -194,10 +194,6 @@ def run_study(study: Study[Preset, Measured], request: Request[Preset]) -> Repor
     """Measure every cell of a study and write figures, tables and tests to ``request.out``.
 
     ``results.json`` depends on preset, tasks and seed alone; how long it took stands in ``timings.json``.
-
-    Raises:
-        UserError: a task is unknown or named twice; the folder holds something else or cannot be written; the
-            backend is not available; or a cell cannot be measured as asked, then it says which.
     """
     request = _with_tasks(study, request)
     made = (*ALWAYS_MADE, *study.documents, *(f"{name}.png" for name in study.figures))
@@ -218,14 +214,7 @@ def run_study(study: Study[Preset, Measured], request: Request[Preset]) -> Repor
 
 
 def write_report(out: Path, report: Report, about: Mapping[str, object]) -> str:
-    """Write a report's figures, documents, and the page as Markdown, HTML and PDF.
-
-    Returns:
-        Why there is no PDF, in a sentence; empty where there is one.
-
-    Raises:
-        UserError: a file cannot be written.
-    """
+    """Write figures, documents, and the page as Markdown, HTML and PDF; return why there is no PDF."""
     for name, figure in report.figures.items():
         save_figure(figure, out / f"{name}.png")
     write_text(out / "results.md", report.page)
@@ -251,11 +240,7 @@ def again(study: Study[Preset, Any], request: Request[Preset]) -> str:
 
 
 def _with_tasks(study: Study[Preset, Any], request: Request[Preset]) -> Request[Preset]:
-    """The request with all tasks where it names none.
-
-    Raises:
-        UserError: a task is unknown or named twice.
-    """
+    """The request with all tasks where it names none."""
     if not study.tasks:
         return request
     if not request.tasks:

@@ -84,11 +84,7 @@ def learn_alignments(
     steps: int,
     rng: np.random.Generator,
 ) -> Aligned:
-    """Ask everybody about the same motions, and learn what each means, with priors and without.
-
-    Raises:
-        UserError: no demonstration moves for long enough.
-    """
+    """Ask everybody about the same motions, and learn what each means, with priors and without."""
     motions = shown(demonstrations, model.context, chain, rng)
     unlabelled = demonstrated_motions(demonstrations, UNLABELLED, rng, context=model.context).context
     meaning = main_motions(motions, chain)

@@ -42,11 +42,7 @@ def setup_of(
 
 
 def controller_of(condition: Condition, robot: Robot, trained: Trained | None, number: int) -> Controller:
-    """What turns a person's input into motion.
-
-    Raises:
-        ValueError: a condition with latent actions has no model.
-    """
+    """What turns a person's input into motion."""
     if condition.controls == "two_sticks":
         return EndEffectorController(robot, LINEAR_M_S, ANGULAR_RAD_S, modes=TWO_STICKS)
     if condition.controls == "retargeting":

@@ -92,11 +92,7 @@ class Factor:
 @final
 @dataclass(frozen=True)
 class Definition:
-    """A study.
-
-    Raises:
-        UserError: a claim, an order or an exclusion names what the study does not have.
-    """
+    """A study."""
 
     name: str  # on the command line
     title: str  # of its page

@@ -53,15 +53,10 @@ def design_of(definition: Definition) -> StudyDesign:
 
 
 def williams(count: int) -> list[list[int]]:
-    """A Williams design (Williams, Aust. J. Sci. Res. A 2:149, 1949).
+    """Orders of 0 to ``count - 1`` by a Williams design (Williams, Aust. J. Sci. Res. A 2:149, 1949).
 
-    Every condition stands at every place equally often, and follows every other one equally often.
-
-    Returns:
-        Orders of 0 to ``count - 1``: as many as conditions where their number is even, else twice as many.
-
-    Raises:
-        UserError: there is no condition.
+    Every condition stands at every place equally often, and follows every other one equally often. There are
+    as many orders as conditions where their number is even, else twice as many.
     """
     if count < 1:
         raise UserError(f"An order needs one condition or more, not {count}.")
@@ -74,9 +69,6 @@ def assigned(conditions: Sequence[str], people: int, rng: np.random.Generator) -
     """A condition for each person: random blocks, each with every condition once.
 
     At any time the numbers of people differ by one at most; they are equal after whole blocks.
-
-    Raises:
-        UserError: there is no condition.
     """
     if not conditions:
         raise UserError("People cannot be assigned: there is no condition.")
@@ -89,9 +81,6 @@ def orders(conditions: Sequence[str], people: int, rng: np.random.Generator) -> 
     """An order for each person: whole Williams designs, the conditions and the rows of each in random order.
 
     The balance is complete where the number of people is a multiple of the design's rows.
-
-    Raises:
-        UserError: there is no condition.
     """
     found: list[tuple[str, ...]] = []
     while len(found) < people:

@@ -17,9 +17,6 @@ class Exclusion:
     """A rule that excludes a trial by one of its figures.
 
     It is given an `UnlabelledTrial`, which has no condition.
-
-    Raises:
-        UserError: the limit is not finite.
     """
 
     measure: str  # which figure; a trial without it stays

@@ -58,9 +58,6 @@ def power_of(definition: Definition, trials: Sequence[Trial], draws: int, seed: 
     In a study between people they are drawn condition by condition, as many of each.
 
     What it finds is true as far as these people stand for others: simulated ones for simulated people.
-
-    Raises:
-        UserError: there are no draws, or hardly any people.
     """
     if draws < 1:
         raise UserError(f"The number of draws is {draws}: it must be at least 1.")

@@ -20,11 +20,7 @@ class Item:
 @final
 @dataclass(frozen=True)
 class Scale:
-    """One thing that several items ask about; its score is their mean.
-
-    Raises:
-        UserError: there are too few items or points.
-    """
+    """One thing that several items ask about; its score is their mean."""
 
     name: str  # the measure's name in records and claims
     label: str  # as tables and figures call it

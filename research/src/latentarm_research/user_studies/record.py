@@ -60,11 +60,7 @@ def read_trial(entry: object, where: str) -> Trial:
 def read_listed(
     document: Mapping[str, object], name: str, path: Path, read: Callable[[object, str], Listed]
 ) -> tuple[Listed, ...]:
-    """The list of that name in a document; ``read`` takes an entry and where it stands, for errors.
-
-    Raises:
-        UserError: there is no list, or an entry is not what it should be.
-    """
+    """The list of that name in a document; ``read`` takes an entry and where it stands, for errors."""
     entries = document.get(name)
     if not isinstance(entries, list):
         raise UserError(f"{path} must hold a list of {name}.")

@@ -79,9 +79,6 @@ def read_recorded(folder: Path) -> Recorded:
 
     Of real people it holds ``config.json`` (``study``, ``definition``, ``people_are``), ``trials.json``,
     ``definition.json`` where the study is not one of the paper's, and ``traces.json`` where ways were kept.
-
-    Raises:
-        UserError: a document is missing, wrong, or of another definition or other people than the others.
     """
     config = read_object(folder / CONFIG)
     definition = _definition(folder, config)

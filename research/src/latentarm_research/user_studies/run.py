@@ -87,11 +87,7 @@ def study_of(
 
 
 def send_people(definition: Definition, request: Request[Sizes], grid: Grid) -> Recorded:
-    """Let simulated people go through a study; sessions that are kept are not gone through again.
-
-    Raises:
-        UserError: a cell cannot be driven as asked, or the backend is not available.
-    """
+    """Let simulated people go through a study; sessions that are kept are not gone through again."""
     people = draw_people(request.preset.simulated, request.seed)
     cells = _session_cells(definition, request, people)
     missing = {_trained_as(cell) for cell in cells if KEEP_SESSIONS.read(request.out, cell) is None}

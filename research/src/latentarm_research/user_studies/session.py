@@ -67,9 +67,6 @@ def go_through(cell: SessionCell) -> Session:
 
     The scene, start and chances of an attempt depend on the seed, the person, the task and the numbers of
     trial and attempt alone: they are the same in every condition.
-
-    Raises:
-        UserError: the arm cannot be used, or a model does not fit it.
     """
     trials: list[Trial] = []
     traces: list[Trace] = []
@@ -108,11 +105,7 @@ def in_the_end(attempts: Sequence[dict[str, float]]) -> dict[str, float]:
 
 
 def together(measured: Sequence[dict[str, float]]) -> dict[str, float]:
-    """The figures of a trial of several drives.
-
-    Args:
-        measured: figures of each drive, by name; means over time weigh by its duration.
-    """
+    """The figures of a trial of several drives; means over time weigh by a drive's duration."""
     time_s = [one["time_s"] for one in measured]
     found: dict[str, float] = {}
     for name in measured[0]:

@@ -67,11 +67,7 @@ FEWEST_PEOPLE: Final = 2
 
 
 def sizes_of(preset: str, people: int) -> Sizes:
-    """The sizes of a preset, for so many simulated people.
-
-    Raises:
-        UserError: there is no such preset, or too few people.
-    """
+    """The sizes of a preset, for so many simulated people."""
     if preset not in PRESETS:
         raise UserError(f"There is no preset {preset!r}: choose from {', '.join(PRESETS)}.")
     if people < FEWEST_PEOPLE:

@@ -62,11 +62,7 @@ class Trained:
 
 
 def train(cell: TrainingCell) -> Trained:
-    """Demonstrate, fit the models that the study's conditions need, and learn the people's alignments.
-
-    Raises:
-        UserError: too few demonstrations succeed, or the sizes make no sense.
-    """
+    """Demonstrate, fit the models that the study's conditions need, and learn the people's alignments."""
     latent = [condition for condition in cell.definition.conditions if condition.model]
     keys = list(dict.fromkeys((condition.model, condition.context) for condition in latent))
     aligns: list[Aligns] = [way for way in PRIORS if any(condition.aligns == way for condition in latent)]
@@ -101,9 +97,6 @@ def _demonstrated(cell: TrainingCell, task: SceneTask, belief: bool) -> tuple[De
 
     A belief is that over the goals of each demonstration, which stand elsewhere in every one and move on with
     its steps.
-
-    Raises:
-        UserError: hardly any succeeds.
     """
     wanted_s = 60.0 * cell.task.demonstrations_min * cell.sizes.demonstrations_share
     cut = np.isfinite(cell.sizes.demonstration_s)

@@ -33,9 +33,6 @@ def measure_cell(cell: AlignmentCell) -> AlignmentErrors:
     """Ask, learn all runs of a condition in one fit, and measure the errors.
 
     All models and noises get the same motions, so that nothing else differs.
-
-    Raises:
-        UserError: the preset's sizes leave nothing to ask or to learn.
     """
     scene, preset = scene_of(cell.learned), cell.preset
     runs = range(preset.runs)

@@ -35,9 +35,6 @@ def measure_curve(cell: AlignmentCell) -> CurveResult:
     """Ask one question after another, and measure what is learned from each number of answers.
 
     Every run has different candidates; the answer to each does not depend on when it is asked.
-
-    Raises:
-        UserError: the preset's sizes leave nothing to ask or to learn.
     """
     scene, sizes = scene_of(cell.learned), cell.preset.curves
     said = scene.candidates(cell.noise)

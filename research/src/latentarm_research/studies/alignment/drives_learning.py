@@ -60,11 +60,7 @@ class Learned:
 
 
 def learn(cell: AlignedDriveCell) -> Learned:
-    """Demonstrate, fit all models in one fit, ask the person about each, and learn.
-
-    Raises:
-        UserError: the preset's sizes make no sense.
-    """
+    """Demonstrate, fit all models in one fit, ask the person about each, and learn."""
     preset, task = cell.preset, TableTop()
     chain = task.robot.chain
     demonstrations = task.demonstrate(preset.drives.episodes, _generator(cell, ways.Stream.TRAINING))

@@ -83,11 +83,7 @@ class AlignmentCell:
 
 
 def learn_decoder(cell: DecoderCell) -> LearnedDecoder:
-    """Demonstrate and fit.
-
-    Raises:
-        UserError: the preset's sizes make no sense to the model or to the task.
-    """
+    """Demonstrate and fit."""
     demonstrations = demonstrate(cell, Stream.TRAINING)
     began = perf_counter()
     model = _fit(cell, demonstrations)
@@ -95,11 +91,7 @@ def learn_decoder(cell: DecoderCell) -> LearnedDecoder:
 
 
 def demonstrate(cell: DecoderCell, stream: Stream) -> Demonstrations:
-    """The demonstrations for training or for testing: the same whenever they are asked for.
-
-    Raises:
-        UserError: the preset asks for none.
-    """
+    """The demonstrations for training or for testing: the same whenever they are asked for."""
     preset = cell.preset
     episodes = preset.episodes if stream == Stream.TRAINING else preset.test_episodes
     return POURING_TASKS[cell.task]().demonstrate(episodes, generator(cell.seed, cell.task, stream))
@@ -209,11 +201,7 @@ class Scene:
 
 
 def scene_of(learned: LearnedDecoder) -> Scene:
-    """The scene of a decoder, the same whenever it is asked for.
-
-    Raises:
-        UserError: the preset's sizes leave no motion to ask about.
-    """
+    """The scene of a decoder, the same whenever it is asked for."""
     cell = learned.cell
     chain = POURING_TASKS[cell.task]().robot.chain
     training = demonstrate(cell, Stream.TRAINING)

@@ -64,11 +64,7 @@ class FoldResult:
 
 
 def measure_cell(cell: FoldCell) -> FoldResult:
-    """Fit all seeds in one fit and measure them on the held-out episodes.
-
-    Raises:
-        UserError: the demonstrations or the sizes make no sense to the model.
-    """
+    """Fit all seeds in one fit and measure them on the held-out episodes."""
     robot = load_recorded_robot(cell.dataset.demonstrations)
     began = process_time()
     model = _fit(cell, robot)

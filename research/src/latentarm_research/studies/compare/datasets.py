@@ -30,12 +30,7 @@ class Dataset:
 
 
 def read_datasets(paths: Sequence[Path], folds: int, seed: int) -> list[Dataset]:
-    """Read datasets of one robot and cut each into folds.
-
-    Raises:
-        UserError: one cannot be read, does not say its robot, is of another one, or has fewer episodes than
-            folds; it says which.
-    """
+    """Read datasets of one robot and cut each into folds."""
     found: list[Dataset] = []
     for path in paths:
         demonstrations, name = read_dataset(path), path.resolve().name

@@ -69,11 +69,7 @@ def measure_model(
     preset: Preset,  # sizes
     rng: np.random.Generator,  # for the noise on held-out states
 ) -> dict[str, FloatArray]:
-    """Measure every seed of a model on held-out episodes.
-
-    Returns:
-        Measure -> (S,), in the order of `MEASURED`.
-    """
+    """Figures of every seed of a model on held-out episodes: measure -> (S,), in the order of `MEASURED`."""
     reach = ReachConfig(pairs=preset.reach_pairs)
     config = EvaluationConfig(reach=reach, latents=preset.searched_pairs)
     measured = measure(model, demonstrations, held_out, robot, rng=rng, config=config)

@@ -68,12 +68,7 @@ class CompareResults:
 def compare_study(
     demonstrations: tuple[Path, ...], preset: Preset, ours: str = OURS, seed: int = 0
 ) -> Study[Preset, CompareResults]:
-    """The comparison on some datasets.
-
-    Raises:
-        UserError: a name is unknown or given twice, a noise is not a finite number, or a dataset cannot be
-            read, is of another robot or of none, or has fewer episodes than folds.
-    """
+    """The comparison on some datasets."""
     asked = Asked(demonstrations, preset, ours, seed)
     _check(asked)
     asked = replace(asked, datasets=tuple(read_datasets(demonstrations, preset.folds, seed)))
@@ -96,11 +91,7 @@ def compare_study(
 
 
 def _check(asked: Asked) -> None:
-    """Check names and noises.
-
-    Raises:
-        UserError: as `compare_study` says.
-    """
+    """Check names and noises."""
     check_seed(asked.seed)
     for name in (*asked.preset.models, asked.ours):
         if name not in MODELS:

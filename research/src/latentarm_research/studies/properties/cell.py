@@ -85,11 +85,7 @@ def demonstrated(
 
 
 def measure_cell(cell: PropertiesCell) -> PropertiesResult:
-    """Demonstrate, fit all seeds in one fit, measure.
-
-    Raises:
-        UserError: the preset's sizes make no sense to the model or to the task.
-    """
+    """Demonstrate, fit all seeds in one fit, measure."""
     preset = cell.preset
     motion = MOTIONS[cell.task](preset.design)
     sizes = preset.episodes, preset.test_episodes

@@ -45,11 +45,7 @@ def judge(
     better: str,
     sees_context: bool,
 ) -> PaperVerdict:
-    """Compare one figure with the paper's.
-
-    Returns:
-        `PaperVerdict.WITHIN` where ours is within `sd` of the paper's, whichever side it is on.
-    """
+    """Compare one figure with the paper's: within `sd` of it on either side, or else which side it is on."""
     upward = (better == "higher") == sees_context
     ahead = mean - paper if upward else paper - mean
     if abs(ahead) <= sd:
@@ -61,11 +57,7 @@ def paper_cells(rows: Iterable[Row], *, means: bool = False) -> list[PaperCell]:
     """The paper's cells among the rows of the paper's setting.
 
     What is a figure of the paper's by definition (PCA's loss in percent of its own, the VAE's length in
-    percent of its own) is no cell.
-
-    Args:
-        rows: of the study.
-        means: judge means over pairs where the study has medians over episodes.
+    percent of its own) is no cell. With ``means`` means over pairs are judged where the study has medians.
     """
     ours = {(row.task, row.model, row.measure): row for row in rows}
     cells: list[PaperCell] = []

@@ -46,11 +46,7 @@ PAPER_SIGN: Final = "($\\diamond$: the paper)"
 
 
 def log_axis(axes: "Axes", figures: Collection[Point]) -> float:
-    """Make the x axis logarithmic, around all figures and the paper's.
-
-    Returns:
-        Its left edge.
-    """
+    """Make the x axis logarithmic, around all figures and the paper's, and return its left edge."""
     from matplotlib.ticker import LogLocator, NullFormatter
 
     axes.set_xscale("log")

@@ -67,11 +67,7 @@ def conditioned(model: str) -> bool:
 
 
 def compare_models(results: Sequence[PropertiesResult]) -> list[Tested]:
-    """Every claim of H1 and H2 that the results allow.
-
-    Returns:
-        Claims by hypothesis, the paper's models first, then by task and measure.
-    """
+    """Claims that the results allow: by hypothesis, the paper's models first, by task and measure."""
     figures: dict[str, dict[str, Mapping[str, FloatArray]]] = {}
     for result in results:
         figures.setdefault(result.cell.task, {})[result.cell.model] = result.figures

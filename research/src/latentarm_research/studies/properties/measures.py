@@ -64,11 +64,7 @@ def accuracy_figures(
     fitted: Pairs,
     pairs: Pairs,  # `recorded_pairs` of other demonstrations
 ) -> dict[str, FloatArray]:
-    """Errors in percent of PCA's.
-
-    Returns:
-        Measure -> (S,), %: of the mean error over all pairs, and of the median of the episodes' mean errors.
-    """
+    """Measure -> (S,), % of PCA's: the mean error over pairs, and the median of the episodes' mean errors."""
     baseline = pca_error(fitted.action, pairs.action, decoders[0].latent_dim)
     z = model.encode(pairs.context, pairs.action)
     of_all = reconstruction_error(decoders, z, pairs.context, pairs.action)
@@ -90,11 +86,7 @@ def latent_figures(
     pairs: Pairs,
     preset: Preset,
 ) -> dict[str, FloatArray]:
-    """What z does: consistency with scalability, the angle between axes, drift and reversal.
-
-    Returns:
-        Measure -> (S,).
-    """
+    """Measure -> (S,): consistency with scalability, the angle between axes, drift and reversal."""
     chain, context = motion.robot.chain, pairs.context
     grid = axis_grid(preset.grid)
     states = context[evenly_spread(preset.states, len(context))]
@@ -118,11 +110,10 @@ def control_figures(
     pca: DecodesActions,
     goals: StartGoalPairs,
 ) -> dict[str, FloatArray]:
-    """Controllability, also in percent of PCA's on the same pairs.
+    """Controllability, also in percent of PCA's on the same pairs: measure -> (S,).
 
-    Returns:
-        Measure -> (S,), of the mean over pairs and of the median, and the distance at the start, (1,), which
-        does not depend on the model. Percentages are NaN where PCA's distance is below `RESOLUTION_M`.
+    Of the mean over pairs and of the median, and the distance at the start, (1,), which does not depend on
+    the model. Percentages are NaN where PCA's distance is below `RESOLUTION_M`.
     """
 
     def driven(some: Sequence[DecodesActions]) -> ReachedGoals:
@@ -159,11 +150,10 @@ def start_goal_pairs(
 def reach_figures(
     motion: ReachRegion, decoders: Sequence[DecodesActions], count: int, rng: np.random.Generator
 ) -> dict[str, FloatArray]:
-    """Final distances to goals in the region, path lengths, and how crooked the paths are.
+    """Final distances to goals in the region, path lengths, and how crooked the paths are: measure -> (S,).
 
-    Returns:
-        Measure -> (S,), and the distance at the start, (1,). How crooked is the length over the way from
-        start to end as the crow flies, of all drives together: NaN where none moves.
+    Also the distance at the start, (1,). How crooked is the length over the way from start to end as the crow
+    flies, of all drives together: NaN where none moves.
     """
     goals = motion.sample_goals(count, rng)
     places = np.concatenate([goals, np.zeros((count, 1))], axis=-1)

@@ -95,11 +95,9 @@ and by means as well."""
 
 
 def with_paper(rows: Sequence[Row]) -> list[Row]:
-    """The rows of a study, with the paper's figures where they can be compared.
+    """The rows of a study with the paper's figures where they can be compared.
 
-    Returns:
-        The same rows in their order, `Row.paper_mean` and `Row.paper_sd` filled in where the paper has them,
-        and after them the ratios to the VAE by which the lengths on the reach task can be compared.
+    After them come the ratios to the VAE by which the lengths on the reach task can be compared.
     """
     return [_beside_paper(row) for row in (*rows, *_length_ratios(rows))]
 

@@ -95,11 +95,7 @@ class AutonomyResult:
 
 
 def measure_cell(cell: AutonomyCell) -> AutonomyResult:
-    """Demonstrate, fit all seeds in one fit, drive, measure.
-
-    Raises:
-        UserError: the preset's sizes make no sense to the model or to the task.
-    """
+    """Demonstrate, fit all seeds in one fit, drive, measure."""
     task, preset = TASKS[cell.task](), cell.preset
     training = annotate(
         task.demonstrate(preset.demonstrations, generator(cell.seed, cell.task, Stream.TRAINING)), RULE

@@ -29,11 +29,7 @@ def choose(
     beta: FloatArray,  # (P,), rationality, zero or more, 1/m²
     chance: FloatArray,  # (P,), uniform in [0, 1): which input is drawn
 ) -> FloatArray:
-    """Inputs of P people.
-
-    Returns:
-        (P,), in [-1, 1]; 0 for those who let go.
-    """
+    """Inputs (P,) of P people, in [-1, 1]; 0 for those who let go."""
     rational = np.minimum(beta, MOST_RATIONAL)[:, None]
     low, high = _segment_costs(cost, at_rest)
     least = np.minimum(low, high)

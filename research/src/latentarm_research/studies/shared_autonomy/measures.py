@@ -120,14 +120,7 @@ def goal_open(drives: Drives, progress: FloatArray) -> BoolArray:
 
 
 def certify(drives: Drives, scene: Scene, decoder: Decoder) -> tuple[FloatArray, Mapping[str, BoolArray]]:
-    """sigma_h, and where each form of the bound says that the arm comes nearer, in every tenth step.
-
-    Returns:
-        (P, T / 10) in rad/s, and by the certificate's name (P, T / 10).
-
-    Raises:
-        TypeError: no enclosure of the decoder is known.
-    """
+    """sigma_h, rad/s, and by name where a bound says that the arm comes nearer, each (P, T / 10)."""
     at = drives.moments
     state, belief, alpha = (part[:, ::EVERY] for part in (at.state, at.belief, at.alpha))
     wanted = at.wanted[:, ::EVERY]

@@ -48,11 +48,7 @@ class Interval:
 def interval(
     values: FloatArray,  # (S, P), of S seeds' P drives; (S, 1) for figures of the seeds themselves
 ) -> Interval:
-    """Mean and interval of what was measured of drives.
-
-    Returns:
-        Over the seeds' means, or over all drives of fewer than `FEWEST_SEEDS` seeds.
-    """
+    """Mean and interval over the seeds' means, or over all drives of fewer than `FEWEST_SEEDS` seeds."""
     seeds = len(values) >= FEWEST_SEEDS or values.shape[1] == 1
     units = values.mean(axis=1) if seeds else values.reshape(-1)
     return Interval(

@@ -135,11 +135,7 @@ class TaskRunResult:
 
 
 def drive(cell: TaskRunCell) -> TaskRunResult:
-    """Let the simulated person do the task.
-
-    Raises:
-        UserError: the arm cannot be used, or the decoder is for another arm.
-    """
+    """Let the simulated person do the task."""
     task = task_of(cell.task, Stream.RUNS)
     began = perf_counter()
     setup = drives.Setup(task, cell.driver.controller(task.robot, cell.number), PEOPLE[cell.person])
@@ -154,11 +150,7 @@ def training_set(
     task: str,  # a name of `latentarm_research.studies.tasks.moved.TASKS`
     shown: Sequence[DemonstratedRun],
 ) -> Demonstrations:
-    """The demonstrations of a task that succeeded, as a dataset.
-
-    Raises:
-        UserError: fewer than two succeeded, and a model needs one to learn from and one for validation.
-    """
+    """The demonstrations of a task that succeeded, as a dataset."""
     episodes = [one.episode for one in shown if one.episode is not None]
     if len(episodes) < 2:
         raise UserError(

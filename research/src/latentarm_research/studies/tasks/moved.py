@@ -56,11 +56,7 @@ TASKS: Final = (*SCENE_TASKS, *MOVED)  # names of all tasks of the study
 
 
 def task_of(name: str, stream: Stream) -> SceneTask:
-    """The task of that name, where it is demonstrated to models or where it is driven.
-
-    Raises:
-        UserError: there is no such task.
-    """
+    """The task of that name, where it is demonstrated to models or where it is driven."""
     if name not in MOVED:
         return make_scene_task(name)
     moved = MOVED[name]

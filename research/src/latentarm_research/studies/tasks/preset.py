@@ -63,11 +63,7 @@ CONTEXTS: Final[Mapping[str, tuple[str, ...]]] = {
 @final
 @dataclass(frozen=True)
 class Preset:
-    """Sizes of the study.
-
-    Raises:
-        UserError: a person is unknown or named twice, nobody drives, or there are no runs.
-    """
+    """Sizes of the study."""
 
     name: str  # what it is called on the command line
     # of each task by each person, with mode switching and with the default; by the scripted demonstrator as

@@ -102,11 +102,7 @@ class PlanarMotion(ABC):
 
     @final
     def demonstrate(self, episodes: int, rng: np.random.Generator) -> Demonstrations:
-        """Demonstrations by a simulated person: in each ``design.samples`` states with the actions there.
-
-        Raises:
-            UserError: fewer than one episode is asked for, or nearly every posture is ill-conditioned.
-        """
+        """Demonstrations by a simulated person: in each ``design.samples`` states with the actions there."""
         return self._as_demonstrations(self.record(episodes, rng))
 
     @final

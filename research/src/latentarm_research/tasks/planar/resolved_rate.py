@@ -129,16 +129,15 @@ def follow(
 ) -> Recording:
     """Demonstrations along paths, all at once.
 
+    ``s + a dt`` with dt = `STEP_S` is on the path to first order. Between two recorded samples are further
+    steps.
+
     Args:
         constraint: what the task constrains.
         start: (E, n), postures at the beginning of the paths; where one is not, the demonstration is unsound.
         path: of all of them.
         samples: T, state-action pairs of each.
         duration_s: length of each, a multiple of ``samples`` steps, s.
-
-    Returns:
-        The states with the actions ``a`` taken there: ``s + a dt`` with dt = `STEP_S` is on the path to first
-        order. Between two recorded samples are further steps.
     """
     sound = np.abs(path.now - constraint.coordinates(start)).max(axis=-1) < SETTLED
     state = np.where(sound[:, None], start, start[np.argmax(sound)])

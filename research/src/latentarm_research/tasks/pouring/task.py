@@ -42,11 +42,7 @@ class PouringTask(ABC):
 
     @final
     def demonstrate(self, episodes: int, rng: np.random.Generator) -> Demonstrations:
-        """Demonstrations by a simulated person, states alone, as from a hand on the arm.
-
-        Raises:
-            UserError: fewer than one episode is asked for.
-        """
+        """Demonstrations by a simulated person, states alone, as from a hand on the arm."""
         if episodes < 1:
             raise UserError(f"Ask for at least one demonstration, not {episodes}.")
         paths = [self.draw(rng) for _ in range(episodes)]

@@ -58,7 +58,7 @@ class ToolPath:
 def wander(
     seconds: float, low: FloatArray, high: FloatArray, fastest: FloatArray, rng: np.random.Generator
 ) -> FloatArray:
-    """A smooth random course through a box.
+    """A smooth random course through a box, (T, k), T = seconds times `RATE_HZ`, plus one.
 
     Args:
         seconds: how long.
@@ -66,9 +66,6 @@ def wander(
         high: (k,), of the box.
         fastest: (k,), speed along each axis, per s.
         rng: source of all variation.
-
-    Returns:
-        (T, k), T = seconds times `RATE_HZ`, plus one.
     """
     while True:
         way = _stroll(round(seconds * RATE_HZ), fastest, rng)
@@ -93,17 +90,9 @@ def wander_from(
 
 
 def follow(chain: Chain, start: FloatArray, paths: Sequence[ToolPath]) -> list[FloatArray]:
-    """States of an arm whose hand goes along paths, the joints by the shortest way.
+    """States (T, n), rad, of an arm whose hand goes along each path, the joints by the shortest way.
 
     Resolved motion rate control (Whitney 1969), at each step towards the hand's next pose.
-
-    Args:
-        chain: the arm.
-        start: (E, n), states at the paths' first samples, rad.
-        paths: E of them.
-
-    Returns:
-        (T, n) for each path, rad.
     """
     states = [start]
     for sample in range(1, max(map(len, paths))):

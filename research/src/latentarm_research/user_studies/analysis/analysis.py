@@ -35,11 +35,8 @@ def mixed_model(table: LongTable) -> Mixed | None:
     """Fit by restricted maximum likelihood.
 
     statsmodels gives no degrees of freedom that hold for few people, so no p is taken from it: see
-    `latentarm_research.user_studies.analysis.randomisation`.
-
-    Returns:
-        None for fewer than two people, for one trial a person, of which chance cannot be told apart, or
-        where the measure varies too little for a fit.
+    `latentarm_research.user_studies.analysis.randomisation`. None for fewer than two people, for one trial a
+    person, of which chance cannot be told apart, or where the measure varies too little for a fit.
     """
     from statsmodels.regression.mixed_linear_model import MixedLM  # takes a second
 
@@ -126,12 +123,8 @@ def analyse(
 ) -> Analysis:
     """Analyse a study's trials; who gave them, simulated or real people, changes nothing.
 
-    Args:
-        definition: of the study.
-        trials: of all people.
-        ratings: their scores on the questionnaire's scales; rules of exclusion do not see these, but who is
-            excluded is excluded here too.
-        not_judged: why no claim is tested; empty where claims are.
+    Rules of exclusion do not see ``ratings``, scores on the questionnaire's scales, but who is excluded is
+    excluded there too. ``not_judged`` says why no claim is tested; empty where claims are.
     """
     design = design_of(definition)
     kept, out = counted(definition.exclusions, trials)

@@ -28,11 +28,7 @@ class Effect:
 def repeated_measures(
     trials: Sequence[Trial], factors: tuple[Factor, Factor], measure: str, tasks: Sequence[str]
 ) -> list[Effect]:
-    """Both factors and their interaction.
-
-    Returns:
-        Empty for fewer than two people with all four conditions, or where a mean does not vary.
-    """
+    """Both factors and their interaction; empty without two people with all conditions, or without spread."""
     cells = _cells(factors)
     people = sorted({trial.person for trial in trials})
     by_person = {person: [trial for trial in trials if trial.person == person] for person in people}
@@ -52,10 +48,7 @@ def between_people(
     """Both factors and their interaction, where each person meets one of the four conditions.
 
     Each effect is adjusted for the others (sums of squares of type III), which matters where the four groups
-    differ in size.
-
-    Returns:
-        Empty where a cell has nobody, where nobody is left to tell chance by, or where nobody varies.
+    differ in size. Empty where a cell has nobody, where nobody is left to tell chance by, or nobody varies.
     """
     from scipy.special import fdtrc
 

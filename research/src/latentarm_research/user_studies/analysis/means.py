@@ -30,11 +30,7 @@ class Sides:
 def person_mean(
     trials: Sequence[Trial], person: int, measure: str, conditions: Sequence[str], tasks: Sequence[str]
 ) -> float:
-    """A person's mean: over trials, then over tasks, then over conditions.
-
-    Returns:
-        NaN where a condition or task has no figure.
-    """
+    """A person's mean over trials, then tasks, then conditions; NaN where one of these has no figure."""
     cells = [
         [
             trial.measures[measure]

@@ -27,11 +27,7 @@ ROUNDING: Final = 1e-9  # two statistics closer than this, as a share, are the s
 
 
 def randomisation_p(table: LongTable) -> float | None:
-    """Two-sided p of the condition's effect.
-
-    Returns:
-        None for fewer than two people, or where the measure does not vary.
-    """
+    """Two-sided p of the condition's effect; None for fewer than two people, or without spread."""
     people, count = table.people, len(table.value)
     if people < 2 or not spreads(table.value):
         return None
@@ -76,8 +72,7 @@ MOST_GROUPS: Final = 20_000
 def permutation_p(subject: FloatArray, against: FloatArray) -> float | None:
     """Two-sided p of the difference of two groups (n,) and (m,) of people's means.
 
-    Returns:
-        None for fewer than two people on either side, or where nobody differs.
+    None for fewer than two people on either side, or where nobody differs.
     """
     pooled = np.concatenate([subject, against])
     if min(len(subject), len(against)) < 2 or not spreads(pooled):

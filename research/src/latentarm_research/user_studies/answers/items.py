@@ -41,11 +41,7 @@ def items_of(definition: Definition) -> dict[str, tuple[Scale, Item]]:
 
 
 def sheet(definition: Definition, people: int, seed: int) -> list[Asked]:
-    """What everybody is asked: after each condition that they meet all items, in an order of their own.
-
-    Raises:
-        UserError: the study has no questionnaire with scales.
-    """
+    """What everybody is asked: after each condition that they meet all items, in an order of their own."""
     items = items_of(definition)
     if not items:
         raise UserError(f"The study {definition.name} has no questionnaire with scales.")

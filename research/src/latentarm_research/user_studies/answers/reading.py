@@ -32,11 +32,7 @@ def read_answers(
     definition: Definition,
     met: Mapping[int, Collection[str]],
 ) -> list[Answer]:
-    """The answers of a file. A line without an answer is an item that was left out.
-
-    Raises:
-        UserError: the file cannot be read, or a line is not an answer to an item of this study.
-    """
+    """The answers of a file. A line without an answer is an item that was left out."""
     lines = read_lines(path)
     number, head = next(lines, (1, []))
     wrong = [name for name in head if name not in KNOWN or head.count(name) > 1]

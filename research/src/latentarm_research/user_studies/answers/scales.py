@@ -93,8 +93,7 @@ def rate(definition: Definition, answers: Sequence[Answer], trials: Sequence[Tri
 def cronbach_alpha(table: FloatArray) -> tuple[float, float, float] | None:
     """Cronbach's alpha of answers (n, k) of n people to k items, and its 95 % interval (Feldt 1965).
 
-    Returns:
-        Alpha, lower and upper end; None for fewer than two people or items, or where sums do not vary.
+    None for fewer than two people or items, or where sums do not vary.
     """
     from scipy.special import fdtri
 

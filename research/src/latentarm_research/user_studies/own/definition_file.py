@@ -23,11 +23,7 @@ SUFFIX: Final = ".json"
 def find_definition(
     name: str,  # a name in `latentarm_research.user_studies.catalogue.NAMES`, or the path of a JSON file
 ) -> Definition:
-    """The study of that name, or that of a file.
-
-    Raises:
-        UserError: there is no such study; or see `read_definition`.
-    """
+    """The study of that name, or that of a file."""
     if name in NAMES:
         return load_definition(name)
     if name.endswith(SUFFIX):
@@ -38,11 +34,7 @@ def find_definition(
 def read_definition(
     path: Path,  # JSON; a field `digest`, if there is one, must be the definition's own
 ) -> Definition:
-    """A definition from a file.
-
-    Raises:
-        UserError: the file cannot be read, or a field is wrong: a sentence that names it.
-    """
+    """A definition from a file."""
     from latentarm_research.user_studies.own.records import (
         read_record,  # with pydantic, which help does not need
     )
@@ -90,11 +82,7 @@ MOST: Final = 1000  # people, trials and queries, each
 
 
 def check_definition(definition: Definition) -> None:
-    """Check what the records themselves cannot: that everything named exists, and fits.
-
-    Raises:
-        UserError: a sentence that begins with the field.
-    """
+    """Check what the records themselves cannot: that everything named exists, and fits."""
     _check_labels(definition)
     if len(definition.conditions) > MOST_CONDITIONS:
         raise UserError(

@@ -22,11 +22,7 @@ def read_record(
     entry: object,  # as JSON was parsed
     where: str,
 ) -> Record:
-    """A record from a JSON object that has its fields, those with defaults optional, and no others.
-
-    Raises:
-        UserError: a field is missing, unknown, or not what it should be; or the record itself refuses.
-    """
+    """A record from a JSON object that has its fields, those with defaults optional, and no others."""
     for text in _texts(entry):
         if not text.replace("\n", " ").isprintable():
             raise UserError(f"{where}: {text!r} holds a character that cannot be printed.")

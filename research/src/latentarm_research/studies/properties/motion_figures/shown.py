@@ -49,16 +49,7 @@ class DrawnModel:
         return look_of(self.model)
 
     def hold(self, start: FloatArray, z: FloatArray, duration_s: float) -> FloatArray:
-        """States while a latent action is held.
-
-        Args:
-            start: (N, n), states to start from, rad.
-            z: (L, d), the latent actions, each held from each start.
-            duration_s: how long, s.
-
-        Returns:
-            (L, N, T + 1, n), rad.
-        """
+        """States (L, N, T + 1, n), rad, while each of L latent actions is held from each of N starts."""
         latent = np.broadcast_to(self.sign * z[:, None], (len(z), len(start), z.shape[-1]))
         passed = [np.broadcast_to(start, (len(z), *start.shape))]
         for _ in range(round(duration_s / STEP_S)):
@@ -97,11 +88,7 @@ def spread_states(
     quantity: FloatArray,  # (K,), of each of them
     count: int,
 ) -> FloatArray:
-    """States at which a quantity is spread evenly over the middle of its range.
-
-    Returns:
-        (count, n), those with the lowest quantity first.
-    """
+    """States (count, n), the lowest first, at which a quantity is spread evenly over its middle range."""
     low, high = np.quantile(quantity, (0.03, 0.97))
     wanted = low + (np.arange(count) + 0.5) / count * (high - low)
     return states[np.argmin(np.abs(quantity - wanted[:, None]), axis=1)]
