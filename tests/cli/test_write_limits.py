@@ -7,7 +7,8 @@ import pytest
 
 from latentarm.cli import main
 from latentarm.robots.catalogue import load_robot
-from latentarm.robots.limits_file import limits_template, read_limits
+from latentarm.robots.limits_file import read_limits
+from latentarm.robots.limits_template import limits_template
 from latentarm.robots.notices import assumed_limits
 
 URDF = """<robot name="two"><link name="base"/><link name="a"/><link name="b"/>

@@ -41,7 +41,7 @@ def _robots(name: str | None, end_effector: str | None, limits: Path | None) -> 
 
 def _written(name: str | None, end_effector: str | None, limits: Path | None, path: Path) -> str:
     """Write a robot's limits file; what is left to fill in, a sentence."""
-    from latentarm.robots.limits_file import limits_template
+    from latentarm.robots.limits_template import limits_template
 
     if name is None:
         raise UserError("--write-limits is for one robot: name it, as in `latentarm robots PATH`.")

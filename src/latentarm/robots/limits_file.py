@@ -18,12 +18,10 @@ An example in TOML::
     force_n = 10
 """
 
-import json
 import math
-import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, cast
+from typing import Final, cast
 
 import numpy as np
 
@@ -32,10 +30,7 @@ from latentarm.core.types import StatedGripper, StatedJointLimits, StatedLimits
 from latentarm.core.untrusted.hand_written import MOST_BYTES, check_keys, number_of, parse_toml, table_of
 from latentarm.core.untrusted.opening import read_bytes
 from latentarm.core.untrusted.yaml_file import parse_yaml
-from latentarm.robots.limits import QUANTITIES, JointLimits, LimitSources, Quantity, Source
-
-if TYPE_CHECKING:
-    from latentarm.robots.robot import Robot
+from latentarm.robots.limits import JointLimits, LimitSources, Quantity, Source
 
 TOOL_SPEED: Final = "tool_speed_m_per_s"
 GRIPPER: Final = "gripper"
@@ -175,39 +170,3 @@ def _gripper(entry: object, where: str) -> StatedGripper:
             " has no gripper."
         )
     return StatedGripper(joints=tuple(cast("list[str]", joints)), **figures)
-
-
-_PLAIN: Final = re.compile(r"[A-Za-z0-9_-]+")
-
-
-def limits_template(robot: "Robot") -> str:
-    """A limits file in TOML that states a robot's known limits and leaves assumed ones blank."""
-    return "\n".join(_lines(robot)) + "\n"
-
-
-def _lines(robot: "Robot") -> Iterator[str]:
-    yield f"# Limits of {robot.name.splitlines()[0]}."
-    yield "# A line that begins with # is not known: put the maker's figure in it and take away the #."
-    yield ""
-    yield _line(TOOL_SPEED, robot.tool_speed_limit, known=robot.tool_speed_source != "assumed")
-    limits = robot.limits
-    for joint, name in enumerate(robot.joint_names):
-        yield ""
-        yield f"[joints.{name if _PLAIN.fullmatch(name) else json.dumps(name)}]"
-        unit = "m" if robot.chain.slide[joint] else "rad"
-        known = limits.sources.position[joint] != "assumed"
-        yield _line(f"lower_{unit}", float(limits.lower[joint]), known=known)
-        yield _line(f"upper_{unit}", float(limits.upper[joint]), known=known)
-        for quantity in QUANTITIES[1:]:
-            figure = float(getattr(limits, quantity)[joint])
-            known = limits.sources.of(quantity)[joint] != "assumed"
-            yield _line(f"{quantity}_{unit}{_FIGURES[quantity]}", figure, known=known)
-    if robot.stated_limits is not None and robot.stated_limits.gripper is not None:
-        yield ""
-        yield "[gripper]"
-        gripper = cast("dict[str, object]", limits_document(robot.stated_limits)[GRIPPER])
-        yield from (f"{key} = {json.dumps(value)}" for key, value in gripper.items())
-
-
-def _line(key: str, figure: float, *, known: bool) -> str:
-    return f"{key} = {figure!r}" if known else f"# {key} =    # {figure:g} is assumed"
