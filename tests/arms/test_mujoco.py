@@ -89,7 +89,7 @@ def test_a_velocity_changes_no_faster_than_the_joint_can(the_panda, clock, joint
 
 def test_torques_end_at_the_limits_and_a_joint_that_is_held_does_not_leap(the_panda, clock):
     arm = enabled(the_panda, clock)
-    model, data = arm._model, arm._data
+    model, data = arm.model, arm.data
     velocity = np.array([0.5, 0, 0, 0, 0, 0, 0])
     # Held as by a wall: its own speed is taken away after every millisecond.
     for _ in range(2000):
@@ -136,14 +136,14 @@ def test_any_model_with_torque_limits_moves(slider, clock):
     q, dq = driven(arm, clock, np.array([0.3, -0.05]), 100)
     np.testing.assert_allclose(dq[-1], [0.3, -0.05], atol=1e-3)
     np.testing.assert_allclose(q[-1] - robot.home, [0.3, -0.05], atol=0.01)
-    np.testing.assert_array_equal(arm._model.jnt_actfrcrange[[0, 2], 1], [20.0, 30.0])
-    finger = arm._model.joint("finger").qposadr[0]
-    assert abs(arm._data.qpos[finger]) < 1e-3
+    np.testing.assert_array_equal(arm.model.jnt_actfrcrange[[0, 2], 1], [20.0, 30.0])
+    finger = arm.model.joint("finger").qposadr[0]
+    assert abs(arm.data.qpos[finger]) < 1e-3
 
 
 def test_a_limit_of_the_joint_counts_before_that_of_its_actuator(slider, clock):
     arm = enabled(slider(turn='actuatorfrcrange="-7 7"'), clock)
-    assert arm._model.jnt_actfrcrange[0, 1] == 7.0
+    assert arm.model.jnt_actfrcrange[0, 1] == 7.0
 
 
 @pytest.mark.parametrize(

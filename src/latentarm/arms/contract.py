@@ -58,6 +58,12 @@ class ArmStatus:
         return self.phase in ("ready", "moving")
 
 
+REASONS: Final[dict[ArmPhase, str]] = {
+    "off": "The arm is not connected.",
+    "disabled": "The arm is not enabled yet.",
+}
+
+
 class Arm(ABC):
     """An arm driven by joint velocities of bounded duration.
 

@@ -81,18 +81,19 @@ class MujocoArm(SimulatedArm, SceneArm):
                 " --arm kinematic, or leave [gripper] out of the limits file."
             )
         self._imperfections = imperfections or Imperfections()
-        self._model, found = _world(robot, state, self._imperfections.payload_kg, scene)
-        self._positions = self._model.jnt_qposadr[found.joints]
-        self._speeds = self._model.jnt_dofadr[found.joints]
-        self._data = mujoco.MjData(self._model)
+        # The arm and its scene, and their state after the last time step, for drawing; do not change them.
+        self.model, found = _world(robot, state, self._imperfections.payload_kg, scene)
+        self._positions = self.model.jnt_qposadr[found.joints]
+        self._speeds = self.model.jnt_dofadr[found.joints]
+        self.data = mujoco.MjData(self.model)
         reference = reference_positions(robot.model())
-        self._data.qpos[: len(reference)] = reference
-        self._data.qpos[self._positions] = state
-        self._servo = Servo(self._model, self._data, found.joints, robot.limits.acceleration * STEP_S)
+        self.data.qpos[: len(reference)] = reference
+        self.data.qpos[self._positions] = state
+        self._servo = Servo(self.model, self.data, found.joints, robot.limits.acceleration * STEP_S)
         self._fingers = None
         if robot.gripper is not None:
             delay_s = self._imperfections.delay_s
-            self._fingers = FingerServo(robot.gripper, self._model, self._data, 2 * robot.dof, delay_s)
+            self._fingers = FingerServo(robot.gripper, self.model, self.data, 2 * robot.dof, delay_s)
         super().__init__(
             robot,
             state,
@@ -105,9 +106,9 @@ class MujocoArm(SimulatedArm, SceneArm):
         self._watch = self._tines = None
         self._bonds = frozenset((one.first, one.second) for one in (() if scene is None else scene.bonds))
         if scene is not None:
-            self._watch = SceneWatch(self._model, self._data, robot, found.body_link, scene)
+            self._watch = SceneWatch(self.model, self.data, robot, found.body_link, scene)
             if robot.attachment is not None and robot.attachment.tines is not None:
-                self._tines = TinesInFood(self._model, self._data, robot.attachment.tines, scene)
+                self._tines = TinesInFood(self.model, self.data, robot.attachment.tines, scene)
         self._state: SceneState | None = None
         self._steps = 0
         self._behind_s = 0.0
@@ -115,20 +116,10 @@ class MujocoArm(SimulatedArm, SceneArm):
         self._measured: deque[tuple[float, FloatArray, FloatArray]] = deque()
         self._note()
 
-    @property
-    def model(self) -> mujoco.MjModel:
-        """The compiled model of the arm and its scene, for drawing; do not change it."""
-        return self._model
-
-    @property
-    def data(self) -> mujoco.MjData:
-        """The state after the last time step, for drawing; do not change it."""
-        return self._data
-
     def truth(self) -> tuple[FloatArray, FloatArray]:
         """True positions, (n,), rad, and velocities, (n,), rad/s, of the joints, independent of readings."""
         self._elapse()
-        return self._data.qpos[self._positions].copy(), self._data.qvel[self._speeds].copy()
+        return self.data.qpos[self._positions].copy(), self.data.qvel[self._speeds].copy()
 
     def scene_state(self) -> SceneState:
         """The true state of the scene.
@@ -139,8 +130,8 @@ class MujocoArm(SimulatedArm, SceneArm):
         if self._watch is None:
             raise RuntimeError("an arm without a scene has no state of it")
         self._elapse()
-        if self._state is None or self._state.time_s != self._data.time:
-            q = self._data.qpos[self._positions].copy()
+        if self._state is None or self._state.time_s != self.data.time:
+            q = self.data.qpos[self._positions].copy()
             stabbed, bonds = frozenset[str](), self._bonds
             if self._tines is not None:
                 stabbed, bonds = self._tines.stabbed, self._tines.bonds
@@ -165,7 +156,7 @@ class MujocoArm(SimulatedArm, SceneArm):
             taken = 1 if anew else steps
             if watch is not None:
                 taken = min(taken, LOOK_STEPS - self._steps % LOOK_STEPS)
-            mujoco.mj_step(self._model, self._data, taken)
+            mujoco.mj_step(self.model, self.data, taken)
             self._servo.unwind()
             self._steps += taken
             steps -= taken
@@ -176,8 +167,8 @@ class MujocoArm(SimulatedArm, SceneArm):
 
     def _note(self) -> None:
         """Store the present measurement until its delay has passed."""
-        time_s = float(self._data.time)
-        q, dq = self._data.qpos[self._positions].copy(), self._data.qvel[self._speeds].copy()
+        time_s = float(self.data.time)
+        q, dq = self.data.qpos[self._positions].copy(), self.data.qvel[self._speeds].copy()
         self._measured.append((time_s, q, dq))
         while len(self._measured) > 1 and time_s - self._measured[1][0] >= self._imperfections.delay_s - 1e-9:
             self._measured.popleft()
@@ -189,7 +180,7 @@ class MujocoArm(SimulatedArm, SceneArm):
         noise = self._imperfections
         q = q + self._rng.normal(0.0, noise.position_noise_rad, q.shape)
         dq = dq + self._rng.normal(0.0, noise.velocity_noise_rad_s, dq.shape)
-        return q, dq, float(self._data.time) - time_s + max(self._behind_s, 0.0)
+        return q, dq, float(self.data.time) - time_s + max(self._behind_s, 0.0)
 
     def _halt(self) -> None:
         """Nothing: without a command the servo slows down from the next step on."""

@@ -7,7 +7,7 @@ from typing import Final, final
 
 import numpy as np
 
-from latentarm.arms.contract import Arm, ArmPhase, ArmSpec, ArmStatus, finite_velocity
+from latentarm.arms.contract import REASONS, Arm, ArmPhase, ArmSpec, ArmStatus, finite_velocity
 from latentarm.arms.simulated_gripper import SimulatedGripper
 from latentarm.core.errors import UserError
 from latentarm.core.types import Command, FloatArray, GripperCommand, Reading
@@ -16,10 +16,6 @@ from latentarm.robots.robot import Robot
 
 _CLOCK_DIGITS: Final = 9  # whole nanoseconds, so that equal periods are equally long
 SETTLED_S: Final = 1.0  # an arm without a command is at rest by then
-_REASONS: Final[dict[ArmPhase, str]] = {
-    "off": "The arm is not connected.",
-    "disabled": "The arm is not enabled yet.",
-}
 
 
 class SimulatedArm(Arm):
@@ -100,7 +96,7 @@ class SimulatedArm(Arm):
         phase = self._phase
         if phase == "ready" and self._newest is not None and np.abs(self._newest.dq).max() > STILL_RAD_S:
             phase = "moving"
-        return ArmStatus(phase, _REASONS.get(phase, ""))
+        return ArmStatus(phase, REASONS.get(phase, ""))
 
     @final
     def enable(self) -> None:

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from typing import Final, final
 
 from latentarm.arms.address import ArmAddress
-from latentarm.arms.contract import ArmSpec, ArmStatus, finite_velocity
+from latentarm.arms.contract import REASONS, ArmSpec, ArmStatus, finite_velocity
 from latentarm.arms.franka.hand import Hand
 from latentarm.arms.franka.link import Link, findings, library, open_link, refusals, set_up
 from latentarm.arms.franka.options import read_options
@@ -62,22 +62,22 @@ class FrankaArm(GuidableArm):
         """Inspect the arm without moving it. Its collision thresholds do change, by connecting."""
         if self._worker is not None:
             raise RuntimeError("the arm is connected; look before that")
-        link = self._open()
+        link = open_link(self._host, self._options, self._robot)
         try:
             return findings(link, self._options, self._robot)
         finally:
             link.close()
 
     def connect(self) -> None:
-        self._begin(self._ready_link)
+        self._begin(ready=True)
 
     def watch(self) -> None:
         """Connect to read. Franky itself sets the arm's collision thresholds by connecting, to its own."""
-        self._begin(self._fit_link)
+        self._begin(ready=False)
 
-    def _begin(self, link_of: Callable[[], Link]) -> None:
+    def _begin(self, *, ready: bool) -> None:
         self.close()
-        link = link_of()
+        link = self._link(ready=ready)
         # franky and libfranka raise exceptions of their own.
         try:
             self._hand = self._new_hand(link)
@@ -115,7 +115,7 @@ class FrankaArm(GuidableArm):
     def status(self) -> ArmStatus:
         worker = self._worker
         if worker is None:
-            return ArmStatus("off", "The arm is not connected.")
+            return ArmStatus("off", REASONS["off"])
         self._watch(worker)
         trouble = worker.trouble
         if trouble is not None:
@@ -181,25 +181,14 @@ class FrankaArm(GuidableArm):
             reason = f"The connection to the hand was lost ({self._hand.lost}): check its cable."
             worker.fail(Trouble("fault", reason, recoverable=True, lost=True))
 
-    def _open(self) -> Link:
-        return open_link(self._host, self._options, self._robot)
-
-    def _fit_link(self) -> Link:
-        """A link to an arm that can be driven."""
-        link = self._open()
+    def _link(self, *, ready: bool) -> Link:
+        """A link to an arm that can be driven; ``ready`` sets the arm up for that."""
+        link = open_link(self._host, self._options, self._robot)
         try:
             for reason in refusals(link, self._options, self._robot):
                 raise UserError(reason)
-        except Exception:
-            link.close()
-            raise
-        return link
-
-    def _ready_link(self) -> Link:
-        """A link that is ready to drive."""
-        link = self._fit_link()
-        try:
-            set_up(link, self._options, self._robot)
+            if ready:
+                set_up(link, self._options, self._robot)
         except Exception:
             link.close()
             raise
@@ -209,7 +198,7 @@ class FrankaArm(GuidableArm):
         """A new link in place of a lost one, with its hand; in the worker's thread."""
         if self._hand is not None:
             self._hand.close()
-        link = self._ready_link()
+        link = self._link(ready=True)
         self._hand = self._new_hand(link)
         return link
 

@@ -8,7 +8,7 @@ from typing import Any, Final, cast, final
 import numpy as np
 
 from latentarm.arms.address import ArmAddress
-from latentarm.arms.contract import ArmPhase, ArmSpec, ArmStatus, finite_velocity
+from latentarm.arms.contract import REASONS, ArmPhase, ArmSpec, ArmStatus, finite_velocity
 from latentarm.arms.helper_process import HelperProcess
 from latentarm.arms.lerobot import keeper
 from latentarm.arms.lerobot.options import Options
@@ -50,7 +50,7 @@ class LerobotArm(GuidableArm):
         self._options = Options.of(address)
         self._asked = 0
         self._newest: Reading | None = None
-        self._status = ArmStatus("off", "The arm is not connected.")
+        self._status = ArmStatus("off", REASONS["off"])
         self._heard_s = -np.inf
         self._open = False
         self._process: HelperProcess | None = None
@@ -97,7 +97,7 @@ class LerobotArm(GuidableArm):
             except UserError:
                 self._end()
         self._open = False
-        self._status = ArmStatus("off", "The arm is not connected.")
+        self._status = ArmStatus("off", REASONS["off"])
 
     def read(self) -> Reading:
         if self._newest is None:
@@ -121,7 +121,7 @@ class LerobotArm(GuidableArm):
     def disable(self) -> None:
         self._tell("disable")
         if self._status.takes_commands:
-            self._status = _DISABLED
+            self._status = ArmStatus("disabled", REASONS["disabled"])
 
     def guide(self) -> None:
         """Ask to be moved by hand, with the joints' torque off: the arm sinks unless somebody holds it."""
@@ -228,7 +228,7 @@ class LerobotArm(GuidableArm):
     def _take(self, state: Mapping[str, Any]) -> None:
         self._heard_s = keeper.now_s()
         phase: ArmPhase = state["phase"]
-        reason = state["reason"] or _REASONS.get(phase, "")
+        reason = state["reason"] or REASONS.get(phase, "")
         lost = bool(state.get("lost"))
         self._status = ArmStatus(phase, reason, recoverable=phase == "fault", lost=lost)
         if "q" not in state:
@@ -244,11 +244,3 @@ class LerobotArm(GuidableArm):
             sequence=0 if self._newest is None else self._newest.sequence + 1,
             gripper=gripper,
         )
-
-
-_REASONS: Final[dict[ArmPhase, str]] = {
-    "off": "The arm is not connected.",
-    "disabled": "The arm is not enabled yet.",
-}
-
-_DISABLED: Final = ArmStatus("disabled", _REASONS["disabled"])

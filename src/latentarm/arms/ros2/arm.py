@@ -9,7 +9,7 @@ from typing import Final, final
 import numpy as np
 
 from latentarm.arms.address import ArmAddress
-from latentarm.arms.contract import ArmSpec, ArmStatus, finite_velocity
+from latentarm.arms.contract import REASONS, ArmSpec, ArmStatus, finite_velocity
 from latentarm.arms.real import Findings, GuidableArm
 from latentarm.arms.ros2.feed import JointFeed
 from latentarm.arms.ros2.gripper import Ros2Gripper
@@ -125,7 +125,7 @@ class Ros2Arm(GuidableArm):
     def status(self) -> ArmStatus:
         opened = self._open
         if opened is None:
-            return ArmStatus("off", "The arm is not connected.")
+            return ArmStatus("off", REASONS["off"])
         lost = self._lost or self._out_of_reach()
         state = opened.session.state
         if lost or state is None:
@@ -142,7 +142,7 @@ class Ros2Arm(GuidableArm):
             newest = opened.feed.newest
             moves = newest is not None and np.abs(newest[0].dq).max() > STILL_RAD_S
             return ArmStatus("moving" if moves else "ready", said)
-        return ArmStatus("disabled", state.obstacle or "The arm is not enabled yet.")
+        return ArmStatus("disabled", state.obstacle or REASONS["disabled"])
 
     def enable(self) -> None:
         if self._open is not None and self.status().phase == "disabled":

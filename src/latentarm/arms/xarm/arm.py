@@ -8,7 +8,7 @@ from typing import Final, final
 import numpy as np
 
 from latentarm.arms.address import ArmAddress
-from latentarm.arms.contract import ArmSpec, ArmStatus, finite_velocity
+from latentarm.arms.contract import REASONS, ArmSpec, ArmStatus, finite_velocity
 from latentarm.arms.real import Findings, GuidableArm
 from latentarm.arms.xarm.controller import ANSWER_S, LinkLostError
 from latentarm.arms.xarm.driver import Driver
@@ -108,7 +108,7 @@ class XArm(GuidableArm):
             recoverable = self._shared.recoverable
         match condition:
             case "off":
-                return ArmStatus("off", "The arm is not connected.")
+                return ArmStatus("off", REASONS["off"])
             case "disabled":
                 return ArmStatus("disabled", "The arm is not enabled.")
             case "enabling":
