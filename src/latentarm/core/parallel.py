@@ -13,7 +13,14 @@ from typing import Any, Generic, TypeVar, cast
 
 from joblib import Parallel, delayed, effective_n_jobs, parallel_config
 from joblib.parallel import get_active_backend
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    ProgressColumn,
+    TextColumn,
+    TimeElapsedColumn,
+)
 
 from latentarm.core.errors import UserError
 from latentarm.core.untrusted.console import VisibleConsole
@@ -133,14 +140,10 @@ def _watched(cells: Sequence[Cell], workers: int, bar: Progress, unit: str) -> I
         yield cell
 
 
-def counting_bar(shown: bool) -> Progress:
-    """A progress bar on standard error that disappears when it is done."""
+def counting_bar(shown: bool, *last: ProgressColumn) -> Progress:
+    """A progress bar on standard error that goes away when it is done; it ends with the time, or as told."""
+    first = TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn()
+    console = VisibleConsole(stderr=True)
     return Progress(
-        TextColumn("{task.description}"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TimeElapsedColumn(),
-        console=VisibleConsole(stderr=True),
-        disable=not shown,
-        transient=True,
+        *first, *(last or (TimeElapsedColumn(),)), console=console, disable=not shown, transient=True
     )

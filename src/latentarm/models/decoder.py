@@ -19,17 +19,6 @@ class Decoder:
     contexts, and ``way_back`` is None in a model without one.
     """
 
-    __slots__ = (
-        "_frame",
-        "_runtime",
-        "action_dim",
-        "context_dim",
-        "kind",
-        "latent_dim",
-        "layout",
-        "way_back",
-    )
-
     def __init__(self, trained: TrainedModel, seed: int = 0) -> None:
         """Take one seed's decoder, by its index, out of a trained model; UserError without such a seed."""
         trained.check_seed_index(seed)

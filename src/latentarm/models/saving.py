@@ -9,6 +9,7 @@ import json
 import math
 import platform
 from collections.abc import Mapping
+from dataclasses import asdict
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Final
@@ -55,28 +56,15 @@ def write_model(folder: Path, trained: TrainedModel, run: Mapping[str, object]) 
     Raises UserError where the files cannot be written.
     """
     sha256 = write_tensors(folder / WEIGHTS_NAME, trained.tensors)
-    dimensions, summary = trained.dimensions, trained.summary
+    summary = trained.summary
     origin = KINDS.origin(trained.kind.name)
     section = {
         "schema": SCHEMA,
         "kind": trained.kind.name,
         **({} if origin is None else {"distribution": origin.distribution}),
         "parameters": dict(trained.parameters),
-        "dimensions": {
-            "seeds": dimensions.seeds,
-            "latent": dimensions.latent,
-            "context": dimensions.context,
-            "action": dimensions.action,
-            "hidden": list(dimensions.hidden),
-            "tools": dimensions.tools,
-            "way_back": list(dimensions.way_back),
-        },
-        "layout": {
-            "features": list(trained.layout.features),
-            "goals": trained.layout.goals,
-            "objects": list(trained.layout.objects),
-            "gripper": trained.layout.gripper,
-        },
+        "dimensions": asdict(trained.dimensions),
+        "layout": {key: value for key, value in asdict(trained.layout).items() if key != "joints"},
         "seeds": list(summary.seeds),
         "training": {
             "validation_episodes": list(summary.validation_episodes),

@@ -68,19 +68,19 @@ class TorchDecoder:
         )
         self._action = action
         contexts, latents = trained.contexts, trained.latents
-        observe: Callable[[Tensor], Tensor] = (
-            TorchToolContexts(contexts, dtype)
-            if isinstance(contexts, ToolContexts)
-            else _Normalise(tensor(contexts.centre), tensor(contexts.scale))
-        )
-        frame = None if trained.frame is None else TorchToolFrame(trained.frame, dtype)
-        observe = observe if frame is None else _Framed(frame, observe)
-        self._way_back = TorchWayBack(trained, seed, dtype) if trained.dimensions.way_back else None
-        self.observe = observe if self._way_back is None else _LedBack(observe, self._way_back)
-        """Contexts (..., c) to inputs of the networks (..., o), whose first c are the normalised context."""
+        self._tools = TorchToolContexts(contexts, dtype) if isinstance(contexts, ToolContexts) else None
         self.contexts = contexts.contexts if isinstance(contexts, ToolContexts) else contexts
+        self._middle, self._span = tensor(self.contexts.centre), tensor(self.contexts.scale)
+        self._frame = None if trained.frame is None else TorchToolFrame(trained.frame, dtype)
+        self._way_back = TorchWayBack(trained, seed, dtype) if trained.dimensions.way_back else None
         self._centre, self._scale = tensor(latents.centre[seed, 0]), tensor(latents.scale[seed, 0])
         self._action_scale = tensor(trained.actions.scale)
+
+    def observe(self, context: Tensor) -> Tensor:
+        """Contexts (..., c) to inputs of the networks (..., o), whose first c are the normalised context."""
+        framed = context if self._frame is None else self._frame(context)
+        seen = (framed - self._middle) / self._span if self._tools is None else self._tools(framed)
+        return seen if self._way_back is None else torch.cat([seen, self._way_back.observe(context)], dim=-1)
 
     def decode(self, z: Tensor, observed: Tensor) -> Tensor:
         """Joint velocities (..., m), rad/s, of z (..., d) in observations (..., o)."""
@@ -93,30 +93,3 @@ class TorchDecoder:
         action = self._action(self._networks, latent, observed.reshape(1, -1, observed.shape[-1]))
         action = (action * self._action_scale).reshape(*lead, self.action_dim)
         return action if self._way_back is None else self._way_back(action, z, back)
-
-
-@final
-class _Framed:
-    def __init__(self, frame: TorchToolFrame, observe: Callable[[Tensor], Tensor]) -> None:
-        self._frame, self._observe = frame, observe
-
-    def __call__(self, context: Tensor) -> Tensor:
-        return self._observe(self._frame(context))
-
-
-@final
-class _LedBack:
-    def __init__(self, observe: Callable[[Tensor], Tensor], way_back: TorchWayBack) -> None:
-        self._observe, self._way_back = observe, way_back
-
-    def __call__(self, context: Tensor) -> Tensor:
-        return torch.cat([self._observe(context), self._way_back.observe(context)], dim=-1)
-
-
-@final
-class _Normalise:
-    def __init__(self, centre: Tensor, scale: Tensor) -> None:
-        self._centre, self._scale = centre, scale
-
-    def __call__(self, context: Tensor) -> Tensor:
-        return (context - self._centre) / self._scale

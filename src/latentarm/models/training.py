@@ -10,12 +10,12 @@ from typing import Final
 
 import numpy as np
 import torch
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.progress import TextColumn, TimeRemainingColumn
 from torch import Tensor
 
 from latentarm.core.errors import UserError
+from latentarm.core.parallel import counting_bar
 from latentarm.core.types import FloatArray, IntArray
-from latentarm.core.untrusted.console import VisibleConsole
 from latentarm.models.batches import Batch, Batches, TrainingData, seed_generator
 from latentarm.models.checkpoint import TrainingState, fingerprint, read_checkpoint, write_checkpoint
 from latentarm.models.kind import Shape
@@ -196,7 +196,8 @@ def choose_device(name: str) -> torch.device:
 @contextmanager
 def epoch_bar(shown: bool) -> Generator[Report]:
     """A `Report` that shows a bar on standard error, if ``shown``."""
-    with progress_bar(shown, "epochs") as bar:
+    last = TextColumn("epochs"), TextColumn("{task.fields[loss]}"), TimeRemainingColumn()
+    with counting_bar(shown, *last) as bar:
         task = bar.add_task("training", loss="")
 
         def report(epoch: int, epochs: int, loss: float) -> None:
@@ -204,11 +205,3 @@ def epoch_bar(shown: bool) -> Generator[Report]:
             bar.update(task, total=epochs, completed=epoch, loss=said)
 
         yield report
-
-
-def progress_bar(shown: bool, unit: str) -> Progress:
-    """A bar on standard error that goes away when it is done, with a field ``loss`` for a few words."""
-    first = TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TextColumn(unit)
-    last = TextColumn("{task.fields[loss]}"), TimeRemainingColumn()
-    console = VisibleConsole(stderr=True)
-    return Progress(*first, *last, console=console, disable=not shown, transient=True)
