@@ -21,7 +21,7 @@ from latentarm.arms.ros2 import link
 from latentarm.arms.ros2.gripper import Ros2Gripper
 from latentarm.arms.ros2.joint_states import ClockJumpedError, JointStates, StampClock, UnusableStatesError
 from latentarm.arms.ros2.options import read_options
-from latentarm.arms.ros2.watchdog_state import parse_state
+from latentarm.arms.ros2.session import parse_state
 from latentarm.control.clock import MonotonicClock
 from latentarm.core.errors import UserError
 from latentarm.core.types import Command, GripperCommand

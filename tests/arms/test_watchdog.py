@@ -14,7 +14,7 @@ from rosbridge_server import load_watchdog
 
 from latentarm.arms.contract import STOPS_AFTER_S
 from latentarm.arms.ros2 import arm as driver
-from latentarm.arms.ros2.watchdog_state import VERSION, parse_state
+from latentarm.arms.ros2.session import VERSION, parse_state
 
 dog = load_watchdog()
 

@@ -14,8 +14,7 @@ from latentarm.core.errors import UserError
 from latentarm.core.types import Command, FloatArray, GripperCommand
 from latentarm.robots.robot import Robot
 from latentarm.testing.guiding_laws import GuidingLaws
-from latentarm.testing.killed import Driving
-from latentarm.testing.real_arm_rig import HOLD_S, StandIn
+from latentarm.testing.real_arm_rig import HOLD_S, Driving, StandIn
 
 __all__ = ["RealArmContract", "StandIn"]
 QUICK_S = 0.005  # a call that does not wait for the arm takes no longer than this, s

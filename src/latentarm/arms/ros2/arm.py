@@ -11,10 +11,9 @@ import numpy as np
 from latentarm.arms.address import ArmAddress
 from latentarm.arms.contract import REASONS, ArmSpec, ArmStatus, finite_velocity
 from latentarm.arms.real import Findings, GuidableArm
-from latentarm.arms.ros2.feed import JointFeed
 from latentarm.arms.ros2.gripper import Ros2Gripper
 from latentarm.arms.ros2.inspection import inspect
-from latentarm.arms.ros2.joint_states import Measured
+from latentarm.arms.ros2.joint_states import JointFeed, Measured
 from latentarm.arms.ros2.link import Link, check_installed
 from latentarm.arms.ros2.options import read_options
 from latentarm.arms.ros2.session import Session

@@ -10,12 +10,11 @@ import numpy as np
 from latentarm.arms.contract import STOPS_AFTER_S
 from latentarm.arms.own_pose import compared, misfits
 from latentarm.arms.real import Fact, Findings
-from latentarm.arms.ros2.feed import JointFeed
+from latentarm.arms.ros2.joint_states import JointFeed
 from latentarm.arms.ros2.link import Link
 from latentarm.arms.ros2.options import Ros2Options
 from latentarm.arms.ros2.own_model import OwnModel
-from latentarm.arms.ros2.session import Session
-from latentarm.arms.ros2.watchdog_state import VERSION, WatchdogState
+from latentarm.arms.ros2.session import VERSION, Session, WatchdogState
 from latentarm.robots.kinematics.stillness import STILL_RAD_S
 from latentarm.robots.robot import Robot
 

@@ -112,10 +112,10 @@ class Controller:
         speeds = [*velocity.tolist(), *[0.0] * (7 - len(velocity))]
         self._ask(lambda: self._commands.vc_set_jointv(speeds, 1, duration_s), within_s=ANSWER_S)
 
-    def round_trips(self, times: int = 20) -> tuple[float, float]:
+    def round_trips(self) -> tuple[float, float]:
         """Median and longest time from a request to its answer, s."""
         spans: list[float] = []
-        for _ in range(times):
+        for _ in range(20):
             begun_s = time.monotonic()
             self.state()
             spans.append(time.monotonic() - begun_s)
