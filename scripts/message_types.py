@@ -1,4 +1,4 @@
-"""Write the types of the messages between pages and server, for `tsc` to check the page's JavaScript with.
+"""Write the types of messages and records, for `tsc` to check the page's JavaScript with.
 
 `make message-types` writes them; a test compares the file with what `message_types` returns. What each field
 means is documented where the server declares it.
@@ -13,10 +13,13 @@ from pydantic.json_schema import GenerateJsonSchema, models_json_schema
 from latentarm.web.protocol.learning_messages import LearningState
 from latentarm.web.protocol.page_messages import ClientMessage
 from latentarm.web.protocol.server_messages import Poses, Refused, State, Welcome
+from latentarm.web.records.drive_record import DriveRecord, Trace
+from latentarm.web.records.recordings import RecordingFile
 
 TARGET: Final = Path(__file__).parents[1] / "src/latentarm/web/pages/connection/messages.d.ts"
 
 _SERVER: Final = (Welcome, State, LearningState, Poses, Refused)
+_RECORDS: Final = (DriveRecord, Trace, RecordingFile)
 _PLAIN: Final = {
     "integer": "number",
     "number": "number",
@@ -35,10 +38,11 @@ class _Sent(GenerateJsonSchema):
 
 
 def message_types() -> str:
-    """TypeScript declarations of every message, made from the schemas that pydantic derives."""
+    """TypeScript declarations of every message and record, made from the schemas that pydantic derives."""
     client = tuple(_members(ClientMessage))
     _, schema = models_json_schema(
-        [(model, "validation") for model in client] + [(model, "serialization") for model in _SERVER],
+        [(model, "validation") for model in client]
+        + [(model, "serialization") for model in (*_SERVER, *_RECORDS)],
         schema_generator=_Sent,
     )
     unions = {"ClientMessage": client, "ServerMessage": _SERVER}

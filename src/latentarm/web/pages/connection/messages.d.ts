@@ -71,6 +71,38 @@ export interface DeletePose {
   name: string;
 }
 
+export interface DriveRecord {
+  version: 1;
+  id: string;
+  person: string | null;
+  title: string;
+  started: string;
+  time_s: number;
+  moving_s: number;
+  robot: string;
+  real: boolean;
+  task: string;
+  choice: string | null;
+  run: string | null;
+  profile: string | null;
+  modes: ("latent" | "assisted" | "end_effector")[];
+  inputs: string[];
+  input_s: Record<string, number> | null;
+  presses: number;
+  stops: number;
+  late_stops: number;
+  reasons: Record<string, number>;
+  way_m: number;
+  help: number | null;
+  help_level: string | null;
+  steps_done: number | null;
+  steps: number | null;
+  outcome: "success" | "failure" | null;
+  why: string | null;
+  ended: "reset" | "again" | "next" | "driver_changed" | "run_changed" | "server_ended" | "broken_off";
+  scene: string | null;
+}
+
 export interface DriverInput {
   type: "input";
   seq: number;
@@ -153,6 +185,11 @@ export interface Lesson {
 export interface Lost {
   thing: string;
   step: number;
+}
+
+export interface Mark {
+  t: number;
+  code: string;
 }
 
 export interface NamedPlace {
@@ -249,10 +286,28 @@ export interface Recorded {
   earlier: boolean;
 }
 
+export interface RecordedEpisode {
+  number: number;
+  task: string;
+  seconds: number;
+  person: string;
+  started: string;
+  complete: boolean;
+}
+
 export interface Recording {
   on: boolean;
   samples: number;
   episodes: number;
+  problem: Notice | null;
+}
+
+export interface RecordingFile {
+  name: string;
+  title: string;
+  bytes: number;
+  episodes: RecordedEpisode[];
+  in_use: boolean;
   problem: Notice | null;
 }
 
@@ -376,6 +431,25 @@ export interface TouchThing {
   type: "touch";
   thing: string;
   kind: "place" | "front" | "undo";
+}
+
+export interface Trace {
+  version: 1;
+  period_s: number;
+  t: number[];
+  q: number[][];
+  tool: [number, number, number][];
+  bodies: [number, number, number, number, number, number, number][][];
+  u: number[][];
+  width_m: (number | null)[];
+  things: TracedThings[];
+  marks: Mark[];
+}
+
+export interface TracedThings {
+  t: number;
+  poses: [number, number, number, number, number, number, number][];
+  grains: number[][] | null;
 }
 
 export interface Train {

@@ -10,10 +10,8 @@ import { figureWords, inputWords, outcomeWords, taskWords } from "./drive_words.
 import { attachReplay } from "./replay_panel.js";
 import { report } from "./report.js";
 
-/** @import {Notice} from "../connection/messages.js" */
+/** @import {RecordingFile} from "../connection/messages.js" */
 /** @import {Drive} from "./weeks.js" */
-
-/** @typedef {{name: string, title: string, bytes: number, episodes: {seconds: number, person: string}[], in_use: boolean, problem: Notice | null}} Recording */
 
 /** Drives that are listed at first, and more with each press. */
 const PAGE = 25;
@@ -126,7 +124,7 @@ async function open(drive) {
 
 async function showRecordings() {
   const { recordings } = await ask("GET", "/records/recordings");
-  const rows = /** @type {Recording[]} */ (recordings).map((one) => {
+  const rows = /** @type {RecordingFile[]} */ (recordings).map((one) => {
     const by = [...new Set(one.episodes.map(({ person }) => people[person] ?? person))].filter(Boolean).join(", ");
     const seconds = one.episodes.reduce((total, episode) => total + episode.seconds, 0);
     const figures = one.problem ? sayNotice(one.problem) : say("history.recorded", {

@@ -2,19 +2,8 @@
 
 import { between } from "../personalise/replay.js";
 
+/** @import {Trace} from "../connection/messages.js" */
 /** @typedef {{poses: number[][], grains: number[][]}} Standing */
-
-/**
- * @typedef {object} Trace as the server keeps it
- * @property {number} period_s
- * @property {number[]} t
- * @property {number[][]} tool
- * @property {number[][][]} bodies
- * @property {(number | null)[]} width_m
- * @property {{t: number, poses: number[][], grains: number[][] | null}[]} things
- * @property {{t: number, code: string}[]} marks
- */
-
 /** @typedef {{t: number, bodies: number[][], tool: number[], width_m: number | null, things: Standing | null, enabled: boolean, stopped: boolean}} Moment */
 
 const FRAME_MS = 33;

@@ -1,38 +1,10 @@
 /** Drives day by day or week by week. */
 
-/**
- * @typedef {object} Drive a `DriveRecord` of the server, and who stopped it
- * @property {string} id
- * @property {string | null} person
- * @property {string} title
- * @property {string} started
- * @property {number} time_s
- * @property {number} moving_s
- * @property {boolean} real whether a real arm was driven
- * @property {string} task
- * @property {string | null} choice
- * @property {string | null} run
- * @property {string[]} modes
- * @property {string[]} inputs
- * @property {Record<string, number> | null} input_s how long each was pushed, s; null where nobody measured that
- * @property {number} presses
- * @property {number} stops
- * @property {{person: number, page: number, arm: number}} stops_by
- * @property {number} way_m
- * @property {number | null} help
- * @property {string | null} help_level
- * @property {number | null} steps_done
- * @property {number | null} steps
- * @property {"success" | "failure" | null} outcome
- * @property {string} ended a code of what ended it
- * @property {string | null} scene
- */
+/** @import {DriveRecord} from "../connection/messages.js" */
 
-/**
- * @typedef {object} Period a day, or a week from Monday on
- * @property {string} first its first day, `YYYY-MM-DD`
- * @property {Drive[]} drives
- */
+/** A drive, and how often each stopped the arm. @typedef {DriveRecord & {stops_by: Record<"person" | "page" | "arm", number>}} Drive */
+
+/** A day, or a week from Monday on, with its first day, `YYYY-MM-DD`. @typedef {{first: string, drives: Drive[]}} Period */
 
 const DAY_MS = 24 * 3600 * 1000;
 /** Weeks in a chart: the last ones. */
