@@ -21,11 +21,7 @@ export function enableButtonOf({ open, engaged, state, welcome }) {
   return { label: "driver.ask", does: asks === null ? "ask" : null };
 }
 
-/**
- * @param {HTMLElement} button
- * @param {Connection} connection
- * @param {() => void} enable
- */
+/** @param {HTMLElement} button @param {Connection} connection @param {() => void} enable */
 export function attachEnableButton(button, connection, enable) {
   const show = () => {
     const { label, does } = enableButtonOf(connection);

@@ -7,10 +7,7 @@ import { say } from "../layout/words.js";
 /** @import {DriverLease} from "./driver_lease.js" */
 /** @import {Choice} from "../inputs/scanner.js" */
 
-/**
- * @param {Connection} connection
- * @param {DriverLease} lease
- */
+/** @param {Connection} connection @param {DriverLease} lease */
 export function attachLostArm(connection, lease) {
   const button = byId("lost-again");
   const free = () => connection.driving || connection.state?.driver === null;

@@ -19,10 +19,7 @@ const OF_A_DRIVE = [
 /** @typedef {{you: boolean, own: OwnPages, late: "page" | "connection" | null, absent: boolean}} Reader
  *   whether they drive, which pages are theirs, what was too slow where an input of theirs was late, and whether it was before they came */
 
-/**
- * @param {Notice} notice
- * @param {Reader} reader
- */
+/** @param {Notice} notice @param {Reader} reader */
 export function sayTo(notice, { you, own, late, absent }) {
   const { code, parameters } = notice;
   if (DONE_BY_A_PAGE.includes(code) && own.has(parameters.page)) return say(/** @type {WordKey} */ (`yours.${code}`));

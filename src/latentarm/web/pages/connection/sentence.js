@@ -78,12 +78,7 @@ function causeOf({ held_back, zone }) {
   return held_back && say(`held_back.${held_back}`, { zone: zoneWords(zone ?? "") });
 }
 
-/**
- * @param {State} state
- * @param {Heard} heard
- * @param {PageState} page
- * @returns {Words & {also?: WordKey}}
- */
+/** @param {State} state @param {Heard} heard @param {PageState} page @returns {Words & {also?: WordKey}} */
 function driverWords(state, heard, page) {
   const { phase, note, reason, returning, bound_for, guiding } = state;
   if (guiding === "on") return { key: "status.guided" };

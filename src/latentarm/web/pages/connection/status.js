@@ -31,11 +31,7 @@ export function isTrouble(state) {
   return state?.phase === "disengaged" && [state.note, state.reason].some((why) => why && TROUBLE.includes(why.code));
 }
 
-/**
- * @param {{line: HTMLElement, text: HTMLElement}} parts
- * @param {Connection} connection
- * @param {Pick<Settings, "values">} settings
- */
+/** @param {{line: HTMLElement, text: HTMLElement}} parts @param {Connection} connection @param {Pick<Settings, "values">} settings */
 export function attachStatus(parts, connection, settings) {
   /** @type {HaltReason | null} */
   let halted = null;

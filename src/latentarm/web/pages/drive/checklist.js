@@ -9,10 +9,7 @@ import { say } from "../layout/words.js";
 /** @import {Connection} from "../connection/connection.js" */
 /** @import {Choice} from "../inputs/scanner.js" */
 
-/**
- * @param {{panel: HTMLElement, facts: HTMLElement, boxes: HTMLInputElement[]}} parts
- * @param {Connection} connection
- */
+/** @param {{panel: HTMLElement, facts: HTMLElement, boxes: HTMLInputElement[]}} parts @param {Connection} connection */
 export function attachChecklist(parts, connection) {
   const done = () => !connection.welcome?.real || parts.boxes.every((box) => box.checked);
   let lost = false;

@@ -37,11 +37,7 @@ function withoutHelp(mode) {
   return mode === "assisted" ? "latent" : mode;
 }
 
-/**
- * @param {{mode: HTMLElement, axes: HTMLElement}} parts the two fieldsets
- * @param {Connection} connection
- * @param {Settings} settings
- */
+/** @param {{mode: HTMLElement, axes: HTMLElement}} parts the two fieldsets @param {Connection} connection @param {Settings} settings */
 export function attachModes(parts, connection, settings) {
   let askedAt = -Infinity;
 

@@ -48,11 +48,7 @@ export function outcomeWords({ outcome, why, time_s }) {
   return say("task.failure", { what: say(`task.failed.${why.code}`, { thing: theThing(why.thing) }) });
 }
 
-/**
- * Why another run cannot be begun now; empty if it can.
- *
- * @param {Pick<State, "you" | "phase">} state
- */
+/** Why another run cannot be begun now; empty if it can. @param {Pick<State, "you" | "phase">} state */
 export function blockedWords({ you, phase }) {
   if (!you) return say("task.blocked.watching");
   if (phase === "ready" || phase === "moving") return say("task.blocked.engaged");
@@ -73,12 +69,7 @@ export function placeOf(name, welcome, state) {
   return welcome.goals.find((goal) => goal.name === name)?.position ?? null;
 }
 
-/**
- * The thing of the current step; null where nothing is left to do.
- *
- * @param {Welcome} welcome
- * @param {State} state
- */
+/** The thing of the current step; null where nothing is left to do. @param {Welcome} welcome @param {State} state */
 export function wantedThing(welcome, state) {
   return state.task.outcome === null ? welcome.task.steps[stepNow(state.task)]?.thing ?? null : null;
 }

@@ -19,10 +19,7 @@ export function seenWords({ name, seen, age_s, source }) {
   return capital(say(`things.${seen}`, { thing: thingWords(name), seconds: age_s }));
 }
 
-/**
- * @param {{section: HTMLElement, list: HTMLElement}} parts
- * @param {Connection} connection
- */
+/** @param {{section: HTMLElement, list: HTMLElement}} parts @param {Connection} connection */
 export function attachThingsHere(parts, connection) {
   const seen = () => connection.state?.things?.seen ?? [];
   const choices = () => !connection.driving ? [] : seen().flatMap(({ name, seen: how }) => KINDS.filter((kind) => kind === "place" || how !== "unseen").map((kind) => (

@@ -34,12 +34,7 @@ export function centimetresToGo({ shift_m }) {
   return Math.round(100 * Math.hypot(...shift_m));
 }
 
-/**
- * The part that a direction moves, and which way: 1 or -1.
- *
- * @param {string} pair
- * @param {number[]} sent what is sent for it
- */
+/** The part that a direction moves, and which way: 1 or -1. @param {string} pair @param {number[]} sent what is sent for it */
 export function movedPart(pair, sent) {
   const axis = Math.abs(sent[1] ?? 0) > Math.abs(sent[0]) ? 1 : 0;
   return { part: PAIRS[pair][axis], way: Math.sign(sent[axis]) };

@@ -22,10 +22,7 @@ export function wayBackOf({ driving, engaged, state }) {
   return { does: "begin", why: "way_back.help" };
 }
 
-/**
- * @param {{button: HTMLElement, why: HTMLElement}} parts
- * @param {Connection} connection
- */
+/** @param {{button: HTMLElement, why: HTMLElement}} parts @param {Connection} connection */
 export function attachWayBack(parts, connection) {
   const press = () => {
     const { does } = wayBackOf(connection);

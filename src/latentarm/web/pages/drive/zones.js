@@ -6,10 +6,7 @@ import { say, sayList, sayNumber } from "../layout/words.js";
 
 /** @import {Connection} from "../connection/connection.js" */
 
-/**
- * @param {HTMLElement} text
- * @param {Connection} connection
- */
+/** @param {HTMLElement} text @param {Connection} connection */
 export function attachZones(text, connection) {
   connection.addEventListener("welcome", () => {
     const { zones, keep_out: solids } = connection.welcome ?? { zones: [], keep_out: [] };

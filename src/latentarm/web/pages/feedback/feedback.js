@@ -9,11 +9,7 @@ import { play } from "./sounds.js";
 /** Lengths of what is felt and of the pauses between, ms. @type {Partial<Record<Occasion, number[]>>} */
 const SHAKES = { stopped: [250], success: [90, 70, 90] };
 
-/**
- * @param {Connection} connection
- * @param {Settings} settings
- * @returns {{tell: (occasion: Occasion) => void}}
- */
+/** @param {Connection} connection @param {Settings} settings @returns {{tell: (occasion: Occasion) => void}} */
 export function attachFeedback(connection, settings) {
   const tell = (/** @type {Occasion} */ occasion) => {
     const { sounds, vibration } = settings.values;

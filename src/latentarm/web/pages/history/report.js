@@ -17,11 +17,7 @@ const [MOST_TASKS, MOST_DRIVES] = [4, 6];
 /** @type {Figure[]} */
 const TASK_FIGURES = ["drives", "success", "time", "stops_person"];
 
-/**
- * @param {Drive[]} drives the newest first
- * @param {string} name whom it is about
- * @returns {HTMLElement[]}
- */
+/** @param {Drive[]} drives the newest first @param {string} name whom it is about @returns {HTMLElement[]} */
 export function report(drives, name) {
   const date = (/** @type {string} */ iso) => sayTime(iso, { dateStyle: "medium" });
   const head = create("h2", { textContent: say("report.title_of", { name }) });

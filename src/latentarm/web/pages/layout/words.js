@@ -53,11 +53,7 @@ export function sayName(name) {
   return typeof name === "number" ? say("driver.guest", { number: name }) : name;
 }
 
-/**
- * A notice of the server: a code with its parameters, of which `because` is the code of another notice.
- *
- * @param {Notice} notice
- */
+/** A notice of the server: a code with its parameters, of which `because` is the code of another notice. @param {Notice} notice */
 export function sayNotice({ code, parameters }) {
   const spoken = { ...parameters };
   if ("name" in spoken) spoken.name = sayName(spoken.name);

@@ -10,11 +10,7 @@ import { say, sayNotice } from "../layout/words.js";
 /** The profile's name while it is tried. */
 export const TRIAL = ".trial";
 
-/**
- * @param {Connection} connection
- * @param {Settings} settings
- * @param {DriverLease} lease
- */
+/** @param {Connection} connection @param {Settings} settings @param {DriverLease} lease */
 export function attachTrial(connection, settings, lease) {
   let keeping = false;
   connection.addEventListener("learning", () => {
@@ -35,13 +31,7 @@ export function attachTrial(connection, settings, lease) {
   };
 }
 
-/**
- * The banner on the Drive page.
- *
- * @param {Connection} connection
- * @param {Settings} settings
- * @param {DriverLease} lease
- */
+/** The banner on the Drive page. @param {Connection} connection @param {Settings} settings @param {DriverLease} lease */
 export function attachTrialBanner(connection, settings, lease) {
   const trial = attachTrial(connection, settings, lease);
   byId("trial-keep").addEventListener("click", trial.keep);

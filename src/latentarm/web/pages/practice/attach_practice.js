@@ -9,11 +9,7 @@ import { Practice, STEPS } from "./steps.js";
 /** @import {Choice} from "../inputs/scanner.js" */
 /** @import {Settings} from "../settings/settings.js" */
 
-/**
- * @param {Connection} connection
- * @param {DriveInput} input
- * @param {Settings} settings
- */
+/** @param {Connection} connection @param {DriveInput} input @param {Settings} settings */
 export function attachPractice(connection, input, settings) {
   const panel = byId("practice");
   const list = byId("practice-steps");

@@ -10,12 +10,7 @@ const SHORT_SHARE = 0.5;
 /** Names of the axes of the stick, in the order in which the server counts them. */
 const AXES = /** @type {const} */ (["across", "along"]);
 
-/**
- * The verdict, and then what could be better.
- *
- * @param {Lesson} lesson
- * @returns {{good: boolean, text: string}[]}
- */
+/** The verdict, and then what could be better. @param {Lesson} lesson @returns {{good: boolean, text: string}[]} */
 export function lessonWords({ short, speeds_m_s, weak }) {
   const all = speeds_m_s.length;
   const rows = [];

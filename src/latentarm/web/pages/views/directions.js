@@ -8,10 +8,7 @@ const LEAST_M = 0.01;
 /** A part of a motion is named where it is at least this share of the largest part. */
 const NAMED_SHARE = 0.4;
 
-/**
- * @param {number[]} motion in the arm's base frame, m: x away from the base, y to its left, z up
- * @param {Values["seat"]} seat
- */
+/** @param {number[]} motion in the arm's base frame, m: x away from the base, y to its left, z up @param {Values["seat"]} seat */
 export function motionWords(motion, seat) {
   const side = seat === "behind" ? 1 : -1;
   const [x, y, z] = motion;

@@ -28,10 +28,7 @@ const NAMED_PX = 300;
 const MARKED_MS = 500;
 
 export class Drawing {
-  /**
-   * @param {{canvas: HTMLCanvasElement, front: HTMLElement, side: HTMLElement}} elements
-   * @param {ArmScene} scene
-   */
+  /** @param {{canvas: HTMLCanvasElement, front: HTMLElement, side: HTMLElement}} elements @param {ArmScene} scene */
   constructor(elements, scene) {
     this._scene = scene;
     this._views = new Views(elements.canvas, elements, scene);

@@ -23,10 +23,7 @@ const CLEAR = 0.95;
 const STEPPED_BACK = 0.3;
 
 export class Ghosts {
-  /**
-   * @param {THREE.Scene} scene
-   * @param {Labels} labels
-   */
+  /** @param {THREE.Scene} scene @param {Labels} labels */
   constructor(scene, labels) {
     this._labels = labels;
     this._ghosts = DIRECTION_NAMES.map(drawn);

@@ -66,11 +66,7 @@ function shortened(path, share) {
   return points.length > 1 ? points : path.slice(0, 2);
 }
 
-/**
- * The list next to the views: the same in words.
- *
- * @param {HTMLElement} list
- */
+/** The list next to the views: the same in words. @param {HTMLElement} list */
 export function attachPredictions(list) {
   const rows = DIRECTION_NAMES.map((direction) => {
     const sign = create("span", { className: "ghost-mark", textContent: MARKS[direction] });
@@ -82,11 +78,7 @@ export function attachPredictions(list) {
     return { direction, item, words };
   });
   return {
-    /**
-     * @param {Paths} paths
-     * @param {Direction[]} pressed
-     * @param {(motion: number[], direction: Direction) => string} describe
-     */
+    /** @param {Paths} paths @param {Direction[]} pressed @param {(motion: number[], direction: Direction) => string} describe */
     show(paths, pressed, describe) {
       for (const { direction, item, words } of rows) {
         const path = paths[direction];

@@ -158,10 +158,7 @@ function rodOf(radius, length) {
   return new THREE.CapsuleGeometry(radius, length, ROUND.cap, ROUND.about).rotateX(Math.PI / 2);
 }
 
-/**
- * @param {THREE.Object3D} object
- * @param {number[]} pose x, y, z (m) and a quaternion w, x, y, z
- */
+/** @param {THREE.Object3D} object @param {number[]} pose x, y, z (m) and a quaternion w, x, y, z */
 export function place(object, [x, y, z, w, i, j, k]) {
   object.position.set(x, y, z);
   object.quaternion.set(i, j, k, w);
