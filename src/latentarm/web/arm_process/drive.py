@@ -28,28 +28,10 @@ from latentarm.web.arm_process.pose_motion import AT_START_RAD, PoseMotion
 from latentarm.web.arm_process.steering import Steering
 from latentarm.web.arm_process.task_run import TaskRun
 from latentarm.web.arm_process.thing_poses import ThingPoses, follow
+from latentarm.web.protocol import orders
 from latentarm.web.protocol.channel import Channel, parse_stop
 from latentarm.web.protocol.notice import Notice, notice_of_stop
-from latentarm.web.protocol.orders import (
-    BeginTask,
-    Change,
-    ChooseHelp,
-    ChooseMode,
-    ChooseProfile,
-    ChooseRun,
-    Enable,
-    Guide,
-    HelpLevel,
-    KeepGuiding,
-    ModeName,
-    Order,
-    PoseToGoTo,
-    Reconnect,
-    Record,
-    Reset,
-    Return,
-    TouchThing,
-)
+from latentarm.web.protocol.orders import Change, HelpLevel, ModeName, Order, PoseToGoTo
 from latentarm.web.protocol.report import HeldBack, Phase, Report
 
 ENABLE_WAITS_S: Final = 0.3
@@ -182,7 +164,7 @@ class Drive:
         idle = self._step.stopped is not None and self._step.at_rest and not self._disengaged.guided
         if calls.large and idle and not self._writer.on and self.change is None:
             # A file has everything from the start of its loop: the same is driven on, in another file.
-            self._change_to(ChooseProfile(name=self._setup.spec.profile))
+            self._change_to(orders.ChooseProfile(name=self._setup.spec.profile))
 
     def _obey(self, record: StepRecord) -> None:
         if self._channel.stop.version != self._stop_version:
@@ -223,44 +205,44 @@ class Drive:
     def _carry_out(self, order: Order, record: StepRecord) -> None:
         spec = self._setup.spec
         match order:
-            case Enable(driver=driver, stops=stops):
+            case orders.Enable(driver=driver, stops=stops):
                 # An Enable from before the newest Stop is ignored, whichever arrives first.
                 if stops == self._stop_version:
                     self._enable_driver = driver
                     self._enable_until_s = record.time_s + ENABLE_WAITS_S
-            case ChooseMode(mode=mode, axes=axes):
+            case orders.ChooseMode(mode=mode, axes=axes):
                 if mode in self._setup.modes:
                     self._choose(mode, self._steering.axes if axes is None else axes, self._steering.help)
-            case Return(on=True, pose=pose):
+            case orders.Return(on=True, pose=pose):
                 self._set_out(record, pose)
-            case Return():
+            case orders.Return():
                 self._end_way_back()
-            case ChooseHelp(level=level):
+            case orders.ChooseHelp(level=level):
                 self._choose_help(level)
-            case Record(on=True):
+            case orders.Record(on=True):
                 if self._disengaged.records(order):
                     self._episodes.begin(order)
-            case Record():
+            case orders.Record():
                 self._episodes.end_at_rest()
-            case Guide(on=True, stops=stops):
+            case orders.Guide(on=True, stops=stops):
                 if stops == self._stop_version:
                     self._note_until_s = -math.inf
                     self._disengaged.begin_guiding(record.time_s)
-            case Guide():
+            case orders.Guide():
                 self._end_guiding(Notice(code="guiding_ended"))
-            case KeepGuiding(gripper=ask):
+            case orders.KeepGuiding(gripper=ask):
                 self._disengaged.keep_guiding(record.time_s, ask)
-            case TouchThing(thing=thing, kind=kind):
+            case orders.TouchThing(thing=thing, kind=kind):
                 if not self._step.at_rest or not self._things.touch(thing, kind):
                     self._say(Notice(code="touch_refused"))
-            case Reconnect():
+            case orders.Reconnect():
                 if self._disengaged.connect_again():
                     self._change_to(order)
-            case ChooseProfile() if (order.name, spec.seated(order.seat)) == (spec.profile, spec.seat):
+            case orders.ChooseProfile() if (order.name, spec.seated(order.seat)) == (spec.profile, spec.seat):
                 pass
-            case BeginTask(choice=int(choice)) if not 0 <= choice < len(self._setup.todo.choices):
+            case orders.BeginTask(choice=int(choice)) if not 0 <= choice < len(self._setup.todo.choices):
                 pass
-            case ChooseProfile() | ChooseRun() | Reset() | BeginTask():
+            case orders.ChooseProfile() | orders.ChooseRun() | orders.Reset() | orders.BeginTask():
                 self._change_to(order)
 
     def _change_to(self, change: Change) -> None:
@@ -268,7 +250,7 @@ class Drive:
         if self._step.stopped is None or not self._step.at_rest or self._disengaged.guided:
             self._say(Notice(code="stop_first"))
             return
-        if not isinstance(change, ChooseProfile):
+        if not isinstance(change, orders.ChooseProfile):
             # An episode is one motion of one arm: it ends before the arm is put somewhere else.
             self._episodes.end()
         self.change = change

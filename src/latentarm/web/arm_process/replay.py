@@ -18,19 +18,11 @@ from latentarm.core.errors import UserError
 from latentarm.core.exact_json import of_json
 from latentarm.core.types import FloatArray, GripperReading, Input, Reading, Stop
 from latentarm.core.untrusted.opening import opened
+from latentarm.web.arm_process import incident
 from latentarm.web.arm_process.drive_setup import DriveSetup
-from latentarm.web.arm_process.incident import (
-    FOLDER,
-    SUFFIX,
-    VERSION,
-    computer,
-    incident_files,
-    rebuild,
-    unpack,
-)
 
 ELSEWHERE_RAD_S: Final = 1e-9  # velocities may differ by this much on another computer, rad/s
-_IN_REPORT: Final = re.compile(rf"{FOLDER}/[\w-]+{re.escape(SUFFIX)}")
+_IN_REPORT: Final = re.compile(rf"{incident.FOLDER}/[\w-]+{re.escape(incident.SUFFIX)}")
 
 
 @final
@@ -102,7 +94,7 @@ def replay_all(path: Path) -> dict[str, dict[str, Any]]:
     Raises UserError as `replay`, and where a report has none, or is damaged.
     """
     if path.suffix != ".zip" or path.is_dir():
-        file = incident_files(path)[-1]
+        file = incident.incident_files(path)[-1]
         return {file.name: replay(file)}
     try:
         with opened(path, 4 * MOST_FILE_BYTES) as content, ZipFile(content) as packed:
@@ -134,18 +126,18 @@ def replay(path: Path) -> dict[str, Any]:
     file was closed. Raises UserError if it is none, is damaged, or names what is missing here or differs.
     """
     lines = read_calls(path)
-    head, here, complete = next(lines), computer(), False
-    if head.get("incident") != VERSION:
+    head, here, complete = next(lines), incident.computer(), False
+    if head.get("incident") != incident.VERSION:
         raise UserError(f"{path} was written by another version of latentarm: replay it with that one.")
     again: Replay | None = None
     with TemporaryDirectory() as folder, threadpool_limits(1):
         for line in lines:
             if "file" in line:
-                unpack(line, Path(folder), str(path))
+                incident.unpack(line, Path(folder), str(path))
             elif "complete" in line:
                 complete = True
             else:
-                again = again or Replay(rebuild(head, Path(folder), str(path)))
+                again = again or Replay(incident.rebuild(head, Path(folder), str(path)))
                 _make(again, line, path)
     if again is None:
         raise UserError(f"{path} ends before the arm was told anything: there is nothing to replay.")

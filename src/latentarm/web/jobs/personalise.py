@@ -10,15 +10,9 @@ from pydantic import Field, TypeAdapter
 from latentarm.alignment.contract import Seat
 from latentarm.runs.person import Kind, Question, Reply, Respondent
 from latentarm.web.jobs.job import Job, Wire
+from latentarm.web.protocol import personalise_messages as messages
 from latentarm.web.protocol.notice import Notice
-from latentarm.web.protocol.personalise_messages import (
-    AnswerQuestion,
-    Personalise,
-    QuestionBefore,
-    QuestionReply,
-    ShownMotion,
-    SkipQuestion,
-)
+from latentarm.web.protocol.personalise_messages import Personalise, QuestionReply, ShownMotion
 from latentarm.web.protocol.scene import pose_of
 
 _FRAMES: Final = 16  # poses along a motion; pages interpolate
@@ -113,13 +107,13 @@ class PersonOnPage(Respondent):
             motion=shown_motion(question),
         )
         match self._wire.hear(_REPLIES):
-            case QuestionBefore():
+            case messages.QuestionBefore():
                 self._behind = max(self._behind - 1, 0)
                 return "back"
-            case SkipQuestion():
+            case messages.SkipQuestion():
                 self._behind += 1
                 return None
-            case AnswerQuestion(u=u):
+            case messages.AnswerQuestion(u=u):
                 self._behind += 1
                 named = np.array(u)[: question.axes]
                 return np.pad(named, (0, question.axes - len(named)))
