@@ -7,10 +7,10 @@ import io
 import re
 import zipfile
 import zlib
-from collections.abc import Generator, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Final
+from typing import Final, final
 
 from latentarm.core.errors import UserError
 from latentarm.core.files import written_whole
@@ -42,6 +42,18 @@ _DAMAGE: Final = (zipfile.BadZipFile, zlib.error, OSError, EOFError, ValueError,
 _FIRST_DATE: Final = (1980, 1, 1, 0, 0, 0)
 
 
+@final
+@dataclass(frozen=True)
+class Brought:
+    """A person from a zip, with all that this version knows of them."""
+
+    person: PersonRecord
+    poses: tuple[SavedPose, ...]  # older zips have none
+    drives: list[tuple[DriveRecord, bytes | None]]  # each with its compressed trace
+    scenes: dict[str, bytes]  # by their places among the scenes
+    profiles: list[dict[str, bytes]]  # the files of each of the person's profiles, by name
+
+
 def write_zip(path: Path, contents: Iterator[tuple[str, bytes]]) -> None:
     """Write a zip from names and contents. Raises UserError if it cannot be written."""
     with disk_errors(path, "written"), zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
@@ -49,51 +61,21 @@ def write_zip(path: Path, contents: Iterator[tuple[str, bytes]]) -> None:
             archive.writestr(zipfile.ZipInfo(name, _FIRST_DATE), content, zipfile.ZIP_DEFLATED)
 
 
-@contextmanager
-def _refusing_damage() -> Generator[None]:
-    """Refuse what is damaged, encrypted, too large, or no export."""
+def read_zip(content: bytes) -> Brought:
+    """Read and check a zip. Raises NoticeError if it is damaged, encrypted, too large, or no export."""
     try:
-        yield
+        with zipfile.ZipFile(io.BytesIO(content)) as archive:
+            entries = archive.infolist()
+            if len(entries) > _MOST_FILES or sum(one.file_size for one in entries) > _UNPACKED_LIMIT:
+                raise NoticeError("import_invalid")
+            files = {one.filename: _read(archive, one) for one in entries if _limit(one.filename)}
+        person = parse_record(PersonRecord, files[PERSON_NAME], PERSON_NAME)
+        poses = parse_record(PosesRecord, files[POSES_NAME], POSES_NAME).poses if POSES_NAME in files else ()
+        drives = [_drive(files, name) for name in files if _DRIVE.fullmatch(name)]
     except (*_DAMAGE, UserError) as error:
         raise NoticeError("import_invalid") from error
-
-
-def read_zip(content: bytes) -> dict[str, bytes]:
-    """The files of such a zip that this version knows, by name."""
-    with _refusing_damage(), zipfile.ZipFile(io.BytesIO(content)) as archive:
-        entries = archive.infolist()
-        if len(entries) > _MOST_FILES or sum(one.file_size for one in entries) > _UNPACKED_LIMIT:
-            raise NoticeError("import_invalid")
-        known = [one for one in entries if _limit(one.filename)]
-        return {one.filename: _read(archive, one) for one in known}
-
-
-def person_of(files: Mapping[str, bytes]) -> PersonRecord:
-    """The person of a zip."""
-    with _refusing_damage():
-        return parse_record(PersonRecord, files[PERSON_NAME], PERSON_NAME)
-
-
-def poses_of(files: Mapping[str, bytes]) -> tuple[SavedPose, ...]:
-    """The saved poses of a zip; older ones have none."""
-    content = files.get(POSES_NAME)
-    if content is None:
-        return ()
-    with _refusing_damage():
-        return parse_record(PosesRecord, content, POSES_NAME).poses
-
-
-def drives_of(files: Mapping[str, bytes]) -> list[tuple[DriveRecord, bytes | None]]:
-    """The drives of a zip, checked, each with its compressed trace."""
-    found: list[tuple[DriveRecord, bytes | None]] = []
-    with _refusing_damage():
-        for name, content in files.items():
-            if _DRIVE.fullmatch(name):
-                trace = files.get(name.removesuffix(".json") + TRACE)
-                if trace is not None:
-                    checked_trace(trace, name)
-                found.append((parse_record(DriveRecord, content, name), trace))
-    return found
+    profiles = [_within(files, f"{PROFILES}{index}/") for index, _ in enumerate(person.profiles)]
+    return Brought(person, poses, drives, _within(files, SCENES), profiles)
 
 
 def write_drives(drives: list[tuple[DriveRecord, bytes | None]], folder: Path, person: str) -> None:
@@ -106,19 +88,16 @@ def write_drives(drives: list[tuple[DriveRecord, bytes | None]], folder: Path, p
         write_record(drive.model_copy(update={"id": path.stem, "person": person}), path)
 
 
-def scenes_of(files: Mapping[str, bytes]) -> dict[str, bytes]:
-    """Scenes of a zip by their places among the scenes."""
-    return {name.removeprefix(SCENES): content for name, content in files.items() if _SCENE.fullmatch(name)}
+def _drive(files: Mapping[str, bytes], name: str) -> tuple[DriveRecord, bytes | None]:
+    trace = files.get(name.removesuffix(".json") + TRACE)
+    if trace is not None:
+        checked_trace(trace, name)
+    return parse_record(DriveRecord, files[name], name), trace
 
 
-def profile_of(files: Mapping[str, bytes], index: int) -> dict[str, bytes]:
-    """Files of a person's profile by name; ``index`` is into `PersonRecord.profiles`."""
-    start = f"{PROFILES}{index}/"
-    return {
-        name.removeprefix(start): content
-        for name, content in files.items()
-        if name.startswith(start) and _PROFILE.fullmatch(name)
-    }
+def _within(files: Mapping[str, bytes], folder: str) -> dict[str, bytes]:
+    """The files in a folder, by their places in it."""
+    return {name.removeprefix(folder): content for name, content in files.items() if name.startswith(folder)}
 
 
 def _limit(name: str) -> int:

@@ -13,21 +13,10 @@ from latentarm.core.untrusted.opening import read_bytes
 from latentarm.demonstrations.folders import staged_folder
 from latentarm.models.saving import WEIGHTS_LIMIT
 from latentarm.web.protocol.notice import Message
+from latentarm.web.records import person_zip
 from latentarm.web.records.drive_log import Logged
 from latentarm.web.records.drives import TRACE, Drives, Wanted
 from latentarm.web.records.people import PERSON_NAME, KeptProfile, People, PersonRecord
-from latentarm.web.records.person_zip import (
-    PROFILES,
-    SCENES,
-    drives_of,
-    person_of,
-    poses_of,
-    profile_of,
-    read_zip,
-    scenes_of,
-    write_drives,
-    write_zip,
-)
 from latentarm.web.records.poses import POSES_NAME, PosesRecord, read_poses, write_poses
 from latentarm.web.records.record_files import Calendar, disk_errors, new_id
 from latentarm.web.records.recordings import Recordings
@@ -101,7 +90,7 @@ class Records:
         known = self.people.known(person)
         path = self._folder / f".export-{new_id()}.zip"
         try:
-            write_zip(path, self._everything(known))
+            person_zip.write_zip(path, self._everything(known))
         except UserError:
             path.unlink(missing_ok=True)
             raise
@@ -109,31 +98,27 @@ class Records:
 
     def bring(self, content: bytes) -> Imported:
         """Import a person from an `export`, under a new id."""
-        files = read_zip(content)
-        brought, drives, poses = person_of(files), drives_of(files), poses_of(files)
+        brought = person_zip.read_zip(content)
+        profiles = brought.person.profiles
 
         def write(folder: Path, person: str) -> None:
-            write_drives(drives, folder, person)
-            if poses:
-                write_poses(folder, poses)
+            person_zip.write_drives(brought.drives, folder, person)
+            if brought.poses:
+                write_poses(folder, brought.poses)
 
-        profiles = brought.profiles
         with self._scenes_lock:
-            for place, scene in scenes_of(files).items():
+            for place, scene in brought.scenes.items():
                 self.scenes.take(place, scene)
-            person = self.people.adopt(
-                brought.model_copy(update={"profiles": ()}),
-                write,
-            )
+            person = self.people.adopt(brought.person.model_copy(update={"profiles": ()}), write)
             self.drives.adopt(person.id)
         taken = [
-            self._take_profile(person.id, profile, profile_of(files, index))
-            for index, profile in enumerate(profiles)
+            self._take_profile(person.id, profile, files)
+            for profile, files in zip(profiles, brought.profiles, strict=True)
         ]
         return Imported(
             person=person.id,
             name=person.name,
-            drives=len(drives),
+            drives=len(brought.drives),
             profiles=sum(taken),
             left_out=len(taken) - sum(taken),
         )
@@ -185,10 +170,10 @@ class Records:
             name: content for scene in sorted(scenes) for name, content in self.scenes.files(scene).items()
         }
         for name, content in places.items():
-            yield f"{SCENES}{name}", content
+            yield f"{person_zip.SCENES}{name}", content
         for index, folder in enumerate(profiles.values()):
             for file in sorted(folder.iterdir()):
-                yield f"{PROFILES}{index}/{file.name}", read_bytes(file, WEIGHTS_LIMIT)
+                yield f"{person_zip.PROFILES}{index}/{file.name}", read_bytes(file, WEIGHTS_LIMIT)
         episodes = [{"file": name, **one.model_dump()} for name, one in self.recordings.of_person(person.id)]
         yield "recordings.json", json.dumps(episodes, indent=1).encode()
 
