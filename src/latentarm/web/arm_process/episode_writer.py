@@ -2,8 +2,9 @@
 
 import math
 import threading
-from dataclasses import dataclass
+from collections.abc import Callable
 from datetime import datetime
+from functools import partial
 from pathlib import Path
 from queue import Empty, Full, Queue
 from typing import Final, final
@@ -23,17 +24,7 @@ STILL_RAD: Final = 0.01
 
 _MOST_WAITING: Final = 6000  # samples that may wait for the disk: a minute
 _CHECK_S: Final = 1.0
-
-_CLOSE: Final = "close"
-_DROP: Final = "drop"
-
-
-@final
-@dataclass(frozen=True)
-class _End:
-    """The episode ends; ``device``: kinds of input device that it was driven with."""
-
-    device: str
+_Work = Callable[[Recorder], object]
 
 
 @final
@@ -51,7 +42,7 @@ class EpisodeWriter:
         self._limits = limits
         self._path = self._new_path()
         self._untrusted: Stop | None = None
-        self._waiting: Queue[StepRecord | EpisodeHeader | _End | str] = Queue(_MOST_WAITING)
+        self._waiting: Queue[_Work | None] = Queue(_MOST_WAITING)  # None closes the journal
         self._thread: threading.Thread | None = None
         self.on = False  # whether an episode is under way
         self._samples = 0
@@ -88,7 +79,7 @@ class EpisodeWriter:
             self._lost, self._path, self._episodes = False, self._new_path(), 0
         self.on, self._samples = True, 0
         self._first, self._moved, self._shadow = None, False, header.provenance.shadow
-        self._put(header)
+        self._put(lambda recorder: recorder.begin_episode(header))
         if self._thread is None or not self._thread.is_alive():
             self._thread = threading.Thread(target=self._write, name="recording", daemon=True)
             self._thread.start()
@@ -115,7 +106,7 @@ class EpisodeWriter:
             turned = np.abs(record.state - self._first).max()
             self._moved |= bool(turned > STILL_RAD) or record.command.gripper is not None
             self._moved |= self._shadow and bool(record.command.velocity.any())
-            self._put(record)
+            self._put(lambda recorder: recorder.recording and recorder.record(record))
 
     def end(self, device: str = "") -> None:
         """End the episode, if one is under way; ``device``: kind of input device that it was driven with."""
@@ -123,20 +114,20 @@ class EpisodeWriter:
             return
         if self._moved:
             self.on = False
-            self._put(_End(device))
+            self._put(partial(self._end_episode, device))
         else:
-            self._put(_DROP)
+            self._put(Recorder.drop_episode)
             self._break_off(Notice(code="recording_still"))
 
     def close(self) -> None:
         """Write what is waiting and close the journal; an episode under way stays incomplete."""
         if self._thread is not None:
-            self._put(_CLOSE)
+            self._put(None)
             self._thread.join(timeout=5.0)
 
-    def _put(self, item: StepRecord | EpisodeHeader | _End | str) -> None:
+    def _put(self, work: _Work | None) -> None:
         try:
-            self._waiting.put_nowait(item)
+            self._waiting.put_nowait(work)
         except Full:
             self._break_off(Notice(code="disk_too_slow"))
 
@@ -148,9 +139,9 @@ class EpisodeWriter:
         try:
             recorder = Recorder(self._path, self._limits)
             try:
-                while (item := self._next()) != _CLOSE:
+                while (work := self._next()) is not None:
                     try:
-                        self._handle(recorder, item)
+                        work(recorder)
                     except JournalFullError as error:
                         self._full(recorder, error)
             finally:
@@ -164,25 +155,17 @@ class EpisodeWriter:
                 except Empty:
                     return
 
-    def _next(self) -> StepRecord | EpisodeHeader | _End | str | None:
-        """The next item; None if there is none for a while, so that the journal can be checked."""
+    def _next(self) -> _Work | None:
+        """The next work; a check of the journal if there is none for a while."""
         try:
             return self._waiting.get(timeout=_CHECK_S)
         except Empty:
-            return None
+            return Recorder.check
 
-    def _handle(self, recorder: Recorder, item: StepRecord | EpisodeHeader | _End | str | None) -> None:
-        if item is None:
-            recorder.check()
-        elif isinstance(item, EpisodeHeader):
-            recorder.begin_episode(item)
-        elif isinstance(item, StepRecord) and recorder.recording:
-            recorder.record(item)
-        elif isinstance(item, _End) and recorder.recording:
-            recorder.end_episode(item.device)
+    def _end_episode(self, device: str, recorder: Recorder) -> None:
+        if recorder.recording:
+            recorder.end_episode(device)
             self._episodes += 1
-        elif item == _DROP:
-            recorder.drop_episode()
 
     def _full(self, recorder: Recorder, error: JournalFullError) -> None:
         if error.ended_episode:
