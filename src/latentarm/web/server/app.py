@@ -6,7 +6,7 @@ import shlex
 import signal
 import socket
 from collections.abc import AsyncGenerator, Callable, Generator
-from contextlib import asynccontextmanager, contextmanager
+from contextlib import ExitStack, asynccontextmanager, contextmanager
 from dataclasses import replace
 from functools import partial
 from types import FrameType
@@ -112,31 +112,37 @@ def _serve_alone(
 ) -> None:
     if setup.real:
         config, setup = _looked_at(config, setup, say)
-    listening = listen(config)
-    cameras = _cameras(config, listening)
-    port = int(listening.getsockname()[1])
-    base = config.origins(port)[0]
-    keys = None if config.private else Keys(store=config.spec.out / _COOKIES)
-    invitations = None if keys is None else Invitations(keys.new_link, base, say, draws)
-
-    for sentence in notices(setup.task.robot):
-        say(sentence)
-    if setup.real:
-        speeds = config.spec.speeds
-        say(
-            f"No joint turns faster than {speeds.joint:g} rad/s, and no part of the arm moves faster than"
-            f" {100 * speeds.link:g} cm/s."
-        )
-    if config.spec.zones:
-        slow = ", ".join(f"{zone.name} ({100 * zone.speed:g} cm/s)" for zone in config.spec.zones)
-        say(f"The arm is slow in these zones: {slow}.")
-    if config.spec.keep_out:
-        say(f"The arm keeps out of: {', '.join(one.name for one in config.spec.keep_out)}.")
     out = config.spec.out
     before = set(out.glob(f"*{JOURNAL_SUFFIX}"))
-    sources = _sources(setup, listening, say)
-    control = ControlProcess(config.spec, None if sources is None else sources.sightings)
-    try:
+    with ExitStack() as at_end:
+        at_end.callback(_LOG.info, "The server ends.")
+        listening = at_end.enter_context(listen(config))
+        cameras = CameraProcess(config.cameras, listening.getsockname()[0]) if config.cameras else None
+        if cameras is not None:
+            at_end.callback(cameras.end)
+        port = int(listening.getsockname()[1])
+        base = config.origins(port)[0]
+        keys = None if config.private else Keys(store=config.spec.out / _COOKIES)
+        invitations = None if keys is None else Invitations(keys.new_link, base, say, draws)
+
+        for sentence in notices(setup.task.robot):
+            say(sentence)
+        if setup.real:
+            speeds = config.spec.speeds
+            say(
+                f"No joint turns faster than {speeds.joint:g} rad/s, and no part of the arm moves faster than"
+                f" {100 * speeds.link:g} cm/s."
+            )
+        if config.spec.zones:
+            slow = ", ".join(f"{zone.name} ({100 * zone.speed:g} cm/s)" for zone in config.spec.zones)
+            say(f"The arm is slow in these zones: {slow}.")
+        if config.spec.keep_out:
+            say(f"The arm keeps out of: {', '.join(one.name for one in config.spec.keep_out)}.")
+        sources = _sources(setup, say)
+        if sources is not None:
+            at_end.callback(sources.end)
+        control = ControlProcess(config.spec, None if sources is None else sources.sightings)
+        at_end.callback(control.end)
         app = build_app(setup, control, config, calendar, cameras)
         gate = gated(
             app, control, config, port, keys, (lambda: "") if invitations is None else invitations.next
@@ -163,13 +169,6 @@ def _serve_alone(
             with short_collections():
                 asyncio.run(serve_on(listening, server, limits_here()))
         say("The page is closed.")
-    finally:
-        control.end()
-        for helper in (sources, cameras):
-            if helper is not None:
-                helper.end()
-        listening.close()
-        _LOG.info("The server ends.")
     for journal in sorted(set(out.glob(f"*{JOURNAL_SUFFIX}")) - before):
         say(f"To use what was recorded: latentarm export {shlex.quote(str(journal))} --out NEW_FOLDER")
 
@@ -219,17 +218,7 @@ def _looked_at(
     return replace(config, spec=spec), replace(setup, spec=spec)
 
 
-def _cameras(config: TeleopConfig, listening: socket.socket) -> CameraProcess | None:
-    if not config.cameras:
-        return None
-    try:
-        return CameraProcess(config.cameras, listening.getsockname()[0])
-    except UserError:
-        listening.close()
-        raise
-
-
-def _sources(setup: DriveSetup, listening: socket.socket, say: Callable[[str], None]) -> SourceProcess | None:
+def _sources(setup: DriveSetup, say: Callable[[str], None]) -> SourceProcess | None:
     names = [thing.name for thing in setup.tracked]
     if not names:
         return None
@@ -241,11 +230,7 @@ def _sources(setup: DriveSetup, listening: socket.socket, say: Callable[[str], N
         )
         return None
     say(f"Where things are ({shown}) is told by {', '.join(texts)}, and by the tool on the page (Poses).")
-    try:
-        return SourceProcess(texts, names)
-    except UserError:
-        listening.close()
-        raise
+    return SourceProcess(texts, names)
 
 
 async def tell_end(control: ControlProcess, history: History) -> None:
