@@ -1,5 +1,6 @@
 """Begins and ends the episodes of a drive."""
 
+from dataclasses import dataclass
 from typing import final
 
 from latentarm.core.types import StepRecord
@@ -13,22 +14,17 @@ from latentarm.web.protocol.orders import Record
 
 
 @final
+@dataclass(eq=False)
 class Episodes:
     """An episode is one motion by one person: driven, or guided by hand."""
 
-    def __init__(
-        self,
-        setup: DriveSetup,
-        writer: EpisodeWriter,
-        steering: Steering,
-        inputs: PageInputs,
-        thing_poses: ThingPoses,
-    ) -> None:
-        self._setup = setup
-        self._writer = writer
-        self._steering = steering
-        self._inputs = inputs
-        self._thing_poses = thing_poses
+    _setup: DriveSetup
+    _writer: EpisodeWriter
+    _steering: Steering
+    _inputs: PageInputs
+    _thing_poses: ThingPoses
+
+    def __post_init__(self) -> None:
         self._by_hand = False
         self._things: tuple[str, ...] = ()
 

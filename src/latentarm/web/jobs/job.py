@@ -12,6 +12,7 @@ import threading
 from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
+from dataclasses import dataclass
 from multiprocessing.connection import Connection, wait
 from types import FrameType
 from typing import Final, Generic, TypeVar, final
@@ -37,12 +38,12 @@ class _Failed(Message):
 
 
 @final
+@dataclass(eq=False)
 class Wire:
     """The child's end of the pipes: from and to the parent."""
 
-    def __init__(self, hearing: Connection, saying: Connection) -> None:
-        self._hearing = hearing
-        self._saying = saying
+    _hearing: Connection
+    _saying: Connection
 
     def say(self, message: Message) -> None:
         """Send a message to the parent. Raises SystemExit if the parent is gone."""

@@ -1,6 +1,7 @@
 """The address at which a page asks for the cameras."""
 
 import asyncio
+from dataclasses import dataclass
 from typing import Annotated, Final, final
 
 from pydantic import Field
@@ -26,12 +27,14 @@ class _Offer(Message):
 
 
 @final
+@dataclass(eq=False)
 class CameraRoutes:
     """Shows pages the cameras while they are connected to `/drive`."""
 
-    def __init__(self, cameras: CameraProcess, sessions: Sessions) -> None:
-        self._cameras = cameras
-        self._sessions = sessions
+    _cameras: CameraProcess
+    _sessions: Sessions
+
+    def __post_init__(self) -> None:
         self._looking: set[str] = set()
 
     def routes(self) -> list[Route]:

@@ -3,6 +3,7 @@
 import asyncio
 import secrets
 from contextlib import suppress
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, Literal, final
 
 from starlette.websockets import WebSocket, WebSocketDisconnect
@@ -50,30 +51,21 @@ async def _hang_up(socket: WebSocket, code: int, why: Notice) -> None:
 
 
 @final
+@dataclass(eq=False)
 class DriveSocket:
     """The endpoint of ``/drive``."""
 
-    def __init__(
-        self,
-        control: "ControlProcess",
-        states: States,
-        sessions: Sessions,
-        learning: Learning,
-        people: People,
-        pins: Pins,
-        history: History,
-        poses: PoseBook,
-        lock: SetupLock,
-    ) -> None:
-        self._control = control
-        self._states = states
-        self._sessions = sessions
-        self._learning = learning
-        self._people = people
-        self._pins = pins
-        self._history = history
-        self._poses = poses
-        self._lock = lock
+    _control: "ControlProcess"
+    _states: States
+    _sessions: Sessions
+    _learning: Learning
+    _people: People
+    _pins: Pins
+    _history: History
+    _poses: PoseBook
+    _lock: SetupLock
+
+    def __post_init__(self) -> None:
         self._server = secrets.token_hex(8)
         self._open = 0
         self._asked: orders.AskedGripper | None = None

@@ -2,6 +2,7 @@
 
 import io
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Final, final
 
 import segno
@@ -15,6 +16,7 @@ INVITATION: Final = "/invitation"
 
 
 @final
+@dataclass(eq=False)
 class Invitations:
     """Makes one-time links and prints them in the terminal.
 
@@ -22,13 +24,10 @@ class Invitations:
     terminal can show a QR code.
     """
 
-    def __init__(
-        self, new_key: Callable[[], str], base: str, say: Callable[[str], None], draws: bool
-    ) -> None:
-        self._new_key = new_key
-        self._base = base
-        self._say = say
-        self._draws = draws
+    _new_key: Callable[[], str]
+    _base: str
+    _say: Callable[[str], None]
+    _draws: bool
 
     def first(self) -> str:
         """The host's own link; the caller prints it."""

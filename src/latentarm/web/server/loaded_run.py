@@ -1,6 +1,6 @@
 """The setup that is driven, for pages, built anew for every run; and the runs to choose from."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import final
 
@@ -104,15 +104,15 @@ def load_reported_run(spec: Spec, report: Report, name: str | None) -> LoadedRun
 
 
 @final
+@dataclass(eq=False)
 class RunList:
     """Runs that were trained on the page, and ``first``, with which the server was started.
 
     Pages name a run by its name here, never by a path.
     """
 
-    def __init__(self, out: Path, first: Path | None) -> None:
-        self._out = out
-        self._first = first
+    _out: Path
+    _first: Path | None
 
     def runs(self) -> dict[str, Path]:
         """Folders of complete runs by name, sorted by name."""

@@ -7,6 +7,7 @@ checked the origin and the length of each request.
 import asyncio
 import json
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from datetime import date
 from typing import Annotated, Final, final
 
@@ -51,6 +52,7 @@ _SETTINGS: Final[TypeAdapter[Settings]] = TypeAdapter(Settings)
 
 
 @final
+@dataclass(eq=False)
 class PeopleRoutes:
     """Answers requests about people.
 
@@ -58,21 +60,12 @@ class PeopleRoutes:
     profile from the arm before the person is deleted.
     """
 
-    def __init__(
-        self,
-        records: Records,
-        history: History,
-        busy: Callable[[PersonRecord], bool],
-        let_go: Callable[[PersonRecord], None],
-        pins: Pins,
-        lock: SetupLock,
-    ) -> None:
-        self._records = records
-        self._history = history
-        self._busy = busy
-        self._let_go = let_go
-        self._pins = pins
-        self._lock_of_setup = lock
+    _records: Records
+    _history: History
+    _busy: Callable[[PersonRecord], bool]
+    _let_go: Callable[[PersonRecord], None]
+    _pins: Pins
+    _lock_of_setup: SetupLock
 
     def routes(self) -> list[Route]:
         """The routes."""

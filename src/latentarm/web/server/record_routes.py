@@ -3,7 +3,7 @@
 import asyncio
 import csv
 import io
-from dataclasses import fields
+from dataclasses import dataclass, fields
 from datetime import date
 from typing import Annotated, Final, final
 
@@ -34,13 +34,13 @@ class _Titled(Message):
 
 
 @final
+@dataclass(eq=False)
 class RecordRoutes:
     """Answers requests about drives and recordings; see `people_routes` for their form."""
 
-    def __init__(self, records: Records, history: History, pins: Pins) -> None:
-        self._records = records
-        self._history = history
-        self._pins = pins
+    _records: Records
+    _history: History
+    _pins: Pins
 
     def routes(self) -> list[Route]:
         """The routes."""
