@@ -34,12 +34,8 @@ from latentarm.web.protocol.notice import Notice, notice_of_stop
 from latentarm.web.protocol.orders import Change, HelpLevel, ModeName, Order, PoseToGoTo
 from latentarm.web.protocol.report import HeldBack, Phase, Report
 
-ENABLE_WAITS_S: Final = 0.3
-"""How long an order to enable waits for a fresh neutral input, s."""
-
-NOTE_S: Final = 6.0
-"""How long a refusal is shown instead of the arm's state, s."""
-
+ENABLE_WAITS_S: Final = 0.3  # how long an order to enable waits for a fresh neutral input, s
+NOTE_S: Final = 6.0  # how long a refusal is shown instead of the arm's state, s
 _HELD_BACK: Final[dict[str, HeldBack]] = {
     "clearance": "clearance",
     "freshness": "freshness",

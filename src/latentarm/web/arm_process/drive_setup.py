@@ -56,16 +56,10 @@ INPUT_GRACE_S: Final = 0.07
 """If the connection drops for no longer than `INPUT_TIMEOUT_S` plus this, the arm slows down and need not be
 enabled again."""
 
-RELEASE_FRACTION: Final = 0.8
-"""As hard as a stop: after letting go the arm is at rest within 0.15 s."""
-
+RELEASE_FRACTION: Final = 0.8  # as hard as a stop: after letting go the arm is at rest within 0.15 s
 MOST_JOINTS: Final = 64
-MOST_GOALS: Final = 200
-"""Largest numbers that fit into a tick's report."""
-
-MARKER_M: Final = 0.02
-"""Radius of the ball that stands for a thing of unknown shape."""
-
+MOST_GOALS: Final = 200  # largest numbers of both that fit into a tick's report
+MARKER_M: Final = 0.02  # radius of the ball that stands for a thing of unknown shape
 COMMAND_PERIODS: Final = 5.0
 """Periods that a command lasts: a shared computer may hold the loop up for 50 ms before the arm stops."""
 

@@ -11,9 +11,7 @@ from typing import Final, final
 
 from aiortc import RTCRtpSender
 
-RATE: Final = 90_000
-"""Ticks per second of every video stream's clock (RFC 3551)."""
-
+RATE: Final = 90_000  # ticks per second of every video stream's clock (RFC 3551)
 TIME_BASE: Final = Fraction(1, RATE)
 
 _WRAP: Final = 1 << 32

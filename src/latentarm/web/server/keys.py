@@ -16,9 +16,7 @@ from latentarm.core.files import write_text
 from latentarm.core.untrusted.opening import is_missing
 from latentarm.web.records.record_files import read_record
 
-LIFE_S: Final = 8 * 3600
-"""Validity of a cookie, s."""
-
+LIFE_S: Final = 8 * 3600  # validity of a cookie, s
 _LOG: Final = logging.getLogger(__name__)
 
 _MOST_VISITORS: Final = 64

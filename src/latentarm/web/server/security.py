@@ -18,27 +18,13 @@ from latentarm.web.server.invitations import answer as invitation_answer
 from latentarm.web.server.keys import LIFE_S, Keys
 
 COOKIE: Final = "latentarm"
-BODY_LIMIT: Final = 1 << 16
-"""The longest request body, bytes."""
-
-MOST_REQUESTS: Final = 64
-"""Requests that may be in progress at once, apart from `STOP`."""
-
-DRIVE: Final = "/drive"
-"""The only WebSocket."""
-
-EXPIRED: Final = 4401
-"""Close code of a WebSocket whose cookie has expired, from the range for applications."""
-
-EXPIRED_WHY: Final = "expired"
-"""The reason that goes with it, a `NoticeCode`."""
-
-STOP: Final = "/stop"
-"""Needs no cookie: anyone who can reach the page may stop the arm."""
-
-HEALTH: Final = "/health"
-"""Needs no cookie either: it only says whether the server is well."""
-
+BODY_LIMIT: Final = 1 << 16  # the longest request body, bytes
+MOST_REQUESTS: Final = 64  # requests that may be in progress at once, apart from `STOP`
+DRIVE: Final = "/drive"  # the only WebSocket
+EXPIRED: Final = 4401  # close code of a WebSocket whose cookie has expired, from the range for applications
+EXPIRED_WHY: Final = "expired"  # the reason that goes with it, a `NoticeCode`
+STOP: Final = "/stop"  # needs no cookie: anyone who can reach the page may stop the arm
+HEALTH: Final = "/health"  # needs no cookie either: it only says whether the server is well
 _MOST_DIGITS: Final = 20
 _READING: Final = ("GET", "HEAD")
 
