@@ -48,15 +48,6 @@ def next_arm(setup: DriveSetup, before: DriveSetup, arm: Arm, clock: Clock) -> A
     return arm
 
 
-def reconnect(arm: Arm) -> None:
-    """Close the connection and open it again, waiting for the arm.
-
-    Raises UserError if the arm does not answer, or is refused.
-    """
-    arm.close()
-    arm.connect()
-
-
 def _alike(one: Robot, other: Robot) -> bool:
     here, there = one.limits, other.limits
     return (

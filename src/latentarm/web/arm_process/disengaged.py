@@ -6,12 +6,11 @@ from typing import final
 from latentarm.arms.contract import Arm, ArmStatus
 from latentarm.control.engagement import stop_of
 from latentarm.control.step import Step
-from latentarm.core.types import GripperAsk, Stop
+from latentarm.core.types import Stop
 from latentarm.web.arm_process.episodes import Episodes
 from latentarm.web.arm_process.hand_guiding import HandGuiding, why_not
 from latentarm.web.protocol.notice import Notice
 from latentarm.web.protocol.orders import Record
-from latentarm.web.protocol.report import Guiding
 
 
 @final
@@ -26,19 +25,9 @@ class Disengaged:
         self._arm = arm
         self._episodes = episodes
         self._say = say
-        self._guiding = HandGuiding(arm, step)
+        self.guiding = HandGuiding(arm, step)
         self._lost = _is_lost(arm.status())
         self._phase = arm.status().phase
-
-    @property
-    def guiding(self) -> Guiding | None:
-        """The state of guiding for pages."""
-        return self._guiding.state
-
-    @property
-    def guided(self) -> bool:
-        """Whether the arm is guided by hand, or is about to be."""
-        return self._guiding.under_way
 
     @property
     def lost(self) -> Notice | None:
@@ -49,23 +38,19 @@ class Disengaged:
         """Begin guiding, at the loop's time, s, if the arm is disengaged; an episode under way ends."""
         if self._step.stopped is None or not self._step.at_rest:
             self._say(Notice(code="stop_first"))
-        elif not self._guiding.under_way:
+        elif not self.guiding.under_way:
             self._episodes.end()
-            self._guiding.begin(time_s)
-
-    def keep_guiding(self, time_s: float, ask: GripperAsk | None) -> None:
-        """Note that the page is still there; see `HandGuiding.keep`."""
-        self._guiding.keep(time_s, ask)
+            self.guiding.begin(time_s)
 
     def end_guiding(self) -> bool:
         """Let the arm hold still; an episode by hand ends. Returns whether it was guided."""
         if self._episodes.by_hand:
             self._episodes.end()
-        return self._guiding.end()
+        return self.guiding.end()
 
     def records(self, order: Record) -> bool:
         """Whether an episode may begin: one by hand only while the arm is guided."""
-        return not order.by_hand or (self._guiding.recordable and self._step.stopped is not None)
+        return not order.by_hand or (self.guiding.recordable and self._step.stopped is not None)
 
     def connect_again(self) -> bool:
         """Renew a lost connection; the arm is disabled afterwards.
@@ -82,13 +67,13 @@ class Disengaged:
 
     def follow(self, time_s: float) -> None:
         """Follow guiding and the connection at the loop's time, s."""
-        told = self._guiding.follow(time_s)
+        told = self.guiding.follow(time_s)
         if told is not None:
             self._say(told)
             status = self._arm.status()
             if status.phase in ("off", "fault", "emergency_stop"):
                 self._step.refuse(stop_of(status))
-        if self._episodes.by_hand and not self._guiding.recordable:
+        if self._episodes.by_hand and not self.guiding.recordable:
             self._episodes.end()
         self._follow_faults()
         status = self._arm.status()

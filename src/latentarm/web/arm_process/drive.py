@@ -157,7 +157,9 @@ class Drive:
 
     def _record_calls(self, calls: CallLog) -> None:
         calls.flush()
-        idle = self._step.stopped is not None and self._step.at_rest and not self._disengaged.guided
+        idle = (
+            self._step.stopped is not None and self._step.at_rest and not self._disengaged.guiding.under_way
+        )
         if calls.large and idle and not self._writer.on and self.change is None:
             # A file has everything from the start of its loop: the same is driven on, in another file.
             self._change_to(orders.ChooseProfile(name=self._setup.spec.profile))
@@ -227,7 +229,7 @@ class Drive:
             case orders.Guide():
                 self._end_guiding(Notice(code="guiding_ended"))
             case orders.KeepGuiding(gripper=ask):
-                self._disengaged.keep_guiding(record.time_s, ask)
+                self._disengaged.guiding.keep(record.time_s, ask)
             case orders.TouchThing(thing=thing, kind=kind):
                 if not self._step.at_rest or not self._things.touch(thing, kind):
                     self._say(Notice(code="touch_refused"))
@@ -243,7 +245,7 @@ class Drive:
 
     def _change_to(self, change: Change) -> None:
         """End the loop for this order, if the arm is disengaged."""
-        if self._step.stopped is None or not self._step.at_rest or self._disengaged.guided:
+        if self._step.stopped is None or not self._step.at_rest or self._disengaged.guiding.under_way:
             self._say(Notice(code="stop_first"))
             return
         if not isinstance(change, orders.ChooseProfile):
@@ -401,7 +403,7 @@ class Drive:
             returning=self._way_back.on,
             bound_for=self._way_back.pose if self._way_back.on else None,
             at_start=self._way_back.away(q) <= AT_START_RAD,
-            guiding=self._disengaged.guiding,
+            guiding=self._disengaged.guiding.state,
             lost=self._disengaged.lost is not None,
             let_go_first=self._neutral.waiting,
             idle_left_s=self._idle.left_s,

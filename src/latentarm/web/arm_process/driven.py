@@ -10,7 +10,7 @@ from latentarm.control.clock import Clock
 from latentarm.core.errors import UserError
 from latentarm.core.untrusted.terminal import one_line
 from latentarm.runs.folder import read_run
-from latentarm.web.arm_process.arm_lifecycle import next_arm, reconnect
+from latentarm.web.arm_process.arm_lifecycle import next_arm
 from latentarm.web.arm_process.drive_setup import SEEDS, DriveSetup, Spec, load_setup, with_profile
 from latentarm.web.arm_process.steering import Steering
 from latentarm.web.protocol.notice import Notice, notice_of
@@ -84,7 +84,8 @@ def _changed(driven: Driven, change: Change, clock: Clock) -> Driven:
     spec = setup.spec
     match change:
         case Reconnect():
-            reconnect(driven.arm)
+            driven.arm.close()
+            driven.arm.connect()
             return driven
         case ChooseProfile(name=name, seat=seat):
             other = with_profile(setup, name, spec.seated(seat))
