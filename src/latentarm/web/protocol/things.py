@@ -4,11 +4,11 @@ from collections.abc import Mapping, Sequence
 from typing import Final
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from latentarm.core.types import FloatArray, Pose
+from latentarm.robots.kinematics.pose_rows import thing_rows
 from latentarm.robots.scene.scene import Scene
-from latentarm.robots.scene.thing import Grains, Part
+from latentarm.robots.scene.thing import Part
 from latentarm.web.protocol.report import PoseRow, SeenThing, Things
 
 _DIGITS: Final = 4
@@ -24,7 +24,7 @@ def described(scene: Scene) -> dict[str, object]:
     of the robot's bodies, and ``soft`` ones, which give way to everything; and ``grains``, each kind with its
     name, ``radius`` (m), ``rgba`` and first ``positions`` (m).
     """
-    first = _rows([thing.pose for thing in scene.things])
+    first = _rows({thing.name: thing.pose for thing in scene.things}, scene.names)
     return {
         "things": [
             {
@@ -36,7 +36,15 @@ def described(scene: Scene) -> dict[str, object]:
             }
             for thing, pose in zip(scene.things, first, strict=True)
         ],
-        "grains": [_grains(one) for one in scene.grains],
+        "grains": [
+            {
+                "name": grains.name,
+                "radius": grains.radius_m,
+                "rgba": list(grains.colour),
+                "positions": _rounded(grains.positions.ravel()),
+            }
+            for grains in scene.grains
+        ],
     }
 
 
@@ -45,7 +53,7 @@ def things_at(
 ) -> Things:
     """Where everything is, in the order of the scene; ``grains`` (K, 3) by the grains' name, m."""
     return Things(
-        poses=tuple(_rows([poses[thing.name] for thing in scene.things])),
+        poses=tuple(_rows(poses, scene.names)),
         grains=tuple(tuple(_rounded(grains[one.name].ravel())) for one in scene.grains),
         seen=tuple(seen),
     )
@@ -62,21 +70,9 @@ def _geom(part: Part) -> dict[str, object]:
     }
 
 
-def _grains(grains: Grains) -> dict[str, object]:
-    return {
-        "name": grains.name,
-        "radius": grains.radius_m,
-        "rgba": list(grains.colour),
-        "positions": _rounded(grains.positions.ravel()),
-    }
-
-
-def _rows(poses: Sequence[Pose]) -> list[PoseRow]:
-    if not poses:
-        return []
-    turned = Rotation.from_matrix(np.array([pose.rotation for pose in poses])).as_quat(scalar_first=True)
-    placed = np.concatenate([[pose.position for pose in poses], turned], axis=1)
-    return [(x, y, z, w, i, j, k) for x, y, z, w, i, j, k in np.round(placed, _DIGITS).tolist()]
+def _rows(poses: Mapping[str, Pose], names: Sequence[str]) -> list[PoseRow]:
+    rows = np.round(thing_rows(poses, names), _DIGITS).tolist()
+    return [(x, y, z, w, i, j, k) for x, y, z, w, i, j, k in rows]
 
 
 def _rounded(values: FloatArray) -> list[float]:
