@@ -1,6 +1,6 @@
 /** Who drives, who watches, and how one becomes the other. */
 
-import { setText } from "../layout/dom.js";
+import { setHidden, setText } from "../layout/dom.js";
 import { say, sayName } from "../layout/words.js";
 
 /** @import {Connection} from "./connection.js" */
@@ -77,7 +77,6 @@ export function whoDrives(state, asks) {
  * @param {Connection} connection
  */
 export function attachDriverPanel(parts, connection) {
-  let shown = "";
   const hasEnable = document.getElementById("enable") !== null;
   parts.ask.addEventListener("click", () => connection.send({ type: "ask_to_drive" }));
   parts.release.addEventListener("click", () => connection.send({ type: "release" }));
@@ -91,14 +90,11 @@ export function attachDriverPanel(parts, connection) {
     if (!state) return;
     const { you, asking, asking_name } = state;
     const asks = whoAsks(state, welcome?.id);
-    const now = JSON.stringify([you, state.driver, state.driver_name, asking, asking_name, asks, state.watchers]);
-    if (now === shown) return;
-    shown = now;
     // Where another page drives, the button next to Stop asks; a page without one asks here.
-    parts.ask.hidden = you || (hasEnable && state.driver !== null);
-    parts.ask.disabled = asks !== null;
-    parts.release.hidden = !you;
-    parts.handOver.hidden = !you || asking === null;
+    setHidden(parts.ask, you || (hasEnable && state.driver !== null));
+    if (parts.ask.disabled !== (asks !== null)) parts.ask.disabled = asks !== null;
+    setHidden(parts.release, !you);
+    setHidden(parts.handOver, !you || asking === null);
     setText(parts.handOver, asking_name === null ? say("driver.hand_over") : say("driver.hand_over_to", { name: sayName(asking_name) }));
     setText(parts.text, whoDrives(state, asks));
   });

@@ -13,19 +13,11 @@ import { awayWords, blockedWords, fillWords, outcomeWords, stepNow, stepWords, s
 const WORDS_MS = 250;
 
 /**
- * @typedef {object} Parts
- * @property {HTMLElement} panel
- * @property {HTMLElement} steps
- * @property {HTMLElement} fills how full cups and bowls are
- * @property {HTMLElement} said live: steps as they are done, why they cannot be done, and the end
- * @property {HTMLElement} time
- * @property {HTMLDetailsElement} more what another run is begun with
- * @property {HTMLElement} why why nothing can be begun now
- * @property {HTMLElement} chooser around `choice`
- * @property {HTMLSelectElement} choice
- * @property {HTMLButtonElement} next
- * @property {HTMLButtonElement} again
- * @property {HTMLElement} then what is pressed once another run was begun, and has the focus then
+ * `said` is live: steps as they are done, why they cannot be done, and the end. `more` has what another run is begun with, and
+ * `then` the focus once it was begun. `why` says why nothing can be begun now.
+ *
+ * @typedef {Record<"panel" | "steps" | "fills" | "said" | "time" | "why" | "chooser" | "next" | "again" | "then", HTMLElement>
+ *   & {more: HTMLDetailsElement, choice: HTMLSelectElement}} Parts
  */
 
 /**

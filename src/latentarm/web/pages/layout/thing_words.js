@@ -21,20 +21,17 @@ export function intoThing(name) {
 
 /** The name of a zone in which the arm is slow. @param {string} name from the zones file */
 export function zoneWords(name) {
-  const key = `zone.name.${name.toLowerCase()}`;
-  return knows(key) ? say(/** @type {WordKey} */ (key)) : name;
+  return wordsOr(`zone.name.${name.toLowerCase()}`, name);
 }
 
 /** The name of a robot. @param {string} name in its model */
 export function robotWords(name) {
-  const key = `robot.${name}`;
-  return knows(key) ? say(/** @type {WordKey} */ (key)) : name;
+  return wordsOr(`robot.${name}`, name);
 }
 
 /** The name of a task. @param {string} name in the catalogue of tasks */
 export function taskTitle(name) {
-  const key = `task.name.${name}`;
-  return knows(key) ? say(/** @type {WordKey} */ (key)) : name.replaceAll("_", " ");
+  return wordsOr(`task.name.${name}`, name.replaceAll("_", " "));
 }
 
 /** @param {string} name @param {string} form */
@@ -43,8 +40,12 @@ function inWords(name, form) {
   const end = /^end (\d+)$/.exec(name);
   if (end) return say("thing.end", { number: end[1] });
   const key = `thing.${name.toLowerCase().replace(/\W+/g, "_")}`;
-  const found = [key + form, key].find(knows);
-  return found ? say(/** @type {WordKey} */ (found)) : name;
+  return wordsOr(key + form, wordsOr(key, name));
+}
+
+/** The catalogue's words, or else these. @param {string} key @param {string} otherwise */
+function wordsOr(key, otherwise) {
+  return knows(key) ? say(/** @type {WordKey} */ (key)) : otherwise;
 }
 
 /** A sentence's first letter. @param {string} text */

@@ -11,14 +11,7 @@ export const STEPS = ["begin", "asking", "working", "learned", "refused", "kept"
 
 /** @type {Record<Personalise["phase"], Step>} */
 const STEP_OF = {
-  preparing: "working",
-  asking: "asking",
-  thinking: "working",
-  learning: "working",
-  learned: "learned",
-  refused: "refused",
-  kept: "kept",
-  failed: "begin",
+  preparing: "working", asking: "asking", thinking: "working", learning: "working", learned: "learned", refused: "refused", kept: "kept", failed: "begin",
 };
 
 /**
