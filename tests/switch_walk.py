@@ -17,7 +17,7 @@ from typing import Any
 from playwright.sync_api import Error, Page, sync_playwright
 
 SCRIPT = Path(__file__).with_name("switch_walk_page.js").read_text()
-PAGES = ("", "personalise", "teach", "people", "history")
+PAGES = ("", "fit", "personalise", "teach", "people", "history")
 SIZES = ((1280, 720), (390, 844), (844, 390))
 ARROWS = ("ArrowUp", "ArrowDown", "ArrowLeft", "ArrowRight")
 HELPER_KEYS = ("Tab", "Shift+Tab", "Space", "Escape", *ARROWS, "g", "m")

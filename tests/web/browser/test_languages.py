@@ -7,7 +7,7 @@ from latentarm.web.words.catalogue import COOKIE, languages
 from .conftest import STICKS_OUT
 
 SIZES = {"a laptop": (1280, 720), "a phone": (390, 844)}
-PAGES = ("", "teach", "personalise", "people", "history")
+PAGES = ("", "fit", "teach", "personalise", "people", "history")
 
 # Texts whose letters reach beyond the box that they stand in.
 CUT_OFF = """() => {

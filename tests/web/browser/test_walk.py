@@ -12,9 +12,9 @@ from latentarm.web.words.catalogue import COOKIE
 from .conftest import move, press_switch, set_up
 
 NAME = "Ada"
-PAGES = ("", "teach", "personalise", "people", "history")
-STILL = ("teach", "people", "history")
-"""Pages without a stick."""
+PAGES = ("", "fit", "teach", "personalise", "people", "history")
+STILL = ("fit", "teach", "people", "history")
+"""Pages without a stick, at least at first."""
 
 GUEST_SETTINGS = "latentarm.settings."
 PRACTISED = {"practised": True}

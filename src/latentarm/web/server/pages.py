@@ -43,11 +43,12 @@ class Page:
 PAGES: Final = (
     Page("/", "drive"),
     Page("/personalise", "personalise"),
+    Page("/fit", "fit"),
     Page("/teach", "teach"),
     Page("/people", "people"),
     Page("/history", "history"),
 )
-LOCKED: Final = ("personalise", "teach")
+LOCKED: Final = ("personalise", "fit", "teach")
 
 
 @final

@@ -32,7 +32,7 @@ const READY_MS = 6000;
  */
 /** @typedef {(id: string, label: string, inner: () => Choice[]) => Choice} Group makes a choice that opens others */
 
-/** Event "change" when other choices are offered, or another one is lit or moves. */
+/** Events: "change" when other choices are offered, or another one is lit or moves; "switch" when one is pressed or let go, counting or not. */
 export class Scanner extends EventTarget {
   /**
    * @param {PersonInput} input
@@ -133,6 +133,7 @@ export class Scanner extends EventTarget {
    */
   press(number, down) {
     if (!this.on || number >= Number(this._settings.values.switches)) return false;
+    this.dispatchEvent(new CustomEvent("switch", { detail: { number, down } }));
     const one = this._switches[number];
     if (!down) one.up();
     else one.down(this._ends(number));

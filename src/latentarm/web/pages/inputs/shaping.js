@@ -1,24 +1,28 @@
-/** From the stick to what is sent: the person's own dead zone, sensitivity and axes, and what the mode expects. */
+/** From the stick to what is sent: the person's own dead zone, reach, sensitivity and axes, and what the mode expects. */
 
 /** @import {State, Welcome} from "../connection/messages.js" */
 /** @import {Values} from "../settings/settings.js" */
 
-/** @typedef {Pick<Values, "deadZone" | "sensitivity" | "swapAxes" | "invertX" | "invertY">} StickSettings */
+/** @typedef {Pick<Values, "deadZone" | "reach" | "sensitivity" | "swapAxes" | "invertX" | "invertY">} StickSettings */
+
+/** From the edge of the dead zone to a full push it is at least so far: a smaller way would be a switch. */
+const LEAST_WAY = 0.1;
 
 /**
- * From the stick to the person's own: dead zone, sensitivity, swapped and mirrored axes.
+ * From the stick to the person's own: dead zone, reach, sensitivity, swapped and mirrored axes.
  *
  * @param {StickSettings} settings
  * @param {number} x right
  * @param {number} y up
  * @returns {[number, number]} right, up
  */
-export function shape({ deadZone, sensitivity, swapAxes, invertX, invertY }, x, y) {
+export function shape({ deadZone, reach, sensitivity, swapAxes, invertX, invertY }, x, y) {
   const size = Math.hypot(x, y);
   if (size <= deadZone) return [0, 0];
-  const reach = Math.max(Math.abs(x), Math.abs(y));
-  // Grows from zero at the edge of the dead zone to full at the edge of the pad.
-  const scale = (sensitivity * Math.min(1, (size - deadZone) / (size / reach - deadZone))) / reach;
+  const larger = Math.max(Math.abs(x), Math.abs(y));
+  // Grows from zero at the edge of the dead zone to full at the person's reach, a share of the way to the edge of the pad.
+  const full = Math.max((reach * size) / larger, deadZone + LEAST_WAY);
+  const scale = (sensitivity * Math.min(1, (size - deadZone) / (full - deadZone))) / larger;
   const right = (invertX ? -x : x) * scale;
   const up = (invertY ? -y : y) * scale;
   return swapAxes ? [up, right] : [right, up];

@@ -1,5 +1,6 @@
 /** The panel of the guided practice: offered to a person who is new, shown step by step, and gone when they skip it. */
 
+import { linkChoices } from "../inputs/page_choices.js";
 import { byId, create, setText } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 import { Practice, STEPS } from "./steps.js";
@@ -24,6 +25,7 @@ export function attachPractice(connection, input, settings) {
     setText(byId("practice-title"), say(finished ? "practice.finished" : running ? "practice.title" : "practice.offer"));
     byId("practice-begin").hidden = practice !== null;
     byId("practice-again").hidden = practice === null;
+    document.getElementById("practice-fit")?.toggleAttribute("hidden", practice !== null || Object.keys(settings.values.fit).length > 0);
     setText(byId("practice-skip"), say(finished ? "practice.close" : "practice.skip"));
     list.hidden = !running;
     if (practice === null) return;
@@ -85,7 +87,7 @@ export function attachPractice(connection, input, settings) {
       if (!open) return [];
       const first = practice === null ? { id: "practice-begin", label: say("practice.begin"), act: begin }
         : { id: "practice-again", label: say("practice.again"), act: begin };
-      return [first, { id: "practice-skip", label: byId("practice-skip").textContent ?? "", act: close }];
+      return [first, ...linkChoices(panel), { id: "practice-skip", label: byId("practice-skip").textContent ?? "", act: close }];
     },
   };
 }

@@ -8,6 +8,7 @@ import * as storage from "./storage.js";
  * @property {string} profile whose alignment; empty for what the server was started with, `NO_PROFILE` for none
  * @property {number} sensitivity largest input, in [0.1, 1]
  * @property {number} deadZone pushes smaller than this are ignored, in [0, 0.5]
+ * @property {number} reach how far counts as a full push, in [0.4, 1]
  * @property {boolean} swapAxes
  * @property {boolean} invertX
  * @property {boolean} invertY
@@ -34,6 +35,7 @@ import * as storage from "./storage.js";
  * @property {string} switchKey key that chooses
  * @property {string} nextKey key that goes on
  * @property {Record<string, import("./pads.js").Mapping>} pads how gamepads are used, by their ids
+ * @property {Record<string, Record<string, number>>} fit what was measured last with each input, and when
  * @property {boolean} shortcuts whether letters and digits drive
  * @property {"facing" | "behind"} seat where the person sits
  * @property {"front" | "side"} largeView which of the two views is the large one
@@ -51,6 +53,7 @@ export const DEFAULTS = Object.freeze({
   profile: "",
   sensitivity: 0.5,
   deadZone: 0.1,
+  reach: 1,
   swapAxes: false,
   invertX: false,
   invertY: false,
@@ -78,6 +81,7 @@ export const DEFAULTS = Object.freeze({
   switchKey: "Enter",
   nextKey: "Backspace",
   pads: {},
+  fit: {},
   shortcuts: true,
   seat: "facing",
   largeView: "front",
@@ -95,7 +99,7 @@ export const NO_PROFILE = "-";
 
 /** @type {Record<string, [number, number]>} */
 const LIMITS = {
-  sensitivity: [0.1, 1], deadZone: [0, 0.5], stepS: [0.2, 2], latchS: [1, 10], dwellS: [0.4, 5], firstS: [0, 3],
+  sensitivity: [0.1, 1], deadZone: [0, 0.5], reach: [0.4, 1], stepS: [0.2, 2], latchS: [1, 10], dwellS: [0.4, 5], firstS: [0, 3],
   acceptS: [0, 2], releaseS: [0, 2], repeatS: [0, 3], speakVolume: [0, 1],
 };
 /** @type {Record<string, string[]>} */
@@ -173,8 +177,9 @@ export class Settings extends EventTarget {
     this.dispatchEvent(new Event("change"));
   }
 
+  /** The defaults again; what was measured stays. */
   reset() {
-    this.change(DEFAULTS);
+    this.change({ ...DEFAULTS, fit: this.values.fit });
   }
 
   get _key() {
@@ -213,6 +218,7 @@ function valid(stored) {
   }
   values.debounced = true;
   values.pads = validMappings(kept?.pads);
+  values.fit = Object.fromEntries(Object.entries(kept?.fit ?? {}).filter(([, one]) => [one?.at, ...Object.values(one ?? {})].every(Number.isFinite)));
   // A version before had one setting for all gamepads. Where Stop was elsewhere, every button stops until they are mapped.
   if (kept?.gamepadStop !== undefined && kept.gamepadStop !== "1") values.pads[""] = EVERY_STOP;
   for (const [key, [low, high]] of Object.entries(LIMITS)) values[key] = Math.min(Math.max(values[key], low), high);

@@ -16,7 +16,7 @@ const hundredths = (/** @type {number} */ value) => say("unit.seconds", { value:
 
 /** The text next to a slider. @type {Record<string, (value: number) => string>} */
 const TEXTS = {
-  sensitivity: sayPercent, deadZone: sayPercent, speakVolume: sayPercent, stepS: seconds, latchS: seconds, dwellS: seconds,
+  sensitivity: sayPercent, deadZone: sayPercent, reach: sayPercent, speakVolume: sayPercent, stepS: seconds, latchS: seconds, dwellS: seconds,
   firstS: seconds, acceptS: hundredths, releaseS: hundredths,
   repeatS: (value) => (value === 0 ? say("settings.never") : seconds(value)),
 };

@@ -48,7 +48,7 @@ export class Drawing {
     this._late = () => false;
     // Until it is known where the arm is.
     scene.scene.visible = false;
-    // For tests, which wait for it.
+    // For tests and for Check the fit, which wait for it.
     this._views.afterFrame.push(() => {
       document.dispatchEvent(new CustomEvent("arm-drawn", { detail: { tick: this._tick, tool: scene.tool.toArray() } }));
     });
