@@ -170,6 +170,13 @@ test("of a switch it is known what was right, early and late, and how long each 
   assert.ok(dwellFor(trials.reactions) >= 1.2);
 });
 
+test("a choice is not lit shorter for who takes the wrong one", () => {
+  const trials = Object.assign(new Trials("auto"), { done: 8, reactions: Array(8).fill(0.4) });
+  const dwell = (right) => proposals(findingsOf([Object.assign(trials, { counts: { right, early: 8 - right, late: 0 } })], [], DEFAULTS), DEFAULTS).dwellS;
+  assert.equal(dwell(8), 0.7);
+  assert.equal(dwell(5), undefined);
+});
+
 test("with two switches nobody waits for the light, and no time is proposed for it", () => {
   const trials = new Trials("two");
   for (let at = 0; at < 16; at += 2) {

@@ -13,6 +13,8 @@ import { acceptFor, deadZoneFor, driftOf, dwellFor, quantile, reachFor, releaseF
 
 /** What takes longer from press to picture is felt to be late, ms (Miller, Fall Joint Computer Conference, 1968). */
 const LATE_MS = 100;
+/** This share of choices must be right. */
+const GOOD = 0.75;
 const SHARE = { words: sayPercent, least: 0.02 };
 const SECONDS = { words: (/** @type {number} */ value) => say("unit.seconds", { value: sayNumber(value, 2) }), least: 0.05 };
 const MS = { words: (/** @type {number} */ value) => say("fit.ms", { value: Math.round(value) }), least: 20 };
@@ -56,9 +58,11 @@ function ofHolds(holds) {
 
 /** @param {Trials} trials @param {Values} values @returns {Finding[]} */
 function ofTrials({ counts, done, reactions, holds, doubles }, values) {
+  // A choice is not lit shorter for who takes the wrong one.
+  const [dwell, least] = [dwellFor(reactions), counts.right < GOOD * done ? values.dwellS : 0];
   return [
     { key: "chosen", value: counts.right / done, measured: say("fit.of", { ...counts, done }) },
-    { key: "reaction", value: quantile(reactions, 0.9), proposed: dwellFor(reactions) },
+    { key: "reaction", value: quantile(reactions, 0.9), proposed: dwell && Math.max(dwell, least) },
     { key: "hold", value: quantile(holds, 0.5), proposed: acceptFor(holds, values.acceptS) },
     { key: "doubles", value: doubles.length, proposed: releaseFor(doubles, values.releaseS, holds.length) },
   ];
