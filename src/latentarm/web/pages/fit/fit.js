@@ -43,10 +43,16 @@ let at = 0;
 let delays = [];
 /** @type {Partial<Values>} */
 let proposed = {};
+/** When the key or the pointer was moved that is being dealt with, ms; 0 for none. */
 let eventAt = 0;
 
-// Before anybody else hears of them.
-for (const type of ["keydown", "pointerdown"]) window.addEventListener(type, ({ timeStamp }) => (eventAt = timeStamp), { capture: true });
+for (const type of ["keydown", "pointerdown", "pointermove"]) {
+  // Before anybody else hears of it.
+  window.addEventListener(type, ({ timeStamp }) => {
+    eventAt = timeStamp;
+    setTimeout(() => (eventAt = 0));
+  }, { capture: true });
+}
 const input = new AnswerInput();
 const { settings, connection, stop } = attachPage({ drop: () => input.drop(), repaint: () => drawing?.repaint() });
 const pad = () => navigator.getGamepads().find((one) => one?.connected);
@@ -140,7 +146,7 @@ function finish() {
   setHidden(byId("fit-use"), !isNew);
   setText(byId("fit-keep"), say(isNew ? "fit.keep" : "fit.done"));
   setText(byId("fit-whose"), person ? say("fit.kept_with", { name: person.name }) : say("fit.kept_here"));
-  settings.change({ fit: { ...values.fit, [chosen]: { at: Date.now(), ...Object.fromEntries(findings.map(({ key, value }) => [key, value])) } } });
+  if (findings.length) settings.change({ fit: { ...values.fit, [chosen]: { at: Date.now(), ...Object.fromEntries(findings.map(({ key, value }) => [key, value])) } } });
   end("result");
 }
 
@@ -151,8 +157,9 @@ function hand() {
   return chosen === "stick" && input.source === "pointer" ? [input.x, input.y] : null;
 }
 
-/** Keep how long it takes from a press until the arm has been drawn anew and the screen shows it. @param {number} since ms */
-async function time(since) {
+/** Keep how long it takes from the press that is being dealt with until the arm has been drawn anew and the screen shows it. */
+async function timePress() {
+  const since = eventAt || pad()?.timestamp || performance.now();
   if (drawing) {
     const frame = new Promise((resolve) => document.addEventListener("arm-drawn", resolve, { once: true }));
     drawing.showToolPaths([]);
@@ -193,7 +200,7 @@ input.addEventListener("poll", () => {
 });
 input.addEventListener("turned", () => {
   if (!exercises[at] || input.source === null) return;
-  void time((input.source === "gamepad" && pad()?.timestamp) || eventAt);
+  void timePress();
   if (chosen !== "keys") return;
   exercises = [{ share: exercises[0].share + 1 / PRESSES }];
   goOn();
@@ -206,7 +213,7 @@ scanner.addEventListener("switch", (event) => {
   const [now, { number, down }] = [exercises[at], /** @type {CustomEvent} */ (event).detail];
   if (!(now instanceof Trials) || number > 0) return;
   now.pressed(down, performance.now() / 1000);
-  if (down) void time(eventAt);
+  if (down) void timePress();
 });
 connection.addEventListener("state", () => {
   if (connection.engaged && exercises.length) begin();
