@@ -10,12 +10,14 @@ import pytest
 from .test_gamepads import PADS
 
 SENT = """
-window.sent = [];
-const send = WebSocket.prototype.send;
-WebSocket.prototype.send = function (text) {
-  if (typeof text === "string") window.sent.push(JSON.parse(text).type);
-  return send.call(this, text);
-};
+{
+  window.sent = [];
+  const send = WebSocket.prototype.send;
+  WebSocket.prototype.send = function (text) {
+    if (typeof text === "string") window.sent.push(JSON.parse(text).type);
+    return send.call(this, text);
+  };
+}
 """
 SHAKING_PAD = """
 plug(0);

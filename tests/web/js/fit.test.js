@@ -170,6 +170,12 @@ test("of a switch it is known what was right, early and late, and how long each 
   assert.ok(dwellFor(trials.reactions) >= 1.2);
 });
 
+test("a computer is quick where four of five presses are seen in time", () => {
+  const why = (...delays) => findingsOf([], delays, DEFAULTS)[0].why;
+  assert.equal(why(30, 40, 50, 60, 900), "fit.quick");
+  assert.equal(why(30, 40, 50, 400, 900), "fit.slow");
+});
+
 test("a choice is not lit shorter for who takes the wrong one", () => {
   const trials = Object.assign(new Trials("auto"), { done: 8, reactions: Array(8).fill(0.4) });
   const dwell = (right) => proposals(findingsOf([Object.assign(trials, { counts: { right, early: 8 - right, late: 0 } })], [], DEFAULTS), DEFAULTS).dwellS;
