@@ -1,5 +1,6 @@
 """The measurements by name, with their options: what `latentarm measure` offers.
 
+The docstring of a measurement's options is the first line of its help.
 Nothing heavy is imported, and no measurement before it runs, so that help is quick.
 """
 
@@ -19,28 +20,28 @@ Numbers = tuple[float, ...]
 
 @dataclass(frozen=True)
 class Clearance:
-    """Options of ``clearance``."""
+    """Push arms at things and at themselves; MuJoCo measures the distances that they keep."""
 
     drives: Annotated[int, arg(help="How many, over all arms.")] = 2000
 
 
 @dataclass(frozen=True)
 class Limits:
-    """Options of ``limits``."""
+    """Compare the true state of an imperfect arm in physics with the configured limits."""
 
     ticks: Annotated[int, arg(help="Ticks of 10 ms, at least.")] = 100_000
 
 
 @dataclass(frozen=True)
 class Drives:
-    """Options of ``zones``."""
+    """Measure how fast parts of an arm are in a zone, exact and in physics."""
 
     drives: Annotated[int, arg(help="With each arm.")] = 30
 
 
 @dataclass(frozen=True)
 class Force:
-    """Options of ``force``."""
+    """Measure how hard an arm in physics presses on what its filters do not know."""
 
     drives: Annotated[int, arg(help="At each thing.")] = 8
     zone: Annotated[float | None, arg(metavar="M_PER_S", help="Speed of a zone about the thing.")] = None
@@ -49,7 +50,7 @@ class Force:
 
 @dataclass(frozen=True)
 class Stops:
-    """Options of ``stops``."""
+    """Measure how long simulated arms take to come to rest after a fault in motion."""
 
     arms: Annotated[Names, arg(help="Simulated arms, of `latentarm arms list`.")] = ("kinematic", "mujoco")
     tries: Annotated[int, arg(help="Of each fault.")] = 20
@@ -57,7 +58,7 @@ class Stops:
 
 @dataclass(frozen=True)
 class PageStops:
-    """Options of ``page-stops``."""
+    """Measure how fast the page stops the arm when browser, network or server fail."""
 
     run: Annotated[Path, arg(help="A trained run, which `latentarm teleop` serves.")]
     tries: Annotated[int, arg(help="Of each fault.")] = 20
@@ -66,7 +67,7 @@ class PageStops:
 
 @dataclass(frozen=True)
 class PageLatency:
-    """Options of ``page-latency``."""
+    """Measure how long after a key press the page shows the push and the arm's response."""
 
     run: Annotated[Path, arg(help="A trained run, which `latentarm teleop` serves.")]
     presses: Annotated[int, arg(help="Of arrow keys.")] = 500
@@ -74,7 +75,7 @@ class PageLatency:
 
 @dataclass(frozen=True)
 class Help:
-    """Options of ``help``."""
+    """Measure what each level of help on the page is worth to simulated people, and what it costs."""
 
     drives: Annotated[int, arg(help="To each item.")] = 5
     limit_s: Annotated[float, arg(help="Longest time of a drive, s.")] = 40.0
@@ -84,7 +85,7 @@ class Help:
 
 @dataclass(frozen=True)
 class WayBack:
-    """Options of ``way-back``."""
+    """Measure how far an adversary leads the tool off demonstrations, with a way back and without."""
 
     kinds: Annotated[Names, arg(help="Models; by default all.")] = ()
     starts: Annotated[int, arg(help="Demonstrated states to start from.")] = 64
@@ -93,7 +94,7 @@ class WayBack:
 
 @dataclass(frozen=True)
 class Calibrating:
-    """Options of ``calibration``."""
+    """Measure what is calibrated of the simulated people: pushes and mode switches."""
 
     people: Annotated[int, arg(help="Simulated people.")] = 12
     repeats: Annotated[int, arg(help="Of each movement by each person.")] = 1
@@ -103,7 +104,7 @@ class Calibrating:
 
 @dataclass(frozen=True)
 class Torque:
-    """Options of ``torque``."""
+    """Measure what share of the motors' torque gravity and a stop take, by a model and a limits file."""
 
     model: Annotated[Path, arg(help="MJCF file of the arm.")]
     limits: Annotated[Path, arg(help="Limits file, TOML or YAML.")]
@@ -113,7 +114,7 @@ class Torque:
 
 @dataclass(frozen=True)
 class People:
-    """Options of ``people``."""
+    """Fit the simulated people to half of a public study's persons, and predict the other half."""
 
     clone: Annotated[Path, arg(help="A clone of mpan31415/AutonomyFitts.")]
     people: Annotated[int, arg(help="Simulated in each try of the fit; four times as many predict.")] = 4
@@ -121,78 +122,26 @@ class People:
 
 @dataclass(frozen=True)
 class Tags:
-    """Options of ``tags``."""
+    """Measure how well things are found by tags, and cameras calibrated, in rendered pictures."""
 
     scenes: Annotated[int, arg(help="Rendered in each condition.")] = 200
     seconds: Annotated[float, arg(help="That a loop runs, with tags and without.")] = 20.0
 
 
 MEASUREMENTS: Final[Mapping[str, Measurement]] = {
-    "clearance": Measurement(
-        "Push arms at things and at themselves; MuJoCo measures the distances that they keep.",
-        Clearance,
-        {"drives": 2},
-    ),
-    "limits": Measurement(
-        "Compare the true state of an imperfect arm in physics with the configured limits.",
-        Limits,
-        {"ticks": 240},
-    ),
-    "zones": Measurement(
-        "Measure how fast parts of an arm are in a zone, exact and in physics.",
-        Drives,
-        {"drives": 1},
-    ),
-    "force": Measurement(
-        "Measure how hard an arm in physics presses on what its filters do not know.",
-        Force,
-        {"drives": 1, "stiffness_n_mm": (75.0,)},
-    ),
-    "stops": Measurement(
-        "Measure how long simulated arms take to come to rest after a fault in motion.",
-        Stops,
-        {"tries": 1, "arms": ("kinematic",)},
-    ),
-    "page-stops": Measurement(
-        "Measure how fast the page stops the arm when browser, network or server fail.",
-        PageStops,
-        {"tries": 1, "faults": ("page closed",)},
-    ),
-    "page-latency": Measurement(
-        "Measure how long after a key press the page shows the push and the arm's response.",
-        PageLatency,
-        {"presses": 4},
-    ),
-    "help": Measurement(
-        "Measure what each level of help on the page is worth to simulated people, and what it costs.",
-        Help,
-        {"drives": 1, "episodes": 2, "epochs": 1, "limit_s": 1.0},
-    ),
-    "way-back": Measurement(
-        "Measure how far an adversary leads the tool off demonstrations, with a way back and without.",
-        WayBack,
-        {"kinds": ("pca",), "starts": 2, "steps": 50},
-    ),
-    "calibration": Measurement(
-        "Measure what is calibrated of the simulated people: pushes and mode switches.",
-        Calibrating,
-        {"people": 2, "tasks": ("avoid",), "distances_m": (0.03,)},
-    ),
-    "people": Measurement(
-        "Fit the simulated people to half of a public study's persons, and predict the other half.",
-        People,
-        {"people": 1},
-    ),
-    "torque": Measurement(
-        "Measure what share of the motors' torque gravity and a stop take, by a model and a limits file.",
-        Torque,
-        {"poses": 20},
-    ),
-    "tags": Measurement(
-        "Measure how well things are found by tags, and cameras calibrated, in rendered pictures.",
-        Tags,
-        {"scenes": 1, "seconds": 0.5},
-    ),
+    "clearance": Measurement(Clearance, {"drives": 2}),
+    "limits": Measurement(Limits, {"ticks": 240}),
+    "zones": Measurement(Drives, {"drives": 1}),
+    "force": Measurement(Force, {"drives": 1, "stiffness_n_mm": (75.0,)}),
+    "stops": Measurement(Stops, {"tries": 1, "arms": ("kinematic",)}),
+    "page-stops": Measurement(PageStops, {"tries": 1, "faults": ("page closed",)}),
+    "page-latency": Measurement(PageLatency, {"presses": 4}),
+    "help": Measurement(Help, {"drives": 1, "episodes": 2, "epochs": 1, "limit_s": 1.0}),
+    "way-back": Measurement(WayBack, {"kinds": ("pca",), "starts": 2, "steps": 50}),
+    "calibration": Measurement(Calibrating, {"people": 2, "tasks": ("avoid",), "distances_m": (0.03,)}),
+    "people": Measurement(People, {"people": 1}),
+    "torque": Measurement(Torque, {"poses": 20}),
+    "tags": Measurement(Tags, {"scenes": 1, "seconds": 0.5}),
 }
 
 

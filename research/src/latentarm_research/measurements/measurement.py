@@ -32,9 +32,13 @@ UNITS: Final = {
 class Measurement:
     """A measurement as the command line lists it."""
 
-    summary: str  # the first line of its help
     options: type[Any]  # a frozen dataclass, its own options
     smoke: Mapping[str, object]  # values of options that only show that it runs
+
+    @property
+    def summary(self) -> str:
+        """The first line of its help."""
+        return self.options.__doc__ or ""
 
 
 @final
