@@ -27,15 +27,9 @@ _STEPS = round(DEMONSTRATION_S / STEP_S)
 class Circle(OneArm):
     """Along circles about the nominal place of the tool, and between them."""
 
-    @property
-    def name(self) -> str:
-        """``circle``."""
-        return "circle"
-
-    @property
-    def latent_dim(self) -> int:
-        """2: along a circle and between circles."""
-        return 2
+    name = "circle"
+    words = "move along circles and between them"
+    latent_dim = 2  # along a circle and between circles
 
     @property
     def centre(self) -> FloatArray:
@@ -47,11 +41,6 @@ class Circle(OneArm):
         """The smallest circle, the largest, and one between."""
         angle = np.linspace(0.0, 2 * np.pi, 100)
         return tuple(self._place(np.full(100, radius), angle) for radius in np.linspace(*RADII_M, 3))
-
-    @property
-    def words(self) -> str:
-        """See `PlanarMotion`."""
-        return "move along circles and between them"
 
     def paths(self, count: int, rng: np.random.Generator) -> Path:
         """Strokes along circles and between them, in turn."""

@@ -2,7 +2,7 @@
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import Final, final
+from typing import ClassVar, Final, final
 
 import numpy as np
 
@@ -53,18 +53,14 @@ class PlanarMotion(ABC):
         design: how it is demonstrated.
     """
 
+    name: ClassVar[str]  # in snake_case
+    words: ClassVar[str]  # what is done
+    latent_dim: ClassVar[int]  # size d of the latent action that the paper gives the task
+    closing: ClassVar[tuple[int, ...]]  # joints that bring the tool to its place where the others are drawn
+    duration_s: ClassVar[float] = DEMONSTRATION_S  # of a demonstration, s
+
     def __init__(self, robot: Robot, design: Design) -> None:
         self.robot, self.design = robot, design
-
-    @property
-    @abstractmethod
-    def name(self) -> str:
-        """Short name, in snake_case."""
-
-    @property
-    @abstractmethod
-    def latent_dim(self) -> int:
-        """Size d of the latent action that the paper gives the task."""
 
     @property
     @abstractmethod
@@ -73,28 +69,13 @@ class PlanarMotion(ABC):
 
     @property
     @abstractmethod
-    def words(self) -> str:
-        """What is done, in words."""
-
-    @property
-    @abstractmethod
     def nominal(self) -> FloatArray:
         """The nominal posture (n,), rad."""
 
     @property
     @abstractmethod
-    def closing(self) -> tuple[int, ...]:
-        """Joints that bring the tool to its place where the others are drawn freely."""
-
-    @property
-    @abstractmethod
     def constraint(self) -> Constraint:
         """What the task constrains."""
-
-    @property
-    def duration_s(self) -> float:
-        """Of a demonstration, s."""
-        return DEMONSTRATION_S
 
     @abstractmethod
     def paths(self, count: int, rng: np.random.Generator) -> Path:

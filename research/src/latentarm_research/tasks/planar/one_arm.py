@@ -11,6 +11,8 @@ from latentarm_research.tasks.planar.resolved_rate import Constraint, ToolPlace,
 class OneArm(PlanarMotion, ABC):
     """One arm of 5 joints, curled, whose tool's place is what the task constrains."""
 
+    closing = (0, 1)  # the first two joints
+
     def __init__(self, design: Design = DESIGN) -> None:
         super().__init__(planar(5), design)
 
@@ -18,11 +20,6 @@ class OneArm(PlanarMotion, ABC):
     def nominal(self) -> FloatArray:
         """See `PlanarMotion`."""
         return curled(self.robot)
-
-    @property
-    def closing(self) -> tuple[int, ...]:
-        """The first two joints."""
-        return (0, 1)
 
     @property
     def constraint(self) -> Constraint:

@@ -30,15 +30,10 @@ DEPTH_M = 0.05
 class ReachRegion(OneArm):
     """From a start to any place of a goal region."""
 
-    @property
-    def name(self) -> str:
-        """``reach``."""
-        return "reach"
-
-    @property
-    def latent_dim(self) -> int:
-        """1: to which part of the region."""
-        return 1
+    name = "reach"
+    words = "reach into the goal region"
+    latent_dim = 1  # to which part of the region
+    duration_s = DURATION_S
 
     @property
     def guides(self) -> tuple[FloatArray, ...]:
@@ -54,16 +49,6 @@ class ReachRegion(OneArm):
         """Places (count, 2) to begin from, m."""
         along_side = rng.uniform(-0.5, 0.5, count) * WIDTH_M
         return self._middle + np.stack([np.full(count, -DISTANCE_M / 2), along_side], axis=-1)
-
-    @property
-    def words(self) -> str:
-        """See `PlanarMotion`."""
-        return "reach into the goal region"
-
-    @property
-    def duration_s(self) -> float:
-        """See `DURATION_S`."""
-        return DURATION_S
 
     def paths(self, count: int, rng: np.random.Generator) -> Path:
         """Straight from a start to a place in the goal region."""

@@ -36,18 +36,14 @@ _PLANE: Final = (0, 1, 5)
 class Rotate(PlanarMotion):
     """Turn a box that both arms hold."""
 
+    name = "rotate"
+    words = "turn the box"
+    latent_dim = 1  # the turn
+    # the first two joints of each arm, and the last, which turns the gripper along the box
+    closing = (0, 1, 4, 5, 6, 9)
+
     def __init__(self, design: Design = DESIGN) -> None:
         super().__init__(planar(5, arms=2), design)
-
-    @property
-    def name(self) -> str:
-        """``rotate``."""
-        return "rotate"
-
-    @property
-    def latent_dim(self) -> int:
-        """1: the turn."""
-        return 1
 
     @property
     def guides(self) -> tuple[FloatArray, ...]:
@@ -59,19 +55,9 @@ class Rotate(PlanarMotion):
         return np.stack([_head(self.robot.chain.forward(state, arm)) for arm in (0, 1)], axis=-1)
 
     @property
-    def words(self) -> str:
-        """See `PlanarMotion`."""
-        return "turn the box"
-
-    @property
     def nominal(self) -> FloatArray:
         """See `PlanarMotion`."""
         return np.array([*LEFT_POSTURE_RAD, *(-joint for joint in LEFT_POSTURE_RAD)])
-
-    @property
-    def closing(self) -> tuple[int, ...]:
-        """The first two joints of each arm, and the last, which turns the gripper along the box."""
-        return (0, 1, 4, 5, 6, 9)
 
     @property
     def constraint(self) -> Constraint:

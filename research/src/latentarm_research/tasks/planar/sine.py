@@ -26,15 +26,9 @@ SPEED_RAD_S: Final = 0.4
 class Sine(OneArm):
     """Along ``y = A sin(2 pi x / wavelength)`` about the nominal place of the tool."""
 
-    @property
-    def name(self) -> str:
-        """``sine``."""
-        return "sine"
-
-    @property
-    def latent_dim(self) -> int:
-        """1: along the wave."""
-        return 1
+    name = "sine"
+    words = "move along the sine wave"
+    latent_dim = 1  # along the wave
 
     @property
     def guides(self) -> tuple[FloatArray, ...]:
@@ -45,11 +39,6 @@ class Sine(OneArm):
         """Points (..., 2) of the wave, m, at distances (...,) to the right of its middle, m."""
         wave = AMPLITUDE_M * np.sin(2 * np.pi * along / WAVELENGTH_M)
         return plane_point(self.robot, curled(self.robot)) + np.stack([along, wave], axis=-1)
-
-    @property
-    def words(self) -> str:
-        """See `PlanarMotion`."""
-        return "move along the sine wave"
 
     def paths(self, count: int, rng: np.random.Generator) -> Path:
         """Back and forth over the wave: each stroke has its own joint speed, so that it tells no place."""

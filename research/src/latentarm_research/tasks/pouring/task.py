@@ -7,7 +7,7 @@ base's x axis. Demonstrations wander smoothly, so that every direction is shown 
 
 from abc import ABC, abstractmethod
 from functools import cached_property
-from typing import Final, final
+from typing import ClassVar, Final, final
 
 import numpy as np
 
@@ -25,20 +25,17 @@ HOME_RAD: Final = (0.0, -0.6, 0.0, -2.4, 0.0, 1.9, np.pi / 4)
 class PouringTask(ABC):
     """Two degrees of freedom of a Panda's hand, shown by a simulated person."""
 
-    @property
-    @abstractmethod
-    def name(self) -> str:
-        """Short name, in snake_case."""
+    name: ClassVar[str]  # in snake_case
 
     @abstractmethod
     def draw(self, rng: np.random.Generator) -> ToolPath:
         """Where the hand goes in one demonstration."""
 
-    @property
+    @cached_property
     @final
     def robot(self) -> Robot:
         """A Panda."""
-        return self._robot
+        return load_robot("panda")
 
     @final
     def demonstrate(self, episodes: int, rng: np.random.Generator) -> Demonstrations:
@@ -56,7 +53,3 @@ class PouringTask(ABC):
             joint_names=self.robot.joint_names,
             robot=self.robot.name,
         )
-
-    @cached_property
-    def _robot(self) -> Robot:
-        return load_robot("panda")

@@ -75,10 +75,7 @@ def at_height(place: FloatArray) -> ToolPath:
 class Plane(PouringTask):
     """Anywhere over the table, at one height."""
 
-    @property
-    def name(self) -> str:
-        """``plane``."""
-        return "plane"
+    name = "plane"
 
     def draw(self, rng: np.random.Generator) -> ToolPath:
         """6 s over the table."""
@@ -95,10 +92,7 @@ def over(place: FloatArray, course: FloatArray) -> ToolPath:
 class Pour(PouringTask):
     """Up, down and tilted over a bowl."""
 
-    @property
-    def name(self) -> str:
-        """``pour``."""
-        return "pour"
+    name = "pour"
 
     def draw(self, rng: np.random.Generator) -> ToolPath:
         """6 s over one place."""
@@ -115,10 +109,7 @@ def at_bowl(position: FloatArray) -> BoolArray:
 class ReachAndPour(PouringTask):
     """Plane until the hand is at the bowl, then Pour."""
 
-    @property
-    def name(self) -> str:
-        """``reach_and_pour``."""
-        return "reach_and_pour"
+    name = "reach_and_pour"
 
     def draw(self, rng: np.random.Generator) -> ToolPath:
         """3 s to the bottle, straight to the bowl, a short rest, 6 s of pouring."""
