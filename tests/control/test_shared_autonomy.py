@@ -23,7 +23,7 @@ from latentarm.core.errors import UserError
 from latentarm.core.types import Context, Goal, Input
 from latentarm.safety.config import SafetyConfig
 from latentarm_research.assistance.bound import radius
-from latentarm_research.assistance.hindsight_belief import HindsightBelief
+from latentarm_research.assistance.cost_to_go import HindsightBelief
 from latentarm_research.assistance.published_help import HindsightOptimisation
 from stepping import stepped
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from latentarm.core.errors import UserError
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.kinematics.resolved_rates import Damping
-from latentarm_research.assistance.hindsight_belief import TICK_S, HindsightBelief
+from latentarm_research.assistance.cost_to_go import TICK_S, HindsightBelief
 from latentarm_research.assistance.published_help import (
     WEIGHTS,
     HindsightOptimisation,

@@ -9,9 +9,8 @@ from hypothesis import strategies as st
 
 from latentarm.core.errors import UserError
 from latentarm.runs.results_folder import write_json
-from latentarm_research.studies.means_test import spreads
 from latentarm_research.studies.results_folder import CONFIG, ResultsFolder
-from latentarm_research.studies.statistics import compare_means, format_p, holm, one_sample
+from latentarm_research.studies.statistics import compare_means, format_p, holm, one_sample, spreads
 from latentarm_research.studies.streams import integer, sequence
 from latentarm_research.studies.tables import listed, markdown_table
 

@@ -11,11 +11,16 @@ from scipy.stats import t as student
 from drawn_trials import drawn_trials
 from latentarm.core.types import FloatArray
 from latentarm_research.studies.claims import Claim
-from latentarm_research.studies.means_test import MeansTest, one_sample_test, small_sample_correction
-from latentarm_research.user_studies.analysis.analysis import analyse, mixed_model
+from latentarm_research.studies.statistics import MeansTest, one_sample_test, small_sample_correction
+from latentarm_research.user_studies.analysis.analysis import (
+    analyse,
+    claims_tested,
+    mixed_model,
+    sides_of,
+    verdicts,
+)
 from latentarm_research.user_studies.analysis.anova import repeated_measures
 from latentarm_research.user_studies.analysis.as_printed import as_printed
-from latentarm_research.user_studies.analysis.claims import claims_tested, sides_of, verdicts
 from latentarm_research.user_studies.analysis.means import long_table, sides
 from latentarm_research.user_studies.analysis.randomisation import randomisation_p
 from latentarm_research.user_studies.catalogue import load_definition

@@ -15,8 +15,7 @@ from drawn_trials import drawn_trials
 from latentarm.cli import main
 from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray
-from latentarm_research.user_studies.answers.items import items_of, sheet
-from latentarm_research.user_studies.answers.reading import read_answers
+from latentarm_research.user_studies.answers.items import items_of, read_answers, sheet
 from latentarm_research.user_studies.answers.scales import cronbach_alpha, rate
 from latentarm_research.user_studies.catalogue import load_definition
 from latentarm_research.user_studies.recorded import read_recorded

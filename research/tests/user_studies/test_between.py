@@ -15,7 +15,7 @@ from statsmodels.stats.weightstats import ttost_ind
 from drawn_trials import drawn_trials
 from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray
-from latentarm_research.studies.means_test import welch_test
+from latentarm_research.studies.statistics import welch_test
 from latentarm_research.user_studies.analysis.analysis import analyse
 from latentarm_research.user_studies.analysis.anova import between_people
 from latentarm_research.user_studies.analysis.randomisation import permutation_p

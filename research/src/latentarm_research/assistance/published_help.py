@@ -18,8 +18,7 @@ from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray
 from latentarm.robots.kinematics.resolved_rates import Damping, joint_velocities
 from latentarm.robots.robot import Robot
-from latentarm_research.assistance.cost_to_go import LOOK_AHEAD_S, GoalPoses
-from latentarm_research.assistance.hindsight_belief import HindsightBelief
+from latentarm_research.assistance.cost_to_go import LOOK_AHEAD_S, GoalPoses, HindsightBelief
 
 
 class ExpectedHelp(Assistance):

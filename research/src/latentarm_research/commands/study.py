@@ -56,7 +56,7 @@ def show_study(name: Positional[StudyName], json: Json = False) -> int:
 
     For example: latentarm study show eating
     """
-    from latentarm_research.user_studies.analysis.claims import worded
+    from latentarm_research.user_studies.analysis.analysis import worded
 
     definition = find_definition(name)
     if json:

@@ -65,7 +65,7 @@ def analyse_study(
     """
     from latentarm_research.studies.results_folder import ResultsFolder
     from latentarm_research.studies.study import REPORTED, write_report
-    from latentarm_research.user_studies.answers.reading import read_answers
+    from latentarm_research.user_studies.answers.items import read_answers
     from latentarm_research.user_studies.answers.scales import rate
     from latentarm_research.user_studies.recorded import read_recorded
     from latentarm_research.user_studies.report.figures import figure_names

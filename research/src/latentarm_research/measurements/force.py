@@ -27,8 +27,8 @@ from latentarm.safety.config import SafetyConfig
 from latentarm.safety.zones import Zone
 from latentarm.tasks.inverse_kinematics import solve
 from latentarm_research.measurements.catalogue import Force
-from latentarm_research.measurements.imperfect_arm import LATE_TICKS, PERIOD_S, enabled, imperfect
 from latentarm_research.measurements.measurement import Outcome, Work, line
+from latentarm_research.measurements.pushing import LATE_TICKS, PERIOD_S, enabled, imperfect
 
 PRESSED_TICKS: Final = 400
 

@@ -19,9 +19,16 @@ from latentarm.robots.panda import panda
 from latentarm.robots.robot import Robot
 from latentarm.safety.config import SafetyConfig
 from latentarm_research.measurements.catalogue import Limits
-from latentarm_research.measurements.imperfect_arm import LATE_TICKS, PERIOD_S, enabled, imperfect
 from latentarm_research.measurements.measurement import Outcome, Work, line
-from latentarm_research.measurements.pushing import HARMS, Pusher, scene
+from latentarm_research.measurements.pushing import (
+    HARMS,
+    LATE_TICKS,
+    PERIOD_S,
+    Pusher,
+    enabled,
+    imperfect,
+    scene,
+)
 
 PUSH_TICKS: Final = 200
 REST_TICKS: Final = 40

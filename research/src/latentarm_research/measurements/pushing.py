@@ -1,12 +1,16 @@
-"""Pushes of an arm at something near it, or at another part of itself."""
+"""Pushes of an arm at something near it or at itself, and arms in physics as filters do not know them."""
 
 from dataclasses import dataclass
 from typing import Final, final
 
 import numpy as np
 
+from latentarm.arms.kinematic import KinematicArm
+from latentarm.arms.mujoco import Imperfections, MujocoArm
 from latentarm.assistance.controllers.contract import Controller
-from latentarm.core.types import Context, FloatArray
+from latentarm.control.clock import SimulatedClock
+from latentarm.control.step import Step
+from latentarm.core.types import Context, FloatArray, Input
 from latentarm.robots.kinematics.obstacles import Box, Capsule, HalfSpace, Obstacle, Sphere
 from latentarm.robots.robot import Robot
 from latentarm_research.measurements.geom_distances import Judge
@@ -109,3 +113,42 @@ def scene(
         judge = Judge(robot, obstacles)
         if judge.distances(q).min() > START_M:
             return obstacles, judge, q, push
+
+
+PERIOD_S: Final = 0.01
+LATE_TICKS: Final = (0, 1, 2, 3)
+PAYLOAD_KG: Final = 1.0
+POSITION_NOISE_RAD: Final = 1e-4
+VELOCITY_NOISE_RAD_S: Final = 1e-3
+
+
+def imperfect(late_ticks: int, rng: np.random.Generator) -> Imperfections:
+    """An arm with a payload, and noise on readings that are so many ticks late."""
+    return Imperfections(
+        position_noise_rad=POSITION_NOISE_RAD,
+        velocity_noise_rad_s=VELOCITY_NOISE_RAD_S,
+        delay_s=PERIOD_S * late_ticks,
+        payload_kg=PAYLOAD_KG,
+        seed=int(rng.integers(2**31)),
+    )
+
+
+def enabled(
+    arm: KinematicArm | MujocoArm,  # not connected yet
+    step: Step,
+    clock: SimulatedClock,
+    late_ticks: int,  # how old its readings are, ticks of the step
+    inputs: int = 1,
+) -> int:
+    """Connect an arm, read it until its first late reading is there, enable it; the tick it may move from."""
+    arm.connect()
+    for tick in range(late_ticks + 2):
+        clock.wait_until(step.dt_s * tick)
+        reading = arm.read()
+        if tick == 0:
+            step.reset(reading.q)
+        step(Input(np.zeros(inputs)), 0.0, reading, clock.now_s())
+    arm.enable()
+    if (refused := step.enable()) is not None:
+        raise RuntimeError(f"the arm could not be enabled: {refused.reason}")
+    return late_ticks + 2

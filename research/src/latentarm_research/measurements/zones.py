@@ -24,9 +24,8 @@ from latentarm.robots.robot import Robot
 from latentarm.safety.config import SafetyConfig
 from latentarm.safety.zones import Zone
 from latentarm_research.measurements.catalogue import Drives
-from latentarm_research.measurements.imperfect_arm import PERIOD_S, enabled, imperfect
 from latentarm_research.measurements.measurement import Outcome, Work, line
-from latentarm_research.measurements.pushing import Pusher
+from latentarm_research.measurements.pushing import PERIOD_S, Pusher, enabled, imperfect
 
 CONDITIONS: Final = tuple(product((None, 0, 3), (0.03, 0.1)))
 """How late readings are, ticks (None: the arm moves exactly as commanded), and the zone's speed, m/s."""

@@ -8,7 +8,7 @@ A study is a package with these modules:
 - ``hypotheses.py``: each `claims.Hypothesis`, what came of its claims as `claims.Tested`, and targets, as
   `targets.Target`. `claim_tables` shows them on a page.
 - ``tables.py``, ``figures.py`` and ``page.md``: tables by `tables`, drawings by `drawing`, and the page as a
-  Jinja template (`page.render_page`). Figures of runs are `series.Series`, of which rows are made.
+  Jinja template (`page.render_page`). Figures of runs are `tables.Series`, of which rows are made.
 - ``study.py``: ``STUDY``, a `study.Study`: which grids of cells are run, and the `study.Report` on them.
 
 `study.run_study` does the rest, the same for all of them: it claims the folder, runs the grids and writes

@@ -8,9 +8,8 @@ from latentarm.evaluation.looks import look_of
 from latentarm.evaluation.measures import label_of
 from latentarm.evaluation.table import ABSENT, format_figure
 from latentarm_research.studies.claims import Hypothesis, Label, Tested, Verdict, verdict_on
-from latentarm_research.studies.means_test import CONFIDENCE
 from latentarm_research.studies.page import SMOKE
-from latentarm_research.studies.statistics import LEVEL, format_p
+from latentarm_research.studies.statistics import CONFIDENCE, LEVEL, format_p
 from latentarm_research.studies.tables import plain_table
 
 if TYPE_CHECKING:

@@ -10,8 +10,7 @@ from typing import Final, Literal, final
 
 from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray
-from latentarm_research.studies.means_test import MeansTest
-from latentarm_research.studies.statistics import LEVEL, Statistic, holm
+from latentarm_research.studies.statistics import LEVEL, MeansTest, Statistic, holm
 
 Direction = Literal["less", "greater", "equal"]
 Said = Literal["held", "not held", "could not be tested"]

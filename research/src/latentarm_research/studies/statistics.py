@@ -1,13 +1,150 @@
-"""One-sided tests of means, corrections for many tests, and intervals."""
+"""Tests of means with effect sizes and equivalence, corrections for many tests, and intervals."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Final
+from typing import Final, Literal, final
 
 import numpy as np
 
 from latentarm.core.types import FloatArray
-from latentarm_research.studies import means_test
+
+Direction = Literal["less", "greater"]
+
+NO_SPREAD: Final = 1e-9
+"""SD, in the largest figure, below which several figures are the same but for rounding."""
+
+CONFIDENCE: Final = 0.95
+TAIL: Final = (1.0 - CONFIDENCE) / 2.0
+
+
+def spreads(values: FloatArray) -> bool:
+    """Whether figures (n,) differ by more than rounding."""
+    return len(values) > 1 and float(values.std(ddof=1)) > NO_SPREAD * float(np.abs(values).max())
+
+
+@final
+@dataclass(frozen=True)
+class MeansTest:
+    """A t-test of one sample, such as differences of pairs, or of two independent ones.
+
+    SciPy's functions of distributions are called, not its tests: power draws thousands of studies.
+    """
+
+    n: int  # figures of the subject, or pairs
+    n_against: int  # independent figures of the other side; 0 for one sample
+    difference: float  # of the means
+    se: float  # its standard error
+    dof: float  # degrees of freedom of t
+    d: float  # difference over the SD, of two samples over the pooled one
+
+    @property
+    def t(self) -> float:
+        """The statistic."""
+        return self.difference / self.se
+
+    @property
+    def p(self) -> float:
+        """Two-sided."""
+        return 2.0 * self.p_of("greater" if self.difference > 0.0 else "less")
+
+    def p_of(self, direction: Direction) -> float:
+        """One-sided, that the subject has less, or more."""
+        from scipy.special import stdtr
+
+        return float(stdtr(self.dof, self.t if direction == "less" else -self.t))
+
+    def p_of_equality(self, margin: float) -> float:
+        """That the means differ by less than a margin: the larger of two one-sided p (Schuirmann 1987)."""
+        from scipy.special import stdtr
+
+        return float(stdtr(self.dof, (abs(self.difference) - margin) / self.se))
+
+    @property
+    def interval(self) -> tuple[float, float]:
+        """Lower and upper end of the 95 % interval of the difference."""
+        from scipy.special import stdtrit
+
+        reach = self.se * float(stdtrit(self.dof, 1.0 - TAIL))
+        return self.difference - reach, self.difference + reach
+
+    @property
+    def g(self) -> float | None:
+        """`d` without its bias in small samples, exact (Hedges 1981); None for two figures of one sample."""
+        correction = small_sample_correction(self._effect_dof)
+        return None if correction is None else self.d * correction
+
+    @property
+    def effect_interval(self) -> tuple[float, float]:
+        """The 95 % interval of the effect size that d and g estimate (Cumming and Finch 2001).
+
+        From the noncentral t distribution; of two samples exact where both SDs are the same.
+        """
+        from scipy.special import nctdtrinc
+
+        n, m = self.n, self.n_against
+        root = float(np.sqrt(n * m / (n + m) if m else n))
+        low, high = (
+            float(nctdtrinc(self._effect_dof, tail, self.d * root) / root) for tail in (1.0 - TAIL, TAIL)
+        )
+        return low, high
+
+    @property
+    def _effect_dof(self) -> int:
+        return self.n + self.n_against - (2 if self.n_against else 1)
+
+    def as_json(self) -> dict[str, object]:
+        """Plain mapping."""
+        low, high = self.interval
+        return {
+            "n": self.n,
+            "n_against": self.n_against,
+            "difference": self.difference,
+            "low": low,
+            "high": high,
+            "t": self.t,
+            "dof": self.dof,
+            "p": self.p,
+            "d": self.d,
+            "g": self.g,
+        }
+
+
+def one_sample_test(values: FloatArray, fixed: float = 0.0) -> MeansTest | None:
+    """Test figures (n,) against a fixed one; of differences of pairs this is the paired test.
+
+    None for fewer than two figures, or where all are the same.
+    """
+    if not spreads(values):
+        return None
+    n, difference, sd = len(values), float(values.mean()) - fixed, float(values.std(ddof=1))
+    return MeansTest(n, 0, difference, sd / float(np.sqrt(n)), n - 1, difference / sd)
+
+
+def welch_test(subject: FloatArray, against: FloatArray) -> MeansTest | None:
+    """Test two independent samples (n,) and (m,) by Welch's t (Biometrika 34:28, 1947).
+
+    None for fewer than two figures on either side, or where neither side varies.
+    """
+    n, m = len(subject), len(against)
+    if min(n, m) < 2 or not (spreads(subject) or spreads(against)):
+        return None
+    difference = float(subject.mean() - against.mean())
+    variances = float(subject.var(ddof=1)), float(against.var(ddof=1))
+    one, other = variances[0] / n, variances[1] / m
+    share = one / (one + other)  # squares of shares cannot underflow
+    dof = 1.0 / (share**2 / (n - 1) + (1.0 - share) ** 2 / (m - 1))
+    pooled = ((n - 1) * variances[0] + (m - 1) * variances[1]) / (n + m - 2)
+    return MeansTest(n, m, difference, float(np.sqrt(one + other)), dof, difference / float(np.sqrt(pooled)))
+
+
+def small_sample_correction(dof: int) -> float | None:
+    """Bias correction J of a standardised difference (Hedges 1981); None where it does not exist."""
+    from scipy.special import gammaln
+
+    if dof < 2:
+        return None
+    return float(np.exp(gammaln(dof / 2) - gammaln((dof - 1) / 2)) / np.sqrt(dof / 2))
+
 
 LEVEL: Final = 0.05  # a test holds where p, after Holm's correction, is below this
 RESAMPLES: Final = 4000
@@ -19,42 +156,42 @@ class Statistic:
     """A test of two means."""
 
     method: str  # `Welch's t`, `one-sample t`, `paired t`, ...; empty where no test was made
-    test: means_test.MeansTest | None = None  # of the difference; None where it was not made
+    test: MeansTest | None = None  # of the difference; None where it was not made
     p: float | None = None  # None where it was not tested
     why_not: str = ""  # why no test was made; empty where one was
 
 
-def compare_means(values: FloatArray, reference: FloatArray, direction: means_test.Direction) -> Statistic:
+def compare_means(values: FloatArray, reference: FloatArray, direction: Direction) -> Statistic:
     """Test whether figures (n,) are less, or greater, than those of a reference (m,), on average.
 
     Welch's test where both sides have spread; where one has none, it is a fixed figure to the other.
     """
-    if not means_test.spreads(values) and not means_test.spreads(reference):
+    if not spreads(values) and not spreads(reference):
         return Statistic("", why_not="no spread on either side")
-    if not means_test.spreads(values):
-        found = means_test.one_sample_test(reference, float(values.mean()))
+    if not spreads(values):
+        found = one_sample_test(reference, float(values.mean()))
         if found is not None:
             # The reference is the sample; the difference is that of the values.
             found = replace(found, difference=-found.difference, d=-found.d)
         return _one_sided("one-sample t", found, direction)
-    if not means_test.spreads(reference):
+    if not spreads(reference):
         return one_sample(values, float(reference.mean()), direction)
-    return _one_sided("Welch's t", means_test.welch_test(values, reference), direction)
+    return _one_sided("Welch's t", welch_test(values, reference), direction)
 
 
-def one_sample(values: FloatArray, fixed: float, direction: means_test.Direction) -> Statistic:
+def one_sample(values: FloatArray, fixed: float, direction: Direction) -> Statistic:
     """Test whether figures (n,) are less, or greater, than a fixed one, on average."""
-    return _one_sided("one-sample t", means_test.one_sample_test(values, fixed), direction)
+    return _one_sided("one-sample t", one_sample_test(values, fixed), direction)
 
 
-def paired(values: FloatArray, reference: FloatArray, direction: means_test.Direction) -> Statistic:
+def paired(values: FloatArray, reference: FloatArray, direction: Direction) -> Statistic:
     """Test whether figures (n,) are less, or greater, than others of the same seeds (n,), on average."""
     if len(values) < 2:
         return Statistic("", why_not="too few seeds")
-    return _one_sided("paired t", means_test.one_sample_test(values - reference), direction)
+    return _one_sided("paired t", one_sample_test(values - reference), direction)
 
 
-def _one_sided(method: str, test: means_test.MeansTest | None, direction: means_test.Direction) -> Statistic:
+def _one_sided(method: str, test: MeansTest | None, direction: Direction) -> Statistic:
     """The result of a test of one direction; None is figures without spread."""
     if test is None:
         return Statistic("", why_not="no spread")
@@ -89,7 +226,7 @@ def bootstrap_interval(
         / units
     )
     means = np.tensordot(draws, values, axes=1)
-    low, high = np.quantile(means, (means_test.TAIL, 1.0 - means_test.TAIL), axis=0)
+    low, high = np.quantile(means, (TAIL, 1.0 - TAIL), axis=0)
     # A mean of equal values differs from them by rounding.
     lowest, highest = values.min(axis=0), values.max(axis=0)
     return np.clip(low, lowest, highest), np.clip(high, lowest, highest)

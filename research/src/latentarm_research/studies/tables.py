@@ -1,13 +1,15 @@
-"""Tables of all studies, in Markdown for a page and for a terminal, and the words in them."""
+"""Figures of runs and tables of all studies, in Markdown for a page and for a terminal."""
 
+import math
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, NamedTuple, TypeVar, final
 
 import numpy as np
 
-from latentarm.core.types import FloatArray
+from latentarm.core.types import FloatArray, Row
 from latentarm.evaluation.measures import label_of, unit_of
+from latentarm.evaluation.summary import Subject, summarise
 from latentarm.evaluation.table import ABSENT, format_figure
 
 if TYPE_CHECKING:
@@ -15,6 +17,26 @@ if TYPE_CHECKING:
 
 Line = TypeVar("Line")
 Column = TypeVar("Column")
+
+
+@final
+class Series(NamedTuple):
+    """One measure of one model under one condition."""
+
+    task: str
+    model: str
+    condition: str | None  # None in the study's main setting
+    measure: str
+    values: FloatArray  # (n,), of each run
+
+    def row(self, study: str) -> Row:
+        """Mean and SD over the runs."""
+        return summarise(Subject(study, self.task, self.model, self.condition), self.measure, self.values)
+
+    def as_json(self) -> dict[str, object]:
+        """Plain mapping; figures that are not finite are None."""
+        values = [value if math.isfinite(value) else None for value in self.values.tolist()]
+        return {**self._asdict(), "values": values}
 
 
 def markdown_table(head: Sequence[str], lines: Iterable[Sequence[str | None]]) -> str:

@@ -10,7 +10,7 @@ import numpy as np
 from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray, IntArray
 from latentarm_research.studies.claims import Claim
-from latentarm_research.studies.means_test import MeansTest, one_sample_test, welch_test
+from latentarm_research.studies.statistics import MeansTest, one_sample_test, welch_test
 from latentarm_research.user_studies.analysis.anova import Effect, between_people, repeated_measures
 from latentarm_research.user_studies.analysis.means import LongTable, Sides, groups, long_table, sides
 from latentarm_research.user_studies.analysis.randomisation import permutation_p, randomisation_p

@@ -7,7 +7,7 @@ from typing import Final, final
 import numpy as np
 
 from latentarm.core.errors import UserError
-from latentarm_research.user_studies.analysis.claims import claims_tested, sides_of, verdicts, worded
+from latentarm_research.user_studies.analysis.analysis import claims_tested, sides_of, verdicts, worded
 from latentarm_research.user_studies.analysis.means import Sides
 from latentarm_research.user_studies.definition import Definition
 from latentarm_research.user_studies.designs import design_of

@@ -13,8 +13,7 @@ from latentarm.core.untrusted.documents import read_object
 from latentarm_research.people.population import draw_people
 from latentarm_research.people.traits import Traits
 from latentarm_research.studies import fitting, streams
-from latentarm_research.studies.results_folder import package_versions
-from latentarm_research.studies.source import source_digest
+from latentarm_research.studies.results_folder import package_versions, source_digest
 from latentarm_research.studies.streams import generator
 from latentarm_research.studies.study import Grid, Keep, Report, Request, Study, again
 from latentarm_research.user_studies import alignments, conditions, designs, scenes, session, training

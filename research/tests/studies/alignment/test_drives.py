@@ -40,7 +40,6 @@ from latentarm_research.studies.alignment.drives_learning import (
     learn,
     turned_person,
 )
-from latentarm_research.studies.alignment.drives_tables import drives_rows, misses
 from latentarm_research.studies.alignment.figures import drives_figure
 from latentarm_research.studies.alignment.preset import (
     ALL_PRIORS,
@@ -53,6 +52,7 @@ from latentarm_research.studies.alignment.preset import (
 )
 from latentarm_research.studies.alignment.rows import AlignmentResults
 from latentarm_research.studies.alignment.study import STUDY
+from latentarm_research.studies.alignment.tables import drives_rows, misses
 from latentarm_research.studies.study import Request
 
 PANDA = load_robot("panda")

@@ -23,7 +23,7 @@ from latentarm_research.studies.alignment.preset import (
     under,
 )
 from latentarm_research.studies.alignment.scene import LearnedDecoder, scene_of
-from latentarm_research.studies.series import Series
+from latentarm_research.studies.tables import Series
 
 STUDY: Final = "alignment"
 

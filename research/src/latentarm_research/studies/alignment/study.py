@@ -11,7 +11,7 @@ from latentarm.evaluation.looks import look_of
 from latentarm.tasks.table_top import TableTop
 from latentarm.tasks.task import REACHED_ANGLE, REACHED_DISTANCE
 from latentarm_research.alignment.priors import Priors
-from latentarm_research.studies.alignment import curves, drives, drives_tables, tables
+from latentarm_research.studies.alignment import curves, drives, tables
 from latentarm_research.studies.alignment import preset as conditions
 from latentarm_research.studies.alignment.cell import AlignmentErrors, measure_cell
 from latentarm_research.studies.alignment.curves import CurveResult, measure_curve
@@ -97,7 +97,7 @@ def _label(cell: AnyCell) -> str:
 
 def _report(request: Request[Preset], measured: AlignmentResults) -> Report:
     series = series_of(measured)
-    driven = [] if measured.drives is None else drives_tables.drives_rows(measured.drives)
+    driven = [] if measured.drives is None else tables.drives_rows(measured.drives)
     rows = [*(one.row(NAME) for one in series), *driven]
     tests = compare_conditions(measured.results)
     figures = _figures(measured)
@@ -165,9 +165,9 @@ def _page(
         drives=measured.drives,
         driven_model=conditions.DRIVEN_MODEL,
         drive_conditions=drives,
-        drive_words=drives_tables.WORDS,
-        drive_table=drives_tables.drive_table(measured.drives) if measured.drives else "",
-        ways=drives_tables.axes_in_words(measured.drives) if measured.drives else [],
+        drive_words=tables.WORDS,
+        drive_table=tables.drive_table(measured.drives) if measured.drives else "",
+        ways=tables.axes_in_words(measured.drives) if measured.drives else [],
         goals=[goal.name for goal in TableTop().goals],
         reached_m=REACHED_DISTANCE,
         reached_deg=degrees(REACHED_ANGLE),

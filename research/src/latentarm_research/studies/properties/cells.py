@@ -1,4 +1,4 @@
-"""How each cell of the paper's table compares: within one SD of the paper's, on either side, or beyond it.
+"""Ours next to the paper's, and how each cell of its table compares: within one SD of the paper's, or beyond.
 
 Beyond it, the side decides between the method's favour and a miss. The paper's claim is that models that see
 the context do better than models that do not. So its favour is a better figure where the decoder sees the
@@ -15,7 +15,11 @@ from latentarm.evaluation.looks import look_of
 from latentarm.evaluation.measures import measure_of
 from latentarm.evaluation.table import ABSENT, format_figure, measure_name
 from latentarm.models.catalogue import KINDS
-from latentarm_research.studies.properties.paper import OF_MEANS, PAPER
+from latentarm_research.studies.properties.paper import (
+    LENGTHS,
+    OF_MEANS,
+    PAPER,
+)
 from latentarm_research.studies.tables import markdown_table
 
 HALF_A_DIGIT: Final = 0.005
@@ -101,3 +105,47 @@ def cells_table(cells: Sequence[PaperCell]) -> str:
 def _printed(row: Row) -> str:
     """What the paper prints, with its SD where it has one."""
     return f"{row.paper_mean:.3g}" + ("" if row.paper_sd is None else f" ± {row.paper_sd:.2g}")
+
+
+UNIT_NOT_STATED: Final = "†"  # marks a length of the paper, whose unit it does not state
+
+Cells = dict[tuple[str, str], Row]  # rows by measure and model
+
+
+def paper_table(rows: Iterable[Row], task: str) -> str:
+    """One task: measures down, models across, each figure with the paper's where it has one."""
+    cells = _cells(row for row in rows if row.task == task)
+    models = list(dict.fromkeys(model for _, model in cells))
+    lines = [
+        [
+            _name(cells, measure),
+            *(_beside_paper(cells.get((measure, model))) for model in models),
+        ]
+        for measure in dict.fromkeys(measure for measure, _ in cells)
+    ]
+    return markdown_table(["mean ± SD", *(look_of(model).label for model in models)], lines)
+
+
+def _cells(rows: Iterable[Row]) -> Cells:
+    return {(row.measure, row.model or ""): row for row in rows}
+
+
+def _name(cells: Cells, measure: str) -> str:
+    """A measure's name as people read it."""
+    return next(measure_name(row) for row in cells.values() if row.measure == measure)
+
+
+def _figure(row: Row | None) -> str:
+    return ABSENT if row is None else format_figure(row.mean, row.sd)
+
+
+def _beside_paper(row: Row | None) -> str:
+    """A figure and, in brackets, the paper's to as many digits as it prints."""
+    if row is None:
+        return ABSENT
+    length = LENGTHS.get((row.task or "", row.model or "", row.measure))
+    mean, sd = length or (row.paper_mean, row.paper_sd)
+    if mean is None:
+        return _figure(row)
+    spread = "" if sd is None else f" ± {sd:.2g}"
+    return f"{_figure(row)} (paper: {mean:.3g}{spread}{f' {UNIT_NOT_STATED}' if length else ''})"

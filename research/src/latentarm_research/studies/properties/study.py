@@ -8,13 +8,18 @@ from latentarm.core.types import Row
 from latentarm_research.studies.claim_tables import judged_parts
 from latentarm_research.studies.claims import Tested
 from latentarm_research.studies.page import render_page
-from latentarm_research.studies.properties import tables
 from latentarm_research.studies.properties.cell import (
     PropertiesCell,
     PropertiesResult,
     measure_cell,
 )
-from latentarm_research.studies.properties.cells import cells_table, count, paper_cells
+from latentarm_research.studies.properties.cells import (
+    UNIT_NOT_STATED,
+    cells_table,
+    count,
+    paper_cells,
+    paper_table,
+)
 from latentarm_research.studies.properties.figures import (
     beside_paper_figure,
 )
@@ -22,8 +27,8 @@ from latentarm_research.studies.properties.hypotheses import HYPOTHESES, LINEAR,
 from latentarm_research.studies.properties.motion_figures.catalogue import TASK_FIGURES
 from latentarm_research.studies.properties.paper import with_paper
 from latentarm_research.studies.properties.preset import PRESETS, Preset
-from latentarm_research.studies.series import Series
 from latentarm_research.studies.study import Grid, Report, Request, Study, again
+from latentarm_research.studies.tables import Series
 from latentarm_research.tasks.planar.catalogue import MOTIONS
 from latentarm_research.tasks.planar.paths import STEP_S
 
@@ -95,8 +100,8 @@ def _page(
         cells_table=cells_table(cells),
         **judged_parts(HYPOTHESES, tests),
         figures=list(figures),
-        paper_tables={task: tables.paper_table(rows, task) for task in request.tasks},
-        unit_not_stated=tables.UNIT_NOT_STATED,
+        paper_tables={task: paper_table(rows, task) for task in request.tasks},
+        unit_not_stated=UNIT_NOT_STATED,
         compared_measures=", ".join(
             claim.measure for one in HYPOTHESES for claim in one.claims if claim.against != MARK
         ),

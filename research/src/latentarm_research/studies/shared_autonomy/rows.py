@@ -1,4 +1,4 @@
-"""From what cells measured to the study's rows, means of clusters of drives, with what the paper prints.
+"""From what cells measured to the study's rows and tables, means of clusters of drives, with the paper's.
 
 Drives with one trained model are one cluster. Section 8.2 prints two figures: how much more time LA takes
 than LA+SA on the Franka Emika, a Panda. All its other results are curves without printed numbers.
@@ -6,15 +6,18 @@ than LA+SA on the Franka Emika, a Panda. All its other results are curves withou
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Final, Literal, NamedTuple
+from typing import Final, Literal, NamedTuple, final
 
 from scipy import stats
 
 from latentarm.core.types import FloatArray, Row
+from latentarm.evaluation.looks import look_of
 from latentarm.evaluation.measures import unit_of
-from latentarm_research.studies.means_test import CONFIDENCE
-from latentarm_research.studies.shared_autonomy.cell import WITH_HELP, WITHOUT_HELP, AutonomyResult
-from latentarm_research.studies.statistics import bootstrap_interval
+from latentarm.evaluation.table import ABSENT, format_figure
+from latentarm_research.studies.shared_autonomy.cell import METHODS, WITH_HELP, WITHOUT_HELP, AutonomyResult
+from latentarm_research.studies.shared_autonomy.preset import Preset
+from latentarm_research.studies.statistics import CONFIDENCE, bootstrap_interval
+from latentarm_research.studies.tables import grid_table, heading
 
 FEWEST_SEEDS: Final = 3
 """From this many on, seeds are the units; with fewer there is no spread to estimate, so drives are."""
@@ -158,3 +161,50 @@ def _extra_times(result: AutonomyResult) -> Iterator[Figure]:
         if method == WITHOUT_HELP and (WITH_HELP, person) in times:
             extra = 100.0 * (times[method, person] / times[WITH_HELP, person] - 1.0)
             yield Figure(result.cell.task, result.cell.model, person, EXTRA_TIME, extra[:, None])
+
+
+@final
+class Tables:
+    """The tables of the page, in Markdown: means with their intervals."""
+
+    def __init__(self, found: Sequence[Figure], preset: Preset) -> None:
+        self._found = {(one.task, one.model, one.condition, one.measure): one for one in found}
+        self._people = {person.label: person.label for person in preset.people}
+        self._models = list(dict.fromkeys(one.model for one in found))
+
+    def people(self, task: str, model: str, measure: str) -> str:
+        """One measure with one model: people down, methods across."""
+
+        def text(person: str, method: str) -> str:
+            return self._figure(task, model, f"{method}, {person}", measure)
+
+        return grid_table(heading(measure), self._people, {name: name for name in METHODS}, text)
+
+    def extra_time(self, task: str) -> str:
+        """How much more time LA takes than LA+SA, with the paper's figures."""
+
+        def text(person: str, model: str) -> str:
+            printed = PAPER.get((task, model, EXTRA_TIME, person))
+            beside = "" if printed is None else f" (paper: {printed:g})"
+            return self._figure(task, model, person, EXTRA_TIME) + beside
+
+        models = {look_of(model).label: model for model in self._models}
+        return grid_table(heading(EXTRA_TIME), self._people, models, text)
+
+    def reconstruction(self, tasks: Sequence[str]) -> str:
+        """Reconstruction without entropy and with it."""
+        columns = {
+            f"{look_of(model).label}, {kind}": (model, kind)
+            for model in self._models
+            for kind in ("without entropy", "with entropy")
+        }
+        return grid_table(
+            heading(RECONSTRUCTION),
+            {look_of(task).label: task for task in tasks},
+            columns,
+            lambda task, column: self._figure(task, *column, RECONSTRUCTION),
+        )
+
+    def _figure(self, task: str, model: str, condition: str, measure: str) -> str:
+        one = self._found.get((task, model, condition, measure))
+        return ABSENT if one is None else format_figure(one.interval.mean, one.interval.half_width)

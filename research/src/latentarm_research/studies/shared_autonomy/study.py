@@ -29,11 +29,11 @@ from latentarm_research.studies.shared_autonomy.rows import (
     FEWEST_SEEDS,
     MODEL,
     Figure,
+    Tables,
     figures,
     rows_of,
 )
 from latentarm_research.studies.shared_autonomy.rows import STUDY as NAME
-from latentarm_research.studies.shared_autonomy.tables import Tables
 from latentarm_research.studies.study import Grid, Report, Request, Study, again
 
 if TYPE_CHECKING:

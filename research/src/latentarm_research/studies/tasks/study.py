@@ -11,8 +11,7 @@ from latentarm_research.drives.guide import GuidingHand
 from latentarm_research.metrics.ending import STUCK_S
 from latentarm_research.studies import fitting, streams
 from latentarm_research.studies.page import render_page
-from latentarm_research.studies.results_folder import package_versions
-from latentarm_research.studies.source import source_digest
+from latentarm_research.studies.results_folder import package_versions, source_digest
 from latentarm_research.studies.study import Grid, Report, Request, Study, again
 from latentarm_research.studies.tasks import cell as measuring
 from latentarm_research.studies.tasks import kept, moved, orientation, runs, tables

@@ -1,4 +1,4 @@
-"""What the four tasks of section 8.1 have in common."""
+"""What the four tasks of section 8.1 have in common, and those of one arm."""
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
@@ -8,9 +8,17 @@ import numpy as np
 
 from latentarm.core.errors import UserError
 from latentarm.core.types import BoolArray, Demonstrations, Episode, FloatArray
+from latentarm.robots.planar import planar
 from latentarm.robots.robot import Robot
 from latentarm_research.tasks.planar.paths import Path
-from latentarm_research.tasks.planar.resolved_rate import Constraint, Recording, follow, settle
+from latentarm_research.tasks.planar.resolved_rate import (
+    Constraint,
+    Recording,
+    ToolPlace,
+    curled,
+    follow,
+    settle,
+)
 
 DEMONSTRATION_S: Final = 4.0
 """Duration of a demonstration that goes back and forth."""
@@ -139,3 +147,22 @@ class PlanarMotion(ABC):
             joint_names=self.robot.joint_names,
             robot=self.robot.name,
         )
+
+
+class OneArm(PlanarMotion, ABC):
+    """One arm of 5 joints, curled, whose tool's place is what the task constrains."""
+
+    closing = (0, 1)  # the first two joints
+
+    def __init__(self, design: Design = DESIGN) -> None:
+        super().__init__(planar(5), design)
+
+    @property
+    def nominal(self) -> FloatArray:
+        """See `PlanarMotion`."""
+        return curled(self.robot)
+
+    @property
+    def constraint(self) -> Constraint:
+        """The tool's place."""
+        return ToolPlace(self.robot)

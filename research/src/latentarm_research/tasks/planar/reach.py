@@ -11,8 +11,7 @@ from typing import final
 import numpy as np
 
 from latentarm.core.types import FloatArray
-from latentarm_research.tasks.planar.motion import outline
-from latentarm_research.tasks.planar.one_arm import OneArm
+from latentarm_research.tasks.planar.motion import OneArm, outline
 from latentarm_research.tasks.planar.paths import Path, Timed
 from latentarm_research.tasks.planar.resolved_rate import curled, plane_point
 

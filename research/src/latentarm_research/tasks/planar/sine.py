@@ -10,8 +10,7 @@ from typing import Final, final
 import numpy as np
 
 from latentarm.core.types import FloatArray
-from latentarm_research.tasks.planar.motion import DEMONSTRATION_S
-from latentarm_research.tasks.planar.one_arm import OneArm
+from latentarm_research.tasks.planar.motion import DEMONSTRATION_S, OneArm
 from latentarm_research.tasks.planar.paths import Paced, Path
 from latentarm_research.tasks.planar.resolved_rate import curled, plane_point
 

@@ -6,7 +6,7 @@ from typing import Any, final
 
 import numpy as np
 
-from latentarm_research.studies.means_test import spreads
+from latentarm_research.studies.statistics import spreads
 from latentarm_research.user_studies.analysis.means import person_mean
 from latentarm_research.user_studies.definition import Factor
 from latentarm_research.user_studies.record import Trial

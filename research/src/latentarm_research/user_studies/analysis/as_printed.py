@@ -8,8 +8,7 @@ import numpy as np
 
 from latentarm.core.types import FloatArray
 from latentarm_research.studies.claims import Claim
-from latentarm_research.studies.means_test import spreads
-from latentarm_research.studies.statistics import LEVEL, format_p
+from latentarm_research.studies.statistics import LEVEL, format_p, spreads
 from latentarm_research.user_studies.analysis.means import sides, tasks_of
 from latentarm_research.user_studies.hypothesis import Printed, PrintedTest
 from latentarm_research.user_studies.record import Trial

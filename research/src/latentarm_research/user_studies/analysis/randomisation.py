@@ -17,7 +17,7 @@ from typing import Final
 import numpy as np
 
 from latentarm.core.types import BoolArray, FloatArray
-from latentarm_research.studies.means_test import spreads
+from latentarm_research.studies.statistics import spreads
 from latentarm_research.user_studies.analysis.means import LongTable
 
 MOST_EXACT: Final = 13  # people up to whom every swap is tried

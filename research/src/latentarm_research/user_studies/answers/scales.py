@@ -8,9 +8,8 @@ from typing import Final, final
 import numpy as np
 
 from latentarm.core.types import FloatArray
-from latentarm_research.studies.means_test import TAIL
-from latentarm_research.user_studies.answers.items import items_of
-from latentarm_research.user_studies.answers.reading import Answer
+from latentarm_research.studies.statistics import TAIL
+from latentarm_research.user_studies.answers.items import Answer, items_of
 from latentarm_research.user_studies.definition import Definition
 from latentarm_research.user_studies.questionnaire import Scale
 from latentarm_research.user_studies.record import Trial

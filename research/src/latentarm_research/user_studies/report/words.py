@@ -8,8 +8,7 @@ from latentarm.evaluation.table import ABSENT
 from latentarm_research.people.population import MIRRORED, TRAITS
 from latentarm_research.people.traits import Traits
 from latentarm_research.studies.claim_tables import claim_columns, columns_table
-from latentarm_research.studies.means_test import CONFIDENCE, MeansTest
-from latentarm_research.studies.statistics import format_p
+from latentarm_research.studies.statistics import CONFIDENCE, MeansTest, format_p
 from latentarm_research.studies.tables import listed
 from latentarm_research.user_studies.analysis.analysis import TestedClaim
 from latentarm_research.user_studies.definition import Condition, Definition, Design, StudyTask
