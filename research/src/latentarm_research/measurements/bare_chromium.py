@@ -26,8 +26,8 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 
 from latentarm.core.errors import UserError
+from latentarm_research.studies.page import NAMES, browser_rights, find_browser
 
-NAMES: Final = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 ARGUMENTS: Final = (
     "--headless=new",
     "--no-first-run",
@@ -99,12 +99,17 @@ class Browser:
     """A running Chromium and its tabs."""
 
     def __init__(self, folder: Path, *arguments: str) -> None:
-        found = next((path for name in NAMES if (path := shutil.which(name))), None)
+        found = find_browser()
         if found is None:
             raise UserError(f"No Chromium is installed: looked for {', '.join(NAMES)}.")
-        # As root, as in containers, it has no sandbox.
-        rights = ["--no-sandbox"] if os.getuid() == 0 else []
-        command = [found, *ARGUMENTS, *rights, f"--user-data-dir={folder}", *arguments, "about:blank"]
+        command = [
+            found,
+            *ARGUMENTS,
+            *browser_rights(),
+            f"--user-data-dir={folder}",
+            *arguments,
+            "about:blank",
+        ]
         self.process = subprocess.Popen(
             command, start_new_session=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
         )

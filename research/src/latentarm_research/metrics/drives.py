@@ -154,6 +154,20 @@ MEASURES: Final = (
 """Fields of `Drive` that are measures as they are, in the order of rows."""
 
 
+TRIAL_MEASURES: Final = (
+    "steps_done",
+    "time_s",
+    "idle_s",
+    "input_magnitude",
+    "turned_round",
+    "mode_switches",
+    "path_length",
+    "stops",
+    "preference_alignment",
+)
+"""Those of every trial of a user study that has a value for them."""
+
+
 def drive_rows(subject: Subject, drives: Sequence[Drive]) -> list[Row]:
     """Mean and SD over the drives of one condition; measures that no drive has are left out.
 

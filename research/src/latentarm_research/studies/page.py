@@ -41,23 +41,17 @@ def render_page(template: str, preset: Any, **content: Any) -> str:
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    environment.filters.update(label=_label, literal="`{}`".format, listed=listed, g=_short, image=_image)
-    environment.filters.update(plain=plain)
+    environment.filters.update(
+        label=lambda name: look_of(name).label,
+        literal="`{}`".format,
+        listed=listed,
+        g="{:g}".format,
+        image=lambda name: f"![{name.replace('_', ' ')}, simulated]({name}.png)",
+        plain=plain,
+    )
     judged = preset.name != SMOKE
     page = environment.get_template(template).render(content, table=plain_table, preset=preset, judged=judged)
     return page if judged else page.replace("\n", f" (preset {SMOKE})\n", 1)
-
-
-def _label(name: str) -> str:
-    return look_of(name).label
-
-
-def _short(number: float) -> str:
-    return f"{number:g}"
-
-
-def _image(name: str) -> str:
-    return f"![{name.replace('_', ' ')}, simulated]({name}.png)"
 
 
 WIDE: Final = 7  # columns of a table from which on its text is small
@@ -148,7 +142,7 @@ def print_page(page: Path, pdf: Path) -> str:
             "--no-first-run",
             f"--user-data-dir={folder}/profile",
             "--no-pdf-header-footer",
-            *_sandboxed(),
+            *browser_rights(),
             f"--print-to-pdf={printed}",
             page.resolve().as_uri(),
         ]
@@ -163,7 +157,7 @@ def print_page(page: Path, pdf: Path) -> str:
     return ""
 
 
-def _sandboxed() -> Sequence[str]:
+def browser_rights() -> Sequence[str]:
     """Arguments without which Chromium does not run as root, as in containers: there it has no sandbox."""
     is_root = hasattr(os, "getuid") and os.getuid() == 0
     return ("--no-sandbox",) if is_root else ()

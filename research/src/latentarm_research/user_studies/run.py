@@ -92,7 +92,10 @@ def send_people(definition: Definition, request: Request[Sizes], grid: Grid) -> 
     missing = {_trained_as(cell) for cell in cells if KEEP_SESSIONS.read(request.out, cell) is None}
     fits = _training_cells(definition, request, people, missing)
     trained: Mapping[str, Trained] = {
-        one.task: one for one in grid.run("Demonstrations and models", train, fits, _task_label)
+        one.task: one
+        for one in grid.run(
+            "Demonstrations and models", train, fits, lambda cell: f"models of {cell.task.label}"
+        )
     }
     cells = [replace(cell, trained=trained.get(_trained_as(cell))) for cell in cells]
     sessions = grid.run("Sessions of simulated people", go_through, cells, _session_label, KEEP_SESSIONS)
@@ -137,10 +140,6 @@ def _depends_on(definition: Definition) -> dict[str, object]:
     used = (alignments, conditions, designs, fitting, scenes, session, streams, training)
     code = source_digest([Path(module.__file__ or "") for module in used])
     return {"definition": definition.digest, "code": code, "versions": package_versions()}
-
-
-def _task_label(cell: TrainingCell) -> str:
-    return f"models of {cell.task.label}"
 
 
 def _session_label(cell: SessionCell) -> str:

@@ -10,7 +10,7 @@ from threadpoolctl import threadpool_limits
 from latentarm.tasks.scene_task import SceneTask
 from latentarm_research.drives import trace as drives
 from latentarm_research.drives.drive import drive
-from latentarm_research.metrics.drives import goal_error
+from latentarm_research.metrics.drives import TRIAL_MEASURES, goal_error
 from latentarm_research.people.person import Person
 from latentarm_research.people.traits import Traits
 from latentarm_research.studies.streams import generator
@@ -151,18 +151,8 @@ def _person(cell: SessionCell, number: int) -> Person:
 def _measured(task: StudyTask, trace: drives.Trace) -> dict[str, float]:
     """Figures of one drive; those that have no value are left out."""
     figures = trace.figures
-    found = {
-        "success_rate": float(figures.success),
-        "steps_done": figures.steps_done,
-        "time_s": figures.time_s,
-        "idle_s": figures.idle_s,
-        "input_magnitude": figures.input_magnitude,
-        "turned_round": figures.turned_round,
-        "mode_switches": float(figures.mode_switches),
-        "path_length": figures.path_length,
-        "stops": float(figures.stops),
-        "preference_alignment": figures.preference_alignment,
-    }
+    found = {name: float(getattr(figures, name)) for name in TRIAL_MEASURES}
+    found["success_rate"] = float(figures.success)
     if task.plates:
         plates = np.stack([trace.states[0].poses[name].position for name in task.plates])
         found["goal_error_m_s"], found["goal_error_m"] = goal_error(trace.time_s, trace.position, plates)

@@ -110,9 +110,10 @@ def _demonstrated(cell: TrainingCell, task: SceneTask, belief: bool) -> tuple[De
                 f"{len(kept)} of {number} demonstrations of {cell.task.name} succeeded: too few to train a"
                 " model."
             )
-        choice, stream = choices[number % len(choices)], (cell.seed, cell.task.name, number)
+        choice = choices[number % len(choices)]
+        rng = generator(cell.seed, cell.task.name, Stream.DEMONSTRATIONS, number)
         number += 1
-        shown = demonstrate_once(task, choice, _stream(*stream))
+        shown = demonstrate_once(task, choice, rng)
         if not (shown.progress.succeeded or cut):
             continue
         if took_s + shown.seconds > wanted_s and len(kept) >= least:
@@ -129,10 +130,6 @@ def _demonstrated(cell: TrainingCell, task: SceneTask, belief: bool) -> tuple[De
 def _with_belief(shown: Demonstration, period_s: float) -> Episode:
     goals = [goal.configuration for goal in shown.begun.goals]
     return annotated(shown.episode, BoltzmannBelief(goals, period_s=period_s), shown.moves)
-
-
-def _stream(seed: int, task: str, number: int) -> np.random.Generator:
-    return generator(seed, task, Stream.DEMONSTRATIONS, number)
 
 
 def _fitted(

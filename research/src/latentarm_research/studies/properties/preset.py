@@ -11,17 +11,15 @@ LEFT_OUT: Final = frozenset({"cae_jacobian", "cvae_jacobian", "odd_cae"})
 a penalty on rest or on reversal, the models whose speed is controlled, and those of plug-ins."""
 
 
-def _models() -> tuple[str, ...]:
-    return tuple(name for name in KINDS.usable() if name not in LEFT_OUT)
-
-
 @dataclass(frozen=True)
 class Preset:
     """Sizes of the study."""
 
     name: str  # what it is called on the command line
     # names in the catalogue of models; by default all that load but `LEFT_OUT`
-    models: tuple[str, ...] = field(default_factory=_models)
+    models: tuple[str, ...] = field(
+        default_factory=lambda: tuple(name for name in KINDS.usable() if name not in LEFT_OUT)
+    )
     design: Design = DESIGN  # how the tasks are demonstrated
     # demonstrations that each model has to itself; with 10 pairs each, the 10000 pairs that the paper trains
     # on. A fifth of them is for validation and decides which epoch is best

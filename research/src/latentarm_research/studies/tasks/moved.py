@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import Final, final
 
 from latentarm.tasks.catalogue import SCENE_TASKS, make_scene_task
@@ -21,32 +22,16 @@ class Moved:
     about: str  # where the things stand in either, in words
 
 
-def _plate_right() -> SceneTask:
-    return Marshmallows(((0.47, 0.53), (-0.10, 0.0)))
-
-
-def _plate_left() -> SceneTask:
-    return Marshmallows(((0.47, 0.53), (0.0, 0.10)))
-
-
-def _cup_right() -> SceneTask:
-    return ReachAndPour(((0.53, 0.62), (-0.28, -0.18)), ((0.54, 0.60), (0.12, 0.18)))
-
-
-def _cup_left() -> SceneTask:
-    return ReachAndPour(((0.53, 0.62), (-0.18, -0.08)), ((0.54, 0.60), (0.18, 0.24)))
-
-
 MOVED: Final[Mapping[str, Moved]] = {
     "moved_marshmallows": Moved(
-        _plate_right,
-        _plate_left,
+        partial(Marshmallows, ((0.47, 0.53), (-0.10, 0.0))),
+        partial(Marshmallows, ((0.47, 0.53), (0.0, 0.10))),
         "the plate's middle is up to 10 cm to the right of the arm's middle in demonstrations, and up to"
         " 10 cm to the left of it in the runs",
     ),
     "moved_reach_and_pour": Moved(
-        _cup_right,
-        _cup_left,
+        partial(ReachAndPour, ((0.53, 0.62), (-0.28, -0.18)), ((0.54, 0.60), (0.12, 0.18))),
+        partial(ReachAndPour, ((0.53, 0.62), (-0.18, -0.08)), ((0.54, 0.60), (0.18, 0.24))),
         "the cup stands 18 to 28 cm to the right of the arm's middle in demonstrations, and 8 to 18 cm in the"
         " runs; the bowl 12 to 18 cm to the left, and 18 to 24 cm",
     ),

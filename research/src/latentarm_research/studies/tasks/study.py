@@ -17,7 +17,6 @@ from latentarm_research.studies.tasks import cell as measuring
 from latentarm_research.studies.tasks import kept, moved, orientation, runs, tables
 from latentarm_research.studies.tasks import preset as presets
 from latentarm_research.studies.tasks.cell import (
-    DemonstratedRun,
     FittedModel,
     ModelCell,
     ShownCell,
@@ -50,8 +49,11 @@ if TYPE_CHECKING:
 def _measure(request: Request[Preset], grid: Grid) -> TasksResults:
     preset, seed = request.preset, request.seed
     shown = grid.run("Demonstrations", show, _shown_cells(request), _shown_label, kept.KEEP_SHOWN)
-    sets = {task: training_set(task, _trains(shown, task)) for task in request.tasks}
-    training = [
+    training = [one for one in shown if one.cell.stream is Stream.DEMONSTRATIONS]
+    sets = {
+        task: training_set(task, [one for one in training if one.cell.task == task]) for task in request.tasks
+    }
+    fits = [
         ModelCell(task, Condition(context, model, way_back), demonstrations, preset, seed)
         for task, demonstrations in sets.items()
         for model in preset.models
@@ -59,7 +61,7 @@ def _measure(request: Request[Preset], grid: Grid) -> TasksResults:
         for way_back in (False, True)
     ]
     trained = grid.run(
-        "Models", train, training, lambda cell: f"{cell.task}, {cell.condition.label}", kept.KEEP_MODELS
+        "Models", train, fits, lambda cell: f"{cell.task}, {cell.condition.label}", kept.KEEP_MODELS
     )
     orienting = [OrientationCell(task, demonstrations, preset, seed) for task, demonstrations in sets.items()]
     oriented = grid.run("Orientations", orient, orienting, lambda cell: cell.task)
@@ -79,10 +81,6 @@ def _shown_cells(request: Request[Preset]) -> list[ShownCell]:
         )
         for number in range(count)
     ]
-
-
-def _trains(shown: Sequence[DemonstratedRun], task: str) -> list[DemonstratedRun]:
-    return [one for one in shown if (one.cell.task, one.cell.stream) == (task, Stream.DEMONSTRATIONS)]
 
 
 def _drive_cells(request: Request[Preset], learned: Sequence[FittedModel | Oriented]) -> list[TaskRunCell]:

@@ -12,6 +12,7 @@ from latentarm.core.context import feature_names
 from latentarm.core.errors import UserError
 from latentarm.core.untrusted.documents import read_object
 from latentarm.models.catalogue import KINDS
+from latentarm_research.metrics.drives import TRIAL_MEASURES
 from latentarm_research.user_studies.catalogue import NAMES, load_definition
 from latentarm_research.user_studies.definition import Definition, StudyTask
 from latentarm_research.user_studies.report.boxes import MOST_CONDITIONS
@@ -57,19 +58,7 @@ def read_definition(
     return definition
 
 
-MEASURED: Final = (
-    "success_rate",
-    "steps_done",
-    "time_s",
-    "idle_s",
-    "input_magnitude",
-    "turned_round",
-    "mode_switches",
-    "path_length",
-    "stops",
-    "preference_alignment",
-    "attempts",
-)
+MEASURED: Final = ("success_rate", *TRIAL_MEASURES, "attempts")
 """Figures of every trial that has a value for them."""
 
 MEASURED_AT_PLATES: Final = ("goal_error_m_s", "goal_error_m")  # figures of drives at tasks with plates

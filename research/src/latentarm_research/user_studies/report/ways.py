@@ -43,7 +43,9 @@ def way_figure(definition: Definition, task: StudyTask, traces: Sequence[Trace],
     panels = figure.subplots(len(VIEWS), len(conditions), squeeze=False, sharex="row", sharey="row")
     for row, (view, across, up, x_label, y_label) in zip(panels, VIEWS, strict=True):
         for axes, condition in zip(row, conditions, strict=True):
-            for one in _first(traces, task, condition.name):
+            for one in traces:
+                if (one.task, one.condition, one.trial) != (task.name, condition.name, 0):
+                    continue
                 place, colour = np.array(one.position), looks[condition.name]
                 axes.plot(place[:, across], place[:, up], color=colour, linewidth=0.7, alpha=0.8)
                 axes.plot(*place[0, [across, up]], "o", color="black", markersize=2.0)
@@ -131,10 +133,6 @@ def _heat(axes: "Axes", spent: FloatArray) -> None:
     axes.set_yticks((-1, 0, 1))
     axes.tick_params(labelsize=SMALL_FONT_SIZE)
     axes.xaxis.label.set_fontsize(SMALL_FONT_SIZE)
-
-
-def _first(traces: Sequence[Trace], task: StudyTask, condition: str) -> list[Trace]:
-    return [one for one in traces if (one.task, one.condition, one.trial) == (task.name, condition, 0)]
 
 
 def _courses(traces: Sequence[Trace], task: StudyTask, condition: str) -> FloatArray:

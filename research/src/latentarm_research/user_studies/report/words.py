@@ -36,13 +36,9 @@ def people_lines(people: Sequence[Traits]) -> list[tuple[str, str, str]]:
 
 
 def _spans(values: Sequence[float]) -> str:
-    mean, low, high = (f"{value:,.0f}" if value >= 100.0 else f"{value:.3g}" for value in _ends(values))
+    figures = sum(values) / len(values), min(values), max(values)
+    mean, low, high = (f"{value:,.0f}" if value >= 100.0 else f"{value:.3g}" for value in figures)
     return f"{mean} ({low} to {high})"
-
-
-def _ends(values: Sequence[float]) -> tuple[float, float, float]:
-    """Mean, least and most."""
-    return sum(values) / len(values), min(values), max(values)
 
 
 @final
@@ -203,14 +199,10 @@ def claim_table(definition: Definition, claims: Sequence[TestedClaim]) -> str:
 
 def _effect_words(test: MeansTest) -> str:
     low, high = test.effect_interval
-    g, interval = _two(test.g), f"[{low:.2f}, {high:.2f}]"
+    g, interval = ABSENT if test.g is None else f"{test.g:.2f}", f"[{low:.2f}, {high:.2f}]"
     return f"{g} {interval}" if test.n_against else f"{test.d:.2f} {interval}; g {g}"
 
 
 def yes_no(value: bool | None) -> str:
     """Yes, no, or a dash."""
     return ABSENT if value is None else "yes" if value else "no"
-
-
-def _two(value: float | None) -> str:
-    return ABSENT if value is None else f"{value:.2f}"
