@@ -47,13 +47,7 @@ class ExpectedHelp(Assistance):
 
     @final
     def twist(self, action_human: FloatArray, state: FloatArray, weights: FloatArray) -> FloatArray:
-        """The expected twist, (6,), m/s and rad/s, in the base frame.
-
-        Args:
-            action_human: (n,), the person's action, rad/s.
-            state: (n,), rad.
-            weights: (G,), how much each goal counts; they sum to one.
-        """
+        """The expected twist (6,), m/s and rad/s, in the base frame; ``weights`` (G,) sum to one."""
         return weights @ self._poses.twists(self._robot.chain.forward(state + LOOK_AHEAD_S * action_human))
 
     @final

@@ -28,11 +28,7 @@ SHORTEST_M = 0.6
 def draw_task(task: Place, demonstrations: Demonstrations, path: Path) -> None:
     """Draw the arm at home, where the tool went in the demonstrations, and the goals.
 
-    Args:
-        task: its robot and goals.
-        demonstrations: of that task, each with the name of its goal in its text; the first `DRAWN_EPISODES`
-            are drawn.
-        path: the PNG to write.
+    Each demonstration has the name of its goal in its text; the first `DRAWN_EPISODES` are drawn.
     """
     figure = new_figure(height_mm=95.0, width_mm=120.0)
     axes: Axes3D = figure.add_subplot(projection="3d", computed_zorder=False)

@@ -76,17 +76,10 @@ class Movement:
 def guided(
     robot: Robot, state: FloatArray, wanted: Pose, ahead: Pose, period_s: float, hand: GuidingHand
 ) -> FloatArray:
-    """Joint velocities with which the tool follows the person's hand, (n,), rad/s.
+    """Joint velocities (n,), rad/s, with which the tool follows the person's hand.
 
-    Resolved rates; what the tool leaves free leads the elbow back to the robot's home posture.
-
-    Args:
-        robot: the arm.
-        state: (n,), rad.
-        wanted: where the tool is meant to be now.
-        ahead: where it is meant to be a period later.
-        period_s: of the loop, s.
-        hand: how the person moves.
+    The tool is meant to be at ``wanted`` now and at ``ahead`` a period later. Resolved rates; what the tool
+    leaves free leads the elbow back to the robot's home posture.
     """
     chain, limits = robot.chain, robot.limits
     transforms = chain.link_transforms(state)

@@ -133,12 +133,7 @@ class Draws:
 
 @final
 class InputDensity:
-    """The density ``p(u) ∝ exp(-beta cost(u))`` over the unit ball without the dead zone.
-
-    Args:
-        model: what inputs cost, nearly.
-        beta: zero or more, 1/m²; infinity leaves only the best input.
-    """
+    """The density ``p(u) ∝ exp(-beta cost(u))`` over the unit ball without the dead zone; beta in 1/m²."""
 
     def __init__(self, model: CostModel, beta: float) -> None:
         if not beta >= 0:

@@ -11,12 +11,7 @@ from latentarm.robots.kinematics.pose_rows import moved_along
 
 
 def shifted(pose: Pose, change: FloatArray) -> Pose:
-    """Poses (...) after changes of one pose.
-
-    Args:
-        pose: from which they begin.
-        change: (..., 6), m and rad, in the base frame; see `pose_error` in `latentarm.robots.kinematics`.
-    """
+    """Poses (...) after changes (..., 6) of one pose, m and rad, in the base frame, as by `pose_error`."""
     turn = Rotation.from_rotvec(change[..., 3:].reshape(-1, 3)).as_matrix()
     return Pose(
         position=pose.position + change[..., :3],

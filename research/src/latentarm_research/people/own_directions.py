@@ -47,11 +47,7 @@ class OwnDirections:
         return np.array([[cos, -sin * up], [sin, cos * up]])
 
     def expected(self, usual: FloatArray) -> FloatArray:
-        """The twist (6, 2), m/s and rad/s, that they expect of a full push of each axis.
-
-        Args:
-            usual: (6, 2), what others expect.
-        """
+        """The twist (6, 2), m/s and rad/s, that they expect of full pushes; others expect ``usual``."""
         _check_axes(usual.shape[1])
         return usual @ self.matrix.T
 

@@ -59,12 +59,9 @@ class Traits:
     def person(self, trial: int, practice_s: float = 0.0, page: PageRates | None = PAGE) -> Person:
         """Who they are in a trial, with a stick whose effect they have been shown.
 
-        They know what each input does, plan, and make up for their reaction time.
-
-        Args:
-            trial: number of trials before this one.
-            practice_s: time practised before the first trial, s.
-            page: what they drive through; None sees and is heard at once.
+        They know what each input does, plan, and make up for their reaction time. ``trial`` counts those
+        before this one, ``practice_s`` the practice before the first, s; without a page they see and are
+        heard at once.
         """
         plans = PlanningConfig()
         pieces = max(round(self.plan_s / plans.piece_s), 1)
@@ -81,16 +78,11 @@ class Traits:
     def newcomer(
         self, usual: FloatArray, trial: int, practice_s: float = 0.0, page: PageRates | None = PAGE
     ) -> Person:
-        """Who they are in a trial, with a stick whose effect nobody has shown to them.
+        """Who they are in a trial, with a stick whose effect nobody has shown to them; see `person`.
 
-        They push by what the directions of the stick mean to themselves, and learn from what they see; from
+        They push by what the directions of the stick mean to themselves, where ``usual`` (6, 2) is the twist
+        that people expect of a full push of each axis, m/s and rad/s. They learn from what they see; from
         one drive to the next they keep nothing of that.
-
-        Args:
-            usual: (6, 2), the twist that people usually expect of a full push of each axis, m/s and rad/s.
-            trial: number of trials before this one.
-            practice_s: time practised before the first trial, s.
-            page: what they drive through; None sees and is heard at once.
         """
         expected = tuple(tuple(twist) for twist in self.directions.expected(usual).T.tolist())
         return Person(

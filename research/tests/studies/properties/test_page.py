@@ -8,12 +8,12 @@ import pytest
 from latentarm.core.types import Row
 from latentarm_research.studies.claim_tables import claim_table
 from latentarm_research.studies.properties.cell import PropertiesCell, PropertiesResult
-from latentarm_research.studies.properties.cells import (
-    paper_table,
-)
 from latentarm_research.studies.properties.paper import with_paper
 from latentarm_research.studies.properties.preset import PRESETS
 from latentarm_research.studies.properties.study import STUDY
+from latentarm_research.studies.properties.tables import (
+    paper_table,
+)
 from latentarm_research.studies.study import Request
 from latentarm_research.tasks.planar.catalogue import MOTIONS
 

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from latentarm_research.studies.shared_autonomy.rows import band, interval
+from latentarm_research.studies.shared_autonomy.tables import band, interval
 
 
 def test_three_seeds_by_hand():

@@ -9,8 +9,8 @@ import pytest
 from latentarm_research.studies.shared_autonomy.cell import METHODS, TASKS
 from latentarm_research.studies.shared_autonomy.hypotheses import HYPOTHESES
 from latentarm_research.studies.shared_autonomy.preset import PRESETS
-from latentarm_research.studies.shared_autonomy.rows import EXTRA_TIME, Figure, Tables, figures, rows_of
 from latentarm_research.studies.shared_autonomy.study import STUDY
+from latentarm_research.studies.shared_autonomy.tables import EXTRA_TIME, Figure, Tables, figures, rows_of
 from latentarm_research.studies.study import Request
 
 from .test_figures import results_of

@@ -13,13 +13,6 @@ from latentarm_research.studies.properties.cell import (
     PropertiesResult,
     measure_cell,
 )
-from latentarm_research.studies.properties.cells import (
-    UNIT_NOT_STATED,
-    cells_table,
-    count,
-    paper_cells,
-    paper_table,
-)
 from latentarm_research.studies.properties.figures import (
     beside_paper_figure,
 )
@@ -27,6 +20,13 @@ from latentarm_research.studies.properties.hypotheses import HYPOTHESES, LINEAR,
 from latentarm_research.studies.properties.motion_figures.catalogue import TASK_FIGURES
 from latentarm_research.studies.properties.paper import with_paper
 from latentarm_research.studies.properties.preset import PRESETS, Preset
+from latentarm_research.studies.properties.tables import (
+    UNIT_NOT_STATED,
+    cells_table,
+    count,
+    paper_cells,
+    paper_table,
+)
 from latentarm_research.studies.study import Grid, Report, Request, Study, again
 from latentarm_research.studies.tables import Series
 from latentarm_research.tasks.planar.catalogue import MOTIONS

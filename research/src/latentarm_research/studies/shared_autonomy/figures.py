@@ -13,7 +13,7 @@ from latentarm_research.drives.arm_figure import frame
 from latentarm_research.drives.drive_figures import GOAL_COLOURS, GOAL_MARKERS
 from latentarm_research.studies import drawing
 from latentarm_research.studies.drawing import draw_arm as draw_planar_arm
-from latentarm_research.studies.shared_autonomy import rows
+from latentarm_research.studies.shared_autonomy import tables
 from latentarm_research.studies.shared_autonomy.cell import METHODS, AutonomyResult, Outcome
 from latentarm_research.studies.shared_autonomy.drive import STEP_S
 from latentarm_research.studies.shared_autonomy.hypotheses import MEASURE
@@ -58,7 +58,7 @@ def expertise_figure(results: Sequence[AutonomyResult], preset: Preset, tasks: S
     people = [of_fixed_expertise(beta).label for beta in preset.betas]
     named = np.arange(0, len(people), 1 if len(people) < 5 else 2)
     for column, task in zip(panels.T, tasks, strict=True):
-        outcomes = outcomes_of(results, task, rows.MODEL)
+        outcomes = outcomes_of(results, task, tables.MODEL)
         drawing.title(column[0], look_of(task).label)
         for axes, measure in zip(column, EXPERTISE_MEASURES, strict=True):
             draw_over(axes, outcomes, people, measure)
@@ -81,7 +81,7 @@ def changes_figure(results: Sequence[AutonomyResult], preset: Preset, tasks: Seq
         heading, len(tasks), 1 + len(drawn), CHANGES_ROW_MM, FRAME_MM, sharex="col"
     )
     for (error, *beliefs), task in zip(panels, tasks, strict=True):
-        outcomes = outcomes_of(results, task, rows.MODEL)
+        outcomes = outcomes_of(results, task, tables.MODEL)
         _draw_changes(error, outcomes, preset)
         _from_zero([error])
         drawing.title(error, look_of(task).label)
@@ -105,7 +105,7 @@ def learners_figure(results: Sequence[AutonomyResult], preset: Preset, tasks: Se
     columns = [(what, name) for what in COURSES for name in preset.learners]
     figure, panels = drawing.panel_grid(heading, len(tasks), len(columns), ROW_MM, FRAME_MM, sharex=True)
     for line, task in zip(panels, tasks, strict=True):
-        outcomes = outcomes_of(results, task, rows.MODEL)
+        outcomes = outcomes_of(results, task, tables.MODEL)
         for axes, (what, name) in zip(line, columns, strict=True):
             draw_course(axes, outcomes, learner(name, preset.learners[name]).label, what)
             drawing.title(axes, f"{look_of(task).label}, {name}")
@@ -221,7 +221,7 @@ def draw_over(
     shift = NUDGE * float(np.ptp(places))
     for index, method in enumerate(METHODS):
         if (method, people[0]) in outcomes:
-            found = [rows.interval(outcomes[method, person].figures[measure]) for person in people]
+            found = [tables.interval(outcomes[method, person].figures[measure]) for person in people]
             _draw_series(axes, method, places + (index - 1) * shift, found, zorder=3 + index)
 
 
@@ -230,7 +230,7 @@ def draw_course(axes: "Axes", outcomes: Outcomes, person: str, what: str) -> Non
     for index, method in enumerate(METHODS):
         if (method, person) not in outcomes:
             continue
-        mean, low, high = rows.band(getattr(outcomes[method, person], what))
+        mean, low, high = tables.band(getattr(outcomes[method, person], what))
         time_s = STEP_S * np.arange(len(mean))
         look = look_of(method)
         axes.fill_between(time_s, low, high, color=look.colour, alpha=0.2, linewidth=0.0)
@@ -258,7 +258,7 @@ def _draw_changes(axes: "Axes", outcomes: Outcomes, preset: Preset) -> None:
 
 
 def _draw_series(
-    axes: "Axes", name: str, places: FloatArray, found: Sequence[rows.Interval], zorder: float = 2.0
+    axes: "Axes", name: str, places: FloatArray, found: Sequence[tables.Interval], zorder: float = 2.0
 ) -> None:
     """Means with their intervals."""
     means, widths = [one.mean for one in found], [one.half_width for one in found]

@@ -29,7 +29,7 @@ from latentarm_research.studies.shared_autonomy.cell import (
 )
 from latentarm_research.studies.shared_autonomy.measures import ARRIVED
 from latentarm_research.studies.shared_autonomy.preset import Person, Preset, learner, of_fixed_expertise
-from latentarm_research.studies.shared_autonomy.rows import interval
+from latentarm_research.studies.shared_autonomy.tables import interval
 from latentarm_research.studies.statistics import one_sample, paired
 
 MEASURE: Final = "final_state_error"

@@ -25,7 +25,7 @@ from latentarm_research.studies.shared_autonomy.figures import (
 )
 from latentarm_research.studies.shared_autonomy.measures import ARRIVED
 from latentarm_research.studies.shared_autonomy.preset import PRESETS, Preset
-from latentarm_research.studies.shared_autonomy.rows import (
+from latentarm_research.studies.shared_autonomy.tables import (
     FEWEST_SEEDS,
     MODEL,
     Figure,
@@ -33,7 +33,7 @@ from latentarm_research.studies.shared_autonomy.rows import (
     figures,
     rows_of,
 )
-from latentarm_research.studies.shared_autonomy.rows import STUDY as NAME
+from latentarm_research.studies.shared_autonomy.tables import STUDY as NAME
 from latentarm_research.studies.study import Grid, Report, Request, Study, again
 
 if TYPE_CHECKING:

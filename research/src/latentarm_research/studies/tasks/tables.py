@@ -15,8 +15,6 @@ from latentarm_research.studies.tasks.runs import Run, step_names, time_ratios
 if TYPE_CHECKING:
     from rich.table import Table
 
-SUCCESS: Final = "success_rate"
-
 SHOWN: Final = (
     "steps_done",
     "time_s",

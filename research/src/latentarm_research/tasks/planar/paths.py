@@ -32,11 +32,7 @@ class Path(ABC):
 
 @final
 class Timed(Path):
-    """Paths that depend on time alone.
-
-    Args:
-        points: from time, s, to the task coordinates (E, k).
-    """
+    """Paths that depend on time alone: ``points`` leads from time, s, to the task coordinates (E, k)."""
 
     def __init__(self, points: Callable[[float], FloatArray]) -> None:
         self._points, self._step = points, 0

@@ -104,13 +104,9 @@ def plane_point(robot: Robot, state: FloatArray, tool: int = 0) -> FloatArray:
 
 
 def settle(start: FloatArray, wanted: FloatArray, constraint: Constraint, moved: IntArray) -> FloatArray:
-    """Postures near ``start`` at which the task coordinates are the wanted ones, if there are any.
+    """Postures near ``start`` (E, n), rad, with the wanted task coordinates (E, k), if there are any.
 
-    Args:
-        start: (E, n), rad.
-        wanted: (E, k).
-        constraint: what the task constrains.
-        moved: the joints that may move, at least k.
+    Only the joints ``moved`` may move, at least k.
     """
     state = start.copy()
     for _ in range(SETTLING_STEPS):

@@ -58,14 +58,9 @@ class ToolPath:
 def wander(
     seconds: float, low: FloatArray, high: FloatArray, fastest: FloatArray, rng: np.random.Generator
 ) -> FloatArray:
-    """A smooth random course through a box, (T, k), T = seconds times `RATE_HZ`, plus one.
+    """A smooth random course (T, k), T = seconds times `RATE_HZ`, plus one, through a box of low and high.
 
-    Args:
-        seconds: how long.
-        low: (k,), of the box.
-        high: (k,), of the box.
-        fastest: (k,), speed along each axis, per s.
-        rng: source of all variation.
+    ``fastest`` (k,) is the speed along each axis, per s.
     """
     while True:
         way = _stroll(round(seconds * RATE_HZ), fastest, rng)

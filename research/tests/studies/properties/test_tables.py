@@ -5,14 +5,14 @@ from dataclasses import replace
 import pytest
 
 from latentarm.core.types import Row
-from latentarm_research.studies.properties.cells import (
+from latentarm_research.studies.properties.paper import OF_MEANS, PAPER
+from latentarm_research.studies.properties.tables import (
     PaperVerdict,
     cells_table,
     count,
     judge,
     paper_cells,
 )
-from latentarm_research.studies.properties.paper import OF_MEANS, PAPER
 
 FAVOUR, WITHIN, MISSED = PaperVerdict.IN_FAVOUR, PaperVerdict.WITHIN, PaperVerdict.MISSED
 
