@@ -42,16 +42,24 @@ def render_page(template: str, preset: Any, **content: Any) -> str:
         keep_trailing_newline=True,
     )
     environment.filters.update(
-        label=lambda name: look_of(name).label,
+        label=_label,
         literal="`{}`".format,
         listed=listed,
         g="{:g}".format,
-        image=lambda name: f"![{name.replace('_', ' ')}, simulated]({name}.png)",
+        image=_image,
         plain=plain,
     )
     judged = preset.name != SMOKE
     page = environment.get_template(template).render(content, table=plain_table, preset=preset, judged=judged)
     return page if judged else page.replace("\n", f" (preset {SMOKE})\n", 1)
+
+
+def _label(name: str) -> str:
+    return look_of(name).label
+
+
+def _image(name: str) -> str:
+    return f"![{name.replace('_', ' ')}, simulated]({name}.png)"
 
 
 WIDE: Final = 7  # columns of a table from which on its text is small
