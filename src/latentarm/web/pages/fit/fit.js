@@ -30,6 +30,8 @@ const INPUTS = {
   switch: { panel: "switch", switches: "1" }, switches: { panel: "switch", switches: "2" },
 };
 const PRESSES = 8;
+/** Nobody waits longer for a picture, such as one of a hidden page, ms. */
+const LONGEST_MS = 2000;
 /** Of a finding: its name, what was measured, the setting, and why. */
 const PARTS = /** @type {const} */ (["strong", "span", "span", "p"]);
 
@@ -39,8 +41,8 @@ let chosen = "stick";
 /** What is done one after the other; of keys only a share. @type {(Hold | Trials | {share: number})[]} */
 let exercises = [];
 let at = 0;
-/** From press to picture, ms. @type {number[]} */
-let delays = [];
+/** From press to picture, ms. @type {Promise<number>[]} */
+let timings = [];
 /** @type {Partial<Values>} */
 let proposed = {};
 /** When the key or the pointer was moved that is being dealt with, ms; 0 for none. */
@@ -93,7 +95,7 @@ function begin() {
     return;
   }
   const rest = new Hold(null, null);
-  [at, delays] = [0, []];
+  [at, timings] = [0, []];
   if (INPUTS[chosen].panel === "switch") exercises = [new Trials(scanner.style)];
   else exercises = chosen === "keys" ? [{ share: 0 }] : [rest, ...(/** @type {const} */ (["right", "up", "left", "down"])).map((one) => new Hold(one, rest))];
   setHidden(byId("fit-skip"), !(exercises[0] instanceof Hold));
@@ -112,13 +114,14 @@ function end(step = "choose") {
 /** To the next exercise, where this one is done or cannot be. */
 function goOn(isSkipped = false) {
   const now = exercises[at];
+  if (!now) return;
   if (isSkipped && now instanceof Hold) now.samples = [];
   if (isSkipped || now.share >= 1) {
     at += 1;
     input.drop();
   }
   if (at < exercises.length) tell();
-  else finish();
+  else void finish();
 }
 
 /** What is to be done now, and how much of it is done. */
@@ -132,7 +135,9 @@ function tell() {
   fillBar(byId("fit-bar"), now.share, 1);
 }
 
-function finish() {
+async function finish() {
+  const delays = await Promise.all(timings);
+  if (!exercises.length) return;
   const { person, values } = settings;
   const findings = findingsOf(exercises, delays, values);
   proposed = proposals(findings, values);
@@ -157,15 +162,17 @@ function hand() {
   return chosen === "stick" && input.source === "pointer" ? [input.x, input.y] : null;
 }
 
-/** Keep how long it takes from the press that is being dealt with until the arm has been drawn anew and the screen shows it. */
-async function timePress() {
+/** Time how long it takes from the press that is being dealt with until the arm has been drawn anew and the screen shows it. */
+function timePress() {
   const since = eventAt || pad()?.timestamp || performance.now();
-  if (drawing) {
-    const frame = new Promise((resolve) => document.addEventListener("arm-drawn", resolve, { once: true }));
-    drawing.showToolPaths([]);
-    await frame;
-  }
-  requestAnimationFrame(() => requestAnimationFrame(() => delays.push(performance.now() - since)));
+  timings.push(new Promise((resolve) => {
+    const end = () => resolve(performance.now() - since);
+    const drawn = () => requestAnimationFrame(() => requestAnimationFrame(end));
+    setTimeout(end, LONGEST_MS);
+    if (drawing) document.addEventListener("arm-drawn", drawn, { once: true });
+    else drawn();
+    drawing?.showToolPaths([]);
+  }));
 }
 
 /** Which input is in use now, by this page or by the settings. */
@@ -200,7 +207,7 @@ input.addEventListener("poll", () => {
 });
 input.addEventListener("turned", () => {
   if (!exercises[at] || input.source === null) return;
-  void timePress();
+  timePress();
   if (chosen !== "keys") return;
   exercises = [{ share: exercises[0].share + 1 / PRESSES }];
   goOn();
@@ -213,7 +220,7 @@ scanner.addEventListener("switch", (event) => {
   const [now, { number, down }] = [exercises[at], /** @type {CustomEvent} */ (event).detail];
   if (!(now instanceof Trials) || number > 0) return;
   now.pressed(down, performance.now() / 1000);
-  if (down) void timePress();
+  if (down) timePress();
 });
 connection.addEventListener("state", () => {
   if (connection.engaged && exercises.length) begin();
