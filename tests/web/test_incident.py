@@ -30,7 +30,6 @@ from latentarm.runs.training import train_run
 from latentarm.safety.zones import Zone
 from latentarm.tasks.table_top import TableTop
 from latentarm.web.arm_process import incident
-from latentarm.web.arm_process import replay as replaying
 from latentarm.web.arm_process.drive import Drive
 from latentarm.web.arm_process.drive_setup import Spec, load_setup
 from latentarm.web.arm_process.incident import begin_incident
@@ -194,7 +193,7 @@ def test_on_another_computer_the_last_bits_may_differ(file, tmp_path, monkeypatc
 
     near = rewritten(file, tmp_path / "near", change(1e-12))
     assert cli.main(["replay", str(near)]) == 1
-    monkeypatch.setattr(replaying, "computer", lambda: "another")
+    monkeypatch.setattr(incident, "computer", lambda: "another")
     assert cli.main(["replay", str(near)]) == 0
     assert "Here: another. Up to 1e-09 rad/s may differ" in capsys.readouterr().out
     assert cli.main(["replay", str(rewritten(file, tmp_path / "far", change(1e-6)))]) == 1
