@@ -247,7 +247,7 @@ def _named(person: OperatorName, row: Row) -> Row:
 
 
 def _about(config: "DemoOptions", sizes: Sizes) -> dict[str, object]:
-    """What the figures depend on."""
+    """Settings that the figures depend on."""
     return {
         "study": "demo",
         "seed": config.seed,

@@ -73,7 +73,7 @@ class Steering:
         return None if self.run is None or self.config.driver in MODE_SWITCHED else self.run.model
 
     def about(self, time_limit_s: float) -> dict[str, object]:
-        """What the figures depend on."""
+        """Settings that the figures depend on."""
         config, robot, run = self.config, self.robot, self.run
         return {
             "study": "drive",
@@ -106,7 +106,7 @@ def steering_of(
     task: str,
     robot: Robot,
 ) -> Steering:
-    """What steers an arm as was asked for."""
+    """The controller and the arbitration that the options name."""
     arbitration = _arbitration(config)
     return Steering(config, task, robot, run, _controller(config, robot), arbitration)
 

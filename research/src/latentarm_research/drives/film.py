@@ -150,7 +150,7 @@ def _render(model: mujoco.MjModel, positions: Sequence[FloatArray], camera: Came
 
 
 def _renderer(model: mujoco.MjModel, camera: Camera) -> mujoco.Renderer:
-    """What renders here."""
+    """A renderer of this model. Raises UserError where this computer cannot render."""
     with warnings.catch_warnings():
         # Without a screen GLFW warns before MuJoCo fails.
         warnings.simplefilter("ignore")

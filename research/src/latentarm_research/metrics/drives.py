@@ -154,17 +154,7 @@ MEASURES: Final = (
 """Fields of `Drive` that are measures as they are, in the order of rows."""
 
 
-TRIAL_MEASURES: Final = (
-    "steps_done",
-    "time_s",
-    "idle_s",
-    "input_magnitude",
-    "turned_round",
-    "mode_switches",
-    "path_length",
-    "stops",
-    "preference_alignment",
-)
+TRIAL_MEASURES: Final = (*MEASURES[: MEASURES.index("stops") + 1], "preference_alignment")
 """Those of every trial of a user study that has a value for them."""
 
 

@@ -144,7 +144,7 @@ class Decision(ABC):
         imagination: Imagination,  # where they expect inputs to lead
         rng: np.random.Generator,
     ) -> Input:
-        """An input of length 1 at most, and whether the next mode is asked for."""
+        """An input of length 1 at most, and whether the person switches to the next mode."""
 
 
 class Operator(ABC):
@@ -170,4 +170,4 @@ class Operator(ABC):
         speed: float = 1.0,  # share of their usual speed that is fit there, in (0, 1]
         held: BoolArray = NOTHING_HELD,  # (K,), which of the context's things the tool holds
     ) -> Input:
-        """Inputs in [-1, 1]^d for this step, and whether the next mode is asked for."""
+        """Inputs in [-1, 1]^d for this step, and whether each person switches to the next mode."""

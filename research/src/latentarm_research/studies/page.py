@@ -137,7 +137,7 @@ def find_browser() -> str | None:
 
 
 def print_page(page: Path, pdf: Path) -> str:
-    """Print a page to a PDF, whole or not at all; return why there is none, in a sentence."""
+    """Print a page to a PDF, whole or not at all; on failure return the reason as a sentence."""
     browser = find_browser()
     if browser is None:
         return WITHOUT

@@ -91,7 +91,7 @@ def learn_decoder(cell: DecoderCell) -> LearnedDecoder:
 
 
 def demonstrate(cell: DecoderCell, stream: Stream) -> Demonstrations:
-    """The demonstrations for training or for testing: the same whenever they are asked for."""
+    """The demonstrations for training or for testing; each call returns the same."""
     preset = cell.preset
     episodes = preset.episodes if stream == Stream.TRAINING else preset.test_episodes
     return POURING_TASKS[cell.task]().demonstrate(episodes, generator(cell.seed, cell.task, stream))
@@ -201,7 +201,7 @@ class Scene:
 
 
 def scene_of(learned: LearnedDecoder) -> Scene:
-    """The scene of a decoder, the same whenever it is asked for."""
+    """The scene of a decoder; each call returns the same."""
     cell = learned.cell
     chain = POURING_TASKS[cell.task]().robot.chain
     training = demonstrate(cell, Stream.TRAINING)

@@ -73,14 +73,14 @@ WORDS: Final = {
     ways.IDEAL: "learned from many more answers",
     KNOWS: "z = u and a person of equation 24 who knows exactly what each input does: the demo's operator",
 }
-"""What each condition is."""
+"""Descriptions of the conditions."""
 
 
 MISSED: Final = "the others end off, along and across (mm)"
 
 
 def axes_in_words(result: DrivesResult) -> list[str]:
-    """What each axis of the stick means to the person."""
+    """The meaning of each axis of the stick to the person."""
     return [
         f"axis {axis} means ({', '.join(f'{part:+.2f}' for part in direction)})"
         for axis, direction in enumerate(result.directions, start=1)

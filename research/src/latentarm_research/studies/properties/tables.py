@@ -23,7 +23,7 @@ from latentarm_research.studies.properties.paper import (
 from latentarm_research.studies.tables import markdown_table
 
 HALF_A_DIGIT: Final = 0.005
-"""What a figure that is printed with two decimals and without SD may be off."""
+"""Rounding error of a figure that is printed with two decimals and without SD."""
 
 
 class PaperVerdict(StrEnum):
@@ -103,7 +103,7 @@ def cells_table(cells: Sequence[PaperCell]) -> str:
 
 
 def _printed(row: Row) -> str:
-    """What the paper prints, with its SD where it has one."""
+    """The paper's figure, with its SD if it prints one."""
     return f"{row.paper_mean:.3g}" + ("" if row.paper_sd is None else f" ± {row.paper_sd:.2g}")
 
 

@@ -68,7 +68,7 @@ def student(n: int) -> float:
 
 
 class Band(NamedTuple):
-    """What seeds did over time, each (T,)."""
+    """Time series of the seeds, each (T,)."""
 
     mean: FloatArray  # over seeds
     low: FloatArray  # lower end of the 95 % bootstrap interval for the mean
