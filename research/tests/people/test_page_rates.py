@@ -9,8 +9,9 @@ from hypothesis import strategies as st
 
 from latentarm.core.types import Context, Input, Pose
 from latentarm.web.server.drive_socket import DRIVER_PERIOD_S
+from latentarm_research.people.catalogue import PEOPLE
 from latentarm_research.people.contract import Moment
-from latentarm_research.people.page_rates import PAGE, PageRates, Screen, Wire
+from latentarm_research.people.page_rates import PAGE, SLOW, PageRates, Screen, Wire
 
 PERIOD_S = 0.01
 RATES = st.builds(
@@ -37,6 +38,12 @@ def test_the_rates_are_the_pages_own():
     script = (files("latentarm.web") / "pages" / "inputs" / "drive_input.js").read_text(encoding="utf-8")
     assert 1000.0 * PAGE.input_s == float(re.search(r"const PERIOD_MS = (\d+);", script)[1])
     assert PAGE.state_s == DRIVER_PERIOD_S
+
+
+def test_newcomers_go_as_fast_as_the_page_lets_a_new_person():
+    script = (files("latentarm.web") / "pages" / "settings" / "settings.js").read_text(encoding="utf-8")
+    assert float(re.search(r"sensitivity: ([\d.]+),", script)[1]) == SLOW
+    assert PEOPLE["reading"].speed.share == PEOPLE["learning"].speed.share == SLOW
 
 
 @settings(max_examples=40)

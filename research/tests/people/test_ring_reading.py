@@ -1,6 +1,7 @@
 """A simulated newcomer who reads the ring of the page."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from latentarm_research.people.boltzmann import BoltzmannConfig
 from latentarm_research.people.catalogue import PEOPLE
 from latentarm_research.people.contract import LoopLimits
 from latentarm_research.people.motion import shifted
+from latentarm_research.people.own_directions import OwnSpeed
 from latentarm_research.people.person import Person, SimulatedPerson
 from latentarm_research.people.ring_reading import RingReading, RingReadingConfig, nearest_drawn
 
@@ -21,6 +23,7 @@ LINES = EndEffectorController(PANDA)
 PERIOD_S = 0.05
 LIMITS = LoopLimits(0.02)
 NO_GOALS = np.zeros(0)
+READS = replace(PEOPLE["reading"], speed=OwnSpeed())  # at full speed, as every push is drawn
 SEES_WELL = Person(
     decides=BoltzmannConfig(beta=np.inf, rest_share=0.0, switch_share=0.0),
     imagines=RingReadingConfig(error_rad=0.0),
@@ -53,7 +56,7 @@ def driven(person, robot, controller, target, calls, seed=0):
 
 
 def test_every_push_is_along_a_drawn_direction_and_3_percent_or_more():
-    given, _, _ = driven(PEOPLE["reading"], PANDA, LINES, away(0.1, 0.05, -0.1, 0.0, 0.3, 0.0), 200)
+    given, _, _ = driven(READS, PANDA, LINES, away(0.1, 0.05, -0.1, 0.0, 0.3, 0.0), 200)
     pushes = given[given.any(axis=1)]
     assert len(pushes) > 40
     size = np.linalg.norm(pushes, axis=1)
@@ -118,7 +121,7 @@ def test_what_they_expect_is_what_the_ring_shows_and_less_of_less():
 
 
 def test_they_find_the_mode_that_leads_there_by_its_name():
-    _, modes, end = driven(PEOPLE["reading"], PANDA, LINES, away(0.0, 0.0, -0.12, 0.0, 0.0, 0.0), 240)
+    _, modes, end = driven(READS, PANDA, LINES, away(0.0, 0.0, -0.12, 0.0, 0.0, 0.0), 240)
     assert 1 in modes
     assert np.linalg.norm(end.position - away(0.0, 0.0, -0.12, 0.0, 0.0, 0.0).position) < 0.03
 
@@ -131,19 +134,19 @@ def test_one_axis_has_two_directions_and_a_stick_with_a_lever_those_of_both():
 
 def test_any_number_of_axes_leads_nearer(planar, any_axes):
     target = planar.chain.forward(planar.home + 0.4)
-    _, _, end = driven(PEOPLE["reading"], planar, any_axes, target, 200)
+    _, _, end = driven(READS, planar, any_axes, target, 200)
     before = np.linalg.norm(planar.chain.forward(planar.home).position - target.position)
     assert np.linalg.norm(end.position - target.position) < before
 
 
 def test_the_stick_stays_where_it_is_while_they_read():
-    given, _, _ = driven(PEOPLE["reading"], PANDA, LINES, away(0.3, 0.2, 0.0, 0.0, 0.0, 0.0), 60)
+    given, _, _ = driven(READS, PANDA, LINES, away(0.3, 0.2, 0.0, 0.0, 0.0, 0.0), 60)
     changes = np.flatnonzero((np.diff(given, axis=0) != 0).any(axis=1)) + 1
     assert set(changes % 6) == {0}
 
 
 def test_the_same_seed_reads_the_same():
     target = away(0.1, 0.05, -0.1, 0.0, 0.0, 0.0)
-    one, other, third = (driven(PEOPLE["reading"], PANDA, LINES, target, 60, seed)[0] for seed in (4, 4, 5))
+    one, other, third = (driven(READS, PANDA, LINES, target, 60, seed)[0] for seed in (4, 4, 5))
     np.testing.assert_array_equal(one, other)
     assert (one != third).any()

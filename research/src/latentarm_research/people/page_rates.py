@@ -27,6 +27,8 @@ class PageRates:
 
 PAGE: Final = PageRates()  # the page on the machine that drives the arm
 
+SLOW: Final = 0.5  # share of the full speed with which the page lets a new person begin
+
 _EARLY: Final = 1e-6
 """Periods by which something may come early, so that sums of rounded times do not make it late."""
 
