@@ -22,7 +22,15 @@ def teleop(workplace: Path) -> Path:
     for index in range(3):
         by = provenance_now(person="\x1b[31mAda", run="eat-cvae", controller="latent")
         recorder.begin_episode(
-            EpisodeHeader("arm", ("a", "b"), 100.0, f"stab {index} [/nope]", provenance=by)
+            EpisodeHeader(
+                "arm",
+                ("a", "b"),
+                100.0,
+                f"stab {index} [/nope]",
+                provenance=by,
+                things=("cup",),
+                sources=("touch", "http"),
+            )
         )
         for tick in range(5):
             two = np.full(2, 0.01 * (tick + index))
@@ -30,7 +38,19 @@ def teleop(workplace: Path) -> Path:
             gripper = GripperReading(0.08 if tick < 3 else 0.06, holding=tick >= 3)
             recorder.record(
                 StepRecord(
-                    0.01 * tick, two, two, two, two, two, 0.0, np.zeros(0), 0, command, gripper=gripper
+                    0.01 * tick,
+                    two,
+                    two,
+                    two,
+                    two,
+                    two,
+                    0.0,
+                    np.zeros(0),
+                    0,
+                    command,
+                    gripper=gripper,
+                    things=np.array([[0.5, 0.0, 0.1, 1.0, 0.0, 0.0, 0.0]]),
+                    sightings=np.array([[tick % 2, 0.05 * tick]]),
                 )
             )
         if index < 2:
@@ -121,6 +141,7 @@ def test_recordings_become_a_file_that_foxglove_shows(run: Run, teleop: Path) ->
     assert joints[1]["joints"][0] == {"name": "a", "position": 0.01, "velocity": 0.01}
     steps = [message for _, topic, _, message in found if topic == "/step"]
     assert steps[3]["gripper_m"] == [0.06]
+    assert steps[3]["sightings"] == [{"thing": "cup", "source": "http", "age_s": pytest.approx(0.15)}]
     times = [at_ns for _, topic, at_ns, _ in found if topic == "/step"]
     assert times[1] - times[0] == pytest.approx(1e7, abs=1e3)
     assert times[0] > 1e18  # in this century

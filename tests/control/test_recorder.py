@@ -25,6 +25,7 @@ from latentarm.control.samples import figures_of, packed, unpacked
 from latentarm.core.errors import UserError
 from latentarm.core.journal_limits import JournalFullError, JournalLimits, JournalLostError, JournalWatch
 from latentarm.core.types import Command, Goal, GripperCommand, GripperReading, Pose, StepRecord, Stop
+from latentarm.demonstrations.dataset import read_dataset
 
 HOME = np.array([0.0, -0.785, 0.0, -2.356, 0.0, 1.571, 0.785])
 NAMES = tuple(f"joint{i}" for i in range(7))
@@ -75,6 +76,7 @@ def same(one, other):
     assert one.command.limited_by == other.command.limited_by
     assert (one.gripper, one.command.gripper) == (other.gripper, other.command.gripper)
     np.testing.assert_array_equal(one.things, other.things)
+    np.testing.assert_array_equal(one.sightings, other.sightings)
 
 
 def write(path, episodes, *, end_last=True):
@@ -177,6 +179,32 @@ OF_VERSION_3 = bytes.fromhex(
 """The same with a gripper, as it was written before there were things."""
 
 
+OF_VERSION_5 = bytes.fromhex(
+    "0407000200028002800200024001000200020003000700000000000000f83f000000000000e03f000000000000f03f9a9999"
+    "999999993f0000000000000040000000000000f03f0000000000000000000000000000d03f000000000000e0bf0000000000"
+    "00d03f000000000000e0bf000000000000f03f000000000000d03f000000000000e0bfb81e85eb51b8ae3f000000000000f0"
+    "3f00000000000000009a9999999999a93f00000000000034400000000000000000000000000000f03f000000000000004000"
+    "00000000000840000000000000104000000000000014400000000000001840"
+)
+"""The same with a thing, as it was written before a recording said who knew where things are."""
+
+
+def test_a_journal_from_before_sources_were_recorded_still_has_its_things(tmp_path):
+    path = tmp_path / "drive.sqlite"
+    recorder = Recorder(path)
+    recorder.begin_episode(header(things=("cup",)))
+    recorder.record(standing(0, np.ones((1, 7))))
+    recorder.close()
+    with sqlite3.connect(path) as database:
+        database.execute("UPDATE episodes SET about = json_remove(about, '$.sources')")
+        database.execute("UPDATE samples SET figures = ?", (OF_VERSION_5,))
+        database.execute("PRAGMA user_version = 5")
+    database.close()
+    (episode,) = read_journal(path)
+    np.testing.assert_array_equal(episode.records[0].things, np.arange(7.0)[None])
+    assert (episode.header.sources, episode.records[0].sightings.size) == ((), 0)
+
+
 @pytest.mark.parametrize(
     ("version", "sample", "measured", "asked"),
     [
@@ -240,7 +268,7 @@ def test_a_gripper_that_is_not_finite_is_neither_written_nor_read(tmp_path, bad)
             recorder.record(gripped(1, *step))
     recorder.close()
     for parts in ([[bad, 0.0], []], [[0.04, 0.5], []], [[0.04], []], [[], [0.0, 0.1, bad]], [[], [0.0]]):
-        later = (np.array(part, dtype=float) for part in (*parts, []))
+        later = (np.array(part, dtype=float) for part in (*parts, [], []))
         figures = packed([*figures_of(record(0))[:8], *later])
         with sqlite3.connect(path) as database:
             database.execute("UPDATE samples SET figures = ?", (figures,))
@@ -304,7 +332,7 @@ def test_things_that_are_missing_or_not_finite_are_neither_written_nor_read(tmp_
             recorder.record(standing(1, bad))
     recorder.close()
     for rows in ([], np.ones(7), np.ones(13), np.full(14, np.inf)):
-        figures = packed([*figures_of(record(0))[:10], np.array(rows, dtype=float)])
+        figures = packed([*figures_of(record(0))[:10], np.array(rows, dtype=float), np.zeros(0)])
         with sqlite3.connect(path) as database:
             database.execute("UPDATE samples SET figures = ?", (figures,))
         database.close()
@@ -314,6 +342,64 @@ def test_things_that_are_missing_or_not_finite_are_neither_written_nor_read(tmp_
         database.execute("UPDATE episodes SET about = json_set(about, '$.objects', json('[\"spoon\"]'))")
     database.close()
     with pytest.raises(UserError, match="an object is not among the things"):
+        read_journal(path)
+
+
+SOURCES = ("scene", "touch", "http")
+SAID = st.tuples(st.integers(-1, len(SOURCES) - 1), st.floats(0.0, 600.0))
+
+
+def said_by(tick, rows, said):
+    """The same step with things of which somebody says where they are."""
+    sightings = np.array(said, dtype=float).reshape(-1, 2)
+    return dataclasses.replace(standing(tick, rows), sightings=sightings)
+
+
+@settings(max_examples=15, deadline=None)
+@given(st.lists(st.tuples(SAID, SAID), min_size=2, max_size=20))
+def test_what_a_recording_says_of_sources_and_ages_is_read_and_exported_as_written(said):
+    with tempfile.TemporaryDirectory() as folder:
+        path, rows = Path(folder) / "drive.sqlite", np.ones((2, 7))
+        recorder = Recorder(path)
+        recorder.begin_episode(header(things=THINGS, objects=("cup",), sources=SOURCES))
+        given = [said_by(tick, rows, one) for tick, one in enumerate(said)]
+        for one in given:
+            recorder.record(one)
+        recorder.end_episode()
+        # An episode of a program that did not know sources goes into the same dataset.
+        recorder.begin_episode(header(things=THINGS, objects=("cup",)))
+        for tick in range(2):
+            recorder.record(standing(tick, rows))
+        recorder.end_episode()
+        recorder.close()
+        known, unknown = read_journal(path)
+        export_journal(path, Path(folder) / "dataset")
+        exported = read_dataset(Path(folder) / "dataset")
+    assert known.header.sources == SOURCES
+    for one, other in zip(given, known.records, strict=True):
+        same(one, other)
+    assert all(one.sightings.size == 0 for one in unknown.records)
+    assert exported.objects == ("cup",)
+    for index, source in enumerate(SOURCES):
+        first, second = (one.extras[f"observation.environment_age.{source}"] for one in exported.episodes)
+        ages_s = [age_s if by == index else -1.0 for _, (by, age_s) in said]
+        as_stored = np.array(ages_s, dtype=np.float32)[:, None]
+        np.testing.assert_array_equal(first, as_stored)
+        assert (second == -1.0).all()
+
+
+@pytest.mark.parametrize("said", [[], [(0, 0.0)], [(3, 0.0)] * 2, [(0.5, 0.0)] * 2, [(1, -0.1)] * 2])
+def test_sources_that_cannot_be_are_damage(tmp_path, said):
+    path = tmp_path / "drive.sqlite"
+    recorder = Recorder(path)
+    recorder.begin_episode(header(things=THINGS, sources=SOURCES))
+    recorder.record(said_by(0, np.ones((2, 7)), [(0, 0.0)] * 2))
+    recorder.close()
+    figures = packed(figures_of(said_by(0, np.ones((2, 7)), said)))
+    with sqlite3.connect(path) as database:
+        database.execute("UPDATE samples SET figures = ?", (figures,))
+    database.close()
+    with pytest.raises(UserError, match=r"drive\.sqlite is damaged .*from where"):
         read_journal(path)
 
 

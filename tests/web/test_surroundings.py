@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from wooden_server import wooden_server
 
+from latentarm.control.journal import read_journal
 from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations, Episode, Pose
 from latentarm.demonstrations.dataset import write_dataset
@@ -18,10 +19,11 @@ from latentarm.surroundings.contract import Sighting
 from latentarm.surroundings.process import as_message
 from latentarm.tasks.catalogue import make_scene_task
 from latentarm.web.arm_process.drive_setup import Spec, load_setup
-from latentarm.web.protocol.orders import ChooseMode, Enable, TouchThing
+from latentarm.web.protocol.orders import ChooseMode, Enable, Record, TouchThing
 
 NAMES = ("left marshmallow", "middle marshmallow", "right marshmallow")
 PLACES = np.array([[0.5, 0.06, 0.074], [0.56, 0.0, 0.074], [0.5, -0.06, 0.074]])
+HTTP = "http:8470"
 FAR = np.array([0.0, 0.0, 0.1])
 
 
@@ -49,7 +51,7 @@ def run(tmp_path_factory):
 @pytest.fixture(scope="module")
 def looking(run):
     """The run at a simulated arm that sources tell where the things are."""
-    setup = load_setup(Spec(run, task="marshmallows", arm="mujoco", objects=("touch",)))
+    setup = load_setup(Spec(run, task="marshmallows", arm="mujoco", objects=("touch", HTTP)))
     return replace(setup, arm="kinematic", todo=replace(setup.todo, steps=(), failures=()))
 
 
@@ -68,7 +70,7 @@ class Room:
         for name, place in self.shown.items():
             pose = Pose(np.asarray(place), np.eye(3))
             seen = Sighting(name, pose, time.monotonic(), 0.005, 0.1)
-            self.writing.send_bytes(as_message(seen, "camera", 2.0))
+            self.writing.send_bytes(as_message(seen, HTTP, 2.0))
 
 
 def drive(desk_of, setup, script, for_s):
@@ -162,6 +164,38 @@ def test_a_person_shows_where_things_are_with_the_tool_alone(desk_of, looking):
     assert {one.seen for one in told.values()} == {"seen"}
     assert {one.source for one in told.values()} == {"touch"}
     assert modes(desk, 2.1, 2.5) == {"end_effector"}
+
+
+def test_a_recording_keeps_who_said_where_each_thing_is_and_how_long_ago(desk_of, looking, tmp_path):
+    def touch(kind):
+        return lambda desk, room, u: desk.order(TouchThing(thing=NAMES[0], kind=kind))
+
+    def others(desk, room, u):
+        room.shown = dict(zip(NAMES[1:], PLACES[1:], strict=True))
+
+    def record(*, on):
+        return lambda desk, room, u: desk.order(Record(on=on, task="stab", person="Ada"))
+
+    shown = [(0.2, touch("place")), (0.3, others), (1.5, touch("undo")), (2.0, nothing)]
+    driven = [(1.0, record(on=True)), (1.7, push), (2.2, let_go), (2.5, record(on=False))]
+    drive(desk_of, looking, shown + driven, 3.0)
+    (journal,) = (tmp_path / "teleop").glob("*.sqlite")
+    (episode,) = read_journal(journal)
+    header, records = episode.header, episode.records
+    assert header.sources == ("scene", "touch", "http")
+    assert header.things == NAMES
+    for name, source in zip(NAMES, ("touch", "http", "http"), strict=True):
+        number = header.things.index(name)
+        by, age_s = np.array([one.sightings[number] for one in records]).T
+        time_s = np.array([one.time_s for one in records])
+        assert {header.sources[int(one)] for one in by} == {source}
+        if source == "touch":
+            # Also after it was taken back, when nobody knows where the thing is.
+            np.testing.assert_allclose(age_s, time_s - 0.2, atol=0.021)
+            assert np.ptp([one.things[number] for one in records], axis=0).max() == 0.0
+        else:
+            assert age_s[time_s < 2.0].max() <= 0.15
+            np.testing.assert_allclose(age_s[-1], time_s[-1] - 2.0, atol=0.15)
 
 
 def test_about_a_real_arm_a_person_shows_the_things_from_the_page(serve, run, tmp_path):

@@ -15,7 +15,7 @@ from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations, Episode, FloatArray, StepRecord
 from latentarm.demonstrations.gripper import ACTION_GRIPPER, GRIPPER_HOLDING, GRIPPER_WIDTH, going_to
 from latentarm.demonstrations.provenance import BY_HAND
-from latentarm.demonstrations.things import ENVIRONMENT
+from latentarm.demonstrations.things import AGE, ENVIRONMENT
 from latentarm.robots.kinematics.pose_rows import stored_rows
 from latentarm.robots.limits import JointLimits
 
@@ -45,12 +45,14 @@ def demonstrations_of(
     where there are goals ``belief`` and ``assist.bound`` (rad; -1 where nothing helps or no bound is known),
     and ``assist.added`` where help was ever added to the person's action (see `StepRecord.added`).
     ``observation.environment_state`` has the poses of the things that matter or, where no things were
-    recorded, of the goals; these are the dataset's objects. An arm with a gripper adds
-    ``observation.gripper_width`` (m; a reading below zero counts as zero), ``observation.gripper_holding`` (0
-    or 1) and ``action.gripper`` (m): the width commanded last, or until a command the measured one (0 where
-    it holds something). Time starts at each episode's first sample. Incomplete episodes are skipped unless
-    asked for. An episode is cut before its first impossible sample (see `first_implausible`), or skipped
-    where too little of it remains, with an `ImplausibleWarning`. Errors name the ``source``.
+    recorded, of the goals; these are the dataset's objects. ``observation.environment_age.SOURCE`` has for
+    each thing how old its pose was, s, in the samples in which it was that source's, and else -1. An arm
+    with a gripper adds ``observation.gripper_width`` (m; a reading below zero counts as zero),
+    ``observation.gripper_holding`` (0 or 1) and ``action.gripper`` (m): the width commanded last, or until a
+    command the measured one (0 where it holds something). Time starts at each episode's first sample.
+    Incomplete episodes are skipped unless asked for. An episode is cut before its first impossible sample
+    (see `first_implausible`), or skipped where too little of it remains, with an `ImplausibleWarning`. Errors
+    name the ``source``.
 
     Raises UserError where no episode is complete and long enough, or the episodes are of different robots,
     goals or things, or of an arm with a gripper and one without.
@@ -74,8 +76,9 @@ def demonstrations_of(
             raise UserError(
                 f"{source} holds episodes with a gripper and without: export them apart, with --episodes."
             )
+    sources = tuple(dict.fromkeys(source for one in kept for source in one.header.sources))
     return Demonstrations(
-        episodes=_with_added(kept, tuple(_episode(episode) for episode in kept)),
+        episodes=_with_added(kept, tuple(_episode(episode, sources) for episode in kept)),
         rate_hz=first.rate_hz,
         joint_names=first.joint_names,
         robot=first.robot,
@@ -188,7 +191,17 @@ def _action(recorded: JournalEpisode) -> FloatArray:
     return np.gradient(np.stack([record.state for record in records]), time_s, axis=0)
 
 
-def _episode(recorded: JournalEpisode) -> Episode:
+def _ages(recorded: JournalEpisode, objects: Sequence[str], source: str) -> FloatArray:
+    """How old the poses of the things are at each sample by this source, (T, K), s; -1 by another one."""
+    header, records = recorded.header, recorded.records
+    if source not in header.sources:
+        return np.full((len(records), len(objects)), -1.0)
+    chosen = [header.things.index(name) for name in objects]
+    by, age_s = np.moveaxis(np.stack([record.sightings[chosen] for record in records]), -1, 0)
+    return np.where(by == header.sources.index(source), age_s, -1.0)
+
+
+def _episode(recorded: JournalEpisode, sources: Sequence[str]) -> Episode:
     records, goals = recorded.records, recorded.header.goals
     time_s = np.array([record.time_s for record in records])
     extras: dict[str, FloatArray] = {
@@ -205,6 +218,7 @@ def _episode(recorded: JournalEpisode) -> Episode:
         extras["assist.bound"] = np.where(np.isnan(bound), NO_BOUND, bound)
     if objects := _objects(recorded.header):
         extras[ENVIRONMENT] = _poses(recorded, objects)
+        extras |= {AGE + source: _ages(recorded, objects, source) for source in sources}
     extras |= _gripper(records)
     return Episode(
         state=np.stack([record.state for record in records]),

@@ -25,7 +25,7 @@ _EARLIER = (math.nan, 1.0, 0.0)
 """The bound, the pace and what was added, in samples from before they were recorded."""
 
 _SCALARS = 7
-_LATER = 3
+_LATER = 4
 _MOST_FIGURES = 100_000
 _MOST_CELL_BYTES = 1 << 20
 _MOST_BYTES = 1 << 38  # of a journal: 256 GiB, which is days of driving
@@ -143,7 +143,7 @@ def _episode(db: sqlite3.Connection, path: Path, number: int, about: str, comple
     ).fetchall()
     header = _checked_header(path, number, about)
     try:
-        records = _standing([_record(*sample) for sample in samples], len(header.things))
+        records = _standing([_record(*sample) for sample in samples], header)
     except (ValueError, TypeError, AttributeError, OverflowError) as error:
         raise _damaged(path, number, error) from error
     return JournalEpisode(header, records, bool(complete))
@@ -177,6 +177,7 @@ def _header(about: dict[str, Any]) -> EpisodeHeader:
         # Journals from before things were recorded have neither.
         things=_names(about.get("things", [])),
         objects=_names(about.get("objects", [])),
+        sources=_names(about.get("sources", [])),
         settings=dict(about.get("settings", {})),
     )
     if not set(header.objects) <= set(header.things):
@@ -222,8 +223,8 @@ def _record(figures: bytes, stop: str | None, limited_by: str) -> StepRecord:
 
 def _step_record(parts: Sequence[FloatArray], stop: str | None, limited_by: str) -> StepRecord:
     scalars, state, given, latent, human, assist, belief, velocity, *later = parts
-    # Journals from before grippers or things were recorded have no such parts.
-    measured, asked, things = [*later, *[np.zeros(0)] * (_LATER - len(later))]
+    # Journals from before grippers, things or their sources were recorded have no such parts.
+    measured, asked, things, sightings = [*later, *[np.zeros(0)] * (_LATER - len(later))]
     missing = _SCALARS - len(scalars)
     known = [*scalars.tolist(), *_EARLIER[len(_EARLIER) - missing :]] if missing else scalars.tolist()
     time_s, alpha, mode, duration_s, bound_rad, pace, added = known
@@ -249,18 +250,26 @@ def _step_record(parts: Sequence[FloatArray], stop: str | None, limited_by: str)
         bound_rad=bound_rad,
         gripper=gripper_reading(measured),
         things=thing_poses(things),
+        sightings=sightings.reshape(-1, 2),
         pace=pace,
         added=added,
     )
 
 
-def _standing(records: Sequence[StepRecord], count: int) -> tuple[StepRecord, ...]:
+def _standing(records: Sequence[StepRecord], header: EpisodeHeader) -> tuple[StepRecord, ...]:
     """Records each with the poses of all things, where a sample leaves out those that have not moved."""
-    newest = NO_THINGS
+    newest, count = NO_THINGS, len(header.things)
+    known = np.arange(-1, len(header.sources))
     standing: list[StepRecord] = []
     for record in records:
         newest = record.things if len(record.things) else newest
         if len(newest) != count:
             raise ValueError("a sample does not say where the things are")
+        source, age_s = record.sightings.T
+        if (
+            len(source) != (count if header.sources else 0)
+            or not (np.isin(source, known) & (age_s >= 0.0) & np.isfinite(age_s)).all()
+        ):
+            raise ValueError("a sample does not say from where the poses of things are")
         standing.append(replace(record, things=newest) if count else record)
     return tuple(standing)

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from latentarm.control.journal import JournalEpisode
+from latentarm.control.recorder import EpisodeHeader
 from latentarm.core.errors import UserError
 from latentarm.core.files import written_whole
 from latentarm.core.types import StepRecord
@@ -47,6 +48,7 @@ _SCHEMAS: Final = {
         **dict.fromkeys(("alpha", "pace"), _NUMBER),
         mode=_TEXT,
         limited_by=_TEXT,
+        sightings={"type": "array", "items": _object("", thing=_TEXT, source=_TEXT, age_s=_NUMBER)},
     ),
 }
 """By topic; `_STEP` is ours: what a step of the loop read and decided."""
@@ -104,7 +106,7 @@ def _messages(episode: JournalEpisode) -> Sequence[tuple[int, str, dict[str, Any
         if header.things:
             frames = [_frame(stamp, *one) for one in zip(header.things, record.things.tolist(), strict=True)]
             found.append((at_ns, "/tf", {"transforms": frames}))
-        found.append((at_ns, "/step", _step(record, header.modes)))
+        found.append((at_ns, "/step", _step(record, header)))
         stop = record.command.stop
         text = "enabled" if stop is None else stop.reason
         if text != said:
@@ -126,8 +128,8 @@ def _frame(stamp: dict[str, int], name: str, pose: Sequence[float]) -> dict[str,
     }
 
 
-def _step(record: StepRecord, modes: Sequence[str]) -> dict[str, Any]:
-    gripper = record.gripper
+def _step(record: StepRecord, header: EpisodeHeader) -> dict[str, Any]:
+    gripper, modes = record.gripper, header.modes
     return {
         **{
             name: getattr(record, name).tolist()
@@ -139,4 +141,8 @@ def _step(record: StepRecord, modes: Sequence[str]) -> dict[str, Any]:
         "pace": record.pace,
         "mode": modes[record.mode] if record.mode < len(modes) else "",
         "limited_by": ",".join(record.command.limited_by),
+        "sightings": [
+            {"thing": thing, "source": (*header.sources, "")[int(source)], "age_s": age_s}
+            for thing, (source, age_s) in zip(header.things, record.sightings.tolist(), strict=False)
+        ],
     }

@@ -23,11 +23,12 @@ from latentarm.robots.limits import JointLimits
 from latentarm.robots.limits_file import limits_document
 
 LIMITS = ("lower", "upper", "velocity", "acceleration", "jerk")  # the fields of a header's joint limits
-SCHEMA_VERSION = 5
+SCHEMA_VERSION = 6
 """Version 2 made samples compact, version 3 gave them a gripper, version 4 things, version 5 a co-pilot's
-pace. All older versions can still be read and appended to."""
+pace, version 6 the source and the age of a thing's pose. All older versions can still be read and appended
+to."""
 
-_READABLE = (1, 2, 3, 4, 5)
+_READABLE = (1, 2, 3, 4, 5, 6)
 _PAGE_BYTES = 2048
 """Each sample is a transaction, and each transaction writes one or two whole pages to the log."""
 
@@ -75,6 +76,7 @@ class EpisodeHeader:
     settings: Mapping[str, Any] = field(default_factory=dict[str, Any])  # speeds and limits, as JSON
     objects: tuple[str, ...] = ()
     """Those that matter for the task, in the order of the feature ``objects``; all where empty."""
+    sources: tuple[str, ...] = ()  # that may say where things are; empty where no sample says which did
 
 
 @final
@@ -107,7 +109,7 @@ class Recorder:
         self._episode: int | None = None
         self._number = 0
         self._widths: tuple[int, ...] = ()
-        self._things_width = 0
+        self._things_width = self._sightings_width = 0
         self._things = NO_THINGS
         if not is_missing(path):
             check_file(path, sys.maxsize)
@@ -167,6 +169,7 @@ class Recorder:
             "provenance": provenance_json(header.provenance),
             "things": list(header.things),
             "objects": list(header.objects),
+            "sources": list(header.sources),
             "settings": dict(header.settings),
         }
         try:
@@ -178,6 +181,7 @@ class Recorder:
         self._number = 0
         self._widths = ()
         self._things_width = STORED * len(header.things)
+        self._sightings_width = 2 * len(header.things) if header.sources else 0
         self._samples_per_check = max(round(header.rate_hz), 1)
 
     def record(self, record: StepRecord) -> None:
@@ -196,7 +200,9 @@ class Recorder:
             self.check()
         parts = figures_of(record)
         widths = tuple(len(part) for part in parts[:ALWAYS])
-        if (self._number and widths != self._widths) or record.things.size != self._things_width:
+        about_things = record.things.size, record.sightings.size
+        expected = self._things_width, self._sightings_width
+        if (self._number and widths != self._widths) or about_things != expected:
             raise UserError(f"A record for {self._path} has other shapes than those before it.")
         if not all(np.isfinite(part).all() for part in parts[ALWAYS:]):
             raise UserError(

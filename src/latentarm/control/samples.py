@@ -9,15 +9,15 @@ import numpy as np
 from latentarm.core.types import FloatArray, GripperCommand, GripperReading, StepRecord
 from latentarm.robots.kinematics.pose_rows import STORED
 
-COMPACT: Final = {b"\x02": 8, b"\x03": 10, b"\x04": 11}
-"""How many parts a compact sample has, by its first byte: two of a gripper came later, then one of things.
-Older samples begin with a small integer as a float64: a byte of 0."""
+COMPACT: Final = {b"\x02": 8, b"\x03": 10, b"\x04": 11, b"\x05": 12}
+"""How many parts a compact sample has, by its first byte: two of a gripper came later, then one of things,
+then one of where their poses are from. Older samples begin with a small integer as a float64: a byte of 0."""
 
 ALWAYS: Final = 8
 """Parts that every step of an episode has, in one width. The others are a gripper's, empty without a reading
-or command, and the things', empty where all stand as in the sample before."""
+or command, the things', empty where all stand as in the sample before, and who said where they are."""
 
-_WRITTEN: Final = b"\x04"
+_WRITTEN: Final = b"\x05"
 _ZERO: Final = 0x8000
 _SAME: Final = 0x4000
 _WIDEST: Final = 0x3FFF
@@ -43,12 +43,13 @@ def figures_of(record: StepRecord) -> Sequence[FloatArray]:
         _NOTHING if measured is None else np.array([measured.width_m, float(measured.holding)]),
         _NOTHING if asked is None else np.array([asked.width_m, asked.speed_m_s, asked.force_n]),
         record.things.ravel(),
+        record.sightings.ravel(),
     )
 
 
 def without_things(parts: Sequence[FloatArray]) -> Sequence[FloatArray]:
     """The parts of a sample whose things all stand as in the one before."""
-    return (*parts[:-1], _NOTHING)
+    return (*parts[:-2], _NOTHING, parts[-1])
 
 
 def gripper_reading(part: FloatArray) -> GripperReading | None:

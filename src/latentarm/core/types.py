@@ -18,8 +18,10 @@ BoolArray = NDArray[np.bool_]
 NO_GRIPPER: FloatArray = np.zeros(0)  # `Context.gripper` and `Context.gripper_target` where unknown
 NO_OBJECTS: FloatArray = np.zeros((0, 9))  # `Context.objects` where unknown
 NO_THINGS: FloatArray = np.zeros((0, 7))  # `StepRecord.things` where nobody looks
+NO_SIGHTINGS: FloatArray = np.zeros((0, 2))  # `StepRecord.sightings` where nobody says
 
-NO_GRIPPER.flags.writeable = NO_OBJECTS.flags.writeable = NO_THINGS.flags.writeable = False
+NO_GRIPPER.flags.writeable = NO_OBJECTS.flags.writeable = False
+NO_THINGS.flags.writeable = NO_SIGHTINGS.flags.writeable = False
 
 
 @dataclass(frozen=True)
@@ -336,6 +338,9 @@ class StepRecord:
     # (K, 7), poses of the things about the arm in the order of the episode's header: position, m, and
     # quaternion (w, x, y, z), in the base frame. `Step` leaves it empty.
     things: FloatArray = field(default_factory=lambda: NO_THINGS)
+    # (K, 2), for each of them the index of the source of its pose in the header, -1 for another one, and the
+    # age of the pose, s; empty where the header names no source
+    sightings: FloatArray = field(default_factory=lambda: NO_SIGHTINGS)
     pace: float = 1.0  # see `Input.pace`
     # weight of the assistive action on top of the blend: the filters get ``(1 - alpha) a_h + (alpha + added)
     # a_r``. 0 where help replaces the person's action, as in equation 2.

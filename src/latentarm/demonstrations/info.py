@@ -17,7 +17,7 @@ from latentarm.core.untrusted.documents import read_object
 from latentarm.core.untrusted.opening import is_missing
 from latentarm.demonstrations.bounds import check_values
 from latentarm.demonstrations.provenance import parse_provenance, provenance_json
-from latentarm.demonstrations.things import ENVIRONMENT, entry_names, object_names
+from latentarm.demonstrations.things import AGE, ENVIRONMENT, entry_names, object_names
 from latentarm.robots.limits_file import limits_document, parse_limits
 
 CODEBASE_VERSION: Final = "v3.0"
@@ -110,7 +110,9 @@ def features_of(demonstrations: Demonstrations) -> tuple[Feature, ...]:
     names = demonstrations.joint_names
     first = demonstrations.episodes[0]
     action = () if first.action is None else (Feature(ACTION, len(names), names),)
-    named = {ENVIRONMENT: entry_names(demonstrations.objects) or None}
+    objects = demonstrations.objects
+    named = {ENVIRONMENT: entry_names(objects) or None}
+    named |= {one: objects for one in first.extras if one.startswith(AGE)}
     extras = tuple(Feature(one, first.extras[one].shape[1], named.get(one)) for one in sorted(first.extras))
     return (Feature(STATE, len(names), names), *action, *extras)
 

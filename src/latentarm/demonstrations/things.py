@@ -11,6 +11,10 @@ from latentarm.core.errors import UserError
 from latentarm.core.types import Episode
 
 ENVIRONMENT: Final = "observation.environment_state"
+AGE: Final = "observation.environment_age."
+"""Begins the name of a feature with an entry for each thing: how old its pose was, s, where it was that of
+the source whose name follows, and else -1."""
+
 ENTRIES: Final = ("x", "y", "z", "qw", "qx", "qy", "qz")
 
 

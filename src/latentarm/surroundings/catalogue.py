@@ -39,6 +39,9 @@ SOURCES: Final[Catalogue[SourceFactory]] = Catalogue(
 TOUCH: Final = "touch"
 """Not opened: a person who brings the tool to a thing may always say so."""
 
+SCENE: Final = "scene"
+"""Not opened: a simulation, as recordings name it."""
+
 
 def check_source(text: str) -> None:
     """Check what ``--objects`` names, without opening it."""

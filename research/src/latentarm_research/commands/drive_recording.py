@@ -15,6 +15,7 @@ from latentarm.demonstrations.folders import check_vacant
 from latentarm.demonstrations.provenance import provenance_now
 from latentarm.robots.robot import Robot
 from latentarm.runs.folder import weights_fingerprint
+from latentarm.surroundings.catalogue import SCENE
 from latentarm_research.commands.drive_options import DriveOptions
 from latentarm_research.drives.drive import RATE_HZ
 
@@ -56,6 +57,7 @@ class DriveRecording:
                 limits=robot.stated_limits,
                 things=tuple(things),
                 objects=tuple(objects),
+                sources=(SCENE,) if things else (),
             )
         )
 

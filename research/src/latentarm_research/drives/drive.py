@@ -112,7 +112,8 @@ def drive(
             taken = step(given, 0.0, reading, clock.now_s())
             follow.records.append(taken)
             if note is not None:
-                note(replace(taken, things=thing_rows(state.poses, begun.scene.names)))
+                rows = thing_rows(state.poses, begun.scene.names)
+                note(replace(taken, things=rows, sightings=np.zeros((len(rows), 2))))
             arm.send(taken.command)
     return follow.trace(choice, task.robot.chain, rearming.stops)
 

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from typing import Final, final
 
 import numpy as np
@@ -134,7 +133,7 @@ class Drive:
         enabled, steered = self._step.stopped is None, not self._way_back.on
         self._run.see(record.time_s, self._readings.q, enabled=enabled, steered=steered)
         # Only a recording is worth the look: some 0.1 ms.
-        kept = replace(record, things=self._things.rows()) if self._writer.on else record
+        kept = self._things.recorded(record) if self._writer.on else record
         self._episodes.follow(kept, at_rest=self._step.at_rest)
         self._obey(record)
         self._disengaged.follow(record.time_s)

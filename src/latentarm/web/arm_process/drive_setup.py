@@ -34,7 +34,7 @@ from latentarm.runs.folder import Run, read_run, weights_fingerprint
 from latentarm.runs.tasks import usual_arm
 from latentarm.safety.config import SafetyConfig
 from latentarm.safety.zones import Zone
-from latentarm.surroundings.catalogue import check_source
+from latentarm.surroundings.catalogue import SCENE, TOUCH, check_source
 from latentarm.tasks.catalogue import HELD_OUT
 from latentarm.tasks.place import Place, ScenePlace, surroundings_of, watched
 from latentarm.tasks.step_goals import StepGoals
@@ -205,6 +205,11 @@ class DriveSetup:
         return self.scene.things if self.real else tuple(self.scene.thing(name) for name in self.objects)
 
     @property
+    def sources(self) -> tuple[str, ...]:
+        """Kinds of sources that may say where things are."""
+        return tuple(dict.fromkeys((SCENE, TOUCH, *(text.partition(":")[0] for text in self.spec.objects))))
+
+    @property
     def shown(self) -> Scene | None:
         """The scene that pages draw: the one about the arm, else the task's."""
         if self.scene is None:
@@ -259,6 +264,7 @@ class DriveSetup:
             limits=robot.stated_limits,
             things=things,
             objects=tuple(name for name in self.objects if name in things),
+            sources=self.sources if things else (),
             settings=self.settings,
         )
 

@@ -1,6 +1,7 @@
 """Poses of the things around an arm for pages, models and recordings, simulated or tracked."""
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from multiprocessing.connection import Connection
 from typing import TYPE_CHECKING, Final, final
 
@@ -9,6 +10,7 @@ import numpy as np
 from latentarm.arms.contract import SceneArm
 from latentarm.core.types import FloatArray, Pose, StepRecord
 from latentarm.robots.kinematics.pose_rows import thing_rows
+from latentarm.surroundings.catalogue import SCENE
 from latentarm.surroundings.surroundings import Surroundings
 from latentarm.surroundings.touch import TouchKind
 from latentarm.surroundings.tracker import Whereabouts
@@ -53,7 +55,9 @@ class ThingPoses:
         self._chain = setup.task.robot.chain
         self._followed = followed
         self._now_s = now_s
+        self._sources = setup.sources
         self._recorded: tuple[str, ...] = ()
+        self._newest: dict[str, tuple[Pose, int, float]] = {}
 
     def surroundings(self, setup: "DriveSetup", arm: SceneArm | None) -> Callable[[], FloatArray] | None:
         """A function that gives a `Step` the poses of the things in its context."""
@@ -89,12 +93,22 @@ class ThingPoses:
 
     def begin(self) -> tuple[str, ...]:
         """The things that a recording which begins now holds: those that have been seen."""
-        self._recorded = () if self._scene is None else tuple(self._poses())
+        self._recorded = () if self._scene is None else self._take(self._now_s())
         return self._recorded
 
-    def rows(self) -> FloatArray:
-        """Their poses, (K, 7), see `StepRecord.things`."""
-        return thing_rows(self._poses(), self._recorded)
+    def recorded(self, record: StepRecord) -> StepRecord:
+        """The record of a step with their poses, and where these are from.
+
+        A thing whose touch was taken back, so that nobody knows where it is, stays where it was.
+        """
+        if not self._recorded:
+            return record
+        now_s = self._now_s()
+        self._take(now_s)
+        rows = thing_rows({name: pose for name, (pose, _, _) in self._newest.items()}, self._recorded)
+        newest = [self._newest[name] for name in self._recorded]
+        sightings = np.array([(source, now_s - taken_s) for _, source, taken_s in newest])
+        return replace(record, things=rows, sightings=sightings)
 
     def believed(self) -> Mapping[str, Pose] | None:
         """Latest poses of the tracked things; None while one has not been seen."""
@@ -112,6 +126,16 @@ class ThingPoses:
             for name, where in self._all()
         ]
         return things_at(self._scene, begun | self._poses(), grains, seen)
+
+    def _take(self, now_s: float) -> tuple[str, ...]:
+        """Keep where everything is; the names of the things that somebody knows the place of."""
+        poses, told = self._poses(), dict(self._all())
+        for name, pose in poses.items():
+            where = told.get(name, Whereabouts("seen", source=SCENE))
+            kind = where.source.partition(":")[0]
+            source = self._sources.index(kind) if kind in self._sources else -1
+            self._newest[name] = pose, source, now_s - where.age_s
+        return tuple(poses)
 
     def _where(self, name: str, now_s: float) -> Whereabouts:
         return Whereabouts("unseen") if self._followed is None else self._followed.tracker.look(name, now_s)
