@@ -50,6 +50,7 @@ def _measure(name: str, own: Any, common: Common, out: Path) -> int:
     from latentarm.core.parallel import check_jobs
     from latentarm.evaluation.results import write_results
     from latentarm.runs.checks import check_seed
+    from latentarm.runs.folder import git_commit
     from latentarm.runs.results_folder import write_json
     from latentarm_research.measurements.measurement import Work
     from latentarm_research.measurements.page import page_of, repeated_by
@@ -59,15 +60,20 @@ def _measure(name: str, own: Any, common: Common, out: Path) -> int:
     check_jobs(common.jobs)
     words = f"measure {name}"
     command = repeated_by(name, own, common.seed)
-    about = {"study": words, "command": command}
-    ResultsFolder(words, ("results.json", "results.md")).claim(out, about)
-    work = Work(common.seed, common.jobs, not common.json and sys.stderr.isatty())
+    about: dict[str, object] = {"study": words, "command": command}
+    kept: tuple[str, ...] = ()
+    if MEASUREMENTS[name].resumes:
+        kept, grown = ("runs", "models"), replace(own, runs=1)
+        about |= {"command": repeated_by(name, grown, common.seed), "code": git_commit()}
+    ResultsFolder(words, ("results.json", "results.md"), kept).claim(out, about)
+    work = Work(common.seed, common.jobs, not common.json and sys.stderr.isatty(), out)
     outcome = load_measurement(name)(own, work)
     page = page_of(MEASUREMENTS[name].summary, outcome, command)
     write_text(out / "results.md", page)
     for file, document in outcome.documents.items():
         write_json(out / file, document)
-    write_results(out / "results.json", outcome.rows, {**about, "broken": list(outcome.broken)})
+    said = {"study": words, "command": command, "broken": list(outcome.broken)}
+    write_results(out / "results.json", outcome.rows, said)
     write_options(out, words)
     if common.json:
         show(outcome.rows, json=True)

@@ -128,6 +128,20 @@ class Tags:
     seconds: Annotated[float, arg(help="That a loop runs, with tags and without.")] = 20.0
 
 
+@dataclass(frozen=True)
+class Surroundings:
+    """Drive models that look at things, with their true places and with those that sources tell."""
+
+    runs: Annotated[int, arg(help="At each task with each source.")] = 50
+    tasks: Annotated[Names, arg(help="Of `latentarm reproduce tasks`.")] = (
+        "moved_marshmallows",
+        "moved_reach_and_pour",
+    )
+    sources: Annotated[Names, arg(help="Which, such as `touch`; by default all.")] = ()
+    demonstrations: Annotated[int, arg(help="That each model learns from.")] = 40
+    epochs: Annotated[int, arg(help="Of training.")] = 60
+
+
 MEASUREMENTS: Final[Mapping[str, Measurement]] = {
     "clearance": Measurement(Clearance, {"drives": 2}),
     "limits": Measurement(Limits, {"ticks": 240}),
@@ -142,6 +156,11 @@ MEASUREMENTS: Final[Mapping[str, Measurement]] = {
     "people": Measurement(People, {"people": 1}),
     "torque": Measurement(Torque, {"poses": 20}),
     "tags": Measurement(Tags, {"scenes": 1, "seconds": 0.5}),
+    "surroundings": Measurement(
+        Surroundings,
+        {"runs": 1, "tasks": ("marshmallows",), "sources": ("touch",), "demonstrations": 3, "epochs": 2},
+        resumes=True,
+    ),
 }
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any, Final, TypeVar, final
 
 from latentarm.core.types import Row
@@ -34,6 +35,7 @@ class Measurement:
 
     options: type[Any]  # a frozen dataclass, its own options
     smoke: Mapping[str, object]  # values of options that only show that it runs
+    resumes: bool = False  # whether it goes on from its finished runs, also to another number of `runs`
 
     @property
     def summary(self) -> str:
@@ -49,6 +51,7 @@ class Work:
     seed: int = 0  # of everything random
     jobs: int = 1  # processes side by side; -1 is one per core
     bars: bool = False  # show progress on standard error
+    out: Path = Path()  # the folder of its results
 
     def each(self, function: Callable[[Cell], Result], cells: Sequence[Cell]) -> list[Result]:
         """Results of a function of picklable cells, in their order."""

@@ -1,5 +1,6 @@
 """A bowl, a cup and a spoon with tags, and a board, as MuJoCo renders them for two cameras."""
 
+from collections.abc import Mapping, Sequence
 from typing import Any, Final, final
 
 import cv2
@@ -25,7 +26,7 @@ _MATRIX: Final = [[_FOCAL_PX, 0, (WIDE - 1) / 2], [0, _FOCAL_PX, (HIGH - 1) / 2]
 LENS: Final = Lens((WIDE, HIGH), np.array(_MATRIX), np.zeros(5))
 _AWAY: Final = frame(np.eye(3), np.array([0.0, 0.0, -9.0]))
 _BOX, _ROD, _TIN = (getattr(mujoco.mjtGeom, f"mjGEOM_{name}") for name in ("BOX", "CAPSULE", "CYLINDER"))
-_PARTS: Final = {  # of each body: shape, size, m, and position, m
+PARTS: Final = {  # of each body: shape, size, m, and position, m
     "bowl": [(_BOX, [0.16, 0.16, 0.003], [0, 0, -0.004]), (_TIN, [0.06, 0.03, 0], [0, 0, 0.03])],
     "cup": [(_TIN, [0.04, 0.05, 0], [0, 0, 0.05])],
     "spoon": [(_BOX, [0.1, 0.006, 0.004], [0, 0, 0])],
@@ -58,26 +59,32 @@ def tags_on_things() -> list[TagEntry]:
 class Room:
     """The things, and two cameras at poses ``cameras`` (4, 4)."""
 
-    def __init__(self) -> None:
+    def __init__(
+        self,
+        parts: Mapping[str, Sequence[Any]] = PARTS,  # of each body
+        tags: Sequence[TagEntry] | None = None,  # by default `tags_on_things`
+    ) -> None:
+        self.names = tuple(parts)
         spec = mujoco.MjSpec()
         spec.visual.global_.offwidth, spec.visual.global_.offheight = WIDE * _FINER, HIGH * _FINER
         spec.visual.headlight.active, spec.visual.map.znear = 0, 0.005
         world, sun = spec.worldbody, mujoco.mjtLightType.mjLIGHT_DIRECTIONAL
         world.add_light(type=sun, dir=[0.2, 0.1, -1], diffuse=[0.6] * 3, ambient=[0.3] * 3)
         world.add_geom(type=_BOX, size=[0.7, 0.7, 0.01], pos=[0.4, 0, -0.02], rgba=[0.5, 0.4, 0.3, 1])
-        bodies = {name: world.add_body(name=name, mocap=True) for name in _PARTS}
-        for name, parts in _PARTS.items():
-            for shape, size, at in parts:
+        bodies = {name: world.add_body(name=name, mocap=True) for name in parts}
+        for name, solids in parts.items():
+            for shape, size, at in solids:
                 bodies[name].add_geom(type=shape, size=size, pos=at, rgba=[0.7, 0.5, 0.4, 1])
         family = cv2.aruco.getPredefinedDictionary(FAMILIES[FAMILY])
-        for tag in tags_on_things():
+        for tag in tags_on_things() if tags is None else tags:
             image = cv2.aruco.generateImageMarker(family, tag.id, 400)
             image = cv2.copyMakeBorder(image, 50, 50, 50, 50, cv2.BORDER_CONSTANT, value=255)
             _stick(spec, bodies[tag.thing], image, tag.size_m * 500 / 400, tag.pose)
         middle = np.array([BOARD.columns, BOARD.rows, 0.0]) * BOARD.square_m / 2.0
         facing = frame(np.diag([1.0, -1.0, -1.0]), middle)  # the board's own z leads into it
         image = BOARD.made.generateImage((100 * BOARD.columns, 100 * BOARD.rows))
-        _stick(spec, bodies["board"], image, BOARD.columns * BOARD.square_m, facing)
+        if "board" in bodies:
+            _stick(spec, bodies["board"], image, BOARD.columns * BOARD.square_m, facing)
         self.cameras = [_looking(np.array([0.95, y, 0.55]), np.array([0.45, 0, 0.03])) for y in (-0.45, 0.45)]
         for number, pose in enumerate(self.cameras):
             turn = _quaternion(pose[:3, :3] @ np.diag([1.0, -1.0, -1.0]))
@@ -88,7 +95,7 @@ class Room:
 
     def put(self, poses: dict[str, FloatArray]) -> None:
         """Place things by name, and take all others away."""
-        for name in _PARTS:
+        for name in self.names:
             number, pose = self._model.body(name).mocapid[0], poses.get(name, _AWAY)
             self._data.mocap_pos[number] = pose[:3, 3]
             self._data.mocap_quat[number] = _quaternion(pose[:3, :3])
