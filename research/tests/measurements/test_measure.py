@@ -33,12 +33,14 @@ def required(name: str, tmp_path: Path) -> list[object]:
     return []
 
 
-SLOW = {"clearance", "zones", "help", "way-back", "calibration"}
+SLOW = {"clearance", "zones", "help", "way-back", "calibration", "surroundings"}
 # Two need a trained run and a Chromium (tests/web/browser/test_fault_times.py), one a log that is not ours,
 # one OpenGL.
 ELSEWHERE = {"page-stops", "page-latency", "people", "tags"}
 
 
+# A few demonstrations teach no way back.
+@pytest.mark.filterwarnings("ignore:.*to learn a way back")
 @pytest.mark.parametrize(
     "name",
     [
@@ -60,6 +62,21 @@ def test_every_measurement_runs_and_its_page_names_the_command(
     (command,) = re.findall(r"`(latentarm measure .*)`, commit [0-9a-z]+, \d{4}-\d\d-\d\d\.", page)
     assert f" {name} " in command
     assert command.endswith("--seed 1")
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore:.*to learn a way back")
+def test_a_measurement_that_was_stopped_goes_on_from_its_finished_runs(run: Run, workplace: Path) -> None:
+    smallest = ("measure", "surroundings", "--smoke", "--seed", 1)
+    assert run(*smallest)[0] == 0
+    folder = Path("measured/surroundings")
+    (kept,) = folder.glob("runs/marshmallows/touch/*.json")
+    finished = json.loads(kept.read_text("utf-8"))
+    kept.write_text(json.dumps({**finished, "stops": 7.0}), "utf-8")
+    assert run(*smallest)[0] == 0
+    rows = json.loads((folder / "results.json").read_text("utf-8"))["rows"]
+    assert [row["mean"] for row in rows if row["measure"] == "stops"] == [7.0]
+    assert run("measure", "surroundings", "--smoke", "--seed", 2)[0] == 2
 
 
 def test_a_broken_limit_is_an_exit_code(run: Run, workplace: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -19,7 +19,6 @@ from latentarm.surroundings.tags.lens import Lens
 FAMILY: Final = "apriltag_36h11"
 WIDE, HIGH = 640, 480  # px
 BOARD: Final = Board(7, 5, 0.03)
-_FINER: Final = 3  # each pixel is the mean of so many squared
 _FOV_DEG: Final = 45.0
 _FOCAL_PX: Final = HIGH / 2 / np.tan(np.radians(_FOV_DEG / 2))
 _MATRIX: Final = [[_FOCAL_PX, 0, (WIDE - 1) / 2], [0, _FOCAL_PX, (HIGH - 1) / 2], [0, 0, 1]]
@@ -63,10 +62,11 @@ class Room:
         self,
         parts: Mapping[str, Sequence[Any]] = PARTS,  # of each body
         tags: Sequence[TagEntry] | None = None,  # by default `tags_on_things`
+        finer: int = 3,  # each pixel is the mean of so many squared
     ) -> None:
         self.names = tuple(parts)
         spec = mujoco.MjSpec()
-        spec.visual.global_.offwidth, spec.visual.global_.offheight = WIDE * _FINER, HIGH * _FINER
+        spec.visual.global_.offwidth, spec.visual.global_.offheight = WIDE * finer, HIGH * finer
         spec.visual.headlight.active, spec.visual.map.znear = 0, 0.005
         world, sun = spec.worldbody, mujoco.mjtLightType.mjLIGHT_DIRECTIONAL
         world.add_light(type=sun, dir=[0.2, 0.1, -1], diffuse=[0.6] * 3, ambient=[0.3] * 3)
@@ -91,7 +91,7 @@ class Room:
             world.add_camera(name=str(number), pos=pose[:3, 3], quat=turn, fovy=_FOV_DEG)
         self._model = spec.compile()
         self._data = mujoco.MjData(self._model)
-        self._renderer = mujoco.Renderer(self._model, HIGH * _FINER, WIDE * _FINER)
+        self._renderer = mujoco.Renderer(self._model, HIGH * finer, WIDE * finer)
 
     def put(self, poses: dict[str, FloatArray]) -> None:
         """Place things by name, and take all others away."""

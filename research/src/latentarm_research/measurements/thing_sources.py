@@ -33,11 +33,12 @@ TRUE, TOUCH, TAGS, SEEN, SILENT, JUMPS, SWAPS = SOURCES = (
     "detector-swaps-two-things",
 )
 EVERY_S: Final = 0.1  # between two looks of a detector, s
-CAMERAS_EVERY_S: Final = 0.2  # rendering takes most of the time of a drive
+CAMERAS_EVERY_S: Final = 0.3  # as beside a busy loop, see the measurement `tags`
 AGE_TICKS: Final = 6  # of what is seen
 SD_M: Final = 0.002  # of the detector's errors
 SD_RAD: Final = 0.02
 HAND_SD_M: Final = 0.008  # how far beside a thing's middle a person brings the tool
+FINER: Final = 2  # of pictures, see `Room`: rendering takes most of the time of a drive
 FAULT_S: Final = (3.0, 6.0)  # when a fault begins
 SILENT_S: Final = 2.0
 JUMP_M: Final = 0.1
@@ -140,7 +141,7 @@ def plate_tags() -> list[TagEntry]:
 @cache
 def _room(*, plate: bool) -> tuple[Room, dict[str, CameraEntry], Detector]:
     parts = {"plate": PARTS["bowl"][:1], "arm": PARTS["arm"]}
-    room = Room(parts, plate_tags()) if plate else Room()
+    room = Room(parts, plate_tags(), FINER) if plate else Room(finer=FINER)
     return room, exact_cameras(room, ["testsrc"] * 2), Detector(FAMILY)
 
 
