@@ -89,7 +89,7 @@ class SimulatedPage:
         self._doubtful_s = 0.0
         self._mode = self._steering.mode
         self._velocity = np.zeros(robot.dof)
-        self._counts = dict.fromkeys((*UNSAFE, "left", "straight"), 0)
+        self._counts = dict.fromkeys((*UNSAFE, "straight"), 0)
         self._nearest_m = np.inf
 
     def run(self, limit_s: float) -> None:
@@ -157,8 +157,6 @@ class SimulatedPage:
         counts["held_through_jump"] += pushed and self._waited
         self._waited = report.let_go_first
         counts["straight"] += report.mode == "end_effector"
-        if report.mode != self._mode:
-            counts["left"] += report.mode == "end_effector" and not known
 
     def _input(
         self, record: StepRecord, report: Report, state: SceneState, drawn: Mapping[str, Pose]

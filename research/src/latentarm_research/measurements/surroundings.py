@@ -65,7 +65,6 @@ def measure(options: catalogue.Surroundings, work: Work) -> Outcome:
             "succeeded": sum(one["success"] for one in mine),
             "median_time_s": float(np.median(done_s)) if done_s else None,
             "in_straight_lines_percent": 100.0 * float(np.mean([one["straight_share"] for one in mine])),
-            "left_by_the_page": sum(one["left"] for one in mine),
             "stops": sum(one["stops"] for one in mine),
             "nearest_mm": 1000.0 * min(one["nearest_m"] for one in mine),
             "most_table_force_n": max(one["table_force_n"] for one in mine),
