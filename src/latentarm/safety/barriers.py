@@ -65,13 +65,13 @@ def _contacts(velocity: FloatArray, situation: "Situation") -> Distances | None:
     if not contacts.pair.size:
         return None
     height = contacts.height if contacts.fresh else proximity.heights(contacts, np.zeros(bounds.dof))
-    if not contacts.fresh and smallest(height.ravel()) <= bounds.nearest_m:
+    room = height - bounds.config.clearance * proximity.share[contacts.pair, None]
+    if not contacts.fresh and smallest(room.ravel()) <= BUFFER_M:
         # This close to the limit, a slightly conservative bound would block motion.
         contacts = situation.contacts_now()
-        height = contacts.height
+        room = contacts.height - bounds.config.clearance * proximity.share[contacts.pair, None]
     curvature = np.repeat(proximity.curvature[contacts.pair], 2, axis=0)
-    room = height.ravel() - bounds.config.clearance
-    return Distances("clearance", contacts.row.reshape(-1, bounds.dof), room, curvature)
+    return Distances("clearance", contacts.row.reshape(-1, bounds.dof), room.ravel(), curvature)
 
 
 def _faces(situation: "Situation") -> Distances | None:
