@@ -9,11 +9,14 @@ import numpy as np
 
 from latentarm.arms.contract import SceneArm
 from latentarm.core.types import FloatArray, Pose, StepRecord
+from latentarm.robots.held import Held
 from latentarm.robots.kinematics.pose_rows import thing_rows
+from latentarm.robots.scene.scene import SceneState
 from latentarm.surroundings.catalogue import SCENE
+from latentarm.surroundings.held_things import HeldThings
 from latentarm.surroundings.surroundings import Surroundings
 from latentarm.surroundings.touch import TouchKind
-from latentarm.surroundings.tracker import Whereabouts
+from latentarm.surroundings.tracker import Whereabouts, within
 from latentarm.web.protocol.notice import Notice
 from latentarm.web.protocol.report import SeenThing, Things
 from latentarm.web.protocol.things import things_at
@@ -58,6 +61,9 @@ class ThingPoses:
         self._sources = setup.sources
         self._recorded: tuple[str, ...] = ()
         self._newest: dict[str, tuple[Pose, int, float]] = {}
+        self._seen: SceneState | None = None  # the simulation's newest state that was looked at
+        known = () if self._scene is None or not setup.stand else self._scene.things
+        self._held = HeldThings([thing for thing in known if not thing.fixed], setup.spec.held)
 
     def surroundings(self, setup: "DriveSetup", arm: SceneArm | None) -> Callable[[], FloatArray] | None:
         """A function that gives a `Step` the poses of the things in its context."""
@@ -65,11 +71,24 @@ class ThingPoses:
             return setup.surroundings(arm)
         return self._followed.rows(self._needed, self._now_s)
 
-    def update(self, record: StepRecord, q: FloatArray) -> None:
-        """Follow things, once a tick; ``q``: (n,), the newest joint positions, rad."""
+    @property
+    def held(self) -> tuple[Held, ...]:
+        """The things that count as held."""
+        return self._held.now
+
+    def update(self, record: StepRecord, q: FloatArray) -> bool:
+        """Follow things, once a tick; whether others are held now. ``q``: (n,), newest joints, rad."""
+        holding = self._held.holding if record.gripper is None else record.gripper.holding
         if self._followed is not None:
             tool = None if np.isnan(record.state[0]) else self._chain.forward(q)
             self._followed.update(tool, record.gripper, self._now_s())
+            return self._held.update(self._followed.tracker.in_tool, holding=holding)
+        if self._seen is None:
+            return self._held.update({}, holding=holding)
+        seen, names = self._seen, self._seen.stabbed | (self._seen.gripped if holding else frozenset())
+        return self._held.update(
+            {name: within(seen.tool, seen.poses[name]) for name in names}, holding=holding
+        )
 
     @property
     def unknown(self) -> Notice | None:
@@ -119,13 +138,13 @@ class ThingPoses:
         """Where everything is; None in ticks without a look."""
         if self._scene is None or (self._arm is None and self._followed is None) or tick % _EVERY:
             return None
-        begun = {thing.name: thing.pose for thing in self._scene.things}
-        grains = {} if self._arm is None else self._arm.scene_state().grains
+        poses = {thing.name: thing.pose for thing in self._scene.things} | self._poses()
+        grains = {} if self._seen is None else self._seen.grains
         seen = [
             SeenThing(name=name, seen=where.seen, age_s=int(where.age_s), source=where.source)
             for name, where in self._all()
         ]
-        return things_at(self._scene, begun | self._poses(), grains, seen)
+        return things_at(self._scene, poses, grains, seen)
 
     def _take(self, now_s: float) -> tuple[str, ...]:
         """Keep where everything is; the names of the things that somebody knows the place of."""
@@ -145,7 +164,8 @@ class ThingPoses:
         return [(name, self._where(name, self._now_s())) for name in names]
 
     def _poses(self) -> dict[str, Pose]:
-        poses = {} if self._arm is None else dict(self._arm.scene_state().poses)
+        self._seen = None if self._arm is None else self._arm.scene_state()
+        poses = {} if self._seen is None else dict(self._seen.poses)
         for name, where in self._all():
             poses.pop(name, None)
             if where.pose is not None:
