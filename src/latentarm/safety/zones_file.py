@@ -20,8 +20,8 @@ An example::
     mass_kg = 0.05
 
 Held things are boxes in the tool's frame. Shapes and their keys: ``sphere`` (``centre_m``, ``radius_m``),
-``capsule`` (``start_m``, ``end_m``, ``radius_m``), ``box`` (``centre_m``, ``size_m``, and where it is
-turned ``turned_deg`` about the x, y and z axes of its frame in this order) and ``half_space`` (``point_m`` and
+``capsule`` (``start_m``, ``end_m``, ``radius_m``), ``box`` (``centre_m``, ``size_m``, and ``turned_deg``
+about the x, y and z axes of its frame in this order, where it is turned) and ``half_space`` (``point_m`` and
 ``normal``, out of the solid).
 """
 

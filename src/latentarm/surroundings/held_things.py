@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping, Sequence
 from typing import final
 
-from latentarm.core.types import Pose
+from latentarm.core.types import GripperReading, Pose
 from latentarm.robots.held import Held
 from latentarm.robots.kinematics.obstacles import Box
 from latentarm.robots.scene.thing import Thing
@@ -26,21 +26,22 @@ class HeldThings:
         self._gripped = tuple(one for one in stated if not one.mounted)
         self._carried: dict[str, Held] = {}
         self.now: tuple[Held, ...] = ()
-        self.holding = False
+        self._holding = False
 
-    def update(self, carried: Mapping[str, Pose], *, holding: bool) -> bool:
-        """Take what moves with the tool, and whether the gripper holds something; whether others count now.
+    def update(self, carried: Mapping[str, Pose], gripper: GripperReading | None) -> bool:
+        """Take what moves with the tool, by poses in its frame, and the gripper; whether others count now.
 
-        ``carried`` are poses in the tool's frame. What is held may lose contact for a moment: it stays until
-        the gripper holds nothing.
+        What the gripper holds may lose contact for a moment: it stays until the gripper holds nothing.
         """
+        if gripper is not None:
+            self._holding = gripper.holding
+        holding = self._holding
         known = {name: pose for name, pose in carried.items() if name in self._things}
         if not holding:
             self._carried = {name: one for name, one in self._carried.items() if name in known}
         for name in known.keys() - self._carried.keys():
             self._carried[name] = _held(self._things[name], known[name])
         assumed = self._gripped if holding and not self._carried else ()
-        self.holding = holding
         now = (*self._mounted, *self._carried.values(), *assumed)
         changed = now != self.now
         self.now = now

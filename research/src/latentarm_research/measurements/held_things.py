@@ -4,8 +4,9 @@ In each drive the arm is pushed as in `clearance`, and takes the thing at once o
 something. MuJoCo measures the thing's own shape, finer than the box that the filters know.
 """
 
-from dataclasses import dataclass, replace
-from typing import Final, final
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Final
 
 import mujoco
 import numpy as np
@@ -40,13 +41,23 @@ ZONE_RADIUS_M: Final = 0.06
 ROUNDING_M: Final = 1e-5  # as in `clearance`
 PUSH_TICKS: Final = 200
 STOPPED_TICKS: Final = 15  # in which an arm at full speed has come to rest
+FIGURES: Final[dict[str, Callable[[FloatArray], float]]] = {
+    "ticks": np.sum,  # with the thing in the hand
+    "taken_near_drives": np.sum,  # it was in something or near it when it was taken
+    "least_above_planes_mm": np.min,  # of the thing, where it was not near when it was taken
+    "least_elsewhere_mm": np.min,  # the same, from other obstacles and the arm
+    "sank_mm": np.max,  # of its box, into planes that it was taken inside of
+    "zone_ticks": np.sum,
+    "zone_fastest_m_s": np.max,  # corner of its box in the zone
+    "broken_ticks": np.sum,  # something was not kept
+}
 SIGNS: Final = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
 
 
 def in_hand(name: str) -> tuple[Robot, Held]:
     """A Panda with a thing as its model has it, and what the filters are told of it."""
     thing, robot, held = THINGS[name], panda(), HeldThings([THINGS[name]], ())
-    held.update({name: STOOD}, holding=True)
+    held.update({name: STOOD}, None)
     spec = mujoco.MjSpec.from_string(robot.mjcf)
     site = spec.site(robot.chain.tools[0].name)
     add_parts(site.parent.add_body(name=name, pos=site.pos, quat=site.quat), thing.parts, thing.mass_kg)
@@ -59,23 +70,8 @@ def corners(robot: Robot, held: Held, q: FloatArray) -> FloatArray:
     return tool.position + (held.box.centre + SIGNS * held.box.half_extents) @ tool.rotation.T
 
 
-@final
-@dataclass(frozen=True)
-class Kept:
-    """One drive; distances in m, infinite where nothing was near."""
-
-    ticks: int  # with the thing in the hand
-    above_planes: float  # least height of the thing above planes that it was not taken near to
-    elsewhere: float  # the same of other obstacles and the arm
-    taken_near: bool  # whether it was in or near something when it was taken
-    sank: float  # by how much its box sank into planes that it was taken inside of
-    zone_ticks: int
-    zone_m_s: float  # the fastest corner of its box in the zone
-    broken: int  # ticks in which something was not kept
-
-
-def drive(cell: tuple[int, int]) -> Kept:
-    """Push, take the thing, and push on."""
+def drive(cell: tuple[int, int]) -> tuple[float, ...]:
+    """Push, take the thing, and push on; `FIGURES` of the drive."""
     rng, number = np.random.default_rng(cell), cell[1]
     robot, held = in_hand(tuple(THINGS)[number % 2])
     obstacles, judge, q, push = scene(robot, HARMS[number // 2 % len(HARMS)], rng)
@@ -109,10 +105,16 @@ def drive(cell: tuple[int, int]) -> Kept:
     return judged(robot, held, config, judge, np.array(states[taken + STOPPED_TICKS :]))
 
 
-def judged(robot: Robot, held: Held, config: SafetyConfig, judge: Judge, states: FloatArray) -> Kept:
-    """What was kept in states (T, n), rad, with the thing in the hand."""
+def judged(
+    robot: Robot, held: Held, config: SafetyConfig, judge: Judge, states: FloatArray
+) -> tuple[float, ...]:
+    """`FIGURES` of states (T, n), rad, with the thing in the hand."""
     distance = np.array([judge.distances(q) for q in states])
-    mine, on_plane = judge.pairs_of(held.box.name)
+    mine, on_plane, other = judge.pairs_of(held.box.name)
+    for one in np.unique(other[mine]):
+        # A thing is as far from another as the nearest of its parts.
+        same = mine & (other == one)
+        distance[:, same] = distance[:, same].min(axis=1, keepdims=True)
     bound = np.where(mine, np.where(on_plane, 0.0, config.clearance - REACHES_OUT_M), config.clearance)
     free = ~mine | (distance[0] >= config.clearance + REACHES_OUT_M)
     placed = np.array([corners(robot, held, q) for q in states])  # (T, 8, 3)
@@ -130,36 +132,26 @@ def judged(robot: Robot, held: Held, config: SafetyConfig, judge: Judge, states:
     bound = np.where(free, bound, np.minimum(bound, lower))
     near = distance < bound - ROUNDING_M
     broken = near[:-1].any(axis=1) | (sank[:, :-1] > ROUNDING_M).any(axis=0) | (fastest > ZONE_M_S + 1e-9)
-    return Kept(
-        ticks=len(states),
-        above_planes=float(distance[:, mine & on_plane & free].min(initial=np.inf)),
-        elsewhere=float(distance[:, mine & ~on_plane & free].min(initial=np.inf)),
-        taken_near=not free[mine].all(),
-        sank=float(sank.max(initial=0.0)),
-        zone_ticks=int(within.any(axis=1).sum()),
-        zone_m_s=float(fastest.max()),
-        broken=int(broken.sum()),
+    return (
+        len(states),
+        not free[mine].all(),
+        1000 * distance[:, mine & on_plane & free].min(initial=np.inf),
+        1000 * distance[:, mine & ~on_plane & free].min(initial=np.inf),
+        1000 * sank.max(initial=0.0),
+        within.any(axis=1).sum(),
+        fastest.max(),
+        broken.sum(),
     )
 
 
 def measure_held(ticks: int, work: Work) -> Outcome:
-    """Least distances, and speed in a zone, of a held cup and a long spoon in so many ticks, about."""
-    each = PUSH_TICKS - STOPPED_TICKS - PUSH_TICKS // 4  # as many as there are with the thing, about
-    found = work.each(drive, [(work.seed, number) for number in range(-(-ticks // each))])
+    """`FIGURES` of a held cup and a long spoon in about so many ticks."""
+    each = PUSH_TICKS - STOPPED_TICKS - PUSH_TICKS // 4  # with the thing, about
+    found = np.array(work.each(drive, [(work.seed, number) for number in range(-(-ticks // each))]))
     rows, broken = [], list[str]()
     for index, name in enumerate(THINGS):
         mine = found[index :: len(THINGS)]
-        not_kept = sum(one.broken for one in mine)
-        figures = {
-            "ticks": sum(one.ticks for one in mine),
-            "taken_near_drives": sum(one.taken_near for one in mine),
-            "least_above_planes_mm": 1000 * min((one.above_planes for one in mine), default=np.inf),
-            "least_elsewhere_mm": 1000 * min((one.elsewhere for one in mine), default=np.inf),
-            "sank_mm": 1000 * max((one.sank for one in mine), default=0.0),
-            "zone_ticks": sum(one.zone_ticks for one in mine),
-            "zone_fastest_m_s": max((one.zone_m_s for one in mine), default=0.0),
-            "broken_ticks": not_kept,
-        }
+        figures = {one: of(mine[:, k]) for k, (one, of) in enumerate(FIGURES.items())}
         rows += line("clearance", f"Panda with a {name}", len(mine), figures, task="held")
-        broken += [f"a held {name} was not kept clear or slow in {not_kept} ticks"] * bool(not_kept)
+        broken += [f"a held {name} was not kept clear or slow"] * bool(figures["broken_ticks"])
     return Outcome(rows, broken)

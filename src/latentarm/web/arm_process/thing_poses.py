@@ -78,17 +78,14 @@ class ThingPoses:
 
     def update(self, record: StepRecord, q: FloatArray) -> bool:
         """Follow things, once a tick; whether others are held now. ``q``: (n,), newest joints, rad."""
-        holding = self._held.holding if record.gripper is None else record.gripper.holding
         if self._followed is not None:
             tool = None if np.isnan(record.state[0]) else self._chain.forward(q)
             self._followed.update(tool, record.gripper, self._now_s())
-            return self._held.update(self._followed.tracker.in_tool, holding=holding)
-        if self._seen is None:
-            return self._held.update({}, holding=holding)
-        seen, names = self._seen, self._seen.stabbed | (self._seen.gripped if holding else frozenset())
-        return self._held.update(
-            {name: within(seen.tool, seen.poses[name]) for name in names}, holding=holding
-        )
+            return self._held.update(self._followed.tracker.in_tool, record.gripper)
+        seen, held = self._seen, dict[str, Pose]()
+        if seen is not None:
+            held = {name: within(seen.tool, seen.poses[name]) for name in seen.stabbed | seen.gripped}
+        return self._held.update(held, record.gripper)
 
     @property
     def unknown(self) -> Notice | None:
