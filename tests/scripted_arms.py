@@ -1,6 +1,7 @@
 """Fixtures of tests of safety and control: arms, a scripted controller, an oracle of distances."""
 
 from collections.abc import Callable, Sequence
+from typing import Final
 
 import numpy as np
 import pytest
@@ -15,6 +16,48 @@ from latentarm.robots.limits import JointLimits
 from latentarm.robots.panda import panda
 from latentarm.robots.planar import planar
 from latentarm.robots.robot import Robot
+
+# Joints that follow others: sliding segments of which the innermost leads, one of them a follower's follower
+# that goes the other way, and two that turn with a leader between them.
+COUPLED: Final = """
+<mujoco model="coupled">
+  <compiler angle="radian"/>
+  <worldbody>
+    <body name="mast" pos="0 0 0.5">
+      <joint name="turn" axis="0 0 1" range="-3 3"/>
+      <joint name="tilt" axis="0 1 0" ref="0.1" pos="0 0.02 0" range="-1 1.5"/>
+      <geom type="capsule" fromto="0 0 0 0.2 0 0" size="0.05"/>
+      <body name="outer" pos="0.3 0 0" euler="0.2 0 0">
+        <joint name="first" type="slide" axis="1 0 0" ref="0.03" range="0 0.13"/>
+        <geom type="capsule" fromto="-0.1 0 0 0 0 0" size="0.04"/>
+        <body name="middle" pos="0.02 0 0">
+          <joint name="second" type="slide" axis="1 0 0" range="-0.1 0.1"/>
+          <geom type="capsule" fromto="-0.1 0 0 0 0 0" size="0.03"/>
+          <body name="inner" pos="0.02 0 0" quat="0 0 0 1">
+            <joint name="third" type="slide" axis="-1 0 0" range="0.02 0.13"/>
+            <geom type="capsule" fromto="0.1 0 0 0 0 0" size="0.02"/>
+            <body name="hand" pos="-0.1 0 0">
+              <joint name="nod" axis="0 1 0" range="-2.6 2.6"/>
+              <geom type="capsule" fromto="0 0 0 -0.2 0 0" size="0.02"/>
+              <body name="end" pos="-0.2 0 0">
+                <joint name="roll" axis="1 0.2 0" pos="0 0.01 0"/>
+                <geom type="capsule" fromto="0 0 0 -0.1 0 0" size="0.02"/>
+                <site name="tip" pos="-0.1 0.05 0"/>
+              </body>
+            </body>
+          </body>
+        </body>
+      </body>
+    </body>
+  </worldbody>
+  <equality>
+    <joint joint1="first" joint2="third" polycoef="0.01 1 0 0 0"/>
+    <joint joint1="second" joint2="first" polycoef="0 -0.5 0 0 0"/>
+    <joint joint1="roll" joint2="nod" polycoef="0.3 -1.5 0 0 0"/>
+    <joint joint1="tilt" joint2="nod" polycoef="0 0.5 0 0 0"/>
+  </equality>
+</mujoco>
+"""
 
 
 @pytest.fixture(scope="session")
@@ -50,6 +93,24 @@ def gantry() -> Robot:
         jerk=np.full(4, 1000.0),
     )
     return assemble("gantry", text, ["tool"], limits, np.array([0.0, 0.3, 0.1, 0.2]), 2.0)
+
+
+@pytest.fixture(scope="session")
+def coupled() -> Robot:
+    limits = JointLimits(
+        lower=np.array([-3.0, 0.02, -2.6]),
+        upper=np.array([3.0, 0.12, 2.6]),
+        velocity=np.full(3, 2.0),
+        acceleration=np.full(3, 10.0),
+        jerk=np.full(3, 1000.0),
+    )
+    return assemble("coupled", COUPLED, ["tip"], limits, np.array([0.0, 0.07, 0.3]), 2.0)
+
+
+@pytest.fixture(scope="session")
+def robot_named(request: pytest.FixtureRequest) -> Callable[[str], Robot]:
+    """One of the above by its name; Hypothesis would write each robot that a test takes out in full."""
+    return request.getfixturevalue
 
 
 class Scripted(Controller):

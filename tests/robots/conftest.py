@@ -6,6 +6,9 @@ import pytest
 
 from latentarm.robots.panda import panda
 from latentarm.robots.robot import Robot
+from scripted_arms import coupled
+
+__all__ = ["coupled"]
 
 
 def inside(package: str, file: str) -> Path:

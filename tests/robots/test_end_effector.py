@@ -1,5 +1,6 @@
 """Which end-effector is chosen, and what is left to the person."""
 
+import numpy as np
 import pytest
 
 from latentarm.core.errors import UserError
@@ -69,7 +70,7 @@ def test_of_two_arms_one_is_named(written):
     assert load_model_file(path, "left_hand").still_joints == ("right_1", "right_2")
 
 
-def test_a_joint_that_follows_another_is_not_driven_by_itself(written):
+def test_a_joint_that_follows_another_moves_with_it_and_within_the_limits_of_both(written):
     """URDF's <mimic>, and MJCF's <equality><joint>."""
     link = """<link name="{}"><inertial><mass value="1"/>
     <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>"""
@@ -81,13 +82,33 @@ def test_a_joint_that_follows_another_is_not_driven_by_itself(written):
     mimic = '<mimic joint="shoulder" multiplier="2"/>'
     follows = joint.format("elbow", "upper", "lower", mimic, "revolute", 'lower="-1" upper="1"')
     path = written(f'<robot name="r">{text}{follows}</robot>', "robot.urdf")
-    with pytest.raises(UserError, match="Joint 'elbow' follows joint 'shoulder'"):
-        load_model_file(path)
+    both = load_model_file(path)
+    assert (both.joint_names, both.chain.tools[0].name) == (("shoulder",), "lower")
+    np.testing.assert_allclose([*both.limits.lower, *both.limits.upper], [-0.5, 0.5])
+    assert both.limits.velocity == [1.0]
+    assert both.limits.sources.position == ("model",)
     robot = load_model_file(path, "upper")
     assert robot.joint_names == ("shoulder",)
     # It turns for ever: that it stays within two turns is this program's choice, and said so.
     assert robot.limits.assumed["position"] == (0,)
     assert "velocity" not in robot.limits.assumed
+
+
+@pytest.mark.parametrize(
+    ("rules", "said"),
+    [
+        ({"b": 'joint2="a" polycoef="0 1 0.5 0 0"'}, "Joint 'b' follows joint 'a' in no fixed ratio"),
+        ({"b": 'joint2="a" polycoef="0 0 0 0 0"'}, "Joint 'b' follows joint 'a' in no fixed ratio"),
+        ({"b": ""}, "Joint 'b' follows no joint"),
+        ({"a": 'joint2="b"', "b": 'joint2="a"'}, "in no fixed ratio"),
+        ({"c": 'joint2="a"', "a": 'joint2="b"', "b": 'joint2="a"'}, "in no fixed ratio"),
+    ],
+)
+def test_a_joint_that_follows_in_no_fixed_ratio_is_refused(written, rules, said):
+    equalities = "".join(f'<joint joint1="{joint}" {rule}/>' for joint, rule in rules.items())
+    path = written(serial("a", "b", "c", extra=f"<equality>{equalities}</equality>"))
+    with pytest.raises(UserError, match=said):
+        load_model_file(path, "link2")
 
 
 def test_a_closed_chain_is_refused_unless_it_is_off_the_arm(written):

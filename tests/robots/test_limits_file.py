@@ -115,9 +115,18 @@ def test_joints_of_another_arm_and_of_another_kind_are_refused():
 FIGURE = st.none() | st.floats(1e-3, 1e3)
 
 
-@given(FIGURE, FIGURE, FIGURE, st.none() | st.tuples(st.floats(-6, -0.1), st.floats(0, 6)), st.booleans())
-def test_what_is_kept_in_a_dataset_is_what_was_stated(velocity, acceleration, jerk, position, sliding):
-    said = any(figure is not None for figure in (velocity, acceleration, jerk, position))
-    joint = StatedJointLimits(position, velocity, acceleration, jerk, sliding if said else None)
+@given(
+    FIGURE,
+    FIGURE,
+    FIGURE,
+    st.none() | st.tuples(st.floats(-6, -0.1), st.floats(0, 6)),
+    st.booleans(),
+    st.none() | st.floats(1e-3, 1.0),
+)
+def test_what_is_kept_in_a_dataset_is_what_was_stated(
+    velocity, acceleration, jerk, position, sliding, margin
+):
+    said = any(figure is not None for figure in (velocity, acceleration, jerk, position, margin))
+    joint = StatedJointLimits(position, velocity, acceleration, jerk, sliding if said else None, margin)
     stated = StatedLimits({"j": joint}, tool_speed=1.0)
     assert parse_limits(limits_document(stated), "here") == stated

@@ -1,3 +1,3 @@
-from scripted_arms import arm, gantry, oracle, scripted, two_arms
+from scripted_arms import arm, coupled, gantry, oracle, robot_named, scripted, two_arms
 
-__all__ = ["arm", "gantry", "oracle", "scripted", "two_arms"]
+__all__ = ["arm", "coupled", "gantry", "oracle", "robot_named", "scripted", "two_arms"]

@@ -6,7 +6,7 @@ import pytest
 from latentarm.safety.body import Body, Placement
 
 
-@pytest.fixture(params=["arm", "two_arms", "gantry"])
+@pytest.fixture(params=["arm", "two_arms", "gantry", "coupled"])
 def body(request):
     return Body(request.getfixturevalue(request.param))
 
@@ -32,6 +32,8 @@ def test_levers_bound_the_speed_of_every_point(body):
         assert (body.lever + 1e-9 >= moved.T).all()
 
 
+# Not `coupled`, where followers that go against their leader cancel, which the bound does not see.
+@pytest.mark.parametrize("body", ["arm", "two_arms", "gantry"], indirect=True)
 def test_levers_are_not_wildly_pessimistic(body):
     fastest = np.max(
         [np.linalg.norm(Placement(body, q).jacobian[:, :3], axis=1).T for q in random_states(body, 2000, 3)],

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from latentarm.core.errors import UserError
 from latentarm.robots.kinematics.obstacles import Box, Capsule, HalfSpace, Sphere
+from latentarm.robots.limits_file import parse_limits
 from latentarm.safety.bounds import STOPPED_WITHIN_S, Bounds
 from latentarm.safety.config import SafetyConfig, Workspace
 from latentarm.safety.obstacles import table
@@ -62,8 +63,19 @@ def test_limits_that_do_not_suit_the_robot_are_refused(arm, change, named):
 
 def test_a_margin_that_leaves_no_room_is_refused(arm):
     narrow = replace(arm, limits=replace(arm.limits, upper=arm.limits.lower + 0.15))
-    with pytest.raises(UserError, match="joint_margin"):
+    with pytest.raises(UserError, match="a smaller margin_rad of it in a limits file"):
         Bounds(SafetyConfig(), narrow, 0.01)
+
+
+def test_a_sliding_joint_keeps_a_margin_in_metres_and_a_limits_file_states_another(gantry):
+    """As short as a segment of a telescope: 0.1 rad from both ends would leave nothing of it."""
+    short = replace(gantry, limits=replace(gantry.limits, upper=np.array([0.5, 2.0, 0.13, 2.0])))
+    bounds = Bounds(SafetyConfig(), short, 0.01)
+    np.testing.assert_allclose(bounds.upper, [0.49, 1.9, 0.12, 1.9])
+    stated = parse_limits({"joints": {"push": {"margin_m": 0.002}, "turn": {"margin_deg": 1.0}}}, "here")
+    own = Bounds(SafetyConfig(), replace(short, stated_limits=stated), 0.01)
+    np.testing.assert_allclose(own.upper, [0.49, 2.0 - np.deg2rad(1.0), 0.128, 1.9])
+    np.testing.assert_allclose(own.lower, [-0.49, -2.0 + np.deg2rad(1.0), 0.002, -1.9])
 
 
 @pytest.mark.parametrize("dt", [0.0, -0.01, math.nan, 1.0, 1e-6])
@@ -143,7 +155,7 @@ def test_a_table_is_a_plane_at_its_height():
         table(math.nan)
 
 
-def test_a_sliding_joint_has_the_limit_of_links_and_says_so(arm):
+def test_a_sliding_joint_has_the_limit_of_links_or_its_own(arm):
     slide = np.zeros(7, dtype=bool)
     slide[2] = True
     sliding = replace(arm, chain=replace(arm.chain, slide=slide))
@@ -151,5 +163,6 @@ def test_a_sliding_joint_has_the_limit_of_links_and_says_so(arm):
         Bounds(SafetyConfig(), sliding, 0.01).speed, [0.5, 0.5, 0.25, 0.5, 0.5, 0.5, 0.5]
     )
     slow = replace(sliding, limits=replace(arm.limits, velocity=np.full(7, 0.2)))
-    with pytest.raises(UserError, match="link_speed"):
-        Bounds(SafetyConfig(joint_speed=0.1), slow, 0.01)
+    np.testing.assert_allclose(
+        Bounds(SafetyConfig(joint_speed=0.1), slow, 0.01).speed, [0.1, 0.1, 0.2, 0.1, 0.1, 0.1, 0.1]
+    )

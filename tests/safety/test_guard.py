@@ -64,14 +64,15 @@ def path_states(q, velocity, brake, hold_s):
 
 # An example looks along five ways, for each of which the guard is asked some ten times.
 @settings(max_examples=settings.default.max_examples // 2)
-@given(st.integers(0, 2**32 - 1), st.sampled_from(["arm", "two_arms", "gantry"]))
-def test_what_passes_is_safe_all_the_way(arm, two_arms, gantry, oracle, seed, name):
-    robot = {"arm": arm, "two_arms": two_arms, "gantry": gantry}[name]
+@given(st.integers(0, 2**32 - 1), st.sampled_from(["arm", "two_arms", "gantry", "coupled"]))
+def test_what_passes_is_safe_all_the_way(robot_named, oracle, seed, name):
+    robot = robot_named(name)
     rng = np.random.default_rng(seed)
     lower, upper = robot.limits.lower, robot.limits.upper
     q = rng.uniform(lower, upper)
     # Near limits too, and outside them.
-    q = np.where(rng.uniform(size=robot.dof) < 0.2, rng.choice([lower + 0.1, upper - 0.1]), q)
+    margin = np.where(robot.chain.slide, 0.01, 0.1)
+    q = np.where(rng.uniform(size=robot.dof) < 0.2, rng.choice([lower + margin, upper - margin]), q)
     q += rng.normal(size=robot.dof) * 0.005
     # Without things half of the time: they are so near that they leave little for the other limits to do.
     obstacles = beside(robot, q, rng, oracle) if rng.uniform() < 0.5 else ()
@@ -118,8 +119,8 @@ def test_what_passes_is_safe_all_the_way(arm, two_arms, gantry, oracle, seed, na
         brake = bounds.brake(velocity, acceleration)
         passed += 1
         for states, speeds in path_states(q, velocity, brake, bounds.hold_s):
-            assert (states <= np.maximum(upper - 0.1, q) + 1e-9).all()
-            assert (states >= np.minimum(lower + 0.1, q) - 1e-9).all()
+            assert (states <= np.maximum(upper - margin, q) + 1e-9).all()
+            assert (states >= np.minimum(lower + margin, q) - 1e-9).all()
             # Boxes are measured without depth, so a box that the arm is inside of counts as touched.
             least = np.minimum(config.clearance, before)
             assert (measure.distances(states) >= least - 1e-6).all()
@@ -136,7 +137,7 @@ def test_what_passes_is_safe_all_the_way(arm, two_arms, gantry, oracle, seed, na
     event(f"passed {passed > 0}")
 
 
-@pytest.mark.parametrize("name", ["arm", "two_arms", "gantry"])
+@pytest.mark.parametrize("name", ["arm", "two_arms", "gantry", "coupled"])
 def test_an_old_placement_never_makes_the_links_look_slower(request, name):
     robot = request.getfixturevalue(name)
     rng = np.random.default_rng(5)
@@ -155,7 +156,7 @@ def test_an_old_placement_never_makes_the_links_look_slower(request, name):
     assert looked_slower > 10
 
 
-@pytest.mark.parametrize("name", ["arm", "two_arms", "gantry"])
+@pytest.mark.parametrize("name", ["arm", "two_arms", "gantry", "coupled"])
 def test_links_that_speed_up_while_a_command_lasts_are_foreseen(request, name):
     robot = request.getfixturevalue(name)
     rng = np.random.default_rng(6)

@@ -70,7 +70,7 @@ def test_a_part_that_comes_near_a_zone_only_while_it_brakes_is_too_fast_for_it(a
             assert objection(arm, config, q, velocity) == named
 
 
-@pytest.mark.parametrize("name", ["arm", "two_arms", "gantry"])
+@pytest.mark.parametrize("name", ["arm", "two_arms", "gantry", "coupled"])
 def test_no_part_is_faster_on_its_path_than_zones_are_told(request, name):
     """Also where acceleration still adds to a slow command before the brake takes it off."""
     robot = request.getfixturevalue(name)

@@ -16,7 +16,7 @@ OBSTACLES = (
 )
 
 
-@pytest.fixture(params=["arm", "two_arms", "gantry"])
+@pytest.fixture(params=["arm", "two_arms", "gantry", "coupled"])
 def robot(request):
     return request.getfixturevalue(request.param)
 

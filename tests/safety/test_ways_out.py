@@ -36,7 +36,8 @@ def corner(robot, rng):
     """Limits, a state and a wish: past joint limits, between things, off the workspace."""
     limits, capsules = robot.limits, robot.capsules
     q = rng.uniform(limits.lower, limits.upper) * 0.6 + 0.4 * robot.home
-    end = np.where(rng.uniform(size=robot.dof) < 0.5, limits.lower + 0.1, limits.upper - 0.1)
+    margin = np.where(robot.chain.slide, 0.01, 0.1)
+    end = np.where(rng.uniform(size=robot.dof) < 0.5, limits.lower + margin, limits.upper - margin)
     q = np.where(
         rng.uniform(size=robot.dof) < rng.choice([0.0, 0.3]), end + rng.normal(size=robot.dof) * 0.01, q
     )

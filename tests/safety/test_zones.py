@@ -151,7 +151,7 @@ def begun(robot, rng):
 
 @given(
     seed=st.integers(0, 2**32 - 1),
-    name=st.sampled_from(["arm", "two_arms", "gantry"]),
+    name=st.sampled_from(["arm", "two_arms", "gantry", "coupled"]),
     shaped=st.booleans(),
 )
 def test_whatever_is_asked_no_part_is_too_fast_in_a_zone(request, oracle, seed, name, shaped):

@@ -88,7 +88,7 @@ class MujocoArm(SimulatedArm, SceneArm):
         self.data = mujoco.MjData(self.model)
         reference = reference_positions(robot.model())
         self.data.qpos[: len(reference)] = reference
-        self.data.qpos[self._positions] = state
+        self.data.qpos[self.model.jnt_qposadr[found.link_joints]] = found.model_positions(state)
         self._servo = Servo(self.model, self.data, found.joints, robot.limits.acceleration * STEP_S)
         self._fingers = None
         if robot.gripper is not None:
@@ -195,15 +195,15 @@ def _world(
     found = read(bare, [tool.name for tool in robot.chain.tools])
     fingers = () if robot.gripper is None else robot.gripper.joints
     torque = torque_limits(bare, found.joints, robot)
-    inertia = _inertia(bare, found.joints, found.joints, state)
+    inertia = _inertia(bare, found, state, found.link_joints, found.chain.ratio)
     drop_actuators(spec)
     hold_still_joints(spec, bare, found.joints, fingers)
     add_servos(spec, bare, found.joints, torque, inertia)
     if robot.gripper is not None:
         slides = np.array([bare.joint(name).id for name in fingers])
-        moved = _inertia(bare, slides, found.joints, state)
+        moved = _inertia(bare, found, state, slides, np.eye(len(slides)))
         add_finger_servos(spec, robot.gripper, moved)
-    _let_first_links_turn(spec, bare, found.joints)
+    _let_first_links_turn(spec, bare, found.link_joints)
     for joint in spec.joints:
         joint.solref_limit[:] = _HARD_STOP
     for body in spec.bodies:
@@ -217,15 +217,21 @@ def _world(
     return spec.compile(), found
 
 
-def _inertia(model: mujoco.MjModel, joints: IntArray, arm: IntArray, state: FloatArray) -> FloatArray:
-    """(k,), inertia that each joint moves alone with the arm at its start, kg m²; kg where it slides."""
+def _inertia(
+    model: mujoco.MjModel, arm: ModelChain, state: FloatArray, joints: IntArray, ratio: FloatArray
+) -> FloatArray:
+    """Inertia that moves with each of k servos alone, (k,), kg m², with the arm at its start; kg for slides.
+
+    ``ratio`` (J, k) says how the model's joints (J,) move with them.
+    """
     data = mujoco.MjData(model)
     data.qpos[:] = reference_positions(model)
-    data.qpos[model.jnt_qposadr[arm]] = state
+    data.qpos[model.jnt_qposadr[arm.link_joints]] = arm.model_positions(state)
     mujoco.mj_forward(model, data)
     whole = np.zeros((model.nv, model.nv))
     mujoco.mj_fullM(model, data, whole)
-    return np.diag(whole)[model.jnt_dofadr[joints]]
+    moved = model.jnt_dofadr[joints]
+    return np.diag(ratio.T @ whole[np.ix_(moved, moved)] @ ratio)
 
 
 def _let_first_links_turn(spec: mujoco.MjSpec, model: mujoco.MjModel, joints: IntArray) -> None:

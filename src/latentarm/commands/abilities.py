@@ -47,7 +47,7 @@ def _bounds(robot: Robot, speeds: Speeds) -> Bounds | str:
 def _slower(robot: Robot, asked: Speeds) -> Speeds | None:
     """The fastest speeds that can be driven, up to the asked ones; where joints slide, of links too."""
     limits, slide = robot.limits, robot.chain.slide
-    link = min(asked.link, robot.tool_speed_limit, *limits.velocity[slide])
+    link = min(asked.link, robot.tool_speed_limit)
     joint = min(asked.joint, *limits.velocity[~slide])
     slow_links = bool(slide.any())
     for share in np.linspace(1.0, 0.0, 51):

@@ -98,6 +98,7 @@ class StatedJointLimits:
     acceleration: float | None = None  # rad/s²
     jerk: float | None = None  # rad/s³
     sliding: bool | None = None  # None where there are no figures
+    margin: float | None = None  # distance to keep from both, rad
 
 
 @dataclass(frozen=True)

@@ -30,6 +30,7 @@ class Dimensions:
     action: int  # m
     hidden: tuple[int, ...]  # units of each hidden layer, the same in encoder and decoder
     tools: int = 0  # k, end-effectors of the arm; 0 where nothing of the model looks at them
+    coupled: int = 0  # L, links of that arm; 0 where none of them follows a joint of another
     way_back: tuple[int, ...] = ()  # units of each hidden layer of the way back's network, if there is one
 
 
@@ -114,9 +115,10 @@ class ModelKind:
 
     def tensor_shapes(self, dimensions: Dimensions) -> dict[str, Shape]:
         """Shape of every tensor of a saved model: the learned ones, the normalisers and the latent scale."""
+        arm = dimensions.action, dimensions.tools, dimensions.coupled
         return {
             **self.weight_shapes(dimensions),
-            **(chain_shapes(dimensions.action, dimensions.tools) if dimensions.tools else {}),
+            **(chain_shapes(*arm) if dimensions.tools else {}),
             **(tool_shapes(dimensions.tools) if self.sees_tools else {}),
             "context.centre": (dimensions.context,),
             "context.scale": (dimensions.context,),

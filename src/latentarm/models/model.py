@@ -296,8 +296,16 @@ class LatentActionModel(BaseEstimator, ABC):
                 f"A latent action of {self.latent_dim} dimensions is no smaller than the arm's "
                 f"{prepared.joints}: choose at most {prepared.joints}."
             )
-        tools = len(prepared.arm.tools) if prepared.arm else 0
-        return Dimensions(self.seeds, self.latent_dim, prepared.width, prepared.joints, self.hidden, tools)
+        arm = prepared.arm
+        return Dimensions(
+            self.seeds,
+            self.latent_dim,
+            prepared.width,
+            prepared.joints,
+            self.hidden,
+            tools=len(arm.tools) if arm else 0,
+            coupled=arm.links if arm and arm.coupling else 0,
+        )
 
     def _led_back(self, trained: TrainedModel, prepared: Prepared, report: Report | None) -> TrainedModel:
         """The trained model with the way back that was asked for."""

@@ -103,6 +103,7 @@ def read_model(folder: Path) -> TrainedModel:
         action=sizes.integer("action", 1),
         hidden=tuple(sizes.integers("hidden", 1, longest=MOST_LAYERS)),
         tools=sizes.integer("tools", 0),
+        coupled=sizes.integer("coupled", 0) if "coupled" in sizes.plain() else 0,
         way_back=_way_back(sizes),
     )
     if kind.sees_tools and (dimensions.tools < 1 or dimensions.context < dimensions.action):

@@ -91,9 +91,9 @@ def finger_joints(model: mujoco.MjModel) -> frozenset[int]:
 
 
 def followers(model: mujoco.MjModel) -> dict[int, int]:
-    """Leader of each joint that follows another (<mimic> in URDF, <equality><joint> in MJCF), or -1."""
+    """The equality by which each joint follows another (<mimic> in URDF, <equality><joint> in MJCF)."""
     return {
-        int(model.eq_obj1id[i]): int(model.eq_obj2id[i])
+        int(model.eq_obj1id[i]): i
         for i in range(model.neq)
         if model.eq_type[i] == _JOINT and model.eq_active0[i]
     }

@@ -10,6 +10,7 @@ An example in TOML::
     velocity_rad_per_s = 3.14
     acceleration_rad_per_s2 = 8.0
     jerk_rad_per_s3 = 500.0
+    margin_rad = 0.05
 
     [gripper]
     joints = ["gripper"]
@@ -41,6 +42,7 @@ _FIGURES: Final = {
     "velocity": "_per_s",
     "acceleration": "_per_s2",
     "jerk": "_per_s3",
+    "margin": "",
 }
 _UNITS: Final = {"rad": 1.0, "deg": math.pi / 180.0, "m": 1.0}
 
@@ -78,7 +80,7 @@ def limits_document(stated: StatedLimits) -> dict[str, object]:
     """The document that `parse_limits` reads, in rad or m."""
     joints: dict[str, dict[str, float]] = {}
     for name, one in stated.joints.items():
-        figures = {"velocity": one.velocity, "acceleration": one.acceleration, "jerk": one.jerk}
+        figures = {name: getattr(one, name) for name in _FIGURES if name not in ("lower", "upper")}
         if one.position is not None:
             figures |= {"lower": one.position[0], "upper": one.position[1]}
         unit = "m" if one.sliding else "rad"
@@ -99,7 +101,7 @@ def with_stated(
 ) -> JointLimits:
     """The limits with stated values in place of known or assumed ones, for n named joints."""
     known = list(names)
-    figures = {name: np.array(getattr(limits, name)) for name in _FIGURES}
+    figures = {field: np.array(getattr(limits, field)) for fields in _SAID_BY.values() for field in fields}
     sources: dict[Quantity, list[Source]] = {one: list(limits.sources.of(one)) for one in _SAID_BY}
     for name, one in stated.joints.items():
         if name not in known:
@@ -149,8 +151,8 @@ def _joint(entry: object, where: str, key: str) -> StatedJointLimits:
     position = (values["lower"], values["upper"]) if "lower" in values else None
     if position is not None and position[0] >= position[1]:
         raise UserError(f"{where}: {key} has a lower limit that is not below its upper one.")
-    rates = {name: values.get(name) for name in ("velocity", "acceleration", "jerk")}
-    return StatedJointLimits(position=position, sliding=next(iter(sliding), None), **rates)
+    others = {name: values.get(name) for name in _FIGURES if name not in ("lower", "upper")}
+    return StatedJointLimits(position=position, sliding=next(iter(sliding), None), **others)
 
 
 def _gripper(entry: object, where: str) -> StatedGripper:

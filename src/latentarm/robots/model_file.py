@@ -124,21 +124,31 @@ def _as_mjcf(spec: mujoco.MjSpec, path: Path) -> str:
 
 def _limits(model: mujoco.MjModel, reading: ModelChain, velocity: Mapping[str, float]) -> JointLimits:
     assumed = [SLIDE if slide else HINGE for slide in reading.chain.slide]
-    given = model.jnt_range[reading.joints]
-    # MuJoCo ignores a reversed range; here it is an error.
-    limited = model.jnt_limited[reading.joints].astype(np.bool_) | (given[:, 0] > given[:, 1])
-    free = np.array([[-defaults.range, defaults.range] for defaults in assumed])
-    ranges = np.where(limited[:, None], given, free)
-    names = reading.chain.joint_names
+    ratio, names = reading.chain.ratio, reading.chain.joint_names
+    lower, upper, fastest = np.full((3, len(names)), [[-np.inf], [np.inf], [np.inf]])
+    # A joint goes as far and as fast as it and each joint that follows it may.
+    for link, joint in enumerate(reading.link_joints):
+        led = int(np.abs(ratio[link]).argmax())
+        low, high = given = model.jnt_range[joint]
+        # MuJoCo ignores a reversed range; here it is an error.
+        if model.jnt_limited[joint] or low > high:
+            low, high = (given - reading.rest[link]) / ratio[link, led]
+            if ratio[link, led] < 0.0:
+                low, high = high, low
+            lower[led], upper[led] = max(lower[led], low), min(upper[led], high)
+        stated = velocity.get(model.joint(int(joint)).name, np.inf) / abs(ratio[link, led])
+        fastest[led] = np.minimum(fastest[led], stated)
+    limited, known = np.isfinite(lower), fastest != np.inf
+    ranges = np.array([defaults.range for defaults in assumed])
     return JointLimits(
-        lower=ranges[:, 0],
-        upper=ranges[:, 1],
-        velocity=np.array([velocity.get(name, d.velocity) for name, d in zip(names, assumed, strict=True)]),
+        lower=np.where(limited, lower, -ranges),
+        upper=np.where(limited, upper, ranges),
+        velocity=np.where(known, fastest, [defaults.velocity for defaults in assumed]),
         acceleration=np.array([defaults.acceleration for defaults in assumed]),
         jerk=np.array([defaults.jerk for defaults in assumed]),
         sources=LimitSources(
-            position=tuple(_source(bool(known)) for known in limited),
-            velocity=tuple(_source(name in velocity) for name in names),
+            position=tuple(_source(bool(one)) for one in limited),
+            velocity=tuple(_source(bool(one)) for one in known),
         ),
     )
 

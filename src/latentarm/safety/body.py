@@ -44,41 +44,52 @@ class Body:
         radius = capsules.radius[self.capsule]
         # (P,), m; zero for tools
         self.radius: FloatArray = np.concatenate([radius, radius, np.zeros(len(tools))])
-        self.moves = np.ascontiguousarray(chain.moves[self.link].T)  # (n, P), whether joint j moves point p
-        # (P, n), m (1 where the joint is prismatic)
-        self.lever: FloatArray = np.array(
+        # (L, P), whether the displacement of link l moves point p
+        self.moves = np.ascontiguousarray(chain.moves[self.link].T)
+        # (P, L), `lever` by links
+        self.link_lever: FloatArray = np.array(
             [self._levers(int(link), point) for link, point in zip(self.link, self.local, strict=True)]
-        ).reshape(-1, chain.dof)
+        ).reshape(-1, chain.links)
+        # (P, n), m (1 where the joint is prismatic)
+        self.lever: FloatArray = self.by_joints(self.link_lever)
 
     @property
     def count(self) -> int:
         """Number of moving capsules K."""
         return len(self.capsule)
 
+    def by_joints(self, by_links: FloatArray) -> FloatArray:
+        """Bounds (..., n) per unit of each joint, from those (..., L) per unit of each link."""
+        return by_links if self.robot.chain.coupling is None else by_links @ np.abs(self.robot.chain.ratio)
+
     def curvature(self, lever: FloatArray) -> FloatArray:
-        """R of the class's docstring, (..., n, n), from levers (..., n)."""
-        dof = lever.shape[-1]
-        slide = self.robot.chain.slide
-        outer = np.maximum(np.arange(dof)[:, None], np.arange(dof))
-        inner = np.minimum(np.arange(dof)[:, None], np.arange(dof))
+        """R of the class's docstring, (..., n, n), from levers by links (..., L)."""
+        links = np.arange(lever.shape[-1])
+        outer = np.maximum(links[:, None], links)
+        inner = np.minimum(links[:, None], links)
         both = (lever[..., :, None] > 0.0) & (lever[..., None, :] > 0.0)
-        return np.where(both & ~slide[inner], lever[..., outer], 0.0)
+        by_links = np.where(both & ~self.robot.chain.link_slide[inner], lever[..., outer], 0.0)
+        return self.by_joints(self.by_joints(by_links).mT).mT
 
     @cached_property
     def point_curvature(self) -> FloatArray:
         """(P, n, n), R for each point."""
-        return self.curvature(self.lever)
+        return self.curvature(self.link_lever)
 
     @cached_property
     def surface_lever(self) -> FloatArray:
         """(P, n), `lever` for the worst point on the capsule's surface about each point."""
-        turns = self.moves.T & ~self.robot.chain.slide
-        return self.lever + turns * self.radius[:, None]
+        return self.by_joints(self._surface_link_lever)
+
+    @cached_property
+    def _surface_link_lever(self) -> FloatArray:
+        turns = self.moves.T & ~self.robot.chain.link_slide
+        return self.link_lever + turns * self.radius[:, None]
 
     @cached_property
     def surface_curvature(self) -> FloatArray:
         """(P, n, n), R for the worst point on the capsule's surface about each point."""
-        return self.curvature(self.surface_lever)
+        return self.curvature(self._surface_link_lever)
 
     def bent(self, joints: FloatArray) -> FloatArray:
         """`surface_curvature` times joint figures (n,), (P, n)."""
@@ -90,25 +101,32 @@ class Body:
 
     @cached_property
     def moves_factor(self) -> FloatArray:
-        """(n, 1, P), `moves` as factors."""
+        """(L, 1, P), `moves` as factors."""
         return self.moves[:, None, :].astype(np.float64)
 
     @cached_property
     def turns(self) -> FloatArray:
-        """(n, 1), one where a joint turns, zero where it slides."""
-        return (~self.robot.chain.slide).astype(np.float64)[:, None]
+        """(L, 1), one where a link turns, zero where it slides."""
+        return (~self.robot.chain.link_slide).astype(np.float64)[:, None]
+
+    @cached_property
+    def _ends(self) -> tuple[FloatArray, FloatArray]:
+        """The least and the greatest displacement, each (L,), of the links within the joints' limits."""
+        ratio, limits = self.robot.chain.ratio, self.robot.limits
+        ends = np.stack([ratio * limits.lower, ratio * limits.upper]).sum(axis=-1)
+        return ends.min(axis=0), ends.max(axis=0)
 
     def _levers(self, link: int, point: FloatArray) -> FloatArray:
-        """Levers (n,) of one point, walking from its link to the base with a ball that holds it."""
-        chain, limits = self.robot.chain, self.robot.limits
-        lever = np.zeros(chain.dof)
+        """Levers by links (L,) of one point, walking from its link to the base with a ball that holds it."""
+        chain, (lower, upper) = self.robot.chain, self._ends
+        lever = np.zeros(chain.links)
         centre, radius = point, 0.0
         while link >= 0:
             axis = chain.axis[link]
-            if chain.slide[link]:
+            if chain.link_slide[link]:
                 lever[link] = 1.0
-                centre = centre + axis * 0.5 * (limits.lower[link] + limits.upper[link])
-                radius += 0.5 * float(limits.upper[link] - limits.lower[link])
+                centre = centre + axis * 0.5 * (lower[link] + upper[link])
+                radius += 0.5 * float(upper[link] - lower[link])
             else:
                 on_axis = chain.anchor[link] + axis * float(axis @ (centre - chain.anchor[link]))
                 away = centre - on_axis
@@ -125,7 +143,7 @@ class Body:
 class Placement:
     """The arm in one configuration (n,), rad: where its points are and how joint velocities move them."""
 
-    __slots__ = ("_flat", "body", "jacobian", "points", "q")
+    __slots__ = ("_flat", "body", "jacobian", "link_jacobian", "points", "q")
 
     def __init__(self, body: Body, q: FloatArray) -> None:
         chain = body.robot.chain
@@ -142,10 +160,12 @@ class Placement:
         jacobian[:, :3] += shift[:, :, None]
         jacobian[:, 3:] = turn[:, :, None]
         jacobian *= body.moves_factor
-        # (n, 6, P), what a unit speed of joint j does at point p: rows 0-2 its velocity, m/s, rows 3-5 the
-        # angular velocity of its link, rad/s
-        self.jacobian = jacobian
-        self._flat = jacobian.reshape(len(axes), -1)
+        # (L, 6, P), what a unit speed of link l against its parent does at point p: rows 0-2 its velocity,
+        # m/s, rows 3-5 the angular velocity of the link that carries it, rad/s
+        self.link_jacobian = jacobian
+        flat = jacobian.reshape(len(axes), -1)
+        self._flat = flat if chain.coupling is None else chain.coupling.ratio.T @ flat
+        self.jacobian = self._flat.reshape(-1, 6, len(self.points))  # (n, 6, P), the same of each joint
 
     def speeds(self, velocity: FloatArray) -> FloatArray:
         """Largest speed (P,), m/s, of any point on the surface about each point, at joint velocities (n,).

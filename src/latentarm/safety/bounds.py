@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, final
 import numpy as np
 
 from latentarm.core.errors import UserError
+from latentarm.core.types import FloatArray
 from latentarm.safety.brake import Brake
 from latentarm.safety.obstacles import is_number
 
@@ -18,6 +19,22 @@ LATE_PERIODS = 5  # readings may be late by this many periods of the loop
 BUFFER_M = 1e-3  # margin that shaping adds to every distance, so that the guard after it rarely has to act
 BUFFER_RAD = 2e-3  # the same for joint positions
 MAY_BEND_M = 1e-6  # a command that keeps a distance which is too small already may bend towards it by this, m
+
+
+def largest_speeds(robot: "Robot", config: "SafetyConfig") -> FloatArray:
+    """(n,), rad/s; where a joint slides the speed of links, m/s, or its own if that is less."""
+    slower = np.minimum(config.link_speed, robot.limits.velocity)
+    return np.where(robot.chain.slide, slower, config.joint_speed)
+
+
+def margins(robot: "Robot", config: "SafetyConfig") -> FloatArray:
+    """(n,), distance that each joint keeps from its limits, rad; m where it slides."""
+    margin = np.where(robot.chain.slide, config.slide_margin, config.joint_margin)
+    stated = {} if robot.stated_limits is None else robot.stated_limits.joints
+    for joint, name in enumerate(robot.joint_names):
+        if name in stated and (own := stated[name].margin) is not None:
+            margin[joint] = own
+    return margin
 
 
 @final
@@ -37,13 +54,12 @@ class Bounds:
         hardware = robot.limits
         names = robot.joint_names
         slide = robot.chain.slide
-        speed = np.where(slide, config.link_speed, config.joint_speed)
+        speed = largest_speeds(robot, config)
         for joint in np.flatnonzero(speed > hardware.velocity):
-            name, unit = ("link_speed", "m/s") if slide[joint] else ("joint_speed", "rad/s")
             raise UserError(
-                f"The safety limit {name} is {speed[joint]:g} {unit}, above the"
-                f" {hardware.velocity[joint]:g} {unit} that joint {names[joint]!r} of {robot.name} can do:"
-                f" set it lower (teleop: --{name.replace('_', '-')})."
+                f"The safety limit joint_speed is {speed[joint]:g} rad/s, above the"
+                f" {hardware.velocity[joint]:g} rad/s that joint {names[joint]!r} of {robot.name} can do:"
+                " set it lower (teleop: --joint-speed)."
             )
         if config.link_speed > robot.tool_speed_limit:
             raise UserError(
@@ -60,17 +76,19 @@ class Bounds:
         self.config = config
         self.dt_s = dt_s
         self.dof = robot.dof  # n
-        # (n,), largest speed of each joint, rad/s; that of links, m/s, where a joint slides
-        self.speed = speed
+        self.speed = speed  # (n,), `largest_speeds`
         self.slowest = float(speed.min())  # the smallest of these
         # (n,), lowest joint position, margin taken off, rad
-        self.lower = hardware.lower + config.joint_margin
+        margin = margins(robot, config)
+        self.lower = hardware.lower + margin
         # (n,), highest joint position, margin taken off, rad
-        self.upper = hardware.upper - config.joint_margin
+        self.upper = hardware.upper - margin
         for joint in np.flatnonzero(self.lower + 2 * BUFFER_RAD >= self.upper):
+            unit = "m" if slide[joint] else "rad"
             raise UserError(
-                f"The safety limit joint_margin is {config.joint_margin:g} rad, which leaves joint"
-                f" {names[joint]!r} of {robot.name} no room between its limits: set it lower."
+                f"The arm keeps {margin[joint]:g} {unit} from its joints' limits, which leaves joint"
+                f" {names[joint]!r} of {robot.name} no room between them: state a smaller margin_{unit} of it"
+                " in a limits file (--limits)."
             )
         self.positions = np.stack([self.lower, self.upper])  # (2, n), `lower` and `upper` together
         # (n,), for ordinary motion, rad/s²

@@ -56,6 +56,7 @@ class SafetyConfig:
     # Share of the hardware's acceleration and jerk for a stop, in (0, 1]. A stop is ramped too, only harder.
     stop_fraction: float = 0.8
     joint_margin: float = 0.1  # distance kept from the hardware's joint limits, rad
+    slide_margin: float = 0.01  # the same where a joint slides, m; a limits file may state others
     clearance: float = 0.02  # distance kept from obstacles and from the arm itself, m
     # How long the last fresh input counts, s. With the stopping ramp and one period of the loop it must fit
     # into 0.15 s.
@@ -118,6 +119,7 @@ _RANGES: dict[str, tuple[float, float, str]] = {
     "release_fraction": (0.0, 1.0, "of the hardware's"),
     "stop_fraction": (0.0, 1.0, "of the hardware's"),
     "joint_margin": (0.0, 1.0, "rad"),
+    "slide_margin": (0.0, 1.0, "m"),
     "clearance": (0.0, 0.5, "m"),
     "input_timeout_s": (0.0, 0.15, "s"),
     "input_grace_s": (0.0, 0.15, "s"),

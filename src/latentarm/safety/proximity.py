@@ -210,19 +210,19 @@ class Proximity:
             branch = np.concatenate([branch, branch[twice]])
             edge = np.concatenate([edge, edge[twice]])
             edge = np.where(branch >= 0, np.vecdot(normal, place.points[a]) + self._radius[a % count], edge)
-            carried = (place.jacobian[:, :3, a] * normal.T).sum(axis=1) * (branch >= 0)
+            carried = (place.link_jacobian[:, :3, a] * normal.T).sum(axis=1) * (branch >= 0)
         else:
             carried = None
         b = self._b[pair]
         ends = np.stack([b, b + count], axis=1)
         height = np.vecdot(place.points[ends], normal[:, None, :])
         height -= (edge + self._radius[b])[:, None]
-        linear = place.jacobian[:, :3, ends]
+        linear = place.link_jacobian[:, :3, ends]
         row = (linear * normal.T[None, :, :, None]).sum(axis=1) * self._between[pair].T[:, :, None]
         if carried is not None:
             row -= carried[:, :, None]
-        still = np.zeros(len(row))
-        return Contacts(pair, height, row.transpose(1, 2, 0), since=still, fresh=True)
+        row = self._body.robot.chain.of_joints(row.transpose(1, 2, 0))
+        return Contacts(pair, height, row, since=np.zeros(row.shape[-1]), fresh=True)
 
 
 def _segment_pairs(body: Body, rods: list[Capsule | Sphere]) -> tuple[IntArray, IntArray]:
@@ -262,17 +262,17 @@ def _heights_change(body: Body, planes: list[HalfSpace]) -> BoolArray:
 def _motion(
     body: Body, b: IntArray, a: IntArray, a_link: IntArray
 ) -> tuple[FloatArray, FloatArray, FloatArray, IntArray]:
-    """Levers, curvatures, factors of the joints that matter, and A's capsule where on another branch."""
+    """Levers, curvatures, factors of the links that matter, and A's capsule where on another branch."""
     moves, count = body.robot.chain.moves, body.count
     carries = (a_link >= 0) & moves[body.link[b], a_link]
     between: BoolArray = ~(carries[:, None] & moves[a_link])
-    lever = np.maximum(body.lever[b], body.lever[b + count]) * between
+    lever = np.maximum(body.link_lever[b], body.link_lever[b + count]) * between
     curvature = body.curvature(lever)
     beside = (a_link >= 0) & ~carries
-    a_lever = np.maximum(body.lever[a[beside]], body.lever[a[beside] + count])
+    a_lever = np.maximum(body.link_lever[a[beside]], body.link_lever[a[beside] + count])
     lever[beside] += a_lever
     curvature[beside] += body.curvature(a_lever)
-    return lever, curvature, between.astype(np.float64), np.where(beside, a, -1)
+    return body.by_joints(lever), curvature, between.astype(np.float64), np.where(beside, a, -1)
 
 
 def _sorted_by_kind(

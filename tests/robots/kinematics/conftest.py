@@ -5,6 +5,7 @@ import pytest
 
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.robot import Robot
+from scripted_arms import COUPLED
 
 # A slide, an anchor off the joint's frame, a reference angle, two joints on one body, a frozen
 # finger on the way to nothing, and a fork in the tree: what the catalogue's robots do not have.
@@ -57,10 +58,13 @@ def odd_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-@pytest.fixture(scope="session", params=["panda", "planar", "planar2", "odd", "jaco", "ur5e"])
-def robot(request: pytest.FixtureRequest, odd_file: Path) -> Robot:
+@pytest.fixture(scope="session", params=["panda", "planar", "planar2", "odd", "coupled", "jaco", "ur5e"])
+def robot(request: pytest.FixtureRequest, odd_file: Path, tmp_path_factory: pytest.TempPathFactory) -> Robot:
+    coupled_file = tmp_path_factory.mktemp("coupled") / "coupled.xml"
+    coupled_file.write_text(COUPLED)
     files = {
         "odd": (str(odd_file), "tip"),
+        "coupled": (str(coupled_file), "tip"),
         "jaco": (inside("dm_control", "third_party/kinova/jaco_arm.xml"), None),
         "ur5e": (inside("airo_models", "arms/ur5e/ur5e.urdf"), "tool0"),
     }

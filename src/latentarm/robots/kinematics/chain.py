@@ -29,38 +29,69 @@ class Frame:
 
 @final
 @dataclass(frozen=True, eq=False)
-class Chain:
-    """A kinematic tree with one moving link per joint; fixed bodies are merged into their parents.
+class Coupling:
+    """How n joints move the L links of a chain in which some links follow a joint (``<mimic>``)."""
 
-    Link i moves with joint i. At ``q = 0`` its frame is ``offset[i]`` in its parent link's frame.
+    ratio: FloatArray  # (L, n), displacement of each link per displacement of each joint
+    slide: BoolArray  # (L,), True where the link slides
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Chain:
+    """A kinematic tree of L moving links; fixed bodies are merged into their parents.
+
+    Link i moves with joint i, so L = n, unless a ``coupling`` says otherwise. At ``q = 0`` its frame is
+    ``offset[i]`` in its parent link's frame.
     The base frame is the world frame of the model that the chain was read from.
     """
 
     joint_names: tuple[str, ...]
-    parent: IntArray  # (n,), index of the parent link, -1 for the base; parents come before children
-    offset: FloatArray  # (n, 4, 4), parent link -> joint frame at q = 0, m
-    axis: FloatArray  # (n, 3), unit axis in the joint frame
-    anchor: FloatArray  # (n, 3), the point the joint turns about, in the joint frame, m
+    parent: IntArray  # (L,), index of the parent link, -1 for the base; parents come before children
+    offset: FloatArray  # (L, 4, 4), parent link -> the link's frame at q = 0, m
+    axis: FloatArray  # (L, 3), unit axis in the link's frame
+    anchor: FloatArray  # (L, 3), the point that the link turns about, in its frame, m
     slide: BoolArray  # (n,), True where the joint is prismatic (its q is in m)
     tools: tuple[Frame, ...]  # the end-effectors; the first is "the" tool
+    coupling: Coupling | None = None
 
     @property
     def dof(self) -> int:
         """Number of joints n."""
         return len(self.joint_names)
 
+    @property
+    def links(self) -> int:
+        """Number of moving links L."""
+        return len(self.parent)
+
+    @property
+    def link_slide(self) -> BoolArray:
+        """(L,), True where the link slides."""
+        return self.slide if self.coupling is None else self.coupling.slide
+
+    @cached_property
+    def ratio(self) -> FloatArray:
+        """(L, n), displacement of each link per displacement of each joint."""
+        return np.eye(self.dof) if self.coupling is None else self.coupling.ratio
+
+    def of_joints(self, of_links: FloatArray) -> FloatArray:
+        """Derivatives (..., n) by the joints, from those (..., L) by the displacements of the links."""
+        return of_links if self.coupling is None else of_links @ self.coupling.ratio
+
     @cached_property
     def moves(self) -> BoolArray:
-        """(n, n), whether joint j (column) moves link i (row)."""
-        moves = np.eye(self.dof, dtype=np.bool_)
+        """(L, L), whether the displacement of link j (column) moves link i (row)."""
+        moves = np.eye(self.links, dtype=np.bool_)
         for link, parent in enumerate(self.parent):
             if parent >= 0:
                 moves[link] |= moves[parent]
         return moves
 
     def link_transforms(self, q: FloatArray) -> FloatArray:
-        """Base-frame poses (..., n, 4, 4) of all links at positions (..., n), rad (m where prismatic)."""
-        flat = q.reshape(-1, self.dof).T
+        """Base-frame poses (..., L, 4, 4) of all links at positions (..., n), rad (m where prismatic)."""
+        at = q if self.coupling is None else q @ self.coupling.ratio.T
+        flat = at.reshape(-1, self.links).T
         constants = self.motion_constants
         features = np.empty((*flat.shape, constants.shape[1]))
         features[..., 0] = 1.0
@@ -76,14 +107,14 @@ class Chain:
             return single
         for link, parent in self._children:
             transforms[link] = transforms[parent] @ transforms[link]
-        return transforms.swapaxes(0, 1).reshape(*q.shape, 4, 4)
+        return transforms.swapaxes(0, 1).reshape(*at.shape, 4, 4)
 
     def forward(self, q: FloatArray, tool: int = 0) -> Pose:
         """Forward kinematics ``x = Psi(s)`` of a tool, in the base frame, at positions (..., n), rad."""
         return self.tool_pose(self.link_transforms(q), tool)
 
     def tool_pose(self, transforms: FloatArray, tool: int = 0) -> Pose:
-        """Pose of a tool in the base frame, from the links' transforms (..., n, 4, 4)."""
+        """Pose of a tool in the base frame, from the links' transforms (..., L, 4, 4)."""
         frame = self.tools[tool]
         if frame.link < 0:
             pose = np.broadcast_to(frame.transform, (*transforms.shape[:-3], 4, 4))
@@ -101,21 +132,21 @@ class Chain:
         return self.jacobian_at(transforms, self.tool_pose(transforms, tool), tool)
 
     def jacobian_at(self, transforms: FloatArray, pose: Pose, tool: int = 0) -> FloatArray:
-        """`jacobian` from the links' transforms (..., n, 4, 4) and the tool's pose."""
+        """`jacobian` from the links' transforms (..., L, 4, 4) and the tool's pose."""
         axes, origins = self.joint_axes(transforms)
         mask = self._tool_moves[tool]
-        jacobian = np.empty((*transforms.shape[:-3], 6, self.dof))
+        jacobian = np.empty((*transforms.shape[:-3], 6, self.links))
         jacobian[..., :3, :] = (_column_velocity(axes, pose.position[..., None, :] - origins)).mT
         jacobian[..., 3:, :] = axes.mT
         if self._slides:
-            jacobian[..., :3, :] = np.where(self.slide, axes.mT, jacobian[..., :3, :])
-            jacobian[..., 3:, :] *= ~self.slide
+            jacobian[..., :3, :] = np.where(self.link_slide, axes.mT, jacobian[..., :3, :])
+            jacobian[..., 3:, :] *= ~self.link_slide
         if mask is not None:
             jacobian *= mask
-        return jacobian
+        return self.of_joints(jacobian)
 
     def joint_axes(self, transforms: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Unit axes and anchors, each (..., n, 3), of all joints in the base frame."""
+        """Unit axes and anchors, each (..., L, 3), about or along which the links move, in the base frame."""
         both = transforms[..., :3, :] @ self.axis_and_anchor
         return both[..., 0], both[..., 1]
 
@@ -130,26 +161,26 @@ class Chain:
 
     @cached_property
     def motion_constants(self) -> FloatArray:
-        """(n, 3 or 4, 16), each joint's transform as a linear map of [1, sin q, cos q, q].
+        """(L, 3 or 4, 16), each link's transform as a linear map of [1, sin q, cos q, q].
 
         A turn by q about a unit axis is K² + I + sin(q) K - cos(q) K² with K = [axis]x (Rodrigues); about an
         anchor c it also shifts by c - R c. A slide by q shifts by q axis. The column for q exists only where
-        some joint slides.
+        some link slides.
         """
-        constants = np.zeros((self.dof, 4, 4, 4))
-        for joint in range(self.dof):
-            skew = (self.axis[joint] @ SKEW).reshape(3, 3)
-            if self.slide[joint]:
-                constants[joint, 0] = np.eye(4)
-                constants[joint, 3, :3, 3] = self.axis[joint]
+        constants = np.zeros((self.links, 4, 4, 4))
+        for link in range(self.links):
+            skew = (self.axis[link] @ SKEW).reshape(3, 3)
+            if self.link_slide[link]:
+                constants[link, 0] = np.eye(4)
+                constants[link, 3, :3, 3] = self.axis[link]
             else:
                 for power, turn in enumerate((skew @ skew + np.eye(3), skew, -skew @ skew)):
-                    constants[joint, power, :3, :3] = turn
-                    constants[joint, power, :3, 3] = -turn @ self.anchor[joint]
-                constants[joint, 0, :3, 3] += self.anchor[joint]
-                constants[joint, 0, 3, 3] = 1.0
+                    constants[link, power, :3, :3] = turn
+                    constants[link, power, :3, 3] = -turn @ self.anchor[link]
+                constants[link, 0, :3, 3] += self.anchor[link]
+                constants[link, 0, 3, 3] = 1.0
         features = 4 if self._slides else 3
-        return (self.offset[:, None] @ constants)[:, :features].reshape(self.dof, features, 16)
+        return (self.offset[:, None] @ constants)[:, :features].reshape(self.links, features, 16)
 
     @cached_property
     def _children(self) -> tuple[tuple[int, int], ...]:
@@ -157,23 +188,23 @@ class Chain:
 
     @cached_property
     def _slides(self) -> bool:
-        return bool(self.slide.any())
+        return bool(self.link_slide.any())
 
     @cached_property
     def _moves_or_base(self) -> FloatArray:
-        """(n + 1, n), `moves` as factors, with a last row of zeros for link -1."""
-        return np.vstack([self.moves, np.zeros((1, self.dof))]).astype(np.float64)
+        """(L + 1, L), `moves` as factors, with a last row of zeros for link -1."""
+        return np.vstack([self.moves, np.zeros((1, self.links))]).astype(np.float64)
 
     @cached_property
     def _tool_moves(self) -> tuple[FloatArray | None, ...]:
-        """(n,) for each tool, whether each joint moves it, as factors; None where all do."""
+        """(L,) for each tool, whether each link's displacement moves it, as factors; None where all do."""
         moves = (self._moves_or_base[tool.link] for tool in self.tools)
         return tuple(None if row.all() else row for row in moves)
 
     @cached_property
     def axis_and_anchor(self) -> FloatArray:
-        """(n, 4, 2), homogeneous axis (a direction) and anchor (a point) of each joint."""
-        both = np.zeros((self.dof, 4, 2))
+        """(L, 4, 2), homogeneous axis (a direction) and anchor (a point) of each link."""
+        both = np.zeros((self.links, 4, 2))
         both[:, :3, 0] = self.axis
         both[:, :3, 1] = self.anchor
         both[:, 3, 1] = 1.0

@@ -11,6 +11,7 @@ from latentarm.control.stick_ring import AHEAD_S, DIRECTIONS, STRETCHES, full_pu
 from latentarm.core.types import BoolArray, Context, FloatArray
 from latentarm.robots.kinematics.obstacles import HalfSpace
 from latentarm.robots.kinematics.pose_rows import stored_rows
+from latentarm.safety.bounds import largest_speeds, margins
 from latentarm.safety.config import SafetyConfig
 from latentarm.tasks.place import Place
 from latentarm.web.arm_process.help import Help
@@ -63,9 +64,9 @@ class GhostPaths:
         robot = task.robot
         self._chain = robot.chain
         self._capsules = robot.capsules
-        self._lower = robot.limits.lower + limits.joint_margin
-        self._upper = robot.limits.upper - limits.joint_margin
-        self._joint_speed = np.where(robot.chain.slide, limits.link_speed, limits.joint_speed)
+        margin = margins(robot, limits)
+        self._lower, self._upper = robot.limits.lower + margin, robot.limits.upper - margin
+        self._joint_speed = largest_speeds(robot, limits)
         self._tool_speed = limits.link_speed
         self._clearance = limits.clearance
         planes = [one for one in limits.obstacles if isinstance(one, HalfSpace)]

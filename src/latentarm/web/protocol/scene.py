@@ -73,7 +73,9 @@ def drawable(
                         and reading.body_link[at] + 1 == body
                     ],
                 }
-                for body, name in enumerate(("base", *robot.joint_names))
+                for body, name in enumerate(
+                    ("base", *(model.joint(int(joint)).name for joint in reading.link_joints))
+                )
             ],
             "fingers": [
                 _finger(model, reading, joint, geoms, fingers) for joint in sorted(set(fingers.values()))
