@@ -63,7 +63,9 @@ def write_model(folder: Path, trained: TrainedModel, run: Mapping[str, object]) 
         "kind": trained.kind.name,
         **({} if origin is None else {"distribution": origin.distribution}),
         "parameters": dict(trained.parameters),
-        "dimensions": asdict(trained.dimensions),
+        "dimensions": {
+            key: value for key, value in asdict(trained.dimensions).items() if key != "coupled" or value
+        },
         "layout": {key: value for key, value in asdict(trained.layout).items() if key != "joints"},
         "seeds": list(summary.seeds),
         "training": {
@@ -110,6 +112,8 @@ def read_model(folder: Path) -> TrainedModel:
         raise UserError(
             f"{path}: a model of kind '{name}' has at least one tool, and the state in its context."
         )
+    if dimensions.coupled and not (dimensions.tools and dimensions.coupled > dimensions.action):
+        raise UserError(f"{path}: an arm whose links follow joints has a tool, and more links than joints.")
     parameters = _renamed(section.section("parameters"))
     earlier = schema in EARLIER_SCHEMAS
     layout = (
