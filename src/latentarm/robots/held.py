@@ -23,7 +23,7 @@ class Held:
 
     box: Box  # about it, in the tool's frame, with the thing's name
     mass_kg: float
-    mounted: bool = False  # whether it stays on the arm, whatever the gripper does
+    mounted: bool = False  # whether it stays on the arm, and is never put down
 
 
 def holding(robot: "Robot", things: Sequence[Held]) -> "Robot":
@@ -36,6 +36,7 @@ def holding(robot: "Robot", things: Sequence[Held]) -> "Robot":
     """
     if not things:
         return robot
+    things = sorted(things, key=lambda thing: not thing.mounted)
     own, chain = robot.capsules, robot.chain
     tool = chain.tools[0]
     near = (tool.link, int(chain.parent[tool.link]))
@@ -52,9 +53,9 @@ def holding(robot: "Robot", things: Sequence[Held]) -> "Robot":
         np.concatenate([own.end, np.concatenate(ends) @ turn.T + place]),
         radius,
     )
-    return replace(
-        robot, capsules=capsules, self_pairs=np.concatenate([robot.self_pairs, pairs]), held=len(added)
-    )
+    self_pairs = np.concatenate([robot.self_pairs, pairs])
+    put_down = len(_SIDES) * sum(not thing.mounted for thing in things)
+    return replace(robot, capsules=capsules, self_pairs=self_pairs, held=put_down)
 
 
 def _rods(box: Box) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

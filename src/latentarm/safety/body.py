@@ -30,7 +30,7 @@ class Body:
         capsules, chain = robot.capsules, robot.chain
         # (K,), index into the robot's capsules of each moving capsule
         self.capsule: IntArray = np.flatnonzero(capsules.link >= 0)
-        # (K,), whether a moving capsule stands for a held thing
+        # (K,), whether a moving capsule stands for a held thing that can be put down
         self.held: BoolArray = self.capsule >= len(capsules) - robot.held
         tools = [tool for tool in chain.tools if tool.link >= 0]
         links = capsules.link[self.capsule]
