@@ -31,7 +31,7 @@ def test_what_compose_mounts_and_builds_is_there() -> None:
 
 
 def test_the_container_s_python_is_one_that_the_package_takes() -> None:
-    version = re.search(r"FROM python:(\d+\.\d+)", (DEPLOY / "Containerfile").read_text())
+    version = re.search(r"FROM \S+/python:(\d+\.\d+)", (DEPLOY / "Containerfile").read_text())
     wanted = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["requires-python"]
     assert version is not None
     assert [*map(int, version[1].split("."))] >= [*map(int, wanted.removeprefix(">=").split("."))]
