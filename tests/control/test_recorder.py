@@ -421,16 +421,16 @@ FIVE = st.lists(arrays(np.float64, st.integers(0, 9), elements=ANY), min_size=5,
 @given(FIVE, FIVE | st.none())
 def test_a_sample_is_written_and_read_exactly(parts, others):
     parts = [part for part in parts for _ in range(2)] if others is None else [*parts, *others]
-    parts.append(parts[-1])
+    parts += 2 * [parts[-1]]
     found = unpacked(packed(parts))
     # Bit for bit, so that -0.0 and NaN count too.
     assert [part.tobytes() for part in found] == [part.tobytes() for part in parts]
 
 
-@given(st.sampled_from([b"", b"\x02", b"\x03", b"\x04"]), st.binary(max_size=120))
+@given(st.sampled_from([b"", b"\x02", b"\x03", b"\x04", b"\x05"]), st.binary(max_size=120))
 def test_bytes_that_are_no_sample_are_refused(start, rest):
     with suppress(ValueError):
-        assert len(unpacked(start + rest)) in (8, 10, 11)
+        assert len(unpacked(start + rest)) in (8, 10, 11, 12)
 
 
 def test_nothing_is_written_twice(tmp_path):
