@@ -28,13 +28,6 @@ shape = "sphere"
 centre_m = [0.6, 0.5, 0.55]
 radius_m = 0.1
 """
-SPOON = """
-[mounted.spoon]
-centre_m = [0.0, 0.0, 0.1]
-size_m = [0.03, 0.02, 0.3]
-turned_deg = [0, 0, 90]
-mass_kg = 0.05
-"""
 
 
 @pytest.fixture
@@ -83,14 +76,6 @@ def test_a_box_may_be_turned_and_a_half_space_needs_a_direction_only(written):
     np.testing.assert_allclose(wall.shape.normal, [-1.0, 0.0, 0.0])
 
 
-def test_held_things_are_boxes_that_are_mounted_or_in_the_gripper(written):
-    spoon, cup = read_zones(written(SPOON + SPOON.replace("mounted.spoon", "gripped.cup"))).held
-    assert (spoon.box.name, spoon.mounted, spoon.mass_kg) == ("spoon", True, 0.05)
-    assert (cup.box.name, cup.mounted) == ("cup", False)
-    np.testing.assert_allclose(spoon.box.half_extents, [0.015, 0.01, 0.15])
-    np.testing.assert_allclose(spoon.box.rotation @ [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], atol=1e-12)
-
-
 @pytest.mark.parametrize(
     ("text", "said"),
     [
@@ -98,7 +83,7 @@ def test_held_things_are_boxes_that_are_mounted_or_in_the_gripper(written):
         ("[zones.face", "cannot be read as TOML"),
         (FACE + FACE, "cannot be read as TOML"),
         (FACE + FACE.replace("face", "Face"), "Two zones are called 'Face'"),
-        ("[zone.face]", "there is no key zone; use zones, keep_out, mounted, gripped"),
+        ("[zone.face]", "there is no key zone; use zones, keep_out"),
         (OUT + "speed_m_per_s = 0.1", "there is no key keep_out.pillar.speed_m_per_s; use shape, centre_m"),
         (
             OUT.replace("radius_m = 0.1", ""),
@@ -108,13 +93,6 @@ def test_held_things_are_boxes_that_are_mounted_or_in_the_gripper(written):
         (OUT.replace("pillar", '"a,b"'), "The obstacle 'a,b' needs another name"),
         ("".join(OUT.replace("pillar", f"p{one}") for one in range(9)), "There are 9 solids to keep out of"),
         ("zones = 3", "zones must be a table of names"),
-        (SPOON.replace("mass_kg = 0.05", ""), "mounted.spoon.mass_kg must be a finite number, not 'None'"),
-        (SPOON.replace("0.05", "-1"), "mounted.spoon.mass_kg is -1: it must be from 0 to 50 kg."),
-        (SPOON.replace("size_m", "radius_m"), "there is no key mounted.spoon.radius_m; use shape, centre_m"),
-        (
-            "".join(SPOON.replace("spoon", f"s{one}") for one in range(5)),
-            "there are 5 held things: 4 at most",
-        ),
         (FACE.replace("sphere", "ball"), "zones.face.shape must be one of sphere, capsule, box, half_space"),
         (FACE.replace('"sphere"', "1"), "zones.face.shape must be one of"),
         (FACE.replace("radius_m = 0.15", ""), "zones.face lacks radius_m: a sphere needs centre_m, radius_m"),

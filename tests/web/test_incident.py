@@ -24,7 +24,6 @@ from latentarm.core.exact_json import of_json, to_json
 from latentarm.core.journal_limits import JournalLimits
 from latentarm.core.types import GripperReading, Input, Reading, Stop
 from latentarm.demonstrations.dataset import write_dataset
-from latentarm.robots.held import Held
 from latentarm.robots.kinematics.obstacles import Box, Sphere
 from latentarm.runs.options import TrainOptions
 from latentarm.runs.training import train_run
@@ -337,18 +336,16 @@ def test_what_a_controller_sees_of_things_is_in_the_file(tmp_path, desk_of, setu
     assert again.agreed == len(desk.records)
 
 
-def test_zones_obstacles_held_things_and_limits_come_along(tmp_path, desk_of):
+def test_zones_obstacles_speeds_and_limits_come_along(tmp_path, desk_of):
     zone = Zone(Sphere("face", np.array([0.4, 0.0, 0.5]), 0.15), 0.05)
     wall = Box("wall", np.array([0.9, 0.0, 0.5]), np.eye(3), np.array([0.1, 1.0, 1.0]))
     limits = tmp_path / "limits.toml"
     limits.write_text("tool_speed_m_per_s = 0.5\n")
     named = RobotOptions("panda", limits=limits)
-    spoon = Held(Box("spoon", np.array([0.0, 0.0, 0.1]), np.eye(3), np.full(3, 0.1)), 0.05, mounted=True)
-    spec = Spec(task="reach", zones=(zone,), keep_out=(wall,), held=(spoon,), robot=named)
+    spec = Spec(task="reach", zones=(zone,), keep_out=(wall,), robot=named)
     with desk_of(load_setup(spec)) as desk, recorded(desk, tmp_path / "out"):
         drive_straight(desk)
     limits.unlink()
-    assert any(line.get("call") == "hold" for line in read_calls(newest(tmp_path / "out")))
     found = replay(newest(tmp_path / "out"))
     assert found["agreed"] == found["ticks"] > 0
 

@@ -18,11 +18,9 @@ from latentarm.demonstrations.contexts import context_layout
 from latentarm.demonstrations.dataset import read_dataset
 from latentarm.demonstrations.things import ENVIRONMENT
 from latentarm.robots.catalogue import load_robot
-from latentarm.robots.scene.containers import cup
 from latentarm.robots.scene.scene import Scene, SceneState
 from latentarm.robots.scene.thing import Grains, Part, Thing
 from latentarm.tasks.eating import dessert
-from latentarm.tasks.inverse_kinematics import solve
 from latentarm.tasks.place import ScenePlace
 from latentarm.web.arm_process.drive import Drive
 from latentarm.web.arm_process.drive_setup import Spec, load_setup
@@ -30,7 +28,7 @@ from latentarm.web.arm_process.episode_writer import EpisodeWriter
 from latentarm.web.arm_process.steering import Steering
 from latentarm.web.arm_process.thing_poses import ThingPoses
 from latentarm.web.protocol.channel import new_channel
-from latentarm.web.protocol.orders import AskedGripper, Enable, Given, Record
+from latentarm.web.protocol.orders import Enable, Given, Record
 from latentarm.web.protocol.report import Things, parse_report
 from latentarm.web.protocol.scene import drawable
 from latentarm.web.protocol.things import described, things_at
@@ -188,36 +186,3 @@ def test_a_recording_says_where_things_went_and_a_model_can_see_them(tmp_path):
 def test_a_task_with_things_needs_an_arm_that_can_touch_them():
     with pytest.raises(UserError, match="--arm kinematic has no things about it"):
         load_setup(Spec(task="marshmallows", arm="kinematic"))
-
-
-def test_a_cup_in_the_fingers_counts_as_part_of_the_arm_until_it_is_let_go(tmp_path):
-    begun = load_setup(Spec(task="pour", arm="mujoco"))
-    robot, above = begun.task.robot, Pose(np.array([0.5, 0.0, 0.06]), np.diag([1.0, -1.0, -1.0]))
-    scene = Scene((Thing("cup", cup().parts, 0.2, Pose(np.array([0.5, 0.0, 0.0]), UPRIGHT)),))
-    setup = replace(
-        begun,
-        task=ScenePlace(robot, (), ()),
-        todo=replace(begun.todo, steps=(), failures=()),
-        scene=scene,
-        start=solve(robot, above, robot.home),
-    )
-    reading, orders = Pipe(duplex=False)
-    clock, writer, channel = SimulatedClock(), EpisodeWriter(tmp_path / "teleop"), new_channel(reading)
-    reports = []
-
-    def grip(record):
-        reports.append(parse_report(channel.report.read()[1]))
-        tick, nonce = len(reports), reports[-1].nonce
-        asked = AskedGripper(ask="close" if tick < 200 else "open", seq=tick, nonce=nonce)
-        still = Given(driver=1, seq=tick, nonce=nonce, u=(0.0, 0.0), latched=False, source="keyboard")
-        given = still.model_copy(update={"gripper": asked if tick > 20 else None})
-        channel.given.write(given.model_dump_json().encode())
-
-    with make_scene_arm("mujoco", setup.task.robot, setup.start, clock.now_s, scene) as arm:
-        orders.send_bytes(Enable(driver=1, stops=0).model_dump_json().encode())
-        steering = Steering("end_effector")
-        Drive(setup, arm, channel, clock, writer, lambda: False, steering, observers=[grip]).run(300)
-    writer.close()
-    orders.close()
-    reading.close()
-    assert [report.held for report in (reports[0], reports[190], reports[-1])] == [(), ("cup",), ()]

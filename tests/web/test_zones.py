@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from latentarm.core.errors import UserError
-from latentarm.robots.held import Held
-from latentarm.robots.kinematics.obstacles import Box, HalfSpace, Sphere
+from latentarm.robots.kinematics.obstacles import HalfSpace, Sphere
 from latentarm.safety.zones import Zone
 from latentarm.web.arm_process.drive_setup import Spec, load_setup
 from latentarm.web.protocol.orders import Enable
@@ -81,21 +80,6 @@ def test_the_arm_keeps_out_of_what_a_person_says_and_pages_are_told(setup, desk_
     run = LoadedRun(kept, None)
     assert run.welcome("page", "server").keep_out == ("wall",)
     assert [one["name"] for one in run.scene.description["obstacles"]][-1] == "wall"
-
-
-def test_a_mounted_spoon_keeps_out_as_the_arm_does_and_pages_are_told(setup, desk_of):
-    spoon = Held(
-        Box("spoon", np.array([0.0, 0.0, 0.1]), np.eye(3), np.array([0.01, 0.01, 0.1])), 0.05, mounted=True
-    )
-    forward = setup.task.robot.chain.forward
-    above = HalfSpace("floor", forward(setup.start).position - [0.0, 0.0, 0.25], np.array([0.0, 0.0, 1.0]))
-    kept = replace(setup, spec=replace(setup.spec, keep_out=(above,), held=(spoon,)))
-    with desk_of(kept) as desk:
-        driven(desk, seconds=4.0)
-    assert desk.reports[-1].held == ("spoon",)
-    poses = [forward(np.array(report.q)) for report in desk.reports]
-    tips = [pose.position[2] + 0.2 * pose.rotation[2, 2] for pose in poses]
-    assert above.point[2] + 0.02 <= min(tips) < above.point[2] + 0.04
 
 
 def test_a_zone_that_is_no_slower_is_refused_before_anything_is_served():

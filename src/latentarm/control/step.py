@@ -26,7 +26,6 @@ from latentarm.core.types import (
     StepRecord,
     Stop,
 )
-from latentarm.robots.held import Held
 from latentarm.robots.robot import Robot
 from latentarm.safety.config import SafetyConfig
 from latentarm.safety.filter import Freshness
@@ -310,14 +309,6 @@ class Step:
         if goals.shape != (len(self._shared.belief), self._dof) or not np.isfinite(goals).all():
             raise UserError(f"Goals that moved must be {len(self._shared.belief)} finite configurations.")
         self._shared.move_goals(goals)
-
-    @logged
-    def hold(self, *things: Held) -> None:
-        """From the next step on these things move with the tool, and the filters keep them safe as its links.
-
-        What is too near or too fast already may leave, see `Guard`; nothing jumps.
-        """
-        self._stack.hold(things)
 
     @logged
     def guided(self, ask: GripperAsk | None) -> None:

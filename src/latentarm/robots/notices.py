@@ -42,8 +42,8 @@ def notices(robot: "Robot") -> list[str]:
         )
     if robot.gripper is not None and not robot.gripper.joints:
         said.append(
-            f"The model of {robot.name} lacks the gripper, so the safety filters do not know of it: state its"
-            " box under [mounted.gripper] in a --zones file."
+            f"The model of {robot.name} lacks the gripper, so the safety filters do not know of it: make"
+            " obstacles and zones larger by its length."
         )
     return said
 

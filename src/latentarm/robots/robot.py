@@ -39,7 +39,6 @@ class Robot:
     # whether the robot or its model states ``home``; else it is the middle of the joints' ranges, where an
     # arm may never have been
     home_stated: bool = True
-    held: int = 0  # how many of the capsules, the last ones, stand for things that can be put down
 
     @property
     def dof(self) -> int:

@@ -65,13 +65,13 @@ def _contacts(velocity: FloatArray, situation: "Situation") -> Distances | None:
     if not contacts.pair.size:
         return None
     height = contacts.height if contacts.fresh else proximity.heights(contacts, np.zeros(bounds.dof))
-    room = height - bounds.config.clearance * proximity.share[contacts.pair, None]
-    if not contacts.fresh and smallest(room.ravel()) <= BUFFER_M:
+    if not contacts.fresh and smallest(height.ravel()) <= bounds.nearest_m:
         # This close to the limit, a slightly conservative bound would block motion.
         contacts = situation.contacts_now()
-        room = contacts.height - bounds.config.clearance * proximity.share[contacts.pair, None]
+        height = contacts.height
     curvature = np.repeat(proximity.curvature[contacts.pair], 2, axis=0)
-    return Distances("clearance", contacts.row.reshape(-1, bounds.dof), room.ravel(), curvature)
+    room = height.ravel() - bounds.config.clearance
+    return Distances("clearance", contacts.row.reshape(-1, bounds.dof), room, curvature)
 
 
 def _faces(situation: "Situation") -> Distances | None:

@@ -195,8 +195,7 @@ class Guard:
         after = proximity.heights(contacts, path.way) - stray
         if not contacts.fresh:
             now = proximity.heights(contacts, np.zeros_like(path.way)) - stray
-            least = clearance * proximity.share[contacts.pair, None]
-            if smallest((np.minimum(now, after) - least).ravel()) >= 0.0:
+            if smallest(np.minimum(now, after).ravel()) >= clearance:
                 return False
             # The contacts were a few ticks old, which may be the only reason.
             contacts = situation.contacts_now()
@@ -205,8 +204,7 @@ class Guard:
             stray = (proximity.lever[contacts.pair] @ path.stray)[:, None]
             after = proximity.heights(contacts, path.way) - stray
         change = contacts.row @ path.way - stray
-        least = clearance * proximity.share[contacts.pair, None]
-        return _worsens(contacts.height, change, contacts.height + change - after, least)
+        return _worsens(contacts.height, change, contacts.height + change - after, clearance)
 
     @staticmethod
     def _leaves_workspace(path: StoppingPath, situation: Situation) -> bool:

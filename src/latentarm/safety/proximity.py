@@ -75,8 +75,6 @@ class Proximity:
         # lever: (pairs, n), bound of how fast a joint changes the pair's distance, m
         self.lever, self.curvature = lever[kept], curvature[kept]
         self._b, self._a, self._between, self._branch = b[kept], a[kept], between[kept], branch[kept]
-        # (pairs,), the share of the clearance to keep: a held thing may be put down on a plane
-        self.share: FloatArray = np.where(body.held[b] & (kind == 1), 0.0, 1.0)[kept]
         self._first_plane = int((kind[kept] < 1).sum())
         self._first_box = int((kind[kept] < 2).sum())
         arm_names = [body.robot.capsules.name[i] for i in body.capsule]

@@ -1,13 +1,11 @@
 """The filters in order, and the final check after them."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import final
 
 import numpy as np
 
 from latentarm.core.types import FloatArray, Stop
-from latentarm.robots.held import Held, holding
 from latentarm.robots.robot import Robot
 from latentarm.safety.barriers import past_barriers
 from latentarm.safety.body import Body
@@ -53,7 +51,6 @@ class SafetyStack:
 
     def __init__(self, config: SafetyConfig, robot: Robot, dt_s: float) -> None:
         self.bounds = bounds = Bounds(config, robot, dt_s)
-        self._robot = robot
         self.body = Body(robot)
         self._surroundings = GuardedArm(bounds, self.body)
         self._first: tuple[SafetyFilter, ...] = (Finite(), Freshness(), JointVelocity())
@@ -89,13 +86,6 @@ class SafetyStack:
         self._velocity = self._acceleration = self._rest
         self._by_steps = False
         self._brake = None
-
-    def hold(self, things: Sequence[Held]) -> None:
-        """From the next command on the arm's shape includes these things, and no others.
-
-        A motion that this makes too fast or too near goes on as the stop that was proven before.
-        """
-        self._surroundings = GuardedArm(self.bounds, Body(holding(self._robot, things)))
 
     def tick(self, time_s: float) -> None:
         """Take note of the loop's clock, for a stop that is under way when ticks come late."""

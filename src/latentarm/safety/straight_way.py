@@ -26,11 +26,11 @@ class StraightWay:
 
     def __init__(self, robot: Robot, safety: SafetyConfig) -> None:
         self._body = Body(robot)
+        self._clearance = safety.clearance
         self._proximity = Proximity(self._body, safety.obstacles, math.inf, safety.clearance, 1.0)
-        self._least = safety.clearance * self._proximity.share
         self._start = self._way = np.zeros(robot.dof)
         self._share = self._step = 1.0
-        self._allowed = self._least.copy()
+        self._allowed = np.full(len(self._proximity.names), safety.clearance)
         self.clear = True
 
     def begin(self, start: FloatArray, goal: FloatArray) -> None:
@@ -39,7 +39,7 @@ class StraightWay:
         farthest = float(np.abs(self._way).max())
         self._step = min(1.0, LARGEST_RAD / max(farthest, LARGEST_RAD))
         self._share = 0.0
-        self._allowed[:] = self._least
+        self._allowed[:] = self._clearance
         self.clear = False
 
     def look(self, times: int) -> tuple[str, str] | None:

@@ -1,4 +1,4 @@
-"""A zones file: where the arm is slow, what it keeps out of, what it holds. TOML, with units in the keys.
+"""A zones file: where the arm is slow and what it keeps out of, in TOML, with units in the keys.
 
 An example::
 
@@ -14,15 +14,9 @@ An example::
     normal = [0.0, 0.0, 1.0]
     clearance_m = 0.08  # kept from it; without this key, what the safety limits keep from everything
 
-    [mounted.spoon]  # a part of the arm; under [gripped.NAME] as long as the gripper holds what nothing names
-    centre_m = [0.0, 0.0, 0.1]
-    size_m = [0.03, 0.02, 0.3]
-    mass_kg = 0.05
-
-Held things are boxes in the tool's frame. Shapes and their keys: ``sphere`` (``centre_m``, ``radius_m``),
-``capsule`` (``start_m``, ``end_m``, ``radius_m``), ``box`` (``centre_m``, ``size_m``, and ``turned_deg``
-about the x, y and z axes of its frame in this order, where it is turned) and ``half_space`` (``point_m`` and
-``normal``, out of the solid).
+Shapes and their keys: ``sphere`` (``centre_m``, ``radius_m``), ``capsule`` (``start_m``, ``end_m``,
+``radius_m``), ``box`` (``centre_m``, ``size_m``, and ``turned_deg`` about the base's x, y and z axes in this
+order, where it is turned) and ``half_space`` (``point_m`` and ``normal``, out of the solid).
 """
 
 from collections.abc import Callable, Mapping
@@ -36,7 +30,6 @@ from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray
 from latentarm.core.untrusted.hand_written import MOST_BYTES, check_keys, number_of, parse_toml, table_of
 from latentarm.core.untrusted.opening import read_bytes
-from latentarm.robots.held import Held
 from latentarm.robots.kinematics.obstacles import Box, Capsule, HalfSpace, Obstacle, Sphere
 from latentarm.safety.config import SafetyConfig
 from latentarm.safety.obstacles import checked_obstacle
@@ -47,11 +40,6 @@ _KEEP_OUT: Final = "keep_out"
 _SPEED: Final = "speed_m_per_s"
 _CLEARANCE: Final = "clearance_m"
 _MOST_CLEARANCE_M: Final = 0.5
-_MOUNTED: Final = "mounted"
-_GRIPPED: Final = "gripped"
-_MASS: Final = "mass_kg"
-_MOST_MASS_KG: Final = 50.0
-_MOST_HELD: Final = 4  # are kept in time
 
 
 @final
@@ -61,7 +49,6 @@ class StatedZones:
 
     slow: tuple[Zone, ...]  # where the arm is slow
     keep_out: tuple[Obstacle, ...]  # enlarged by the clearance that they need beyond the usual one
-    held: tuple[Held, ...] = ()
 
 
 def read_zones(path: Path) -> StatedZones:
@@ -76,16 +63,9 @@ def parse_zones(document: object, where: str) -> StatedZones:
     or there are too many.
     """
     top = table_of(document, where, "")
-    check_keys(top, (_SLOW, _KEEP_OUT, _MOUNTED, _GRIPPED), where, "")
+    check_keys(top, (_SLOW, _KEEP_OUT), where, "")
     slow, keep_out = (table_of(top.get(key, {}), where, key) for key in (_SLOW, _KEEP_OUT))
-    held = [
-        _held(name, entry, where, kind)
-        for kind in (_MOUNTED, _GRIPPED)
-        for name, entry in table_of(top.get(kind, {}), where, kind).items()
-    ]
-    if len(held) > _MOST_HELD:
-        raise UserError(f"{where}: there are {len(held)} held things: {_MOST_HELD} at most are kept in time.")
-    if not slow and not keep_out and not held:
+    if not slow and not keep_out:
         raise UserError(f"{where} states no zones: begin one with [{_SLOW}.face] or [{_KEEP_OUT}.table].")
     found = [_entry(f"{_SLOW}.{name}", entry, where, (_SPEED,)) for name, entry in slow.items()]
     solid = [_solid(name, entry, where) for name, entry in keep_out.items()]
@@ -93,7 +73,6 @@ def parse_zones(document: object, where: str) -> StatedZones:
         return StatedZones(
             checked_zones([Zone(make(name), speed) for name, (make, speed) in zip(slow, found, strict=True)]),
             _kept_out([make() for make in solid]),
-            tuple(make() for make in held),
         )
     except UserError as error:
         raise UserError(f"{where}: {error}") from error
@@ -107,16 +86,6 @@ def _kept_out(solids: list[Obstacle]) -> tuple[Obstacle, ...]:
     for solid in solids:
         check_name(solid.name, f"The obstacle {solid.name!r}")
     return tuple(checked_obstacle(solid) for solid in solids)
-
-
-def _held(name: str, entry: object, where: str, kind: str) -> Callable[[], Held]:
-    key = f"{kind}.{name}"
-    given = {**table_of(entry, where, key), "shape": "box"}
-    mass_kg = number_of(given.pop(_MASS, None), where, f"{key}.{_MASS}")
-    if not 0.0 <= mass_kg <= _MOST_MASS_KG:
-        raise UserError(f"{where}: {key}.{_MASS} is {mass_kg:g}: it must be from 0 to {_MOST_MASS_KG:g} kg.")
-    make, _ = _entry(key, given, where)
-    return lambda: Held(cast("Box", _kept_out([make(name)])[0]), mass_kg, kind == _MOUNTED)
 
 
 def _solid(name: str, entry: object, where: str) -> Callable[[], Obstacle]:

@@ -5,7 +5,7 @@ from typing import Any, Final, final
 import mujoco
 import numpy as np
 
-from latentarm.core.types import BoolArray, FloatArray, IntArray
+from latentarm.core.types import FloatArray
 from latentarm.robots.kinematics.distances import segment_distance
 from latentarm.robots.kinematics.obstacles import Box, Capsule, HalfSpace, Obstacle, Sphere
 from latentarm.robots.kinematics.reader import read
@@ -63,13 +63,6 @@ class Judge:
         return np.array(
             [mujoco.mj_geomDistance(self._model, self._data, g, h, most_m, None) for g, h in self._pairs]
         )
-
-    def pairs_of(self, body: str) -> tuple[BoolArray, BoolArray, IntArray]:
-        """Which pairs have a geom of the body of this name, which have a plane, the other geom, (pairs,)."""
-        pairs = np.array([[int(g), int(h)] for g, h in self._pairs]).reshape(-1, 2)
-        mine = self._model.geom_bodyid[pairs] == self._model.body(body).id
-        on_plane = self._model.geom_type[pairs] == int(mujoco.mjtGeom.mjGEOM_PLANE)
-        return mine.any(axis=1), on_plane.any(axis=1), np.where(mine[:, 0], pairs[:, 1], pairs[:, 0])
 
 
 _MARK: Final = "obstacle "

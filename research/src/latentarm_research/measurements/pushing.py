@@ -79,9 +79,7 @@ def scene(
 ) -> tuple[tuple[Obstacle, ...], Judge, FloatArray, Push]:
     """Obstacles, their judge, a start and a push, with all distances above `START_M`."""
     limits, capsules, chain = robot.limits, robot.capsules, robot.chain
-    outer = np.flatnonzero(capsules.link >= max(1, robot.dof // 3))[
-        -robot.held :
-    ]  # what is held, if anything
+    outer = np.flatnonzero(capsules.link >= max(1, robot.dof // 3))
     while True:
         q = rng.uniform(limits.lower + 0.15, limits.upper - 0.15)
         starts, ends = capsules.placed(chain, chain.link_transforms(q))

@@ -12,7 +12,6 @@ from latentarm.control.loop import ControlLoop
 from latentarm.control.stick_ring import STRETCHES
 from latentarm.core.call_log import CallLog
 from latentarm.core.types import StepRecord, Stop
-from latentarm.robots.held import holding
 from latentarm.safety.straight_way import StraightWay
 from latentarm.safety.zones import zone_of_filter
 from latentarm.web.arm_process.disengaged import Disengaged
@@ -289,8 +288,6 @@ class Drive:
         self._note_until_s = -math.inf
         self._setup.help.choose("off")
         self._to_pose.lead_to(goal)
-        robot = holding(self._setup.task.robot, self._things.held)
-        self._way_back.straight = StraightWay(robot, self._step.safety)
         self._step.choose_mode(self._setup.way_back)
         self._way_back.begin(record.time_s, self._readings.q, goal, None if pose is None else pose.name)
 
@@ -315,8 +312,7 @@ class Drive:
 
         What a held stick does changes too where a thing is suddenly elsewhere: it must be let go first.
         """
-        if self._things.update(record, self._readings.q):
-            self._step.hold(*self._things.held)
+        self._things.update(record, self._readings.q)
         if self._steering.mode == "end_effector" or self._way_back.on:
             return
         if (unknown := self._things.unknown) is not None:
@@ -422,7 +418,6 @@ class Drive:
             reading_age_s=self._readings.age_s(record.time_s),
             tool=(tool[0], tool[1], tool[2]),
             gripper=self._readings.gripper,
-            held=tuple(one.box.name for one in self._things.held),
             task=self._run.state,
             things=self._things.look(self._steering.tick),
             ghosts=self._ghosts.newest(self._mode_index),

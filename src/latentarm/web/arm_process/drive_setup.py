@@ -27,7 +27,6 @@ from latentarm.core.exact_json import as_text_json
 from latentarm.core.journal_limits import JournalLimits
 from latentarm.core.types import FloatArray, Pose
 from latentarm.demonstrations.provenance import provenance_now
-from latentarm.robots.held import Held
 from latentarm.robots.kinematics.obstacles import Obstacle
 from latentarm.robots.scene.scene import Scene
 from latentarm.robots.scene.thing import Part, Thing
@@ -83,7 +82,6 @@ class Spec:
         found: names and values found out about a real arm.
         zones: where the arm is slow.
         keep_out: obstacles besides the task's.
-        held: what a person says that the arm holds.
         speeds: limits everywhere.
         incidents: whether calls are kept for a while, see `latentarm.web.arm_process.incident`.
         seat: where a person without a profile sits, see `latent_controller`; None for z = u.
@@ -109,7 +107,6 @@ class Spec:
     found: tuple[tuple[str, str], ...] = ()
     zones: tuple[Zone, ...] = ()
     keep_out: tuple[Obstacle, ...] = ()
-    held: tuple[Held, ...] = ()
     speeds: Speeds = field(default_factory=Speeds)
     incidents: bool = True
     seat: Seat | None = None

@@ -29,7 +29,6 @@ from latentarm.core.untrusted.documents import parse_object
 from latentarm.core.untrusted.names import clean_name
 from latentarm.core.untrusted.opening import read_bytes
 from latentarm.models.saving import CONFIG_NAME, WEIGHTS_NAME
-from latentarm.robots.held import Held
 from latentarm.robots.kinematics.obstacles import Box, Capsule, HalfSpace, Sphere
 from latentarm.robots.model_copy import MOST_COPIED
 from latentarm.runs.folder import ROBOT
@@ -47,7 +46,7 @@ _RUN: Final = "run"
 _PERSON: Final = "person"  # stands for the name of a profile
 _LIMITS: Final = "limits"
 _PART_BYTES: Final = 30_000
-_KINDS: Final = (Spec, JournalLimits, RobotOptions, Speeds, Zone, Held, HalfSpace, Sphere, Capsule, Box)
+_KINDS: Final = (Spec, JournalLimits, RobotOptions, Speeds, Zone, HalfSpace, Sphere, Capsule, Box)
 
 
 def begin_incident(setup: DriveSetup) -> CallLog | None:

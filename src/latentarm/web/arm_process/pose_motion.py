@@ -49,7 +49,7 @@ class PoseMotion(InputSource):
     def __init__(
         self, gate: NeutralInterlock, inputs: PageInputs, start: FloatArray, straight: StraightWay
     ) -> None:
-        self.straight = straight  # to change before `begin`, when the arm holds something else
+        self._straight = straight
         self._blocked: tuple[str, str] | None = None
         self._gate = gate
         self._inputs = inputs
@@ -62,7 +62,7 @@ class PoseMotion(InputSource):
 
     def begin(self, time_s: float, q: FloatArray, goal: FloatArray, pose: str | None = None) -> None:
         """Check the way from ``q`` to ``goal``, (n,), rad, and set out if it is clear; ``pose`` names it."""
-        self.straight.begin(q, goal)
+        self._straight.begin(q, goal)
         self._goal, self.pose = goal, pose
         self.on, self._pushed = True, False
         self._began_s = self._closer_s = time_s
@@ -82,7 +82,7 @@ class PoseMotion(InputSource):
         u = np.zeros_like(given.u)
         if self._inputs.deflected or given.gripper is not None:
             self._pushed = True
-        elif self.straight.clear:
+        elif self._straight.clear:
             u[0] = 1.0
         return replace(given, u=u, gripper=None), age_s
 
@@ -94,8 +94,8 @@ class PoseMotion(InputSource):
         """How the way has ended at ``q``, (n,), rad, and ``time_s``; None while it goes on."""
         if self._pushed:
             return "pushed"
-        if not self.straight.clear:
-            self._blocked = self.straight.look(_LOOKS)
+        if not self._straight.clear:
+            self._blocked = self._straight.look(_LOOKS)
             return None if self._blocked is None else "blocked"
         away = float(np.abs(self._goal - q).max())
         if away <= ARRIVED_RAD:

@@ -9,14 +9,11 @@ import numpy as np
 
 from latentarm.arms.contract import SceneArm
 from latentarm.core.types import FloatArray, Pose, StepRecord
-from latentarm.robots.held import Held
 from latentarm.robots.kinematics.pose_rows import thing_rows
-from latentarm.robots.scene.scene import SceneState
 from latentarm.surroundings.catalogue import SCENE
-from latentarm.surroundings.held_things import HeldThings
 from latentarm.surroundings.surroundings import Surroundings
 from latentarm.surroundings.touch import TouchKind
-from latentarm.surroundings.tracker import Whereabouts, within
+from latentarm.surroundings.tracker import Whereabouts
 from latentarm.web.protocol.notice import Notice
 from latentarm.web.protocol.report import SeenThing, Things
 from latentarm.web.protocol.things import things_at
@@ -61,9 +58,6 @@ class ThingPoses:
         self._sources = setup.sources
         self._recorded: tuple[str, ...] = ()
         self._newest: dict[str, tuple[Pose, int, float]] = {}
-        self._seen: SceneState | None = None  # the simulation's newest state that was looked at
-        known = () if self._scene is None or not setup.stand else self._scene.things
-        self._held = HeldThings([thing for thing in known if not thing.fixed], setup.spec.held)
 
     def surroundings(self, setup: "DriveSetup", arm: SceneArm | None) -> Callable[[], FloatArray] | None:
         """A function that gives a `Step` the poses of the things in its context."""
@@ -71,21 +65,11 @@ class ThingPoses:
             return setup.surroundings(arm)
         return self._followed.rows(self._needed, self._now_s)
 
-    @property
-    def held(self) -> tuple[Held, ...]:
-        """The things that count as held."""
-        return self._held.now
-
-    def update(self, record: StepRecord, q: FloatArray) -> bool:
-        """Follow things, once a tick; whether others are held now. ``q``: (n,), newest joints, rad."""
+    def update(self, record: StepRecord, q: FloatArray) -> None:
+        """Follow things, once a tick; ``q``: (n,), the newest joint positions, rad."""
         if self._followed is not None:
             tool = None if np.isnan(record.state[0]) else self._chain.forward(q)
             self._followed.update(tool, record.gripper, self._now_s())
-            return self._held.update(self._followed.tracker.in_tool, record.gripper)
-        seen, held = self._seen, dict[str, Pose]()
-        if seen is not None:
-            held = {name: within(seen.tool, seen.poses[name]) for name in seen.stabbed | seen.gripped}
-        return self._held.update(held, record.gripper)
 
     @property
     def unknown(self) -> Notice | None:
@@ -135,13 +119,13 @@ class ThingPoses:
         """Where everything is; None in ticks without a look."""
         if self._scene is None or (self._arm is None and self._followed is None) or tick % _EVERY:
             return None
-        poses = {thing.name: thing.pose for thing in self._scene.things} | self._poses()
-        grains = {} if self._seen is None else self._seen.grains
+        begun = {thing.name: thing.pose for thing in self._scene.things}
+        grains = {} if self._arm is None else self._arm.scene_state().grains
         seen = [
             SeenThing(name=name, seen=where.seen, age_s=int(where.age_s), source=where.source)
             for name, where in self._all()
         ]
-        return things_at(self._scene, poses, grains, seen)
+        return things_at(self._scene, begun | self._poses(), grains, seen)
 
     def _take(self, now_s: float) -> tuple[str, ...]:
         """Keep where everything is; the names of the things that somebody knows the place of."""
@@ -161,8 +145,7 @@ class ThingPoses:
         return [(name, self._where(name, self._now_s())) for name in names]
 
     def _poses(self) -> dict[str, Pose]:
-        self._seen = None if self._arm is None else self._arm.scene_state()
-        poses = {} if self._seen is None else dict(self._seen.poses)
+        poses = {} if self._arm is None else dict(self._arm.scene_state().poses)
         for name, where in self._all():
             poses.pop(name, None)
             if where.pose is not None:

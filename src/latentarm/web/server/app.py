@@ -32,7 +32,7 @@ from latentarm.demonstrations.folders import locked
 from latentarm.robots.notices import notices
 from latentarm.surroundings.catalogue import TOUCH
 from latentarm.surroundings.process import SourceProcess
-from latentarm.web.arm_process.drive_setup import PERIOD_S, DriveSetup, Spec, load_setup
+from latentarm.web.arm_process.drive_setup import PERIOD_S, DriveSetup, load_setup
 from latentarm.web.arm_process.incident import computer
 from latentarm.web.arm_process.process import ControlProcess
 from latentarm.web.cameras.process import CameraProcess
@@ -138,8 +138,6 @@ def _serve_alone(
             say(f"The arm is slow in these zones: {slow}.")
         if config.spec.keep_out:
             say(f"The arm keeps out of: {', '.join(one.name for one in config.spec.keep_out)}.")
-        if config.spec.held:
-            say(f"Parts of the arm while it holds them: {_held(config.spec)}.")
         sources = _sources(setup, say)
         if sources is not None:
             at_end.callback(sources.end)
@@ -216,16 +214,8 @@ def _looked_at(
         say("Nothing keeps the arm off a table: state where it is with --zones FILE (see docs/your-arm.md).")
     kept_off = ", ".join(one.name for one in setup.obstacles) or "nothing, as nothing is stated"
     facts = [(fact.name, fact.value) for fact in found.facts]
-    facts += [("keeps out of", kept_off), ("holds", _held(setup.spec) or "nothing that is stated")]
-    spec = replace(setup.spec, found=tuple(facts))
+    spec = replace(setup.spec, found=(*facts, ("keeps out of", kept_off)))
     return replace(config, spec=spec), replace(setup, spec=spec)
-
-
-def _held(spec: Spec) -> str:
-    return ", ".join(
-        f"{one.box.name} ({one.mass_kg:g} kg, {'always' if one.mounted else 'when gripped'})"
-        for one in spec.held
-    )
 
 
 def _sources(setup: DriveSetup, say: Callable[[str], None]) -> SourceProcess | None:

@@ -369,7 +369,6 @@ export interface State {
   profile: string | null;
   tool: [number, number, number];
   gripper: GripperState | null;
-  held: string[];
   task: TaskState;
   things: Things | null;
   ghosts: Ghosts | null;
