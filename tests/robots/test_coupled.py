@@ -10,7 +10,7 @@ from latentarm.robots.model_file import load_model_file
 from scripted_arms import COUPLED
 
 LIMITS = {"turn": (-3.0, 3.0), "third": (0.02, 0.09), "nod": (-2.2, 2.6)}
-"""What is left of each leader's range by those that follow it: the first and second segment, and the tilt."""
+"""Range of each leader once its followers' limits count: the first and second segment, and the tilt."""
 
 
 def test_physics_moves_followers_with_their_leader(written):

@@ -192,7 +192,7 @@ def _action(recorded: JournalEpisode) -> FloatArray:
 
 
 def _ages(recorded: JournalEpisode, objects: Sequence[str], source: str) -> FloatArray:
-    """How old the poses of the things are at each sample by this source, (T, K), s; -1 by another one."""
+    """Age of each pose from this source at each sample, (T, K), s; -1 where it is from another source."""
     header, records = recorded.header, recorded.records
     if source not in header.sources:
         return np.full((len(records), len(objects)), -1.0)

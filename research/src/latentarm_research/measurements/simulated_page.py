@@ -100,7 +100,7 @@ class SimulatedPage:
             end.close()
 
     def figures(self, choice: int) -> dict[str, float]:
-        """What is measured of the drive."""
+        """Measures of the drive, by name."""
         found = self._follow.trace(choice, self._setup.task.robot.chain, self._stops).figures
         return {
             **self._counts,
@@ -135,7 +135,7 @@ class SimulatedPage:
         self._give(self._input(record, report, state, drawn), report)
 
     def _drawn(self, state: SceneState, now_s: float) -> Mapping[str, Pose]:
-        """Where the page draws the things that the model needs; without those that it draws as lost."""
+        """Poses at which the page draws the things that the model needs; lost things are left out."""
         things = self._steering.things
         if things is None:
             return {name: state.poses[name] for name in self._names}

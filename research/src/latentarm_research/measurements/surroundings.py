@@ -37,7 +37,7 @@ MODEL: Final = Condition("joints objects_in_tool", "homogeneous", way_back=True)
 
 
 def measure(options: catalogue.Surroundings, work: Work) -> Outcome:
-    """How many drives succeed with each source, and in how many ticks anything is unsafe."""
+    """Count the drives that succeed with each source, and the ticks in which anything is unsafe."""
     preset = Preset(
         "surroundings", options.runs, demonstrations=options.demonstrations, seeds=1, epochs=options.epochs
     )

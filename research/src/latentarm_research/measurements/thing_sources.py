@@ -78,9 +78,9 @@ class Detections:
         self._due_s = now_s + (EVERY_S if self._cameras is None else CAMERAS_EVERY_S)
         if self._cameras is not None:
             return self._cameras.look(self._past[0])
-        return [self._seen(name, self._past[0], faulty=now_s >= self._fault_s) for name in self._names]
+        return [self._detect(name, self._past[0], faulty=now_s >= self._fault_s) for name in self._names]
 
-    def _seen(self, name: str, poses: Mapping[str, Pose], *, faulty: bool) -> Sighting:
+    def _detect(self, name: str, poses: Mapping[str, Pose], *, faulty: bool) -> Sighting:
         other = next(one for one in self._names if one != self._wrong)
         swapped = {self._wrong: other, other: self._wrong} if faulty and self._source == SWAPS else {}
         pose = poses[swapped.get(name, name)]

@@ -18,7 +18,7 @@ TAIL: Final = (1.0 - CONFIDENCE) / 2.0
 
 
 def spreads(values: FloatArray) -> bool:
-    """Whether figures (n,) differ by more than rounding."""
+    """Return whether values (n,) differ by more than rounding errors."""
     return len(values) > 1 and float(values.std(ddof=1)) > NO_SPREAD * float(np.abs(values).max())
 
 

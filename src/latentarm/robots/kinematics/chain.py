@@ -30,7 +30,7 @@ class Frame:
 @final
 @dataclass(frozen=True, eq=False)
 class Coupling:
-    """How n joints move the L links of a chain in which some links follow a joint (``<mimic>``)."""
+    """The linear map from n joints to L links, where some links follow a joint (``<mimic>``)."""
 
     ratio: FloatArray  # (L, n), displacement of each link per displacement of each joint
     slide: BoolArray  # (L,), True where the link slides

@@ -1,4 +1,4 @@
-"""What the four tasks of section 8.1 have in common, and those of one arm."""
+"""The planar tasks of section 8.1: the parts that all four share, and those of the tasks with one arm."""
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass

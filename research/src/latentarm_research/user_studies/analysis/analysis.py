@@ -45,7 +45,7 @@ def claims_tested(definition: Definition, both: Sequence[Sides]) -> list[Tested]
 
 
 def verdicts(definition: Definition, tested: Sequence[Tested]) -> list[Verdict]:
-    """What the claims say of each hypothesis."""
+    """The verdict on each hypothesis, from its claims."""
     return [
         verdict_on(
             hypothesis,

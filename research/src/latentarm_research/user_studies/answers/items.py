@@ -112,7 +112,7 @@ KNOWN: Final = (*NEEDED, "text")
 @final
 @dataclass(frozen=True)
 class Answer:
-    """What one person answered to one item after one condition."""
+    """One person's answer to one item after one condition."""
 
     person: int  # their number, from 0
     condition: str  # name of the condition
