@@ -12,8 +12,8 @@ from pathlib import Path
 os.environ.setdefault("MUJOCO_GL", "egl")  # before MuJoCo is imported
 
 from latentarm.core.errors import UserError
+from latentarm.core.figure_style import save_figure
 from latentarm.core.parallel import run_grid
-from latentarm.core.style import save_figure
 from latentarm.core.untrusted.documents import read_object
 from latentarm.evaluation.looks import look_of
 from latentarm.models.catalogue import DEFAULT_MODEL

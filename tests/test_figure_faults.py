@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from figure_faults import faults
-from latentarm.core.style import legend_below, new_figure
+from latentarm.core.figure_style import legend_below, new_figure
 
 
 def fine():

@@ -18,7 +18,6 @@ from .control.clock import SimulatedClock as SimulatedClock
 from .control.input_port import InputPort as InputPort
 from .control.input_port import InputSource as InputSource
 from .control.loop import ControlLoop as ControlLoop
-from .control.recorder import Recorder as Recorder
 from .control.step import Step as Step
 from .core.errors import UserError as UserError
 from .core.types import Context as Context
@@ -31,8 +30,8 @@ from .core.types import Reading as Reading
 from .demonstrations.dataset import append_episode as append_episode
 from .demonstrations.dataset import read_dataset as read_dataset
 from .demonstrations.dataset import write_dataset as write_dataset
-from .demonstrations.import_options import ImportOptions as ImportOptions
-from .demonstrations.importing import import_demonstrations as import_demonstrations
+from .demonstrations.importers.importing import import_demonstrations as import_demonstrations
+from .demonstrations.importers.options import ImportOptions as ImportOptions
 from .models.autoencoders.training import CAE as CAE
 from .models.autoencoders.training import CVAE as CVAE
 from .models.estimators import load_model as load_model
@@ -40,6 +39,7 @@ from .models.homogeneous.training import Homogeneous as Homogeneous
 from .models.low_turning.training import LowTurning as LowTurning
 from .models.saving import load_decoder as load_decoder
 from .models.scl.training import SCL as SCL
+from .recordings.journal_writer import Recorder as Recorder
 from .robots.attachment import Attachment as Attachment
 from .robots.attachments import attach as attach
 from .robots.catalogue import load_robot as load_robot

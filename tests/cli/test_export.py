@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from latentarm.control.recorder import EpisodeHeader, Recorder
 from latentarm.core.types import Command, GripperCommand, GripperReading, StepRecord
 from latentarm.demonstrations.dataset import read_dataset
 from latentarm.demonstrations.provenance import provenance_now
+from latentarm.recordings.journal_writer import EpisodeHeader, Recorder
 
 Run = Callable[..., tuple[int, str, str]]
 

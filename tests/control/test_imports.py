@@ -4,7 +4,7 @@ from pathlib import Path
 
 import latentarm
 
-ONLINE = ("control", "safety")
+ONLINE = ("control", "recordings", "safety")
 HEAVY = ("torch", "mujoco", "mink", "pyarrow", "h5py", "matplotlib", "sklearn", "scipy")
 
 

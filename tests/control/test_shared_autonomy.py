@@ -14,13 +14,13 @@ from latentarm.assistance.blending import Arbitration, FixedAlpha
 from latentarm.assistance.boltzmann import BoltzmannBelief
 from latentarm.assistance.catalogue import BELIEFS
 from latentarm.assistance.goal_blending import GoalBlending
-from latentarm.control.export import demonstrations_of, export_journal
-from latentarm.control.journal import read_journal
-from latentarm.control.recorder import EpisodeHeader, Recorder
 from latentarm.control.shared_autonomy import Choices
 from latentarm.control.step import Step
 from latentarm.core.errors import UserError
 from latentarm.core.types import Context, Goal, Input
+from latentarm.recordings.dataset_export import demonstrations_of, export_journal
+from latentarm.recordings.journal_reader import read_journal
+from latentarm.recordings.journal_writer import EpisodeHeader, Recorder
 from latentarm.safety.config import SafetyConfig
 from latentarm_research.assistance.bound import radius
 from latentarm_research.assistance.cost_to_go import HindsightBelief

@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 from bags import joint_state_bag
 from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations
-from latentarm.demonstrations.import_options import ImportOptions
-from latentarm.demonstrations.importing import import_demonstrations, import_to
+from latentarm.demonstrations.importers.importing import import_demonstrations, import_to
+from latentarm.demonstrations.importers.options import ImportOptions
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.panda import panda
 from latentarm.robots.robot import Robot
@@ -369,7 +369,7 @@ def test_unwrapping_undoes_any_wrapping(
     tmp_path_factory: pytest.TempPathFactory, spinner: Robot, begin: list[int], way: list[float], wraps: bool
 ) -> None:
     from latentarm.core.types import Episode
-    from latentarm.demonstrations.turns import unwrapped
+    from latentarm.demonstrations.importers.turns import unwrapped
 
     path = np.cumsum(way)[:, None] * [1, 0, -1]
     episodes = [

@@ -8,9 +8,9 @@ import yaml
 
 from latentarm.core.errors import UserError
 from latentarm.demonstrations.dataset import read_dataset, write_dataset
-from latentarm.demonstrations.harmonic import JOINTS, MORSELS, read_harmonic
-from latentarm.demonstrations.import_options import ImportOptions
-from latentarm.demonstrations.importing import import_demonstrations
+from latentarm.demonstrations.importers.harmonic import JOINTS, MORSELS, read_harmonic
+from latentarm.demonstrations.importers.importing import import_demonstrations
+from latentarm.demonstrations.importers.options import ImportOptions
 from latentarm.robots.catalogue import load_robot
 
 START_S = 1_530_000_000.0

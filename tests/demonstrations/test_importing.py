@@ -9,10 +9,10 @@ import pytest
 from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations, Episode
 from latentarm.demonstrations.dataset import read_dataset, write_dataset
-from latentarm.demonstrations.import_options import ImportOptions
-from latentarm.demonstrations.importing import import_demonstrations, import_to
+from latentarm.demonstrations.importers.importing import import_demonstrations, import_to
+from latentarm.demonstrations.importers.npz_file import read_npz
+from latentarm.demonstrations.importers.options import ImportOptions
 from latentarm.demonstrations.info import INFO_PATH
-from latentarm.demonstrations.npz_file import read_npz
 from latentarm.demonstrations.validation import LIMIT_TOLERANCE_RAD, validate
 from latentarm.robots.limits import JointLimits
 from latentarm.robots.panda import panda

@@ -19,8 +19,8 @@ from latentarm.cli import main
 from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations, Episode
 from latentarm.demonstrations.dataset import append_episode, read_dataset, write_dataset
-from latentarm.demonstrations.import_options import ImportOptions
-from latentarm.demonstrations.importing import import_demonstrations, import_to
+from latentarm.demonstrations.importers.importing import import_demonstrations, import_to
+from latentarm.demonstrations.importers.options import ImportOptions
 from latentarm.robots.robot import Robot
 
 pytestmark = pytest.mark.slow

@@ -21,9 +21,9 @@ from hypothesis import strategies as st
 from bags import joint_state_bag
 from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations, Episode
-from latentarm.demonstrations import csv_lines
 from latentarm.demonstrations.dataset import read_dataset, write_dataset
-from latentarm.demonstrations.importing import import_demonstrations, import_to
+from latentarm.demonstrations.importers import csv_lines
+from latentarm.demonstrations.importers.importing import import_demonstrations, import_to
 from latentarm.robots.panda import panda
 from latentarm.robots.robot import Robot
 

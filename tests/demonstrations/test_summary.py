@@ -6,7 +6,7 @@ import pytest
 from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations, Episode
 from latentarm.demonstrations.figure import draw_trajectories
-from latentarm.demonstrations.importing import import_demonstrations
+from latentarm.demonstrations.importers.importing import import_demonstrations
 from latentarm.demonstrations.summary import summarise
 from latentarm.demonstrations.validation import validate
 from latentarm.robots.limits import JointLimits

@@ -15,11 +15,11 @@ from hypothesis import strategies as st
 
 from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations, Episode
-from latentarm.demonstrations.columns import find_columns
 from latentarm.demonstrations.dataset import read_dataset, write_dataset
-from latentarm.demonstrations.import_options import ImportOptions
-from latentarm.demonstrations.importing import import_demonstrations, import_to
-from latentarm.demonstrations.robot_names import may_be
+from latentarm.demonstrations.importers.columns import find_columns
+from latentarm.demonstrations.importers.importing import import_demonstrations, import_to
+from latentarm.demonstrations.importers.options import ImportOptions
+from latentarm.demonstrations.importers.robot_names import may_be
 from latentarm.robots.panda import panda
 from latentarm.robots.robot import Robot
 

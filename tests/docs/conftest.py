@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from latentarm.cli import main
-from latentarm.control.recorder import EpisodeHeader, Recorder
 from latentarm.core.types import Command, Input, Reading, StepRecord
+from latentarm.recordings.journal_writer import EpisodeHeader, Recorder
 from latentarm.tasks.table_top import TableTop
 from latentarm.web.arm_process.drive_setup import Spec, load_setup
 from latentarm.web.arm_process.incident import begin_incident

@@ -139,7 +139,7 @@ def test_an_unknown_episode_cannot_be_held_out(plane_demonstrations, robot, line
 
 @pytest.mark.skipif(not POUR.exists(), reason="the real demonstrations are not beside this checkout")
 def test_real_demonstrations_show_what_the_models_are_known_for(tmp_path):
-    from latentarm.demonstrations.importing import import_demonstrations
+    from latentarm.demonstrations.importers.importing import import_demonstrations
     from latentarm.models.estimators import MODELS
     from latentarm.robots.panda import panda
 

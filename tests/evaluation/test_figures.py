@@ -3,7 +3,7 @@ import pytest
 
 from figure_faults import faults
 from latentarm.core.errors import UserError
-from latentarm.core.style import COLUMN_MM, MM_PER_INCH, save_figure
+from latentarm.core.figure_style import COLUMN_MM, MM_PER_INCH, save_figure
 from latentarm.evaluation.effects import axis_effects, axis_grid, held_paths
 from latentarm.evaluation.figures import AWAY_M, latent_effect_figure, properties_figure
 

@@ -40,7 +40,7 @@ from latentarm.cli import main as latentarm
 from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray
 from latentarm.demonstrations.dataset import read_dataset
-from latentarm.demonstrations.importing import import_demonstrations
+from latentarm.demonstrations.importers.importing import import_demonstrations
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.limits_file import read_limits
 from latentarm.robots.robot import Robot

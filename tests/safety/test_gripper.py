@@ -11,9 +11,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from latentarm.assistance.controllers.end_effector import EndEffectorController
-from latentarm.control.export import demonstrations_of
-from latentarm.control.journal import JournalEpisode
-from latentarm.control.recorder import EpisodeHeader
 from latentarm.control.step import Step
 from latentarm.core.types import (
     GripperAsk,
@@ -23,6 +20,9 @@ from latentarm.core.types import (
     Reading,
     StepRecord,
 )
+from latentarm.recordings.dataset_export import demonstrations_of
+from latentarm.recordings.journal_reader import JournalEpisode
+from latentarm.recordings.journal_writer import EpisodeHeader
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.gripper import Gripper
 from latentarm.safety.config import SafetyConfig

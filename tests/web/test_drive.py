@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from latentarm.control.journal import read_journal
 from latentarm.core.types import Context
+from latentarm.recordings.journal_reader import read_journal
 from latentarm.web.arm_process.drive import Drive
 from latentarm.web.arm_process.drive_setup import with_profile
 from latentarm.web.arm_process.page_inputs import LATCH_MAX_S

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from latentarm.control.clock import MonotonicClock
-from latentarm.control.journal import read_journal
+from latentarm.recordings.journal_reader import read_journal
 from latentarm.web.arm_process.drive_setup import Spec
 
 from .conftest import served

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from wooden_server import wooden_server
 
-from latentarm.control.export import demonstrations_of
-from latentarm.control.journal import read_journal
 from latentarm.demonstrations.provenance import BY_HAND
+from latentarm.recordings.dataset_export import demonstrations_of
+from latentarm.recordings.journal_reader import read_journal
 from latentarm.robots.panda import panda
 from latentarm.web.arm_process.drive_setup import Spec
 from latentarm.web.arm_process.initial_state import RobotOptions

@@ -13,8 +13,8 @@ from urllib.parse import urlsplit
 import httpx
 import pytest
 
-from latentarm.control.journal import read_journal
 from latentarm.demonstrations.folders import locked
+from latentarm.recordings.journal_reader import read_journal
 from latentarm.web.arm_process.drive_setup import Spec
 from latentarm.web.arm_process.replay import replay
 from latentarm.web.records.drives import Wanted

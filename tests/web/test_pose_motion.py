@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from latentarm.control.journal import read_journal
+from latentarm.recordings.journal_reader import read_journal
 from latentarm.robots.kinematics.obstacles import HalfSpace, Sphere
 from latentarm.tasks.place import ScenePlace
 from latentarm.web.arm_process.pose_motion import ARRIVED_RAD

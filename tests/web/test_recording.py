@@ -5,10 +5,10 @@ import threading
 import numpy as np
 import pytest
 
-from latentarm.control.journal import read_journal
-from latentarm.control.recorder import EpisodeHeader
 from latentarm.core.journal_limits import JournalLimits
 from latentarm.core.types import Command, StepRecord, Stop
+from latentarm.recordings.journal_reader import read_journal
+from latentarm.recordings.journal_writer import EpisodeHeader
 from latentarm.web.arm_process import episode_writer
 from latentarm.web.arm_process.episode_writer import EpisodeWriter
 

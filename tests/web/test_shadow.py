@@ -16,13 +16,13 @@ from arms.xarm_rig import HERE
 from arms.xarm_server import serving
 from latentarm.cli import main
 from latentarm.control.clock import MonotonicClock
-from latentarm.control.export import demonstrations_of, export_journal
 from latentarm.control.input_port import InputSource
-from latentarm.control.journal import read_journal
 from latentarm.control.loop import ControlLoop
 from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray, Input, StepRecord
 from latentarm.demonstrations.dataset import read_dataset
+from latentarm.recordings.dataset_export import demonstrations_of, export_journal
+from latentarm.recordings.journal_reader import read_journal
 from latentarm.robots.panda import panda
 from latentarm.web.arm_process.arm_lifecycle import first_arm
 from latentarm.web.arm_process.drive_setup import DriveSetup, Spec, load_setup

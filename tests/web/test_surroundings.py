@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from wooden_server import wooden_server
 
-from latentarm.control.journal import read_journal
 from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations, Episode, Pose
 from latentarm.demonstrations.dataset import write_dataset
 from latentarm.demonstrations.things import ENVIRONMENT
+from latentarm.recordings.journal_reader import read_journal
 from latentarm.runs.options import TrainOptions
 from latentarm.runs.training import train_run
 from latentarm.surroundings.contract import Sighting

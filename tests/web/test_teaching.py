@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from latentarm.control.recorder import EpisodeHeader, Recorder
 from latentarm.core.errors import UserError
 from latentarm.core.types import Command, Goal, Pose, Provenance, StepRecord
+from latentarm.recordings.journal_writer import EpisodeHeader, Recorder
 from latentarm.runs.folder import read_run
 from latentarm.web.arm_process.drive_setup import Spec, load_setup
 from latentarm.web.jobs.chosen import Chosen, check_alike, read_chosen

@@ -10,13 +10,13 @@ import pytest
 from latentarm.arms.catalogue import make_scene_arm
 from latentarm.arms.kinematic import KinematicArm
 from latentarm.control.clock import SimulatedClock
-from latentarm.control.export import export_journal
-from latentarm.control.journal import read_journal
 from latentarm.core.errors import UserError
 from latentarm.core.types import Pose
 from latentarm.demonstrations.contexts import context_layout
 from latentarm.demonstrations.dataset import read_dataset
 from latentarm.demonstrations.things import ENVIRONMENT
+from latentarm.recordings.dataset_export import export_journal
+from latentarm.recordings.journal_reader import read_journal
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.scene.scene import Scene, SceneState
 from latentarm.robots.scene.thing import Grains, Part, Thing

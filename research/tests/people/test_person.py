@@ -9,8 +9,8 @@ from latentarm.core.errors import UserError
 from latentarm.core.types import Context
 from latentarm_research.people.boltzmann import BoltzmannConfig, OneStep
 from latentarm_research.people.contract import KnowsTheArm, LoopLimits, Moment, Settled
-from latentarm_research.people.hand import UNSTEADY, Hand, HandConfig
 from latentarm_research.people.linear_guess import LinearGuessConfig
+from latentarm_research.people.motor_noise import UNSTEADY, Hand, HandConfig
 from latentarm_research.people.page_rates import PAGE
 from latentarm_research.people.person import Person, SimulatedPerson
 

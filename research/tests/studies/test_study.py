@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from latentarm.core.errors import UserError
+from latentarm.core.figure_style import new_figure
 from latentarm.core.parallel import CellError
-from latentarm.core.style import new_figure
 from latentarm.core.types import Row
 from latentarm_research.studies import page as printing
 from latentarm_research.studies.page import HTML, PDF, print_page

@@ -19,7 +19,7 @@ from latentarm.demonstrations.folders import check_vacant
 from latentarm.runs.options import Json
 
 if TYPE_CHECKING:
-    from latentarm.control.recordings import NumberedEpisode
+    from latentarm.recordings.folder import NumberedEpisode
 
 UNKNOWN = "–"
 _BY = ("person", "run", "run_fingerprint", "profile", "controller", "device", "version")
@@ -127,9 +127,9 @@ def export(
 
     For example: latentarm export teleop --episodes 1 3-5 --out eaten
     """
-    from latentarm.control.mcap_export import write_mcap
-    from latentarm.control.recordings import list_recordings, read_episodes, read_recordings
     from latentarm.demonstrations.dataset import write_dataset
+    from latentarm.recordings.folder import list_recordings, read_episodes, read_recordings
+    from latentarm.recordings.mcap_export import write_mcap
 
     recordings = list_recordings(source)
     if out is None:

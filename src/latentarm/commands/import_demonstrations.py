@@ -8,7 +8,7 @@ from tyro.conf import Positional, arg
 from latentarm.commands.configuration import write_options
 from latentarm.commands.options import LimitsFile, RobotName
 from latentarm.commands.output import note, print_renderables, say, show
-from latentarm.demonstrations.import_options import ImportOptions
+from latentarm.demonstrations.importers.options import ImportOptions
 from latentarm.runs.options import EndEffector, Json
 
 
@@ -33,7 +33,7 @@ def import_demonstrations(
     For example: latentarm import panda_pour_coffee.npz pour
     """
     from latentarm.commands.inspect import import_table, summary
-    from latentarm.demonstrations.importing import import_to
+    from latentarm.demonstrations.importers.importing import import_to
     from latentarm.robots.catalogue import load_robot
     from latentarm.robots.limits_file import read_limits
     from latentarm.robots.notices import notices

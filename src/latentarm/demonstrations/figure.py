@@ -13,8 +13,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from latentarm.core.figure_style import FIGURE_DPI, literal, tidy
 from latentarm.core.files import written_whole
-from latentarm.core.style import FIGURE_DPI, literal, tidy
 from latentarm.core.types import Demonstrations
 from latentarm.robots.limits import JointLimits
 

@@ -8,8 +8,8 @@ import numpy as np
 
 from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations, Episode, FloatArray, IntArray
+from latentarm.demonstrations.importers.source import SourceData
 from latentarm.demonstrations.plausibility import RATE_TOLERANCE
-from latentarm.demonstrations.source import SourceData
 
 Gaps = Literal["refuse", "split", "keep"]
 """Refuse an episode with a gap, make an episode of each part, or keep it whole."""

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from latentarm.core.style import FONT_SIZE, SMALL_FONT_SIZE, legend_below, new_figure, tidy
+from latentarm.core.figure_style import FONT_SIZE, SMALL_FONT_SIZE, legend_below, new_figure, tidy
 from latentarm.core.types import FloatArray
 from latentarm.evaluation.consistency import line_fit, r_squared, signed_distance
 from latentarm.evaluation.contract import DecodesActions, PlacesTool

@@ -2,7 +2,7 @@
 
 from typing import Final
 
-from latentarm.core.style import Look
+from latentarm.core.figure_style import Look
 from latentarm.models.catalogue import KINDS
 
 _PLAIN: Final = ("#000000", "o", "-")

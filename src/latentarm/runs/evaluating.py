@@ -13,8 +13,8 @@ from threadpoolctl import threadpool_limits
 
 from latentarm.assistance.annotation import prepared
 from latentarm.core.errors import UserError
+from latentarm.core.figure_style import save_figure
 from latentarm.core.parallel import check_jobs, run_grid
-from latentarm.core.style import save_figure
 from latentarm.core.types import Demonstrations, FloatArray, Row
 from latentarm.core.untrusted.documents import read_object
 from latentarm.core.untrusted.opening import is_missing

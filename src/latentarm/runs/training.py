@@ -20,7 +20,7 @@ from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations, Row
 from latentarm.core.untrusted.opening import is_missing
 from latentarm.demonstrations.dataset import read_dataset, write_dataset
-from latentarm.demonstrations.source import join
+from latentarm.demonstrations.importers.source import join
 from latentarm.demonstrations.split import select_episodes, split_episodes
 from latentarm.demonstrations.things import ENVIRONMENT
 from latentarm.demonstrations.timing import check_one_rate

@@ -30,8 +30,8 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from latentarm.cli import main
-from latentarm.control.recorder import EpisodeHeader, Recorder
 from latentarm.demonstrations.dataset import write_dataset
+from latentarm.recordings.journal_writer import EpisodeHeader, Recorder
 from latentarm.robots import model_file  # noqa: F401 - MuJoCo is loaded before the children are forked
 from latentarm.tasks.table_top import TableTop
 

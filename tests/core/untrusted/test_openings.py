@@ -47,13 +47,15 @@ ALLOWED = {
     "core/untrusted/memory.py": {"_STATUS.read_text"},
     "core/files.py": {"os.open", "part.open"},  # what it writes itself
     "core/call_log.py": {"path.open"},  # the same
-    "control/mcap_export.py": {"part.open"},  # the same
+    "recordings/mcap_export.py": {"part.open"},  # the same
     "core/machine.py": {"file.read_text"},  # the kernel's
     "surroundings/process.py": {"json.loads"},  # short messages of our own process
     "web/arm_process/replay.py": {"packed.open", "path.open"},  # a member of a report within bounds; its copy
     "web/arm_process/incident.py": {"path.open"},  # copies, in a folder of its own
     "cli.py": {"os.open"},  # the null device
-    "demonstrations/npz_file.py": {"archive.open"},  # a member of an archive that was opened within bounds
+    "demonstrations/importers/npz_file.py": {
+        "archive.open"
+    },  # a member of an archive opened within bounds
     "web/records/person_zip.py": {"archive.open"},  # the same
     "research/studies/results_folder.py": {
         "json.loads",  # what it has just written

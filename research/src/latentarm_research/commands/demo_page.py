@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Final, final
 
 from latentarm.core.errors import UserError
-from latentarm.core.style import save_figure
+from latentarm.core.figure_style import save_figure
 from latentarm.core.types import Row
 from latentarm.evaluation.looks import look_of
 from latentarm.evaluation.table import format_figure, markdown_table, measure_name, series_name

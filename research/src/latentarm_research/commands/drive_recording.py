@@ -6,13 +6,13 @@ from pathlib import Path
 from typing import TypeVar, final
 
 from latentarm.assistance.controllers.contract import Controller
-from latentarm.control.export import export_journal
-from latentarm.control.recorder import EpisodeHeader, Recorder
 from latentarm.core.errors import UserError
 from latentarm.core.parallel import counting_bar
 from latentarm.core.types import Goal, StepRecord
 from latentarm.demonstrations.folders import check_vacant
 from latentarm.demonstrations.provenance import provenance_now
+from latentarm.recordings.dataset_export import export_journal
+from latentarm.recordings.journal_writer import EpisodeHeader, Recorder
 from latentarm.robots.robot import Robot
 from latentarm.runs.folder import weights_fingerprint
 from latentarm.surroundings.catalogue import SCENE

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from latentarm.core.style import SMALL_FONT_SIZE, legend_below, literal, new_figure, save_figure
+from latentarm.core.figure_style import SMALL_FONT_SIZE, legend_below, literal, new_figure, save_figure
 from latentarm.core.types import Demonstrations, FloatArray
 from latentarm.robots.robot import Robot
 from latentarm.tasks.place import Place

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final, Literal, final
 
 import numpy as np
 
-from latentarm.core.style import FONT_SIZE, legend_below, new_figure, save_figure, tidy
+from latentarm.core.figure_style import FONT_SIZE, legend_below, new_figure, save_figure, tidy
 from latentarm.core.types import FloatArray, Goal
 from latentarm.evaluation.looks import look_of
 from latentarm_research.drives.trace import Trace

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from latentarm.arms.contract import Arm
 from latentarm.arms.mujoco import MujocoArm
 from latentarm.core.errors import UserError
-from latentarm.core.style import FONT_SIZE, SMALL_FONT_SIZE, TWO_COLUMNS_MM, new_figure
+from latentarm.core.figure_style import FONT_SIZE, SMALL_FONT_SIZE, TWO_COLUMNS_MM, new_figure
 from latentarm.core.types import FloatArray
 
 if TYPE_CHECKING:

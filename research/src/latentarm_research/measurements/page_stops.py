@@ -21,9 +21,9 @@ from typing import Final, final
 import numpy as np
 
 from latentarm.control.clock import MonotonicClock
-from latentarm.control.journal import JournalEpisode, read_journal
 from latentarm.core.errors import UserError
 from latentarm.core.types import BoolArray, FloatArray
+from latentarm.recordings.journal_reader import JournalEpisode, read_journal
 from latentarm.robots.kinematics.stillness import STILL_RAD_S
 from latentarm_research.measurements.bare_chromium import Browser, Proxy, Tab, browser
 from latentarm_research.measurements.catalogue import PageStops

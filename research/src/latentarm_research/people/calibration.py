@@ -11,7 +11,7 @@ from typing import Any, Final, final
 class Calibration:
     """The figures of the simulated people that are fitted; all others are given."""
 
-    push_variation: float  # of the median person, see `latentarm_research.people.hand.HandConfig`
+    push_variation: float  # of the median person, see `latentarm_research.people.motor_noise.HandConfig`
     switch_s: float  # the median person's time for a mode switch, in which the stick is let go, s
 
 

@@ -2,8 +2,8 @@
 
 from typing import Final
 
-from latentarm_research.people.hand import REACTION_S, UNSTEADY, HandConfig
 from latentarm_research.people.linear_guess import LinearGuessConfig
+from latentarm_research.people.motor_noise import REACTION_S, UNSTEADY, HandConfig
 from latentarm_research.people.names import OperatorName
 from latentarm_research.people.own_directions import OwnSpeed
 from latentarm_research.people.page_rates import SLOW

@@ -12,9 +12,9 @@ from latentarm.robots.robot import Robot
 from latentarm_research.people import contract
 from latentarm_research.people.anticipation import Anticipation
 from latentarm_research.people.boltzmann import BoltzmannConfig, OneStep
-from latentarm_research.people.hand import Hand, HandConfig
 from latentarm_research.people.lapses import LapseConfig, Lapsing
 from latentarm_research.people.linear_guess import LinearGuess, LinearGuessConfig
+from latentarm_research.people.motor_noise import Hand, HandConfig
 from latentarm_research.people.own_directions import OwnSpeed
 from latentarm_research.people.page_rates import PageRates, Screen, Wire
 from latentarm_research.people.planning import Planning, PlanningConfig

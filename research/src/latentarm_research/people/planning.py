@@ -10,8 +10,8 @@ from latentarm.core.types import FloatArray, Input, IntArray
 from latentarm.robots.robot import Robot
 from latentarm_research.people.boltzmann import BoltzmannConfig, OneStep
 from latentarm_research.people.contract import Decision, Imagination, LoopLimits, Moment
-from latentarm_research.people.hand import within_reach
 from latentarm_research.people.motion import carried
+from latentarm_research.people.motor_noise import within_reach
 
 BEYOND: Final = 0.01
 """Initial inputs of a plan lie this far beyond the dead zone: within it nothing they do changes anything, and

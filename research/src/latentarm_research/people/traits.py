@@ -6,9 +6,9 @@ from typing import Final, final
 
 from latentarm.core.types import FloatArray
 from latentarm_research.people.boltzmann import BoltzmannConfig
-from latentarm_research.people.hand import HandConfig
 from latentarm_research.people.lapses import LapseConfig
 from latentarm_research.people.linear_guess import LinearGuessConfig
+from latentarm_research.people.motor_noise import HandConfig
 from latentarm_research.people.own_directions import OwnDirections, OwnSpeed
 from latentarm_research.people.page_rates import PAGE, PageRates
 from latentarm_research.people.person import Person

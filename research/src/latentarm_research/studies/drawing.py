@@ -6,7 +6,14 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from latentarm.core.style import FONT_SIZE, SMALL_FONT_SIZE, TWO_COLUMNS_MM, legend_below, new_figure, tidy
+from latentarm.core.figure_style import (
+    FONT_SIZE,
+    SMALL_FONT_SIZE,
+    TWO_COLUMNS_MM,
+    legend_below,
+    new_figure,
+    tidy,
+)
 from latentarm.core.types import FloatArray
 from latentarm.evaluation.looks import look_of
 from latentarm.robots.robot import Robot

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any, Final, Generic, Protocol, TypeVar
 from threadpoolctl import threadpool_limits
 
 from latentarm.core.errors import UserError
+from latentarm.core.figure_style import save_figure
 from latentarm.core.files import write_text
 from latentarm.core.parallel import check_jobs, run_grid
-from latentarm.core.style import save_figure
 from latentarm.core.types import Row
 from latentarm.core.untrusted.console import VisibleConsole
 from latentarm.evaluation.results import write_results

@@ -13,7 +13,7 @@ from latentarm.alignment.contract import identity
 from latentarm.alignment.demonstrated import demonstrated_motions
 from latentarm.assistance.controllers.latent import LatentController
 from latentarm.core.context import ContextLayout
-from latentarm.core.style import save_figure
+from latentarm.core.figure_style import save_figure
 from latentarm.core.types import Goal, Pose
 from latentarm.robots.catalogue import load_robot
 from latentarm.tasks.goal_task import GoalTask

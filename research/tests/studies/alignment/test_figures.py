@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from figure_faults import faults
-from latentarm.core.style import MM_PER_INCH, TWO_COLUMNS_MM
+from latentarm.core.figure_style import MM_PER_INCH, TWO_COLUMNS_MM
 from latentarm.evaluation.looks import look_of
 from latentarm_research.studies.alignment.curves import CHOICES
 from latentarm_research.studies.alignment.figures import conditions_figure, curves_figure

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from latentarm.core.types import Row
-from latentarm.demonstrations.importing import import_to
+from latentarm.demonstrations.importers.importing import import_to
 from latentarm.robots.catalogue import load_robot
 from latentarm_research.studies.compare.preset import Preset
 from latentarm_research.studies.compare.study import compare_study

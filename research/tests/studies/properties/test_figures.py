@@ -5,7 +5,7 @@ import pytest
 from matplotlib.colors import to_rgb
 
 from figure_faults import faults
-from latentarm.core.style import MM_PER_INCH, TWO_COLUMNS_MM, shade
+from latentarm.core.figure_style import MM_PER_INCH, TWO_COLUMNS_MM, shade
 from latentarm.core.types import Row
 from latentarm.evaluation.effects import held_paths
 from latentarm.evaluation.looks import LOOKS, look_of

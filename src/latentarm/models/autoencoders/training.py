@@ -10,9 +10,9 @@ from torch import Tensor
 from latentarm.models.autoencoders import runtime
 from latentarm.models.batches import Batch
 from latentarm.models.kind import ModelKind
+from latentarm.models.losses import kl_divergence, reconstruction_error, sample_latent
 from latentarm.models.networks import Networks, mlp, mlp_along
 from latentarm.models.neural import NeuralModel
-from latentarm.models.objectives import kl_divergence, reconstruction_error, sample_latent
 from latentarm.models.parameters import NotNegative
 
 

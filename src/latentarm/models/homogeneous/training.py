@@ -12,10 +12,10 @@ from latentarm.models.batches import Batch, TrainingData
 from latentarm.models.homogeneous.directions import nearest_direction, odd_degrees
 from latentarm.models.homogeneous.runtime import BEND_SIZE, DAMPING_M2, HOMOGENEOUS, ORDERS
 from latentarm.models.kind import Dimensions, ModelKind
+from latentarm.models.losses import reconstruction_error
 from latentarm.models.networks import Networks, mlp
 from latentarm.models.neural import NeuralModel
 from latentarm.models.numpy_networks import NORM_FLOOR
-from latentarm.models.objectives import reconstruction_error
 from latentarm.models.parameters import NotNegative
 from latentarm.models.tool_contexts import PLACE, ToolSizes
 

@@ -19,10 +19,10 @@ from latentarm.models.isometric.runtime import (
     REFINEMENTS,
 )
 from latentarm.models.kind import Dimensions, ModelKind
+from latentarm.models.losses import reconstruction_error
 from latentarm.models.networks import Networks, mlp
 from latentarm.models.neural import NeuralModel
 from latentarm.models.numpy_networks import NORM_FLOOR
-from latentarm.models.objectives import reconstruction_error
 from latentarm.models.parameters import NotNegative
 from latentarm.models.tool_contexts import PLACE, TWIST, ToolSizes
 from latentarm.models.torch_tool_contexts import applied, inner

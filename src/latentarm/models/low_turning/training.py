@@ -12,11 +12,11 @@ from latentarm.models.batches import Batch
 from latentarm.models.homogeneous.directions import nearest_direction, odd_degrees
 from latentarm.models.homogeneous.training import principal_start
 from latentarm.models.kind import ModelKind
+from latentarm.models.losses import reconstruction_error
 from latentarm.models.low_turning.runtime import DAMPING_M2, LOW_TURNING, ORDERS, bend_sizes
 from latentarm.models.networks import Networks, mlp
 from latentarm.models.neural import NeuralModel
 from latentarm.models.numpy_networks import NORM_FLOOR
-from latentarm.models.objectives import reconstruction_error
 from latentarm.models.parameters import Count, NotNegative
 from latentarm.models.tool_contexts import PLACE, TWIST, ToolSizes
 

@@ -8,10 +8,10 @@ from torch import Tensor
 
 from latentarm.models.batches import Batch
 from latentarm.models.kind import ModelKind
+from latentarm.models.losses import reconstruction_error
 from latentarm.models.networks import Networks, mlp
 from latentarm.models.neural import NeuralModel
 from latentarm.models.numpy_networks import NORM_FLOOR
-from latentarm.models.objectives import reconstruction_error
 from latentarm.models.scl import runtime
 
 

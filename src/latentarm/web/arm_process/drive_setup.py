@@ -18,7 +18,6 @@ from latentarm.assistance.controllers.joined import JoinedController
 from latentarm.assistance.controllers.latent import latent_controller
 from latentarm.assistance.controllers.to_pose import ToPose
 from latentarm.assistance.goal_blending import GoalBlending
-from latentarm.control.recorder import EpisodeHeader
 from latentarm.control.step import Step
 from latentarm.core.call_log import CallLog
 from latentarm.core.context import BELIEF
@@ -27,6 +26,7 @@ from latentarm.core.exact_json import as_text_json
 from latentarm.core.journal_limits import JournalLimits
 from latentarm.core.types import FloatArray, Pose
 from latentarm.demonstrations.provenance import provenance_now
+from latentarm.recordings.journal_writer import EpisodeHeader
 from latentarm.robots.kinematics.obstacles import Obstacle
 from latentarm.robots.scene.scene import Scene
 from latentarm.robots.scene.thing import Part, Thing

@@ -11,11 +11,11 @@ from typing import Final, final
 
 import numpy as np
 
-from latentarm.control.recorder import EpisodeHeader, Recorder
 from latentarm.core.errors import UserError
 from latentarm.core.journal_limits import JournalFullError, JournalLimits, JournalLostError
 from latentarm.core.types import FloatArray, StepRecord, Stop
 from latentarm.core.untrusted.terminal import one_line
+from latentarm.recordings.journal_writer import EpisodeHeader, Recorder
 from latentarm.web.protocol.notice import Notice, notice_of_stop
 from latentarm.web.protocol.report import Recording
 

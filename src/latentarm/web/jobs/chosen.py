@@ -6,7 +6,7 @@ from itertools import groupby
 from pathlib import Path
 from typing import Final, final
 
-from latentarm.control.journal import JournalEpisode, read_journal
+from latentarm.recordings.journal_reader import JournalEpisode, read_journal
 from latentarm.robots.limits_file import limits_document
 from latentarm.web.protocol.notice import NoticeCode, NoticeError
 

@@ -8,10 +8,10 @@ from typing import Final
 
 import numpy as np
 
-from latentarm.control.export import ImplausibleWarning, demonstrations_of
-from latentarm.control.journal import JournalEpisode
 from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations
+from latentarm.recordings.dataset_export import ImplausibleWarning, demonstrations_of
+from latentarm.recordings.journal_reader import JournalEpisode
 from latentarm.web.protocol.learning_messages import Lesson
 
 SHORT_SHARE: Final = 0.5  # a recording that moves for less than this share of the usual one is short

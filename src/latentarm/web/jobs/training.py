@@ -11,9 +11,9 @@ from typing import Final, final
 
 from pydantic import TypeAdapter
 
-from latentarm.control.export import ImplausibleWarning, demonstrations_of
 from latentarm.core.types import Demonstrations
 from latentarm.models.catalogue import DEFAULT_MODEL, KINDS
+from latentarm.recordings.dataset_export import ImplausibleWarning, demonstrations_of
 from latentarm.web.jobs.chosen import Chosen, check_alike, read_chosen
 from latentarm.web.jobs.job import Job, Wire
 from latentarm.web.jobs.lesson import lesson_of, moving_seconds

@@ -11,11 +11,11 @@ from typing import Annotated, Final, Literal, final
 
 from pydantic import Field
 
-from latentarm.control.journal import list_journal
-from latentarm.control.recordings import JOURNAL_SUFFIX
 from latentarm.core.errors import UserError
 from latentarm.core.untrusted.opening import is_missing
 from latentarm.core.untrusted.terminal import one_line
+from latentarm.recordings.folder import JOURNAL_SUFFIX
+from latentarm.recordings.journal_reader import list_journal
 from latentarm.web.protocol.notice import Message, Notice, NoticeError
 from latentarm.web.records.drives import UNDO_S
 from latentarm.web.records.record_files import disk_errors, read_record, write_record

@@ -24,11 +24,11 @@ from uvicorn.protocols.http.h11_impl import H11Protocol
 from latentarm.arms.catalogue import make_real_arm
 from latentarm.arms.checking import look_at
 from latentarm.control.clock import MonotonicClock
-from latentarm.control.recordings import JOURNAL_SUFFIX
 from latentarm.core.errors import UserError
 from latentarm.core.logs import logging_also_to
 from latentarm.core.punctuality import HANG_UPS, short_collections
 from latentarm.demonstrations.folders import locked
+from latentarm.recordings.folder import JOURNAL_SUFFIX
 from latentarm.robots.notices import notices
 from latentarm.surroundings.catalogue import TOUCH
 from latentarm.surroundings.process import SourceProcess

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from latentarm.core.style import legend_below, tidy
+from latentarm.core.figure_style import legend_below, tidy
 from latentarm.core.types import Goal
 from latentarm.evaluation.looks import look_of
 from latentarm.tasks.table_top import TableTop

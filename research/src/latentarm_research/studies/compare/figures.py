@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from latentarm.core.style import FONT_SIZE, legend_below, literal, tidy
+from latentarm.core.figure_style import FONT_SIZE, legend_below, literal, tidy
 from latentarm.core.types import Row
 from latentarm.evaluation.looks import look_of
 from latentarm_research.studies.compare.tables import condition, with_demonstrations

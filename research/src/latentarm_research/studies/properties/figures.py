@@ -3,7 +3,7 @@
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Final, NamedTuple
 
-from latentarm.core.style import SMALL_FONT_SIZE, tidy
+from latentarm.core.figure_style import SMALL_FONT_SIZE, tidy
 from latentarm.core.types import Row
 from latentarm.evaluation.looks import look_of
 from latentarm.evaluation.table import format_figure

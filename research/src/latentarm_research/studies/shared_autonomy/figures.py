@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from latentarm.core.style import COLUMN_MM, FONT_SIZE, new_figure, tidy
+from latentarm.core.figure_style import COLUMN_MM, FONT_SIZE, new_figure, tidy
 from latentarm.core.types import FloatArray
 from latentarm.evaluation.looks import look_of
 from latentarm_research.drives.arm_figure import draw_arm as draw_solid_arm

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from latentarm.core.style import FONT_SIZE, SMALL_FONT_SIZE, tidy
+from latentarm.core.figure_style import FONT_SIZE, SMALL_FONT_SIZE, tidy
 from latentarm.evaluation.looks import look_of
 from latentarm_research.studies.drawing import first_panels, name_series, panel_grid, title
 from latentarm_research.studies.tasks.preset import Condition

@@ -12,7 +12,7 @@ import numpy as np
 
 from latentarm.core.errors import UserError
 from latentarm.core.files import write_text
-from latentarm.demonstrations.csv_lines import read_lines
+from latentarm.demonstrations.importers.csv_lines import read_lines
 from latentarm_research.studies.streams import generator
 from latentarm_research.studies.tables import markdown_table
 from latentarm_research.user_studies.definition import Definition

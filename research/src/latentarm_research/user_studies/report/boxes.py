@@ -5,7 +5,14 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from latentarm.core.style import SMALL_FONT_SIZE, TWO_COLUMNS_MM, legend_below, literal, new_figure, tidy
+from latentarm.core.figure_style import (
+    SMALL_FONT_SIZE,
+    TWO_COLUMNS_MM,
+    legend_below,
+    literal,
+    new_figure,
+    tidy,
+)
 from latentarm.core.types import FloatArray
 from latentarm.evaluation.measures import unit_of
 from latentarm_research.user_studies.analysis.means import person_mean

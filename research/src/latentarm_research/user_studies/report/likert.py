@@ -6,7 +6,14 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from latentarm.core.style import SMALL_FONT_SIZE, TWO_COLUMNS_MM, legend_below, literal, new_figure, tidy
+from latentarm.core.figure_style import (
+    SMALL_FONT_SIZE,
+    TWO_COLUMNS_MM,
+    legend_below,
+    literal,
+    new_figure,
+    tidy,
+)
 from latentarm.core.types import FloatArray
 from latentarm_research.user_studies.answers.scales import Rated
 from latentarm_research.user_studies.definition import Definition, StudyTask

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from latentarm.core.style import (
+from latentarm.core.figure_style import (
     FONT_SIZE,
     SMALL_FONT_SIZE,
     TWO_COLUMNS_MM,

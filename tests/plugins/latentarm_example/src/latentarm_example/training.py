@@ -8,9 +8,9 @@ from torch import Tensor
 
 from latentarm.models.batches import Batch
 from latentarm.models.kind import ModelKind
+from latentarm.models.losses import reconstruction_error
 from latentarm.models.networks import Networks, mlp
 from latentarm.models.neural import NeuralModel
-from latentarm.models.objectives import reconstruction_error
 from latentarm_example.model import STRAIGHT
 
 

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from latentarm.core.style import FONT_SIZE, TWO_COLUMNS_MM, new_figure
+from latentarm.core.figure_style import FONT_SIZE, TWO_COLUMNS_MM, new_figure
 from latentarm.core.types import FloatArray, Row
 from latentarm_research.studies.drawing import plane, row_of_panels, stacked_parts, title
 from latentarm_research.studies.properties.figures import beside, draw_losses, draw_points, points

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from latentarm.core.style import FONT_SIZE, TWO_COLUMNS_MM, new_figure, shade
+from latentarm.core.figure_style import FONT_SIZE, TWO_COLUMNS_MM, new_figure, shade
 from latentarm.core.types import FloatArray, Row
 from latentarm_research.studies import drawing
 from latentarm_research.studies.properties.motion_figures.shown import (

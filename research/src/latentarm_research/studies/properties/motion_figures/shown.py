@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from latentarm.core.style import SMALL_FONT_SIZE, Look, tidy
+from latentarm.core.figure_style import SMALL_FONT_SIZE, Look, tidy
 from latentarm.core.types import FloatArray, Row
 from latentarm.evaluation.contract import DecodesActions, next_context
 from latentarm.evaluation.effects import axis_grid

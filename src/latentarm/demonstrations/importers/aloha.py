@@ -14,9 +14,9 @@ import numpy as np
 from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations, Episode
 from latentarm.demonstrations.bounds import check_values
-from latentarm.demonstrations.hdf5_tables import group, member, opened_hdf5, table
+from latentarm.demonstrations.importers.hdf5_tables import group, member, opened_hdf5, table
+from latentarm.demonstrations.importers.source import SourceData
 from latentarm.demonstrations.info import default_joint_names
-from latentarm.demonstrations.source import SourceData
 
 _ARM: Final = ("waist", "shoulder", "elbow", "forearm_roll", "wrist_angle", "wrist_rotate", "gripper")
 COLUMNS: Final = tuple(f"{side}_{joint}" for side in ("left", "right") for joint in _ARM)

@@ -24,8 +24,8 @@ from latentarm.core.types import Demonstrations, Episode, FloatArray, Pose
 from latentarm.core.untrusted.opening import is_missing, read_bytes
 from latentarm.core.untrusted.yaml_file import parse_yaml
 from latentarm.demonstrations.bounds import MAX_EPISODES, check_values
-from latentarm.demonstrations.csv_lines import CsvTable
-from latentarm.demonstrations.source import SourceData
+from latentarm.demonstrations.importers.csv_lines import CsvTable
+from latentarm.demonstrations.importers.source import SourceData
 from latentarm.demonstrations.things import ENVIRONMENT
 from latentarm.demonstrations.timing import typical_rate_hz
 from latentarm.robots.kinematics.pose_rows import stored_rows

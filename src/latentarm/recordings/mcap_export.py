@@ -7,11 +7,11 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, Final
 
-from latentarm.control.journal import JournalEpisode
-from latentarm.control.recorder import EpisodeHeader
 from latentarm.core.errors import UserError
 from latentarm.core.files import written_whole
 from latentarm.core.types import StepRecord
+from latentarm.recordings.journal_reader import JournalEpisode
+from latentarm.recordings.journal_writer import EpisodeHeader
 
 _NUMBER: Final[dict[str, Any]] = {"type": "number"}
 _NUMBERS: Final[dict[str, Any]] = {"type": "array", "items": _NUMBER}

@@ -10,14 +10,21 @@ from typing import Any, final
 
 import numpy as np
 
-from latentarm.control.recorder import LIMITS, EpisodeHeader, check_is_journal
-from latentarm.control.samples import ALWAYS, COMPACT, gripper_command, gripper_reading, thing_poses, unpacked
 from latentarm.core.errors import UserError
 from latentarm.core.types import NO_THINGS, Command, FloatArray, Goal, Pose, StepRecord, Stop
 from latentarm.core.untrusted.documents import parse_object
 from latentarm.core.untrusted.memory import bounded_memory
 from latentarm.core.untrusted.opening import check_file, is_missing
 from latentarm.demonstrations.provenance import parse_provenance
+from latentarm.recordings.journal_writer import LIMITS, EpisodeHeader, check_is_journal
+from latentarm.recordings.samples import (
+    ALWAYS,
+    COMPACT,
+    gripper_command,
+    gripper_reading,
+    thing_poses,
+    unpacked,
+)
 from latentarm.robots.limits import JointLimits
 from latentarm.robots.limits_file import parse_limits
 

@@ -4,9 +4,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
+from latentarm.demonstrations.importers.source import ActionKind, SourceData
 from latentarm.demonstrations.info import ACTION, OLDER_VERSIONS, STATE, Info, read_info
 from latentarm.demonstrations.reader import read_episodes, read_episodes_v2
-from latentarm.demonstrations.source import ActionKind, SourceData
 
 PLUGIN: Final = "latentarm"
 """LeRobot's name for the robot of `lerobot_robot_latentarm`, whatever arm it drives: positions in rad, the

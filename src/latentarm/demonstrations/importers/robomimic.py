@@ -25,9 +25,9 @@ from latentarm.core.types import Demonstrations, Episode, FloatArray
 from latentarm.core.untrusted.documents import parse_object
 from latentarm.demonstrations.bounds import check_values
 from latentarm.demonstrations.gripper import ACTION_GRIPPER, GRIPPER, GRIPPER_WIDTH, going_to
-from latentarm.demonstrations.hdf5_tables import group, member, opened_hdf5, path_in, table
+from latentarm.demonstrations.importers.hdf5_tables import group, member, opened_hdf5, path_in, table
+from latentarm.demonstrations.importers.source import SourceData
 from latentarm.demonstrations.info import MAX_RATE_HZ, default_joint_names
-from latentarm.demonstrations.source import SourceData
 
 STATE_KEYS: Final = ("robot0_joint_pos", "joint_states")
 SECOND_ARM_KEY: Final = "robot1_joint_pos"

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, final
 
-from latentarm.control.export import demonstrations_of
-from latentarm.control.journal import JournalEntry, JournalEpisode, list_journal, read_journal
 from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations
+from latentarm.recordings.dataset_export import demonstrations_of
+from latentarm.recordings.journal_reader import JournalEntry, JournalEpisode, list_journal, read_journal
 
 JOURNAL_SUFFIX: Final = ".sqlite"
 

@@ -16,7 +16,7 @@ from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations, Episode, FloatArray
 from latentarm.core.untrusted.opening import check_file
 from latentarm.demonstrations.bounds import MAX_COLUMNS, MAX_FILE_BYTES, check_values
-from latentarm.demonstrations.source import SourceData
+from latentarm.demonstrations.importers.source import SourceData
 from latentarm.demonstrations.timing import typical_rate_hz
 
 ROS1: Final = b"#ROSBAG V"

@@ -6,7 +6,7 @@ import pytest
 from latentarm.core.errors import UserError
 from latentarm.core.types import Context, Input, Pose
 from latentarm_research.people.contract import Moment
-from latentarm_research.people.hand import UNSTEADY, Hand, HandConfig
+from latentarm_research.people.motor_noise import UNSTEADY, Hand, HandConfig
 
 NOWHERE = Pose(np.zeros(3), np.eye(3))
 PERIOD_S = 0.01

@@ -21,9 +21,9 @@ import numpy as np
 from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations, Episode, FloatArray
 from latentarm.demonstrations.bounds import MAX_COLUMNS, MAX_EPISODES
-from latentarm.demonstrations.columns import is_gripper
-from latentarm.demonstrations.csv_lines import CsvTable
-from latentarm.demonstrations.source import SourceData
+from latentarm.demonstrations.importers.columns import is_gripper
+from latentarm.demonstrations.importers.csv_lines import CsvTable
+from latentarm.demonstrations.importers.source import SourceData
 from latentarm.demonstrations.timing import typical_rate_hz
 
 ACTION_PREFIX: Final = "action."

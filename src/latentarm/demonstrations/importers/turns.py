@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 
 from latentarm.core.types import BoolArray, Episode, FloatArray
-from latentarm.demonstrations.units import TARGET_POSITION
+from latentarm.demonstrations.importers.units import TARGET_POSITION
 from latentarm.robots.robot import Robot
 
 TURN: Final = 2.0 * np.pi

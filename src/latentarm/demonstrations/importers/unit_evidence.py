@@ -7,8 +7,8 @@ import numpy as np
 
 from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations, FloatArray
-from latentarm.demonstrations.turns import TURN, turning
-from latentarm.demonstrations.units import Unit
+from latentarm.demonstrations.importers.turns import TURN, turning
+from latentarm.demonstrations.importers.units import Unit
 from latentarm.robots.robot import Robot
 
 _READABLE: Final = 1e6

@@ -9,21 +9,21 @@ from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations, StrPath
 from latentarm.core.untrusted.memory import bounded_memory
 from latentarm.core.untrusted.opening import is_missing, opened
-from latentarm.demonstrations.bag_file import MCAP, ROS1, read_bag
 from latentarm.demonstrations.bounds import MAX_FILE_BYTES
-from latentarm.demonstrations.csv_file import read_csv
 from latentarm.demonstrations.dataset import write_dataset
 from latentarm.demonstrations.folders import check_vacant
-from latentarm.demonstrations.harmonic import harmonic_runs, read_harmonic
-from latentarm.demonstrations.import_options import ActionChoice, ImportOptions
+from latentarm.demonstrations.importers.bag_file import MCAP, ROS1, read_bag
+from latentarm.demonstrations.importers.csv_file import read_csv
+from latentarm.demonstrations.importers.harmonic import harmonic_runs, read_harmonic
+from latentarm.demonstrations.importers.lerobot import read_lerobot
+from latentarm.demonstrations.importers.npz_file import read_npz
+from latentarm.demonstrations.importers.options import ActionChoice, ImportOptions
+from latentarm.demonstrations.importers.robot_names import is_so_arm
+from latentarm.demonstrations.importers.source import SourceData, join_files
+from latentarm.demonstrations.importers.translation import translate
 from latentarm.demonstrations.info import INFO_PATH
-from latentarm.demonstrations.lerobot import read_lerobot
-from latentarm.demonstrations.npz_file import read_npz
 from latentarm.demonstrations.plausibility import check_rate, speed_warning
-from latentarm.demonstrations.robot_names import is_so_arm
-from latentarm.demonstrations.source import SourceData, join_files
 from latentarm.demonstrations.timing import check_one_rate, resampled, split_at_gaps
-from latentarm.demonstrations.translation import translate
 from latentarm.demonstrations.validation import validate
 from latentarm.robots.robot import Robot
 
@@ -140,8 +140,8 @@ def _read_file(source: Path, start: bytes, robot: Robot | None, options: ImportO
 
 def _read_hdf5(source: Path, options: ImportOptions) -> SourceData:
     try:
-        from latentarm.demonstrations.aloha import is_aloha, read_aloha
-        from latentarm.demonstrations.robomimic import read_robomimic
+        from latentarm.demonstrations.importers.aloha import is_aloha, read_aloha
+        from latentarm.demonstrations.importers.robomimic import read_robomimic
     except ModuleNotFoundError as error:
         raise UserError(f"{source} is an HDF5 file: pip install 'latentarm[hdf5]' to read it.") from error
     if is_aloha(source):

@@ -8,14 +8,14 @@ from typing import final
 
 import numpy as np
 
-from latentarm.control.journal import JournalEpisode, read_journal
-from latentarm.control.recorded_states import first_implausible
-from latentarm.control.recorder import EpisodeHeader
 from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations, Episode, FloatArray, StepRecord
 from latentarm.demonstrations.gripper import ACTION_GRIPPER, GRIPPER_HOLDING, GRIPPER_WIDTH, going_to
 from latentarm.demonstrations.provenance import BY_HAND
 from latentarm.demonstrations.things import AGE, ENVIRONMENT
+from latentarm.recordings.journal_reader import JournalEpisode, read_journal
+from latentarm.recordings.journal_writer import EpisodeHeader
+from latentarm.recordings.recorded_states import first_implausible
 from latentarm.robots.kinematics.pose_rows import stored_rows
 from latentarm.robots.limits import JointLimits
 

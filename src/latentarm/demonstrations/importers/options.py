@@ -5,8 +5,8 @@ from typing import Annotated, Literal, final
 
 from tyro.conf import arg
 
-from latentarm.demonstrations.csv_file import TimeUnit
 from latentarm.demonstrations.gripper import GripperStart
+from latentarm.demonstrations.importers.csv_file import TimeUnit
 from latentarm.demonstrations.timing import Gaps
 
 ActionChoice = Literal["known", "joint_velocity", "joint_position"]

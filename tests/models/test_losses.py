@@ -8,7 +8,7 @@ import torch
 
 from latentarm.demonstrations.pairs import make_pairs
 from latentarm.models.estimators import MODELS
-from latentarm.models.objectives import kl_divergence, reconstruction_error, sample_latent
+from latentarm.models.losses import kl_divergence, reconstruction_error, sample_latent
 from latentarm.models.scaling import find_collapsed
 
 

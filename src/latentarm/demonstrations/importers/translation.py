@@ -9,7 +9,6 @@ import numpy as np
 
 from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations, Episode
-from latentarm.demonstrations.columns import Columns, find_columns, is_width
 from latentarm.demonstrations.gripper import (
     ACTION_GRIPPER,
     GRIPPER,
@@ -18,12 +17,19 @@ from latentarm.demonstrations.gripper import (
     OBSERVED,
     widths_from_toggles,
 )
-from latentarm.demonstrations.import_options import ImportOptions
-from latentarm.demonstrations.robot_names import is_so_arm, may_be
-from latentarm.demonstrations.source import SourceData
-from latentarm.demonstrations.turns import unwrapped
-from latentarm.demonstrations.unit_evidence import check_degrees, radians_after_all
-from latentarm.demonstrations.units import TARGET_POSITION, Conversion, Unit, conversion, parse_units
+from latentarm.demonstrations.importers.columns import Columns, find_columns, is_width
+from latentarm.demonstrations.importers.options import ImportOptions
+from latentarm.demonstrations.importers.robot_names import is_so_arm, may_be
+from latentarm.demonstrations.importers.source import SourceData
+from latentarm.demonstrations.importers.turns import unwrapped
+from latentarm.demonstrations.importers.unit_evidence import check_degrees, radians_after_all
+from latentarm.demonstrations.importers.units import (
+    TARGET_POSITION,
+    Conversion,
+    Unit,
+    conversion,
+    parse_units,
+)
 from latentarm.robots.robot import Robot
 
 PER_JOINT: Final = ("observation.velocity", "observation.effort", "action.human", "action.assist")

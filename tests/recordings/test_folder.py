@@ -7,14 +7,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from latentarm.control.export import demonstrations_of
-from latentarm.control.journal import list_journal, read_journal
-from latentarm.control.recorder import EpisodeHeader, Recorder
-from latentarm.control.recordings import list_recordings, read_recordings
 from latentarm.core.errors import UserError
 from latentarm.core.types import Command, Provenance, StepRecord
 from latentarm.demonstrations.dataset import append_episode, read_dataset, write_dataset
 from latentarm.demonstrations.provenance import BY_HAND, provenance_now
+from latentarm.recordings.dataset_export import demonstrations_of
+from latentarm.recordings.folder import list_recordings, read_recordings
+from latentarm.recordings.journal_reader import list_journal, read_journal
+from latentarm.recordings.journal_writer import EpisodeHeader, Recorder
 
 NAMES = ("shoulder", "elbow")
 

@@ -18,14 +18,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from latentarm.control.export import ImplausibleWarning, demonstrations_of, export_journal
-from latentarm.control.journal import list_journal, read_journal
-from latentarm.control.recorder import EpisodeHeader, Recorder
-from latentarm.control.samples import figures_of, packed, unpacked
 from latentarm.core.errors import UserError
 from latentarm.core.journal_limits import JournalFullError, JournalLimits, JournalLostError, JournalWatch
 from latentarm.core.types import Command, Goal, GripperCommand, GripperReading, Pose, StepRecord, Stop
 from latentarm.demonstrations.dataset import read_dataset
+from latentarm.recordings.dataset_export import ImplausibleWarning, demonstrations_of, export_journal
+from latentarm.recordings.journal_reader import list_journal, read_journal
+from latentarm.recordings.journal_writer import EpisodeHeader, Recorder
+from latentarm.recordings.samples import figures_of, packed, unpacked
 
 HOME = np.array([0.0, -0.785, 0.0, -2.356, 0.0, 1.571, 0.785])
 NAMES = tuple(f"joint{i}" for i in range(7))
@@ -829,7 +829,7 @@ WRITER = """
 import sys
 import numpy as np
 from pathlib import Path
-from latentarm.control.recorder import EpisodeHeader, Recorder
+from latentarm.recordings.journal_writer import EpisodeHeader, Recorder
 from latentarm.core.types import Command, StepRecord
 recorder = Recorder(Path(sys.argv[1]))
 episode = 0

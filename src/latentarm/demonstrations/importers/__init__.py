@@ -1,0 +1,1 @@
+"""Importers of demonstrations: one file per format, and what they share."""

@@ -1,0 +1,1 @@
+"""Drives as they are recorded: journals, their export to datasets and MCAP files."""

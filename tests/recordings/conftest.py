@@ -1,0 +1,3 @@
+from scripted_arms import arm
+
+__all__ = ["arm"]
