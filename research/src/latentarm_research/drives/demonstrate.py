@@ -1,5 +1,6 @@
 """Demonstrations of a task with things: a simulated person guides the arm through its steps, in physics."""
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final, final
@@ -59,6 +60,7 @@ def demonstrate_once(
     choice: int,  # index into the task's choices
     rng: np.random.Generator,  # source of all variation
     watch: Callable[[SceneArm], None] | None = None,  # sees the arm at every period, such as a camera
+    time_limit_s: float = math.inf,  # where the task's own is longer, s
 ) -> Demonstration:
     """Guide an arm through one run of a task.
 
@@ -74,7 +76,7 @@ def demonstrate_once(
     moves: dict[int, GoalMove] = {}
     with make_scene_arm("mujoco", task.robot, begun.state, clock.now_s, begun.scene) as driven:
         driven.enable()
-        for tick in range(int(task.time_limit_s / PERIOD_S)):
+        for tick in range(int(min(task.time_limit_s, time_limit_s) / PERIOD_S)):
             clock.wait_until(tick * PERIOD_S)
             state, reading = driven.scene_state(), driven.read()
             person.progress.update(state)

@@ -4,6 +4,7 @@ A task at goals is driven like one with things: its waypoints are the steps (`Go
 touched.
 """
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Final, final
@@ -70,6 +71,7 @@ def drive(
     # is told how the drive begins, and gives what is told every step, with where all things of the scene are,
     # in its order
     record: Record | None = None,
+    time_limit_s: float = math.inf,  # where the task's own is longer, s
 ) -> Trace:
     """Drive once, until the task is done, has failed, or the time is over."""
     task, controller = setup.task, setup.controller
@@ -91,7 +93,7 @@ def drive(
         arm.enable()
         step.enable()
         rearming = _Rearming(step, follow.progress)
-        for tick in range(1, int(task.time_limit_s * RATE_HZ) + 1):
+        for tick in range(1, int(min(task.time_limit_s, time_limit_s) * RATE_HZ) + 1):
             clock.wait_until(tick * step.dt_s)
             reading = arm.read()
             state = _state(arm, begun, task.robot.chain.forward(reading.q), clock.now_s())

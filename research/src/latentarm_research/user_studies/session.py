@@ -17,7 +17,7 @@ from latentarm_research.studies.streams import generator
 from latentarm_research.user_studies.conditions import setup_of
 from latentarm_research.user_studies.definition import Condition, Definition, StudyTask
 from latentarm_research.user_studies.record import Trial
-from latentarm_research.user_studies.scenes import AdaptedTask, scene_of
+from latentarm_research.user_studies.scenes import scene_of
 from latentarm_research.user_studies.sizes import Sizes, Stream
 from latentarm_research.user_studies.trace import Trace, trace_of
 from latentarm_research.user_studies.training import Trained
@@ -123,21 +123,24 @@ def together(measured: Sequence[dict[str, float]]) -> dict[str, float]:
 
 def _attempts(cell: SessionCell, number: int, choice: int) -> list[drives.Trace]:
     """One drive, and where the trial's time allows it another one after each that failed."""
-    scene = scene_of(cell.task.scene)
-    left_s = min(cell.task.trial_s or scene.time_limit_s, cell.sizes.trial_s)
-    driven = [_drive(cell, AdaptedTask(scene, left_s), number, choice, 0)]
+    task = scene_of(cell.task.scene)
+    left_s = min(cell.task.trial_s or task.time_limit_s, cell.sizes.trial_s)
+    driven = [_drive(cell, task, left_s, number, choice, 0)]
     while cell.task.trial_s and not driven[-1].figures.success:
         left_s -= driven[-1].figures.time_s
         if left_s < LEAST_S:
             break
-        driven.append(_drive(cell, AdaptedTask(scene, left_s), number, choice, len(driven)))
+        driven.append(_drive(cell, task, left_s, number, choice, len(driven)))
     return driven
 
 
-def _drive(cell: SessionCell, task: SceneTask, number: int, choice: int, attempt: int) -> drives.Trace:
+def _drive(
+    cell: SessionCell, task: SceneTask, left_s: float, number: int, choice: int, attempt: int
+) -> drives.Trace:
     setup = setup_of(cell.condition, task, _person(cell, number), cell.trained, cell.traits.number)
     use = (Stream.TRIALS, cell.traits.number, number, attempt)
-    return drive(setup, choice, generator(cell.seed, f"{cell.definition.name} {cell.task.name}", *use))
+    rng = generator(cell.seed, f"{cell.definition.name} {cell.task.name}", *use)
+    return drive(setup, choice, rng, time_limit_s=left_s)
 
 
 def _person(cell: SessionCell, number: int) -> Person:

@@ -22,7 +22,7 @@ from latentarm_research.studies.fitting import fit_model, validation_episodes
 from latentarm_research.studies.streams import generator, integer, sequence
 from latentarm_research.user_studies.alignments import PRIORS, Aligned, learn_alignments
 from latentarm_research.user_studies.definition import Aligns, Condition, Definition, StudyTask
-from latentarm_research.user_studies.scenes import AdaptedTask, scene_of
+from latentarm_research.user_studies.scenes import scene_of
 from latentarm_research.user_studies.sizes import LEAST_DEMONSTRATIONS, Sizes, Stream
 
 MOST_TRIES: Final = 10
@@ -67,7 +67,7 @@ def train(cell: TrainingCell) -> Trained:
     keys = list(dict.fromkeys((condition.model, condition.context) for condition in latent))
     aligns: list[Aligns] = [way for way in PRIORS if any(condition.aligns == way for condition in latent)]
     with threadpool_limits(limits=1):
-        task = AdaptedTask(scene_of(cell.task.scene), cell.sizes.demonstration_s)
+        task = scene_of(cell.task.scene)
         belief = any(BELIEF in context for _, context in keys)
         demonstrations, seconds = _demonstrated(cell, task, belief)
         models = {key: _fitted(cell, task, demonstrations, *key) for key in keys}
@@ -113,7 +113,7 @@ def _demonstrated(cell: TrainingCell, task: SceneTask, belief: bool) -> tuple[De
         choice = choices[number % len(choices)]
         rng = generator(cell.seed, cell.task.name, Stream.DEMONSTRATIONS, number)
         number += 1
-        shown = demonstrate_once(task, choice, rng)
+        shown = demonstrate_once(task, choice, rng, time_limit_s=cell.sizes.demonstration_s)
         if not (shown.progress.succeeded or cut):
             continue
         if took_s + shown.seconds > wanted_s and len(kept) >= least:
