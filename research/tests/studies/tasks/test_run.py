@@ -30,7 +30,7 @@ from latentarm_research.studies.tasks.preset import (
     Preset,
 )
 from latentarm_research.studies.tasks.rows import rows_of, runs_as_json
-from latentarm_research.studies.tasks.runs import Run, kept_in, time_ratios
+from latentarm_research.studies.tasks.runs import Driver, Run, kept_in, time_ratios
 from latentarm_research.studies.tasks.study import STUDY
 from latentarm_research.studies.tasks.tables import failure_table, measure_table, success_table, time_table
 from made_drives import drive_of
@@ -98,6 +98,16 @@ def test_every_condition_has_its_runs_of_the_same_scene(done):
     assert runs[0]["success"]
     assert all(run["time_s"] > 0 for run in runs)
     assert {row.study for row in report.rows} == {"tasks"}
+
+
+def test_beside_a_model_stand_the_modes_that_a_person_can_switch_to(done):
+    _, out = done
+    decoder = load_decoder(out / MODELS / kept_in("marshmallows", LEARNED[0]))
+    alone, switching, beside = (
+        Driver(condition, (decoder,) if condition.model else ()).controller(Brief().robot, 0)
+        for condition in (LEARNED[0], Condition(SWITCHING), replace(LEARNED[0], beside=True))
+    )
+    assert beside.modes == (*alone.modes, *switching.modes)
 
 
 def test_the_folder_holds_what_was_made_and_the_page_reads_by_itself(done):

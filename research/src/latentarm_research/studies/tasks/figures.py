@@ -47,7 +47,7 @@ def success_figure(by_task: Mapping[str, Mapping[Condition, Sequence[Run]]]) -> 
                 color=look.colour,
                 marker=look.marker,
                 markerfacecolor=look.colour if what.way_back else "white",
-                markersize=2.6 if what.name == UNAWARE else 4.2,
+                markersize=2.6 if what.name == UNAWARE else 6.0 if what.beside else 4.2,
                 markeredgewidth=1.8 if what.way_back else 0.9,
                 linestyle="none",
                 label=what.label,

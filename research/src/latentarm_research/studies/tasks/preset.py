@@ -27,6 +27,8 @@ class Condition:
     way_back: bool = False  # whether the model has a way back
     # a simulated person by name; None for the demonstrator, and for what all people steer with
     person: str | None = None
+    # whether mode switching stands beside the model, a switch of mode away, as on the page
+    beside: bool = False
 
     def by(self, person: str | None) -> "Condition":
         """The same with another person."""
@@ -37,19 +39,20 @@ class Condition:
         """How tables and figures call what moves the arm."""
         if self.model is None:
             return look_of(self.name).label
-        return f"{look_of(self.model).label}{' + way back' if self.way_back else ''}, {self.name}"
+        beside = f" beside {look_of(SWITCHING).label}" if self.beside else ""
+        return f"{look_of(self.model).label}{' + way back' if self.way_back else ''}{beside}, {self.name}"
 
     @property
     def row(self) -> str:
         """The condition of a row, whose model stands beside it."""
-        return ", ".join(filter(None, (self.name, "way back" if self.way_back else "", self.person)))
+        parts = (self.name, "way back" * self.way_back, "beside mode switching" * self.beside, self.person)
+        return ", ".join(filter(None, parts))
 
     @property
     def folder(self) -> str:
         """The name of its folder, among those of a task."""
-        return f"{self.model or ''}{'_way_back' if self.way_back else ''}_{self.name}".strip("_").replace(
-            " ", "_"
-        )
+        parts = (self.model or "", "way_back" * self.way_back, "beside" * self.beside, self.name)
+        return "_".join(filter(None, parts)).replace(" ", "_")
 
 
 CONTEXTS: Final[Mapping[str, tuple[str, ...]]] = {
@@ -100,6 +103,11 @@ class Preset:
     def default(self) -> Condition:
         """The default model with the way back."""
         return Condition(self.context, DEFAULT_MODEL, way_back=True)
+
+    @property
+    def page(self) -> Condition:
+        """The same as the page offers it."""
+        return replace(self.default, beside=True)
 
     def asked(self, people: tuple[str, ...], runs: int | None) -> "Preset":
         """The preset with other people and runs, where any are named."""

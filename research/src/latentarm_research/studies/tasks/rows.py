@@ -72,6 +72,7 @@ def runs_as_json(by_task: Mapping[str, Mapping[Condition, Sequence[Run]]]) -> li
             "model": condition.model,
             "condition": condition.name,
             "way_back": condition.way_back,
+            "beside": condition.beside,
             "person": condition.person,
             **run.as_json(),
         }

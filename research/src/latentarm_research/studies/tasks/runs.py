@@ -6,6 +6,7 @@ from typing import final
 
 from latentarm.assistance.controllers.contract import Controller
 from latentarm.assistance.controllers.end_effector import EndEffectorController
+from latentarm.assistance.controllers.joined import JoinedController
 from latentarm.assistance.controllers.latent import LatentController
 from latentarm.models.decoder import Decoder
 from latentarm.models.kind import TrainedModel
@@ -35,7 +36,8 @@ class Driver:
             return LearnedOrientationController(robot, self.orientation)
         if not self.decoders:
             return EndEffectorController(robot)
-        return LatentController(self.decoders[number % len(self.decoders)])
+        latent = LatentController(self.decoders[number % len(self.decoders)])
+        return JoinedController([latent, EndEffectorController(robot)]) if self.condition.beside else latent
 
 
 @final

@@ -1,6 +1,7 @@
 """`latentarm reproduce tasks`: tasks with things in physics, shown and driven by simulated people."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -90,13 +91,16 @@ def _drive_cells(request: Request[Preset], learned: Sequence[FittedModel | Orien
         TaskRunCell(task, driver, person, number, request.seed)
         for number in range(preset.runs)
         for task in request.tasks
-        for driver in (
-            Driver(Condition(SWITCHING)),
-            *(one.driver for one in learned if one.task == task),
-        )
-        if number < preset.others or driver.condition in (Condition(SWITCHING), preset.default)
+        for driver in _drivers([one.driver for one in learned if one.task == task], preset)
+        if number < preset.others or driver.condition in (Condition(SWITCHING), preset.default, preset.page)
         for person in preset.people
     ]
+
+
+def _drivers(learned: Sequence[Driver], preset: Preset) -> list[Driver]:
+    """What people steer with at a task: the default also as the page offers it."""
+    page = [replace(one, condition=preset.page) for one in learned if one.condition == preset.default]
+    return [Driver(Condition(SWITCHING)), *learned, *page]
 
 
 def _shown_label(cell: ShownCell) -> str:
