@@ -3,120 +3,69 @@
 import { EVERY_STOP, validMappings } from "./pads.js";
 import * as storage from "./storage.js";
 
-/**
- * @typedef {object} Values
- * @property {string} profile whose alignment; empty for what the server was started with, `NO_PROFILE` for none
- * @property {number} sensitivity largest input, in [0.1, 1]
- * @property {number} deadZone pushes smaller than this are ignored, in [0, 0.5]
- * @property {number} reach how far counts as a full push, in [0.4, 1]
- * @property {boolean} swapAxes
- * @property {boolean} invertX
- * @property {boolean} invertY
- * @property {"hold" | "step" | "latch"} press what a press does
- * @property {number} stepS length of a step, s
- * @property {number} latchS how long a motion goes on without being held, s
- * @property {"off" | "light" | "medium" | "strong"} tremor how much a trembling hand is steadied
- * @property {"off" | "low" | "medium" | "high"} help how much the robot helps
- * @property {"stick" | "dpad" | "switch"} panel what is pressed
- * @property {"1" | "2"} switches how many
- * @property {"auto" | "inverse" | "step"} scan how the light goes on with one switch
- * @property {"latch" | "hold"} switchMotion how a direction moves: until the next press, or while the switch is held
- * @property {number} dwellS how long a choice stays lit, s
- * @property {number} firstS how much longer the first one does, s
- * @property {number} acceptS how long a switch must be held before that counts, s
- * @property {number} releaseS how long a switch must have been up before a press counts, s
- * @property {boolean} debounced whether these two were stored by a version that debounces switches by default
- * @property {number} repeatS how often a switch that is held counts again, s; 0 for never
- * @property {boolean} rows whether long lists are scanned by rows
- * @property {boolean} bestFirst whether the direction that brings the task on is lit first
- * @property {boolean} speak whether what is lit is spoken
- * @property {boolean} speakNext whether what is to be done now is spoken
- * @property {number} speakVolume in [0, 1]
- * @property {string} switchKey key that chooses
- * @property {string} nextKey key that goes on
- * @property {Record<string, import("./pads.js").Mapping>} pads how gamepads are used, by their ids
- * @property {Record<string, Record<string, number>>} fit what was measured last with each input, and when
- * @property {boolean} shortcuts whether letters and digits drive
- * @property {"facing" | "behind"} seat where the person sits
- * @property {"front" | "side"} largeView which of the two views is the large one
- * @property {"camera" | "drawn"} picture what is seen of the arm where there are cameras
- * @property {boolean} showGhosts
- * @property {boolean} showTrail
- * @property {boolean} practised whether the guided practice was begun or skipped
- * @property {"none" | "success" | "all"} sounds what is heard: nothing, a task that is done, or Stop and Enable too
- * @property {boolean} vibration whether Stop and a task that is done are felt
- * @property {"auto" | "light" | "dark"} theme
- */
+/** @template T @typedef {{usual: T, valid: (value: any) => T}} Setting its default, and what is made of a value of its type */
 
-/** @type {Readonly<Values>} */
-export const DEFAULTS = Object.freeze({
-  profile: "",
-  sensitivity: 0.5,
-  deadZone: 0.1,
-  reach: 1,
-  swapAxes: false,
-  invertX: false,
-  invertY: false,
-  press: "hold",
-  stepS: 0.5,
-  latchS: 10,
-  tremor: "off",
-  help: "medium",
-  panel: "stick",
-  switches: "1",
-  scan: "auto",
-  switchMotion: "latch",
-  dwellS: 1.2,
-  firstS: 0,
-  // Of 168,000 people a key press takes 116 ms with an SD of 24 (Dhakal et al., CHI 2018): 0.05 s is nearly three below.
-  acceptS: 0.05,
-  releaseS: 0.2,
-  debounced: true,
-  repeatS: 0,
-  rows: false,
-  bestFirst: false,
-  speak: false,
-  speakNext: false,
-  speakVolume: 0.8,
-  switchKey: "Enter",
-  nextKey: "Backspace",
-  pads: {},
-  fit: {},
-  shortcuts: true,
-  seat: "facing",
-  largeView: "front",
-  picture: "camera",
-  showGhosts: true,
-  showTrail: true,
-  practised: false,
-  sounds: "success",
-  vibration: false,
-  theme: "auto",
-});
+/** @template T @param {T} usual @returns {Setting<T>} */
+const any = (usual) => ({ usual, valid: (value) => value });
+/** @param {number} usual @param {number} least @param {number} most @returns {Setting<number>} */
+const within = (usual, least, most) => ({ usual, valid: (value) => Math.min(Math.max(value, least), most) });
+/** The first is the default. @template {string} T @param {T[]} all @returns {Setting<T>} */
+const oneOf = (...all) => ({ usual: all[0], valid: (value) => (all.includes(value) ? value : all[0]) });
+
+const SETTINGS = {
+  profile: any(""), // whose alignment; empty for what the server was started with, `NO_PROFILE` for none
+  sensitivity: within(0.5, 0.1, 1), // largest input
+  deadZone: within(0.1, 0, 0.5), // pushes smaller than this are ignored
+  reach: within(1, 0.4, 1), // how far counts as a full push
+  swapAxes: any(false),
+  invertX: any(false),
+  invertY: any(false),
+  press: oneOf("hold", "step", "latch"), // what a press does
+  stepS: within(0.5, 0.2, 2), // length of a step, s
+  latchS: within(10, 1, 10), // how long a motion goes on without being held, s
+  tremor: oneOf("off", "light", "medium", "strong"), // how much a trembling hand is steadied
+  help: oneOf("medium", "off", "low", "high"), // how much the robot helps
+  panel: oneOf("stick", "dpad", "switch"), // what is pressed
+  switches: oneOf("1", "2"), // how many
+  scan: oneOf("auto", "inverse", "step"), // how the light goes on with one switch
+  switchMotion: oneOf("latch", "hold"), // how a direction moves: until the next press, or while the switch is held
+  dwellS: within(1.2, 0.4, 5), // how long a choice stays lit, s
+  firstS: within(0, 0, 3), // how much longer the first one does, s
+  // How long a switch must be held before that counts, s. Of 168,000 people a key press takes 116 ms with an SD of 24
+  // (Dhakal et al., CHI 2018): 0.05 s is nearly three below.
+  acceptS: within(0.05, 0, 2),
+  releaseS: within(0.2, 0, 2), // how long a switch must have been up before a press counts, s
+  debounced: any(true), // whether these two were stored by a version that debounces switches by default
+  repeatS: within(0, 0, 3), // how often a switch that is held counts again, s; 0 for never
+  rows: any(false), // whether long lists are scanned by rows
+  bestFirst: any(false), // whether the direction that brings the task on is lit first
+  speak: any(false), // whether what is lit is spoken
+  speakNext: any(false), // whether what is to be done now is spoken
+  speakVolume: within(0.8, 0, 1),
+  switchKey: any("Enter"), // key that chooses
+  nextKey: any("Backspace"), // key that goes on
+  /** How gamepads are used, by their ids. @type {Setting<Record<string, import("./pads.js").Mapping>>} */
+  pads: { usual: {}, valid: validMappings },
+  /** What was measured last with each input, and when. @type {Setting<Record<string, Record<string, number>>>} */
+  fit: { usual: {}, valid: validMeasures },
+  shortcuts: any(true), // whether letters and digits drive
+  seat: oneOf("facing", "behind"), // where the person sits
+  largeView: oneOf("front", "side"), // which of the two views is the large one
+  picture: oneOf("camera", "drawn"), // what is seen of the arm where there are cameras
+  showGhosts: any(true),
+  showTrail: any(true),
+  practised: any(false), // whether the guided practice was begun or skipped
+  sounds: oneOf("success", "none", "all"), // what is heard: a task that is done, nothing, or Stop and Enable too
+  vibration: any(false), // whether Stop and a task that is done are felt
+  theme: oneOf("auto", "light", "dark"),
+};
+/** @typedef {{[K in keyof typeof SETTINGS]: (typeof SETTINGS)[K]["usual"]}} Values */
+
+export const DEFAULTS = /** @type {Readonly<Values>} */ (Object.fromEntries(Object.entries(SETTINGS).map(([key, { usual }]) => [key, usual])));
 
 /** Instead of a profile's name: no alignment, also where the server was started with one. */
 export const NO_PROFILE = "-";
 
-/** @type {Record<string, [number, number]>} */
-const LIMITS = {
-  sensitivity: [0.1, 1], deadZone: [0, 0.5], reach: [0.4, 1], stepS: [0.2, 2], latchS: [1, 10], dwellS: [0.4, 5], firstS: [0, 3],
-  acceptS: [0, 2], releaseS: [0, 2], repeatS: [0, 3], speakVolume: [0, 1],
-};
-/** @type {Record<string, string[]>} */
-const CHOICES = {
-  press: ["hold", "step", "latch"],
-  panel: ["stick", "dpad", "switch"],
-  switches: ["1", "2"],
-  scan: ["auto", "inverse", "step"],
-  switchMotion: ["latch", "hold"],
-  tremor: ["off", "light", "medium", "strong"],
-  help: ["off", "low", "medium", "high"],
-  seat: ["facing", "behind"],
-  largeView: ["front", "side"],
-  picture: ["camera", "drawn"],
-  sounds: ["none", "success", "all"],
-  theme: ["auto", "light", "dark"],
-};
 const PERSON_KEY = "latentarm.person";
 const SETTINGS_KEY = "latentarm.settings.";
 /** Changes of a person's settings that the server may not have yet. */
@@ -200,27 +149,25 @@ function personIn(stored) {
 /** The stored values that make sense: they may be from another version. @param {string | null} stored @returns {Values} */
 function valid(stored) {
   /** @type {any} */
-  const values = { ...DEFAULTS };
-  /** @type {any} */
   let kept = null;
   try {
     kept = JSON.parse(stored ?? "{}");
   } catch {
-    return values;
+    return { ...DEFAULTS };
   }
   // These zeros were the old defaults. Every change stores all values, so nobody need have chosen them.
   if (kept && !kept.debounced && kept.acceptS === 0 && kept.releaseS === 0) {
     kept = { ...kept, acceptS: DEFAULTS.acceptS, releaseS: DEFAULTS.releaseS };
   }
-  for (const [key, value] of Object.entries(DEFAULTS)) {
-    const mine = kept?.[key];
-    if (typeof mine === typeof value && (CHOICES[key]?.includes(mine) ?? true)) values[key] = mine;
-  }
+  const values = /** @type {Values} */ (Object.fromEntries(Object.entries(SETTINGS).map(([key, one]) => (
+    [key, typeof kept?.[key] === typeof one.usual ? one.valid(kept[key]) : one.usual]))));
   values.debounced = true;
-  values.pads = validMappings(kept?.pads);
-  values.fit = Object.fromEntries(Object.entries(kept?.fit ?? {}).filter(([, one]) => [one?.at, ...Object.values(one ?? {})].every(Number.isFinite)));
   // A version before had one setting for all gamepads. Where Stop was elsewhere, every button stops until they are mapped.
-  if (kept?.gamepadStop !== undefined && kept.gamepadStop !== "1") values.pads[""] = EVERY_STOP;
-  for (const [key, [low, high]] of Object.entries(LIMITS)) values[key] = Math.min(Math.max(values[key], low), high);
+  if (kept?.gamepadStop !== undefined && kept.gamepadStop !== "1") values.pads = { ...values.pads, "": EVERY_STOP };
   return values;
+}
+
+/** @param {any} fit @returns {Record<string, Record<string, number>>} */
+function validMeasures(fit) {
+  return Object.fromEntries(Object.entries(fit ?? {}).filter(([, one]) => [one?.at, ...Object.values(one ?? {})].every(Number.isFinite)));
 }
