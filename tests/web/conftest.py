@@ -30,7 +30,7 @@ from latentarm.web.arm_process.steering import Steering
 from latentarm.web.protocol.channel import new_channel
 from latentarm.web.protocol.notice import Notice
 from latentarm.web.protocol.orders import AskedGripper, Given, Order, Paced
-from latentarm.web.protocol.report import Report, parse_report
+from latentarm.web.protocol.report import Report
 from latentarm.web.records.record_files import SYSTEM_CALENDAR
 from latentarm.web.server.app import build_app, gated, serve_on, server_config
 from latentarm.web.server.config import TeleopConfig, listen
@@ -172,7 +172,7 @@ class Desk:
     def _saw(self, record: Any) -> None:
         self.records.append(record)
         found = self.channel.report.read()
-        report = None if found is None else parse_report(found[1])
+        report = None if found is None else Report.parse(found[1])
         if report is not None and (not self.reports or report.tick != self.reports[-1].tick):
             self.reports.append(report)
 

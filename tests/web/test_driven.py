@@ -21,7 +21,7 @@ from latentarm.web.arm_process.initial_state import RobotOptions
 from latentarm.web.arm_process.steering import Steering
 from latentarm.web.protocol.channel import new_channel
 from latentarm.web.protocol.orders import BeginTask, ChooseProfile, ChooseRun, Reset
-from latentarm.web.protocol.report import parse_report
+from latentarm.web.protocol.report import Report
 
 
 def test_what_fails_before_it_was_enabled_gives_way_to_what_was_driven_before(trained):
@@ -100,7 +100,7 @@ def test_no_order_ends_an_arms_process(arm, trained, tmp_path):
         # Long enough for all that is done now and then.
         given = (driven.setup, driven.arm, channel, clock, writer, lambda: False, driven.steering, note)
         Drive(*given).run(30)
-        reports.append(parse_report(channel.report.read()[1]))
+        reports.append(Report.parse(channel.report.read()[1]))
         return next(orders, None)
 
     # A real arm is driven only as a robot that is named.

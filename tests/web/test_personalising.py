@@ -6,6 +6,7 @@ import shutil
 import time
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -19,14 +20,13 @@ from latentarm.web.protocol.page_messages import parse_message
 from latentarm.web.protocol.personalise_messages import (
     AnswerQuestion,
     BeginPersonalise,
+    LeaveQuestion,
     Personalise,
     PressPersonalise,
-    QuestionBefore,
     ShownMotion,
-    SkipQuestion,
 )
 from latentarm.web.server import personalising
-from latentarm.web.server.personalising import Driven, Personalising
+from latentarm.web.server.personalising import Personalising
 
 from .conftest import wait_for
 
@@ -106,10 +106,10 @@ def test_a_person_answers_skips_goes_back_and_is_learned_from(job, run):
 
     second = question(job, first.question)
     assert (second.number, second.back) == (2, True)
-    job.reply(SkipQuestion(type="skip_question", question=second.question))
+    job.reply(LeaveQuestion(type="skip_question", question=second.question))
     third = question(job, second.question)
     assert (third.number, third.motion != second.motion) == (2, True)
-    job.reply(QuestionBefore(type="question_before", question=third.question))
+    job.reply(LeaveQuestion(type="question_before", question=third.question))
     again = question(job, third.question)
     assert again.motion == second.motion
     job.reply(answer(again.question, rightwards(again.motion)))
@@ -156,7 +156,7 @@ def test_whoever_knows_nothing_is_told_so(run):
     while job.look().phase != "failed":
         if job.look().phase == "asking" and job.look().question > asked_last:
             asked_last = job.look().question
-            job.reply(SkipQuestion(type="skip_question", question=asked_last))
+            job.reply(LeaveQuestion(type="skip_question", question=asked_last))
         time.sleep(0.002)
     assert "No question was answered" in job.look().why.text
     assert not trial_folder(run).exists()
@@ -213,13 +213,15 @@ class Desk:
     """Personalising with everything around it pretended."""
 
     def __init__(self, run):
-        self.run = run
-        self.latent_dim = 2
+        spec = SimpleNamespace(run=run, seated=lambda seat: seat)
+        self.loaded = SimpleNamespace(spec=spec, latent_dim=2)
         self.report = Report()
         self.control = Control()
-        self.personalising = Personalising(
-            lambda: Driven(self.run, self.latent_dim, self.report, lambda seat: seat), self.control
-        )
+        self.personalising = Personalising(self, self.control)
+
+    @property
+    def at_rest(self):
+        return self.report.phase in ("disengaged", "neutral_needed")
 
     def take(self, message):
         self.personalising.take(message)
@@ -252,9 +254,9 @@ def test_without_a_run_at_rest_nobody_is_asked(desk):
     desk.report = Report("ready")
     assert desk.take(begin()).why.code == "stop_first"
     desk.report = Report()
-    desk.latent_dim = 3
+    desk.loaded.latent_dim = 3
     assert desk.take(begin()).why.code == "too_many_axes"
-    desk.run = None
+    desk.loaded.spec.run = None
     assert desk.take(begin()).why.code == "no_run"
 
 
@@ -332,7 +334,7 @@ def test_a_name_taken_meanwhile_loses_nothing(learned, run):
 def test_another_run_has_no_use_for_it(learned, run, tmp_path):
 
     async def change():
-        learned.run = tmp_path / "other"
+        learned.loaded.spec.run = tmp_path / "other"
         assert learned.personalising.look() is None
         await learned.personalising.close()
 

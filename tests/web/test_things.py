@@ -29,7 +29,7 @@ from latentarm.web.arm_process.steering import Steering
 from latentarm.web.arm_process.thing_poses import ThingPoses
 from latentarm.web.protocol.channel import new_channel
 from latentarm.web.protocol.orders import Enable, Given, Record
-from latentarm.web.protocol.report import Things, parse_report
+from latentarm.web.protocol.report import Report, Things
 from latentarm.web.protocol.scene import drawable
 from latentarm.web.protocol.things import described, things_at
 from latentarm.web.server.states import PageMemory
@@ -151,7 +151,7 @@ def test_a_recording_says_where_things_went_and_a_model_can_see_them(tmp_path):
     def push(record):
         """The arm moves too: a recording in which it does not is not kept."""
         tick = round(record.time_s * 100)
-        nonce = parse_report(channel.report.read()[1]).nonce
+        nonce = Report.parse(channel.report.read()[1]).nonce
         given = Given(
             driver=1, seq=tick, nonce=nonce, u=(float(tick > 10), 0.0), latched=False, source="keyboard"
         )

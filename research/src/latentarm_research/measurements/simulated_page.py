@@ -28,7 +28,7 @@ from latentarm.web.arm_process.episode_writer import EpisodeWriter
 from latentarm.web.arm_process.steering import Steering
 from latentarm.web.protocol.channel import new_channel
 from latentarm.web.protocol.orders import AskedGripper, ChooseMode, Enable, Given, Order
-from latentarm.web.protocol.report import Report, parse_report
+from latentarm.web.protocol.report import Report
 from latentarm_research.drives.following import Following
 from latentarm_research.measurements.geom_distances import Judge
 from latentarm_research.measurements.thing_sources import AGE_TICKS, TOUCH, Detections, touched
@@ -127,7 +127,7 @@ class SimulatedPage:
             taken = replace(one, time_s=time.monotonic() - PERIOD_S * AGE_TICKS)
             self._seen.send_bytes(as_message(taken, "detector", HOLD_S))
         found = self._channel.report.read()
-        report = None if found is None else parse_report(found[1])
+        report = None if found is None else Report.parse(found[1])
         if report is None:
             raise RuntimeError("the page has no report")
         drawn = self._drawn(state, record.time_s)

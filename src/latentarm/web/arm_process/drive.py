@@ -28,7 +28,7 @@ from latentarm.web.arm_process.steering import Steering
 from latentarm.web.arm_process.task_run import TaskRun
 from latentarm.web.arm_process.thing_poses import ThingPoses, follow
 from latentarm.web.protocol import orders
-from latentarm.web.protocol.channel import Channel, parse_stop
+from latentarm.web.protocol.channel import Channel
 from latentarm.web.protocol.notice import Notice, notice_of_stop
 from latentarm.web.protocol.orders import Change, HelpLevel, ModeName, Order, PoseToGoTo
 from latentarm.web.protocol.report import HeldBack, Phase, Report
@@ -168,7 +168,7 @@ class Drive:
             # Whatever the slot holds, even half-written: somebody asked for a stop.
             self._stop_version = self._channel.stop.version
             reason = self._channel.stop.read()
-            self._stop(Notice(code="stop_pressed") if reason is None else parse_stop(reason[1]))
+            self._stop((reason and Notice.parse(reason[1])) or Notice(code="stop_pressed"))
         if self._channel.ending.count or self._orphaned():
             self._loop.finish()
         try:

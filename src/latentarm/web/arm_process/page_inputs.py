@@ -11,7 +11,7 @@ from latentarm.control.clock import Clock
 from latentarm.control.input_port import InputPort, InputSource
 from latentarm.core.types import Input
 from latentarm.web.protocol.notice import Notice
-from latentarm.web.protocol.orders import Given, Paced, parse_given
+from latentarm.web.protocol.orders import Given, Paced
 from latentarm.web.protocol.shared_memory import LatestSlot
 
 INPUT_TIMEOUT_S: Final = 0.05
@@ -87,7 +87,7 @@ class PageInputs(InputSource):
         if found is None:
             return
         self._version, message = found
-        given = parse_given(message)
+        given = Given.parse(message)
         if given is None or len(given.u) != self._input_dim:
             return
         if given.driver != self.driver:

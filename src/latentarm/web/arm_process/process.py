@@ -30,7 +30,7 @@ from latentarm.web.arm_process.steering import Steering
 from latentarm.web.protocol import orders
 from latentarm.web.protocol.channel import ORDER_LIMIT, Channel, new_channel
 from latentarm.web.protocol.notice import Notice
-from latentarm.web.protocol.report import Report, parse_report
+from latentarm.web.protocol.report import Report
 
 _LOG: Final = logging.getLogger(__name__)
 
@@ -146,7 +146,7 @@ class ControlProcess:
         if found is None:
             return None
         self._seen, message = found
-        return parse_report(message)
+        return Report.parse(message)
 
     def end(self, within_s: float = 2.0) -> None:
         """Let it bring the arm to rest and end; kill it after ``within_s``."""

@@ -139,8 +139,8 @@ class Job(Generic[Said]):
             self.failure = Notice(code="work_broke_off")
 
     def _take(self, message: bytes) -> None:
-        with suppress(ValidationError):
-            self.failure = _Failed.model_validate_json(message).failed
+        if (failed := _Failed.parse(message)) is not None:
+            self.failure = failed.failed
             return
         with suppress(ValidationError):
             self._heard.append(self._kind.validate_json(message))

@@ -107,10 +107,10 @@ class PersonOnPage(Respondent):
             motion=shown_motion(question),
         )
         match self._wire.hear(_REPLIES):
-            case messages.QuestionBefore():
+            case messages.LeaveQuestion(type="question_before"):
                 self._behind = max(self._behind - 1, 0)
                 return "back"
-            case messages.SkipQuestion():
+            case messages.LeaveQuestion():
                 self._behind += 1
                 return None
             case messages.AnswerQuestion(u=u):

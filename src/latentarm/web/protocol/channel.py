@@ -8,9 +8,6 @@ from dataclasses import dataclass
 from multiprocessing.connection import Connection
 from typing import Final, final
 
-from pydantic import ValidationError
-
-from latentarm.web.protocol.notice import Notice
 from latentarm.web.protocol.orders import Order, parse_order
 from latentarm.web.protocol.shared_memory import Flag, LatestSlot
 
@@ -55,11 +52,3 @@ def new_channel(orders: Connection, sightings: Connection | None = None) -> Chan
         orders=orders,
         sightings=sightings,
     )
-
-
-def parse_stop(message: bytes) -> Notice:
-    """Parse a reason to stop from its slot; invalid content stops the arm too."""
-    try:
-        return Notice.model_validate_json(message)
-    except ValidationError:
-        return Notice(code="stop_pressed")

@@ -8,14 +8,6 @@ from latentarm.web.protocol.notice import Message, PersonName
 
 
 @final
-class AcceptCopilot(Message):
-    """The driver accepts the page that has asked; the arm stops, and must be enabled again."""
-
-    type: Literal["accept_copilot"]
-    to: Annotated[str, Field(max_length=32)]
-
-
-@final
 class PressCopilot(Message):
     """A watcher asks to be the driver's co-pilot, or one of the two ends the role or the request.
 
@@ -34,7 +26,7 @@ class CopilotPace(Message):
     nonce: Annotated[str, Field(max_length=64)]  # of the newest `State` that the page has seen
 
 
-CopilotMessage = AcceptCopilot | PressCopilot | CopilotPace
+CopilotMessage = PressCopilot | CopilotPace
 
 
 @final

@@ -1,8 +1,9 @@
 """Notices to people: a code and parameters, which each language puts into words."""
 
-from typing import Literal, final
+from contextlib import suppress
+from typing import Literal, Self, final
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel, ConfigDict, ValidationError
 
 from latentarm.alignment.contract import Refusal
 from latentarm.core.errors import UserError
@@ -38,6 +39,12 @@ class Message(BaseModel):
     """Base of all messages between processes and pages."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+
+    @classmethod
+    def parse(cls, content: bytes) -> Self | None:
+        """Parse a message from JSON; None if it is invalid."""
+        with suppress(ValidationError):
+            return cls.model_validate_json(content)
 
 
 @final

@@ -205,11 +205,3 @@ def parse_order(message: bytes) -> Order | None:
         return _ORDERS.validate_json(message)
     except ValidationError:
         return None
-
-
-def parse_given(message: bytes) -> Given | None:
-    """Parse an input from its slot; None if it is invalid."""
-    try:
-        return Given.model_validate_json(message)
-    except ValidationError:
-        return None

@@ -92,9 +92,12 @@ class Press(Message):
 
 @final
 class HandOver(Message):
-    """Hand over to the page that has asked to drive."""
+    """Hand over to the page that has asked to drive, or accept the one that has asked to be the co-pilot.
 
-    type: Literal["hand_over"]
+    The arm stops, and must be enabled again.
+    """
+
+    type: Literal["hand_over", "accept_copilot"]
     to: Id
 
 
@@ -112,27 +115,20 @@ class RecordEpisode(Message):
 
 
 @final
-class GuideArm(Message):
-    """Let the arm be guided by hand, or end that; while it is not enabled."""
+class SwitchMotion(Message):
+    """Begin or end a motion without the stick.
 
-    type: Literal["guide"]
-    on: bool
-
-
-@final
-class ReturnArm(Message):
-    """Move the arm back to its start, while it is enabled and the stick is let go; or end that.
-
-    It continues as long as neutral inputs come; any push and any Stop end it.
+    ``guide`` lets the arm be guided by hand, while it is not enabled. ``return`` moves it back to its start,
+    while it is enabled and the stick is let go: as long as neutral inputs come, until any push or any Stop.
     """
 
-    type: Literal["return"]
+    type: Literal["guide", "return"]
     on: bool
 
 
 @final
 class GoToPose(Message):
-    """Move the arm slowly to a pose, as `ReturnArm` does to its start."""
+    """Move the arm slowly to a pose, as ``return`` does to its start."""
 
     type: Literal["to_pose"]
     name: PoseName  # of a saved pose; for a built-in one, the page's name of it
@@ -140,25 +136,16 @@ class GoToPose(Message):
 
 
 @final
-class SavePose(Message):
-    """Save where the arm is, while it stands still; replaces a pose of the same name."""
+class EditPoses(Message):
+    """Save where the arm is, while it stands still, in place of a pose of the same name; or delete a pose."""
 
-    type: Literal["save_pose"]
-    name: PoseName
-
-
-@final
-class DeletePose(Message):
-    """Delete a saved pose."""
-
-    type: Literal["delete_pose"]
+    type: Literal["save_pose", "delete_pose"]
     name: PoseName
 
 
 ClientMessage = (
-    Hello | DriverInput | ConfirmChecklist | Press | PressStop | HandOver | RecordEpisode | GuideArm
-    | ReturnArm | GoToPose | SavePose | DeletePose | Train | PickRun | PersonaliseMessage | CopilotMessage
-    | DriverOrder
+    Hello | DriverInput | ConfirmChecklist | Press | PressStop | HandOver | RecordEpisode | SwitchMotion
+    | GoToPose | EditPoses | Train | PickRun | PersonaliseMessage | CopilotMessage | DriverOrder
 )  # fmt: skip
 _CLIENT: Final[TypeAdapter[ClientMessage]] = TypeAdapter(
     Annotated[ClientMessage, Field(discriminator="type")]

@@ -39,18 +39,10 @@ class AnswerQuestion(Message):
 
 
 @final
-class SkipQuestion(Message):
-    """Skip the question; from the page that drives."""
+class LeaveQuestion(Message):
+    """Skip the question, or go back to the previous one; from the page that drives."""
 
-    type: Literal["skip_question"]
-    question: QuestionId
-
-
-@final
-class QuestionBefore(Message):
-    """Go back to the previous question; from the page that drives."""
-
-    type: Literal["question_before"]
+    type: Literal["skip_question", "question_before"]
     question: QuestionId
 
 
@@ -66,7 +58,7 @@ class PressPersonalise(Message):
     type: Literal["cancel_personalise", "try_alignment", "keep_alignment", "discard_alignment"]
 
 
-QuestionReply = AnswerQuestion | SkipQuestion | QuestionBefore
+QuestionReply = AnswerQuestion | LeaveQuestion
 PersonaliseMessage = BeginPersonalise | QuestionReply | PressPersonalise
 
 

@@ -2,8 +2,6 @@
 
 from typing import Final, Literal, final
 
-from pydantic import ValidationError
-
 from latentarm.surroundings.tracker import Seen
 from latentarm.tasks.mishap import MishapKind
 from latentarm.web.protocol.notice import Message, Notice
@@ -169,11 +167,3 @@ class Report(ArmState):
     reading_age_s: float  # how long ago that was, s
     belief: tuple[float, ...]  # over the goals; empty for a task without goals
     journal: str | None  # path of the journal that is or was last recorded to; None before the first
-
-
-def parse_report(message: bytes) -> Report | None:
-    """Parse a report from its slot; None if it is invalid."""
-    try:
-        return Report.model_validate_json(message)
-    except ValidationError:
-        return None

@@ -1,7 +1,7 @@
 """Requests about records: JSON objects with known fields. Errors are answered as notices."""
 
 from collections.abc import Awaitable, Callable, Mapping
-from typing import Final, TypeVar
+from typing import Final, TypeVar, cast
 
 from pydantic import ValidationError
 from starlette.requests import Request
@@ -26,30 +26,18 @@ Answer = Callable[[Request], Awaitable[Response]]
 Asked = TypeVar("Asked", bound=Message)
 
 
-def guarded(answer: Answer) -> Answer:
-    """Wrap a handler so that a `UserError` is answered as a notice."""
-
-    async def guarded(request: Request) -> Response:
-        try:
-            return await answer(request)
-        except UserError as error:
-            return refusal(error)
-
-    return guarded
-
-
-def guarded_routes(answers: Mapping[str, Mapping[str, Answer]]) -> list[Route]:
-    """Guarded routes from handlers by path and method."""
+def routes_of(answers: Mapping[str, Mapping[str, Answer]]) -> list[Route]:
+    """Routes from handlers by path and method."""
     return [
-        Route(path, guarded(answer), methods=[method])
+        Route(path, answer, methods=[method])
         for path, methods in answers.items()
         for method, answer in methods.items()
     ]
 
 
-def refusal(error: UserError) -> Response:
-    """The answer to a request that failed, as a notice."""
-    notice = notice_of(error)
+def refused(_: Request, error: Exception) -> Response:
+    """The answer to a request that failed with a `UserError`, as a notice."""
+    notice = notice_of(cast(UserError, error))
     return json_answer({"notice": notice.model_dump()}, _STATUS.get(notice.code, 400))
 
 

@@ -44,6 +44,7 @@ from latentarm.web.records.people import PersonRecord
 from latentarm.web.records.person_zip import IMPORT_LIMIT
 from latentarm.web.records.record_files import SYSTEM_CALENDAR, Calendar
 from latentarm.web.records.records import FOLDER, Records
+from latentarm.web.server.answers import refused
 from latentarm.web.server.assets import Assets
 from latentarm.web.server.camera_routes import CameraRoutes
 from latentarm.web.server.config import TeleopConfig, check_certificate, listen
@@ -269,7 +270,7 @@ def build_app(
     def busy(person: PersonRecord) -> bool:
         driver = sessions.driver
         theirs = driven_with(person) or (driver is not None and driver.person == person.id)
-        return theirs and not learning.at_rest
+        return theirs and not states.at_rest
 
     def let_go(person: PersonRecord) -> None:
         if driven_with(person):
@@ -317,7 +318,8 @@ def build_app(
         *(Route(page.path, pages.answer) for page in pages.all),
         Route("/static/{version}/{name:path}", assets.answer),
     ]
-    return Starlette(routes=routes, lifespan=lifespan, exception_handlers={HTTPException: _in_json})
+    handlers = {HTTPException: _in_json, UserError: refused}
+    return Starlette(routes=routes, lifespan=lifespan, exception_handlers=handlers)
 
 
 async def _in_json(_: Request, error: Exception) -> Response:

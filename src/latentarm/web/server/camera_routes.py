@@ -11,7 +11,7 @@ from starlette.routing import Route
 
 from latentarm.web.cameras.process import CameraProcess
 from latentarm.web.protocol.notice import Message, NoticeError
-from latentarm.web.server.answers import body_of, guarded, json_answer
+from latentarm.web.server.answers import body_of, json_answer
 from latentarm.web.server.security import BODY_LIMIT
 from latentarm.web.server.sessions import Sessions
 
@@ -39,7 +39,7 @@ class CameraRoutes:
 
     def routes(self) -> list[Route]:
         """The routes."""
-        return [Route(CAMERAS, guarded(self._offer), methods=["POST"])]
+        return [Route(CAMERAS, self._offer, methods=["POST"])]
 
     async def follow(self) -> None:
         """Drop the viewers of pages that have gone, until cancelled."""

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final, Literal, final
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from latentarm.web.protocol import orders, page_messages
-from latentarm.web.protocol.copilot_messages import AcceptCopilot, CopilotPace, PressCopilot
+from latentarm.web.protocol.copilot_messages import CopilotPace, PressCopilot
 from latentarm.web.protocol.learning_messages import PickRun, Train
 from latentarm.web.protocol.notice import Notice, NoticeCode
 from latentarm.web.protocol.personalise_messages import AnswerQuestion, PersonaliseMessage
@@ -206,13 +206,15 @@ class DriveSocket:
         match message:
             case page_messages.DriverInput():
                 self._give(message)
-            case page_messages.Press(type="enable") | page_messages.GuideArm(on=True) if self._stands_still:
+            case page_messages.Press(type="enable") | page_messages.SwitchMotion(type="guide", on=True) if (
+                self._stands_still
+            ):
                 pass
             case page_messages.Press(type="enable") if not self._confirmed_by(page):
                 self._states.say(Notice(code="checklist_first"))
             case page_messages.Press(type="enable"):
                 self._control.order(orders.Enable(driver=self._sessions.turn, stops=self._control.stops))
-            case AcceptCopilot(to=to):
+            case page_messages.HandOver(type="accept_copilot", to=to):
                 copilot = self._sessions.named(to)
                 if copilot is not None and self._sessions.copilot.accept(to):
                     self._copilot_changed("copilot_began", copilot)
@@ -224,9 +226,9 @@ class DriveSocket:
                 self._control.order(
                     orders.Record(on=on, task=task, person=_recorded_as(page), by_hand=by_hand)
                 )
-            case page_messages.GuideArm(on=on):
+            case page_messages.SwitchMotion(type="guide", on=on):
                 self._control.order(orders.Guide(on=on, stops=self._control.stops))
-            case page_messages.ReturnArm(on=on):
+            case page_messages.SwitchMotion(on=on):
                 self._control.order(orders.Return(on=on))
             case page_messages.GoToPose(name=name, built_in=built_in):
                 loaded = self._states.loaded
@@ -236,9 +238,9 @@ class DriveSocket:
                     pose = loaded.built_in(built_in, name)
                 if pose is not None:
                     self._control.order(orders.Return(on=True, pose=pose))
-            case page_messages.SavePose(name=name):
+            case page_messages.EditPoses(type="save_pose", name=name):
                 self._save_pose(page, name)
-            case page_messages.DeletePose(name=name):
+            case page_messages.EditPoses(name=name):
                 self._poses.delete(page.person, self._states.loaded.robot_name, name)
             case Train():
                 self._learning.train(message)
@@ -282,7 +284,7 @@ class DriveSocket:
 
     def _end_drive(self, ending: Ending) -> None:
         """End the drive if the arm is at rest, since only then it is reset."""
-        if self._learning.at_rest:
+        if self._states.at_rest:
             self._history.end(ending)
 
     def _note_profile(self, page: Page) -> None:

@@ -14,7 +14,7 @@ from latentarm.web.protocol.notice import Notice, NoticeError, notice_of
 from latentarm.web.protocol.orders import ChooseRun
 from latentarm.web.records.recordings import Recordings
 from latentarm.web.server.loaded_run import RunList
-from latentarm.web.server.personalising import Driven, Personalising
+from latentarm.web.server.personalising import Personalising
 from latentarm.web.server.run_check import WITHIN_S, why_not_drivable
 from latentarm.web.server.states import States
 
@@ -50,15 +50,10 @@ class Learning:
         self._list_again_s = -math.inf
         self._cancelling: asyncio.Task[None] | None = None
         self._choosing: asyncio.Task[None] | None = None
-        self.personalising = Personalising(self._driven, control)
+        self.personalising = Personalising(states, control)
         self.text = ""  # the state as JSON, for pages
         self.number = 0  # changes with every change of `text`
         self._tell(run_list.runs())
-
-    @property
-    def at_rest(self) -> bool:
-        """Whether the arm stands disengaged."""
-        return self._driven().at_rest
 
     async def follow(self) -> None:
         """Update the state, until cancelled."""
@@ -130,10 +125,6 @@ class Learning:
             self._control.order(ChooseRun(run=str(run), own_task=own_task))
         else:
             self._states.say(failure)
-
-    def _driven(self) -> Driven:
-        loaded = self._states.loaded
-        return Driven(loaded.spec.run, loaded.latent_dim, self._states.report, loaded.spec.seated)
 
     async def _list_recordings(self) -> None:
         report = self._states.report

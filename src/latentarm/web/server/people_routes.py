@@ -25,7 +25,7 @@ from latentarm.web.records.people import PersonRecord, Settings
 from latentarm.web.records.pin import PIN
 from latentarm.web.records.record_files import new_id
 from latentarm.web.records.records import Records
-from latentarm.web.server.answers import NO_STORE, body_of, guarded_routes, json_answer, object_in, refusal
+from latentarm.web.server.answers import NO_STORE, body_of, json_answer, object_in, refused, routes_of
 from latentarm.web.server.history import History
 from latentarm.web.server.pins import OPEN_S, Pins, cookie_of
 from latentarm.web.server.security import COOKIE
@@ -79,7 +79,7 @@ class PeopleRoutes:
             "/records/people/{person}/export": {"GET": self._export},
             IMPORT: {"POST": self._import},
         }
-        return guarded_routes(answers)
+        return routes_of(answers)
 
     async def _people(self, _: Request) -> Response:
         await self._history.settled()
@@ -129,7 +129,7 @@ class PeopleRoutes:
             key = await asyncio.to_thread(self._pins.unlock, person, given.pin or "", client)
             answer = _with_key(request, person.id, key)
         except NoticeError as error:
-            answer = refusal(error)
+            answer = refused(request, error)
         if session is None:
             answer.set_cookie(_BROWSER, browser, httponly=True, samesite="strict")
         return answer

@@ -1,13 +1,10 @@
 """A person's alignment, from the first question until the profile is kept or discarded."""
 
 import asyncio
-from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, final
 
-from latentarm.alignment.contract import Seat
 from latentarm.alignment.profile import (
     MOST_CHARACTERS,
     NAMED,
@@ -24,7 +21,7 @@ from latentarm.web.protocol import personalise_messages as messages
 from latentarm.web.protocol.notice import Notice, NoticeError, notice_of
 from latentarm.web.protocol.orders import ChooseProfile
 from latentarm.web.protocol.personalise_messages import Personalise
-from latentarm.web.protocol.report import Report
+from latentarm.web.server.states import States
 
 if TYPE_CHECKING:
     from latentarm.web.arm_process.process import ControlProcess
@@ -33,32 +30,11 @@ STICK_AXES: Final = 2
 
 
 @final
-@dataclass(frozen=True)
-class Driven:
-    """The setup that is driven, as far as Personalise needs it."""
-
-    run: Path | None
-    latent_dim: int  # d; 0 without a run
-    report: Report | None  # the newest; None before the first
-    seated: Callable[[Seat | None], Seat | None]  # see `Spec.seated`
-
-    @property
-    def at_rest(self) -> bool:
-        """Whether the arm is disengaged and at rest."""
-        return self.report is not None and self.report.phase in ("disengaged", "neutral_needed")
-
-    @property
-    def profile(self) -> str | None:
-        """The person whose alignment is used."""
-        return None if self.report is None else self.report.profile
-
-
-@final
 class Personalising:
     """Asks at most one person at a time; their alignment can be tried before it is kept."""
 
-    def __init__(self, driven: Callable[[], Driven], control: "ControlProcess") -> None:
-        self._driven = driven
+    def __init__(self, states: States, control: "ControlProcess") -> None:
+        self._states = states
         self._control = control
         self._run: Path | None = None
         self._job: PersonaliseJob | None = None
@@ -76,7 +52,7 @@ class Personalising:
 
     def look(self) -> Personalise | None:
         """The state to show, or None if nothing is running."""
-        if self._run is not None and self._driven().run != self._run:
+        if self._run is not None and self._states.loaded.spec.run != self._run:
             # Another run is driven: answers and profile do not apply to it.
             self._forget()
         if self._job is not None and self._under_way:
@@ -104,6 +80,10 @@ class Personalising:
     def _learned(self) -> bool:
         return self._state is not None and self._state.phase == "learned"
 
+    @property
+    def _profile(self) -> str | None:
+        return None if self._states.report is None else self._states.report.profile
+
     def _obey(self, message: messages.PersonaliseMessage) -> None:
         match message:
             case messages.BeginPersonalise():
@@ -126,14 +106,14 @@ class Personalising:
     def _begin(self, wish: messages.BeginPersonalise) -> None:
         if self._under_way or (self._ending is not None and not self._ending.done()):
             raise NoticeError("asking_already")
-        driven, name = self._driven(), wish.name.strip()
-        profile = self._before if self._tried else driven.profile
+        name = wish.name.strip()
+        profile = self._before if self._tried else self._profile
         try:
-            run = _alignable(driven)
+            run = self._alignable()
             name = name if NAMED.fullmatch(name) else clean_name(name, MOST_CHARACTERS)
             if profile_folder(run, name).exists():
                 raise NoticeError("profile_exists", name=name)
-            self._give_back(driven)
+            self._give_back()
         except UserError as error:
             if self._learned:
                 raise
@@ -142,16 +122,16 @@ class Personalising:
         # An Enable from before that has not been carried out counts for nothing after a stop.
         self._control.stop(Notice(code="question_began"))
         self._run = run
+        seat = self._states.loaded.spec.seated(wish.seat)
         self._job = PersonaliseJob(
-            PersonalisePlan(run, name, wish.questions, profile, driven.seated(wish.seat), trial_folder(run))
+            PersonalisePlan(run, name, wish.questions, profile, seat, trial_folder(run))
         )
         self._state = self._job.look()
 
     def _try(self) -> None:
-        driven = self._driven()
-        _check_at_rest(driven)
+        self._check_at_rest()
         if not self._tried:
-            self._before = driven.profile
+            self._before = self._profile
         self._tried = self._control.order(ChooseProfile(name=TRIAL)) or self._tried
         self._why(None)
 
@@ -159,7 +139,7 @@ class Personalising:
         if self._run is None or self._state is None:
             return
         if self._tried:
-            _check_at_rest(self._driven())
+            self._check_at_rest()
         keep_trial(self._run, self._state.name)
         if self._tried:
             self._control.order(ChooseProfile(name=self._state.name))
@@ -168,17 +148,17 @@ class Personalising:
         self._state = self._state.model_copy(update={"phase": "kept", "why": None})
 
     def _discard(self) -> None:
-        self._give_back(self._driven())
+        self._give_back()
         self._job = self._run = self._state = None
 
-    def _give_back(self, driven: Driven) -> None:
+    def _give_back(self) -> None:
         """Restore the alignment from before the trial, and discard the trial."""
         if self._tried:
-            _check_at_rest(driven)
+            self._check_at_rest()
             self._control.order(ChooseProfile(name=self._before))
             self._tried = False
-        if driven.run is not None:
-            discard_trial(driven.run)
+        if (run := self._states.loaded.spec.run) is not None:
+            discard_trial(run)
 
     def _forget(self) -> None:
         job, run = self._job, self._run
@@ -191,19 +171,18 @@ class Personalising:
         if self._state is not None:
             self._state = self._state.model_copy(update={"why": why})
 
+    def _alignable(self) -> Path:
+        loaded = self._states.loaded
+        if loaded.spec.run is None:
+            raise NoticeError("no_run")
+        if loaded.latent_dim > STICK_AXES:
+            raise NoticeError("too_many_axes", count=loaded.latent_dim)
+        self._check_at_rest()
+        return loaded.spec.run
 
-def _alignable(driven: Driven) -> Path:
-    if driven.run is None:
-        raise NoticeError("no_run")
-    if driven.latent_dim > STICK_AXES:
-        raise NoticeError("too_many_axes", count=driven.latent_dim)
-    _check_at_rest(driven)
-    return driven.run
-
-
-def _check_at_rest(driven: Driven) -> None:
-    if not driven.at_rest:
-        raise NoticeError("stop_first")
+    def _check_at_rest(self) -> None:
+        if not self._states.at_rest:
+            raise NoticeError("stop_first")
 
 
 def _clean(job: PersonaliseJob | None, run: Path) -> None:

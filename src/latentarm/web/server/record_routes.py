@@ -16,7 +16,7 @@ from latentarm.web.protocol.notice import Message, NoticeError
 from latentarm.web.records.drive_record import DriveRecord
 from latentarm.web.records.drives import Wanted
 from latentarm.web.records.records import Records
-from latentarm.web.server.answers import NO_STORE, body_of, guarded_routes, json_answer
+from latentarm.web.server.answers import NO_STORE, body_of, json_answer, routes_of
 from latentarm.web.server.history import History
 from latentarm.web.server.pins import Pins
 
@@ -56,7 +56,7 @@ class RecordRoutes:
             "/records/recordings/{name}": {"PUT": self._entitle_recording, "DELETE": self._delete_recording},
             "/records/recordings/{name}/restore": {"POST": self._restore_recording},
         }
-        return guarded_routes(answers)
+        return routes_of(answers)
 
     async def _drives(self, request: Request) -> Response:
         await self._history.settled()

@@ -41,7 +41,7 @@ class SetupLock:
                 kept = [] if report is None else [report.profile]
                 kept += [None if chosen == _NO_PROFILE else chosen] if chosen else []
                 return name not in kept or seat not in (None, settings.get("seat", _USUAL_SEAT))
-            case page_messages.SavePose() | page_messages.DeletePose() | PickRun() | Train():
+            case page_messages.EditPoses() | PickRun() | Train():
                 return True
             case _:
                 return isinstance(message, PersonaliseMessage)

@@ -147,6 +147,11 @@ class States:
         """Why there is no news of the arm; None if there is."""
         return self._why_away() if self.loading or self.quiet_s > SILENT_S else None
 
+    @property
+    def at_rest(self) -> bool:
+        """Whether the arm is disengaged and stands still."""
+        return self.report is not None and self.report.phase in ("disengaged", "neutral_needed")
+
     def clear_trail(self) -> None:
         """Empty the trail on every page."""
         self._trail += 1

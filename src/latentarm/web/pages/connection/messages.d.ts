@@ -1,10 +1,5 @@
 // Written by `make message-types` from the messages that the server declares.
 
-export interface AcceptCopilot {
-  type: "accept_copilot";
-  to: string;
-}
-
 export interface AnswerQuestion {
   type: "answer";
   question: number;
@@ -66,11 +61,6 @@ export interface CopilotState {
   pace: number;
 }
 
-export interface DeletePose {
-  type: "delete_pose";
-  name: string;
-}
-
 export interface DriveRecord {
   version: 1;
   id: string;
@@ -116,6 +106,11 @@ export interface DriverInput {
   opens?: boolean;
 }
 
+export interface EditPoses {
+  type: "save_pose" | "delete_pose";
+  name: string;
+}
+
 export interface Fill {
   thing: string;
   share: number;
@@ -142,13 +137,8 @@ export interface GripperState {
   closing: boolean | null;
 }
 
-export interface GuideArm {
-  type: "guide";
-  on: boolean;
-}
-
 export interface HandOver {
-  type: "hand_over";
+  type: "hand_over" | "accept_copilot";
   to: string;
 }
 
@@ -172,6 +162,11 @@ export interface LearningState {
   runs: string[];
   run: string | null;
   profiles: string[];
+}
+
+export interface LeaveQuestion {
+  type: "skip_question" | "question_before";
+  question: number;
 }
 
 export interface Lesson {
@@ -255,11 +250,6 @@ export interface PressStop {
   why?: "pressed" | "page";
 }
 
-export interface QuestionBefore {
-  type: "question_before";
-  question: number;
-}
-
 export interface RealArm {
   facts: [string, string][];
   shadow: boolean;
@@ -320,16 +310,6 @@ export interface Reset {
   type: "reset";
 }
 
-export interface ReturnArm {
-  type: "return";
-  on: boolean;
-}
-
-export interface SavePose {
-  type: "save_pose";
-  name: string;
-}
-
 export interface SeenThing {
   name: string;
   seen: "unseen" | "seen" | "doubted" | "carried" | "lost";
@@ -341,11 +321,6 @@ export interface ShownMotion {
   duration_s: number;
   frames: number[][][];
   tools: [number, number, number][][];
-}
-
-export interface SkipQuestion {
-  type: "skip_question";
-  question: number;
 }
 
 export interface State {
@@ -393,6 +368,11 @@ export interface State {
 export interface StepToDo {
   kind: "approached" | "reached" | "passed" | "holding" | "stabbed" | "above" | "poured" | "cut" | "scooped" | "dipped" | "stirred" | "placed";
   thing: string;
+}
+
+export interface SwitchMotion {
+  type: "guide" | "return";
+  on: boolean;
 }
 
 export interface TaskState {
@@ -499,6 +479,6 @@ export interface Why {
   thing: string;
 }
 
-export type ClientMessage = Hello | DriverInput | ConfirmChecklist | Press | PressStop | HandOver | RecordEpisode | GuideArm | ReturnArm | GoToPose | SavePose | DeletePose | Train | PickRun | BeginPersonalise | AnswerQuestion | SkipQuestion | QuestionBefore | PressPersonalise | AcceptCopilot | PressCopilot | CopilotPace | ChooseMode | ChooseHelp | ChooseProfile | KeepGuiding | Reconnect | TouchThing | Reset | BeginTask;
+export type ClientMessage = Hello | DriverInput | ConfirmChecklist | Press | PressStop | HandOver | RecordEpisode | SwitchMotion | GoToPose | EditPoses | Train | PickRun | BeginPersonalise | AnswerQuestion | LeaveQuestion | PressPersonalise | PressCopilot | CopilotPace | ChooseMode | ChooseHelp | ChooseProfile | KeepGuiding | Reconnect | TouchThing | Reset | BeginTask;
 
 export type ServerMessage = Welcome | State | LearningState | Poses | Refused;
