@@ -130,13 +130,17 @@ export function newBrowser() {
   FakeSocket.all = [];
   const fakes = {
     window: new EventTarget(),
-    document: Object.assign(new EventTarget(), { hidden: false, getElementById: () => null, querySelector: () => null, getElementsByTagName: () => [], createElement: () => new FakeElement() }),
+    document: Object.assign(new EventTarget(), { hidden: false, elements: {}, getElementById(id) { return this.elements[id] ?? null; }, querySelector: () => null, getElementsByTagName: () => [], createElement: () => new FakeElement() }),
     localStorage: new FakeStorage(),
     sessionStorage: new FakeStorage(),
     location: { protocol: "https:", host: "arm.local" },
     WebSocket: FakeSocket,
     Element: FakeElement,
     HTMLElement: FakeElement,
+    HTMLButtonElement: FakeElement,
+    HTMLDetailsElement: FakeElement,
+    HTMLInputElement: FakeElement,
+    HTMLSelectElement: FakeElement,
     matchMedia: () => Object.assign(new EventTarget(), { matches: false }),
     fetch: mock.fn(() => Promise.resolve()),
   };
@@ -145,6 +149,13 @@ export function newBrowser() {
   }
   useWords("en", english);
   return fakes;
+}
+
+/** Elements that the page has from now on, by these names. @param {Record<string, string>} ids of each name */
+export function elementsOf(ids) {
+  const made = Object.fromEntries(Object.keys(ids).map((name) => [name, new FakeElement()]));
+  for (const [name, id] of Object.entries(ids)) globalThis.document.elements[id] = made[name];
+  return made;
 }
 
 /** An event with what a browser would tell of it. @param {string} type @param {object} [fields] */

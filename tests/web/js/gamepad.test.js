@@ -6,7 +6,7 @@ import { attachGamepad } from "#pages/inputs/gamepad.js";
 import { say } from "#pages/layout/words.js";
 import { mappingOf } from "#pages/settings/pads.js";
 import { Settings } from "#pages/settings/settings.js";
-import { event, newBrowser, pass } from "./browser.js";
+import { elementsOf, event, newBrowser, pass } from "./browser.js";
 
 let fakes;
 let input;
@@ -46,6 +46,7 @@ beforeEach(() => {
   scanning = false;
   input = Object.assign(new Deflection(), { flowing: true, halt: (why) => done.push(why) });
   settings = new Settings();
+  ({ told } = elementsOf({ told: "unrested" }));
   attachGamepad(input, settings, {
     enable: () => done.push("enable"),
     stop: () => done.push("stop"),
@@ -55,7 +56,7 @@ beforeEach(() => {
       if (scanning && down) done.push(`switch ${number}`);
       return scanning;
     },
-  }, (text) => (told = text));
+  });
 });
 
 test("the stick moves the arm; up is up", () => {
@@ -115,11 +116,11 @@ test("every button of a gamepad without the standard layout stops, and the page 
   pad.mapping = "";
   for (const number of [0, 3, 5]) press(pad, number);
   assert.deepEqual(done, ["stop", "stop", "stop"]);
-  assert.equal(told, say("gamepad.unknown", { name: "a" }));
+  assert.equal(told.textContent, say("gamepad.unknown", { name: "a" }));
   settings.change({ pads: { a: mappingOf({}, { ...pad, mapping: "standard" }) } });
   press(pad, 0);
   assert.equal(done.pop(), "enable");
-  assert.equal(told, "");
+  assert.equal(told.textContent, "");
 });
 
 test("behind a dialog a button stops, and does nothing else", () => {
@@ -145,7 +146,7 @@ test("a stick that is at rest by one mapping and pushed by another moves nothing
   settings.change({ pads: { a: { ...mappingOf({}, pad), at: [2, 3] } } });
   poll();
   assert.equal(input.source, null);
-  assert.equal(told, say("gamepad.unrested", { name: "a" }));
+  assert.equal(told.textContent, say("gamepad.unrested", { name: "a" }));
   pad.axes = [0, 0, 0, 0];
   poll();
   pad.axes = [0, 0, 1, 0];
@@ -216,13 +217,13 @@ for (const [what, axes] of [["pushed", [0.7, 0]], ["with an axis that rests at -
     poll();
     poll();
     assert.equal(input.source, null);
-    assert.equal(told, say("gamepad.unrested", { name: "a" }));
+    assert.equal(told.textContent, say("gamepad.unrested", { name: "a" }));
     input.hold("keyboard", 0, 1);
     assert.equal(input.source, "keyboard");
     input.release("keyboard");
     pad.axes = [0, 0];
     poll();
-    assert.equal(told, "");
+    assert.equal(told.textContent, "");
     pad.axes = [0.7, 0];
     poll();
     assert.equal(input.source, "gamepad");
@@ -239,7 +240,7 @@ test("a gamepad that is pushed when inputs begin to flow, or when all let go, mo
     begins();
     poll();
     assert.equal(input.source, null);
-    assert.equal(told, say("gamepad.unrested", { name: "a" }));
+    assert.equal(told.textContent, say("gamepad.unrested", { name: "a" }));
     pad.axes = [0, 0];
     poll();
     pad.axes = [0.7, 0];

@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 
 import { attachGripper, gripperWords } from "#pages/inputs/gripper.js";
-import { event, FakeElement, newBrowser, pass, stateOf, welcomeOf } from "./browser.js";
+import { elementsOf, event, newBrowser, pass, stateOf, welcomeOf } from "./browser.js";
 
 const WIDE = 0.08;
 
@@ -28,7 +28,7 @@ const at = (width_m, fields = {}) => ({ width_m, holding: false, closing: null, 
 
 beforeEach(() => {
   fakes = newBrowser();
-  parts = { panel: new FakeElement(), open: new FakeElement(), close: new FakeElement(), state: new FakeElement(), hold: new FakeElement() };
+  parts = elementsOf({ panel: "gripper", open: "gripper-open", close: "gripper-close", state: "gripper-state", hold: "gripper-hold" });
   parts.panel.hidden = true;
   connection = Object.assign(new EventTarget(), { welcome: null, state: null });
   asked = [];
@@ -39,7 +39,7 @@ beforeEach(() => {
     ask: (what, source) => live && asked.push([what, source]) > 0,
     holdOpen: (source, still) => !live && connection.driving && (held = { source, still }) !== null,
   };
-  gripper = attachGripper(parts, connection, input, () => (refused += 1));
+  gripper = attachGripper(connection, input, () => (refused += 1));
 });
 
 test("without a gripper nothing is shown, offered or asked", () => {

@@ -7,14 +7,14 @@ import { Connection } from "#pages/connection/connection.js";
 import { sentenceOf, textOf } from "#pages/connection/sentence.js";
 import { attachStop } from "#pages/connection/stop.js";
 import { attachGuiding, guidingOf } from "#pages/teach/guiding.js";
-import { FakeElement, FakeSocket, event, key, newBrowser, pass, pageOf, stateOf, welcomeOf } from "./browser.js";
+import { elementsOf, FakeElement, FakeSocket, event, key, newBrowser, pass, pageOf, stateOf, welcomeOf } from "./browser.js";
 
 let fakes;
 let socket;
 let parts;
 let guiding;
 
-const NAMES = ["panel", "check", "confirmed", "button", "why", "doing", "task", "record", "recorded", "gripper", "open", "close"];
+const NAMES = ["check", "why", "doing", "task", "record", "recorded", "gripper", "open", "close"];
 const says = (fields) => socket.says(stateOf({ you: true, phase: "disengaged", guiding: "offered", ...fields }));
 const types = () => socket.taken().map(({ type, on, gripper }) => [type, on ?? gripper ?? null]);
 const press = (part) => parts[part].dispatchEvent(new Event("click"));
@@ -24,10 +24,10 @@ beforeEach(() => {
   const connection = new Connection(null);
   socket = FakeSocket.newest;
   socket.opens();
-  parts = Object.fromEntries(NAMES.map((name) => [name, new FakeElement()]));
+  parts = elementsOf({ panel: "guiding", confirmed: "guiding-loaded", button: "guiding-begin", ...Object.fromEntries(NAMES.map((name) => [name, `guiding-${name}`])) });
   parts.confirmed.checked = true;
   parts.task.value = " wave ";
-  guiding = attachGuiding(parts, connection, { ask: (act) => act() });
+  guiding = attachGuiding(connection, { ask: (act) => act() });
   attachStop(connection, () => guiding.stopped());
   socket.says(welcomeOf({ gripper_width_m: 0.08 }));
   says({});

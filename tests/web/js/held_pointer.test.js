@@ -7,7 +7,7 @@ import { Deflection } from "#pages/inputs/deflection.js";
 import { attachDpad } from "#pages/inputs/dpad.js";
 import { attachHeldPointer } from "#pages/inputs/held_pointer.js";
 import { Settings } from "#pages/settings/settings.js";
-import { event, FakeElement, newBrowser } from "./browser.js";
+import { elementsOf, event, FakeElement, newBrowser } from "./browser.js";
 
 let fakes;
 let element;
@@ -64,7 +64,8 @@ for (const type of ["pointercancel", "lostpointercapture"]) {
 test("a direction button lets go when its pointer moves with no button down", () => {
   const button = Object.assign(new FakeElement(), { dataset: { direction: "up" }, setPointerCapture: () => {} });
   const input = Object.assign(new Deflection(), { live: true });
-  attachDpad(Object.assign(new FakeElement(), { querySelectorAll: () => [button] }), new FakeElement(), input, new Settings(), () => {});
+  elementsOf({ group: "dpad", help: "dpad-help" }).group.querySelectorAll = () => [button];
+  attachDpad(input, new Settings());
   button.dispatchEvent(pointer("pointerdown"));
   assert.equal(input.source, "dpad");
   moves({ buttons: 0 });

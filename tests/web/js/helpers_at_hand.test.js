@@ -9,7 +9,7 @@ import { attachHelp, helpWords } from "#pages/drive/help.js";
 import { Deflection } from "#pages/inputs/deflection.js";
 import { attachLatchLimit } from "#pages/inputs/latch_limit.js";
 import { Settings } from "#pages/settings/settings.js";
-import { FakeElement, FakeSocket, newBrowser, pass, stateOf, welcomeOf } from "./browser.js";
+import { elementsOf, FakeSocket, newBrowser, pass, stateOf, welcomeOf } from "./browser.js";
 
 let settings;
 let connection;
@@ -26,8 +26,9 @@ beforeEach(() => {
 });
 
 function attached() {
-  const fieldset = Object.assign(new FakeElement(), { querySelectorAll: () => [] });
-  return attachHelp({ fieldset, text: new FakeElement() }, connection, settings);
+  const { fieldset } = elementsOf({ fieldset: "help", text: "help-text" });
+  fieldset.querySelectorAll = () => [];
+  return attachHelp(connection, settings);
 }
 
 const asked = () => socket.taken().filter(({ type }) => type === "help").map(({ level }) => level);

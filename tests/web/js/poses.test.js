@@ -5,7 +5,7 @@ import { beforeEach, test } from "node:test";
 
 import { attachChecklist } from "#pages/drive/checklist.js";
 import { attachPoses, goingOf, savesOf } from "#pages/drive/poses.js";
-import { FakeElement, newBrowser, stateOf, welcomeOf } from "./browser.js";
+import { elementsOf, newBrowser, stateOf, welcomeOf } from "./browser.js";
 
 beforeEach(newBrowser);
 
@@ -29,10 +29,13 @@ test("a pose is saved while the arm stands still, enabled or not, by the person 
 });
 
 test("a real arm is enabled once everything was confirmed, a simulated one at once", () => {
-  const boxes = Array.from({ length: 3 }, () => Object.assign(new FakeElement(), { checked: false }));
-  const parts = { panel: new FakeElement(), facts: new FakeElement(), why: new FakeElement(), boxes };
+  const { panel, facts, ...named } = elementsOf({
+    panel: "checklist", facts: "checklist-facts", stop: "checklist-stop", area: "checklist-area", payload: "checklist-payload",
+  });
+  const boxes = Object.values(named);
+  for (const box of boxes) box.checked = false;
   const connection = Object.assign(new EventTarget(), { welcome: welcomeOf({ real: null }) });
-  const checklist = attachChecklist(parts, connection, () => {});
+  const checklist = attachChecklist(connection);
   assert.ok(checklist.done());
   connection.welcome = welcomeOf({ real: { facts: [["firmware", "2.1"]], shadow: false } });
   const told = [];
@@ -53,26 +56,26 @@ test("a real arm is enabled once everything was confirmed, a simulated one at on
   assert.deepEqual(told, [0, 0], "the server does not know this page's new connection");
   connection.state = stateOf({ lost: true, arm_start: 1 });
   connection.dispatchEvent(new Event("state"));
-  assert.ok(parts.panel.hidden, "an arm that is not connected is connected first");
+  assert.ok(panel.hidden, "an arm that is not connected is connected first");
   connection.state = stateOf({ lost: false, arm_start: 1 });
   connection.dispatchEvent(new Event("state"));
   connection.dispatchEvent(new Event("welcome"));
   connection.dispatchEvent(new Event("state"));
   assert.deepEqual(told, [0, 0]);
   assert.equal(checklist.choices().length, 3, "it may have been moved, or carry something else now");
-  assert.ok(!parts.panel.hidden);
+  assert.ok(!panel.hidden);
 });
 
 test("the robot's own poses come before saved ones, and cannot be deleted", () => {
   const sent = [];
-  const parts = Object.fromEntries(["panel", "list", "why", "name", "save"].map((name) => [name, new FakeElement()]));
+  const parts = elementsOf({ panel: "poses-panel", list: "poses", why: "poses-why", name: "pose-name", save: "pose-save" });
   parts.panel.hidePopover = () => {};
   parts.list.querySelectorAll = () => [];
   const connection = Object.assign(new EventTarget(), {
     ...DRIVING, state: stateOf({ phase: "ready", you: true }), welcome: welcomeOf({ poses: ["home", "tuck"] }),
     poses: { names: ["Drink"], problem: null }, send: (message) => sent.push(message),
   });
-  const poses = attachPoses(parts, connection);
+  const poses = attachPoses(connection);
   assert.deepEqual(parts.list.children.map((row) => row.children.length), [1, 1, 2]);
   for (const row of parts.list.children) row.children[0].dispatchEvent(new Event("click"));
   assert.deepEqual(sent, [

@@ -11,7 +11,7 @@ import { Settings } from "#pages/settings/settings.js";
 import german from "../../../src/latentarm/web/words/de.json" with { type: "json" };
 import spanish from "../../../src/latentarm/web/words/es.json" with { type: "json" };
 import chinese from "../../../src/latentarm/web/words/zh.json" with { type: "json" };
-import { event, FakeElement, newBrowser, pass, stateOf, welcomeOf } from "./browser.js";
+import { elementsOf, event, FakeElement, newBrowser, pass, stateOf, welcomeOf } from "./browser.js";
 
 const MARSHMALLOWS = ["left marshmallow", "middle marshmallow", "right marshmallow"];
 const STEPS = [{ kind: "above", thing: MARSHMALLOWS[0] }, { kind: "stabbed", thing: MARSHMALLOWS[0] }];
@@ -42,13 +42,15 @@ function hears(run = {}, fields = {}) {
 
 beforeEach(() => {
   fakes = newBrowser();
-  const names = ["panel", "steps", "fills", "said", "time", "why", "chooser", "choice", "next", "again", "more"];
-  parts = Object.fromEntries(names.map((name) => [name, new FakeElement()]));
+  parts = elementsOf({
+    panel: "task", steps: "task-steps", fills: "task-fills", said: "task-said", time: "task-time", why: "task-why",
+    chooser: "task-chooser", choice: "task-choice", next: "task-next", again: "task-again", more: "task-more",
+  });
   parts.panel.hidden = true;
   sent = [];
   heard = [];
   connection = Object.assign(new EventTarget(), { welcome: null, state: null, send: (message) => sent.push(message) });
-  task = attachTask(parts, connection, (outcome) => heard.push(outcome));
+  task = attachTask(connection, (outcome) => heard.push(outcome));
 });
 
 const marks = () => parts.steps.children.map((item) => ({ done: "✓", now: "▸", later: "○" })[item.dataset.step]).join("");

@@ -5,7 +5,7 @@ import { beforeEach, test } from "node:test";
 
 import { attachThingsHere, seenWords } from "#pages/drive/things_here.js";
 import { sayTo } from "#pages/connection/notices.js";
-import { FakeElement, newBrowser, stateOf } from "./browser.js";
+import { elementsOf, newBrowser, stateOf } from "./browser.js";
 
 beforeEach(newBrowser);
 
@@ -23,8 +23,8 @@ test("who drives can show things; nobody can turn what has not been seen", () =>
   const sent = [];
   const things = { poses: [], grains: [], seen: [thing({}), thing({ name: "bowl", seen: "unseen" })] };
   const connection = Object.assign(new EventTarget(), { driving: true, state: stateOf({ things }), send: (message) => sent.push(message) });
-  const section = Object.assign(new FakeElement(), { hidden: false });
-  const { choices } = attachThingsHere({ section, list: new FakeElement() }, connection);
+  const { section } = elementsOf({ section: "things-here", list: "things-list" });
+  const { choices } = attachThingsHere(connection);
   assert.deepEqual(choices().map(({ label }) => label), ["Here is the cup", "Turn the cup towards the tool", "Take back: the cup", "Here is the bowl"]);
   choices()[3].act();
   assert.deepEqual(sent, [{ type: "touch", thing: "bowl", kind: "place" }]);

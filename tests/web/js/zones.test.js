@@ -4,14 +4,14 @@ import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 
 import { attachZones } from "#pages/drive/zones.js";
-import { FakeElement, newBrowser, welcomeOf } from "./browser.js";
+import { elementsOf, newBrowser, welcomeOf } from "./browser.js";
 
 beforeEach(newBrowser);
 
 test("zones are listed with their speeds, by the page's words or by their own names", () => {
-  const text = new FakeElement();
+  const { text } = elementsOf({ text: "zones" });
   const connection = Object.assign(new EventTarget(), { welcome: welcomeOf({ zones: [] }) });
-  attachZones(text, connection);
+  attachZones(connection);
   connection.dispatchEvent(new Event("welcome"));
   assert.ok(text.hidden);
   connection.welcome = welcomeOf({ zones: [{ name: "self", speed: 0.08 }, { name: "Tray 2", speed: 0.1 }] });
@@ -21,10 +21,10 @@ test("zones are listed with their speeds, by the page's words or by their own na
 });
 
 test("what the arm keeps out of is listed after them, or alone", () => {
-  const text = new FakeElement();
+  const { text } = elementsOf({ text: "zones" });
   const zones = [{ name: "face", speed: 0.05 }];
   const connection = Object.assign(new EventTarget(), { welcome: welcomeOf({ zones, keep_out: ["table", "Wand"] }) });
-  attachZones(text, connection);
+  attachZones(connection);
   connection.dispatchEvent(new Event("welcome"));
   assert.equal(text.textContent, "Slow zones: face (at most 5 cm/s). The arm keeps out of: table and Wand.");
   connection.welcome = welcomeOf({ zones: [], keep_out: ["table"] });

@@ -1,6 +1,6 @@
 /** Who drives, who watches, and how one becomes the other. */
 
-import { setHidden, setText } from "../layout/dom.js";
+import { byId, setHidden, setText } from "../layout/dom.js";
 import { say, sayName } from "../layout/words.js";
 
 /** @import {Connection} from "./connection.js" */
@@ -72,15 +72,13 @@ export function whoDrives(state, asks) {
   return asks === "another" ? `${text} ${say("driver.asked_already", { asking: asker })}` : text;
 }
 
-/**
- * @param {{text: HTMLElement, ask: HTMLButtonElement, handOver: HTMLButtonElement, release: HTMLButtonElement}} parts
- * @param {Connection} connection
- */
-export function attachDriverPanel(parts, connection) {
+/** @param {Connection} connection */
+export function attachDriverPanel(connection) {
+  const [ask, handOver, release] = ["ask", "hand-over", "release"].map((id) => byId(id, HTMLButtonElement));
   const hasEnable = document.getElementById("enable") !== null;
-  parts.ask.addEventListener("click", () => connection.send({ type: "ask_to_drive" }));
-  parts.release.addEventListener("click", () => connection.send({ type: "release" }));
-  parts.handOver.addEventListener("click", () => {
+  ask.addEventListener("click", () => connection.send({ type: "ask_to_drive" }));
+  release.addEventListener("click", () => connection.send({ type: "release" }));
+  handOver.addEventListener("click", () => {
     const asking = connection.state?.asking;
     if (asking) connection.send({ type: "hand_over", to: asking });
   });
@@ -91,11 +89,11 @@ export function attachDriverPanel(parts, connection) {
     const { you, asking, asking_name } = state;
     const asks = whoAsks(state, welcome?.id);
     // Where another page drives, the button next to Stop asks; a page without one asks here.
-    setHidden(parts.ask, you || (hasEnable && state.driver !== null));
-    if (parts.ask.disabled !== (asks !== null)) parts.ask.disabled = asks !== null;
-    setHidden(parts.release, !you);
-    setHidden(parts.handOver, !you || asking === null);
-    setText(parts.handOver, asking_name === null ? say("driver.hand_over") : say("driver.hand_over_to", { name: sayName(asking_name) }));
-    setText(parts.text, whoDrives(state, asks));
+    setHidden(ask, you || (hasEnable && state.driver !== null));
+    if (ask.disabled !== (asks !== null)) ask.disabled = asks !== null;
+    setHidden(release, !you);
+    setHidden(handOver, !you || asking === null);
+    setText(handOver, asking_name === null ? say("driver.hand_over") : say("driver.hand_over_to", { name: sayName(asking_name) }));
+    setText(byId("driver"), whoDrives(state, asks));
   });
 }

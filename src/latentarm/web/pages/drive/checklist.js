@@ -3,15 +3,16 @@
  * server enables nothing before it has heard of it.
  */
 
-import { create } from "../layout/dom.js";
+import { byId, create } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 
 /** @import {Connection} from "../connection/connection.js" */
 /** @import {Choice} from "../inputs/scanner.js" */
 
-/** @param {{panel: HTMLElement, facts: HTMLElement, boxes: HTMLInputElement[]}} parts @param {Connection} connection */
-export function attachChecklist(parts, connection) {
-  const done = () => !connection.welcome?.real || parts.boxes.every((box) => box.checked);
+/** @param {Connection} connection */
+export function attachChecklist(connection) {
+  const boxes = ["stop", "area", "payload"].map((id) => byId(`checklist-${id}`, HTMLInputElement));
+  const done = () => !connection.welcome?.real || boxes.every((box) => box.checked);
   let lost = false;
   /** Which start of the arm the boxes are about. */
   let start = 0;
@@ -23,17 +24,17 @@ export function attachChecklist(parts, connection) {
   const show = () => {
     const real = connection.welcome?.real ?? null;
     // An arm that is not connected is connected first.
-    parts.panel.hidden = done() || lost;
-    parts.facts.replaceChildren(...(real?.facts ?? []).flatMap(([name, value]) => [create("dt", { textContent: name }), create("dd", { textContent: value })]));
+    byId("checklist").hidden = done() || lost;
+    byId("checklist-facts").replaceChildren(...(real?.facts ?? []).flatMap(([name, value]) => [create("dt", { textContent: name }), create("dd", { textContent: value })]));
   };
-  for (const box of parts.boxes) {
+  for (const box of boxes) {
     box.addEventListener("change", () => {
       show();
       tell();
     });
   }
   const uncheck = () => {
-    for (const box of parts.boxes) box.checked = false;
+    for (const box of boxes) box.checked = false;
   };
   connection.addEventListener("server_changed", uncheck);
   connection.addEventListener("welcome", () => {
@@ -57,12 +58,12 @@ export function attachChecklist(parts, connection) {
     done,
     /** Leads to what is missing. */
     refuse() {
-      parts.boxes.find((box) => !box.checked)?.focus();
+      boxes.find((box) => !box.checked)?.focus();
     },
     /** The points that are left to confirm, for a switch. @returns {Choice[]} */
     choices() {
       if (done()) return [];
-      return parts.boxes.filter((box) => !box.checked).map((box) => ({ id: box.id, label: box.labels?.[0]?.textContent?.trim() ?? box.id, act: () => box.click() }));
+      return boxes.filter((box) => !box.checked).map((box) => ({ id: box.id, label: box.labels?.[0]?.textContent?.trim() ?? box.id, act: () => box.click() }));
     },
   };
 }

@@ -9,7 +9,7 @@ import { attachCopilot } from "../connection/copilot.js";
 import { DIRECTIONS } from "../inputs/deflection.js";
 import { attachDpad } from "../inputs/dpad.js";
 import { DriveInput } from "../inputs/drive_input.js";
-import { attachGamepad, sayUnrested } from "../inputs/gamepad.js";
+import { attachGamepad } from "../inputs/gamepad.js";
 import { attachGripper } from "../inputs/gripper.js";
 import { attachInputChoice } from "../inputs/input_choice.js";
 import { attachKeyboard } from "../inputs/keyboard.js";
@@ -77,10 +77,7 @@ attachNeutralFirst(connection, input);
 const practice = attachPractice(connection, input, settings);
 attachCard(connection, settings);
 
-const checklist = attachChecklist({
-  panel: byId("checklist"), facts: byId("checklist-facts"),
-  boxes: ["stop", "area", "payload"].map((id) => byId(`checklist-${id}`, HTMLInputElement)),
-}, connection);
+const checklist = attachChecklist(connection);
 
 /** This page drives first, if nobody else does, and then enables the arm: one press for both. */
 const enable = () => {
@@ -95,49 +92,32 @@ const enable = () => {
 };
 attachEnableButton(byId("enable"), connection, enable);
 const lostArm = attachLostArm(connection, lease);
-const wayBack = attachWayBack({ button: byId("way-back"), why: byId("way-back-why") }, connection);
-
-const poses = attachPoses({
-  panel: byId("poses-panel"), list: byId("poses"), why: byId("poses-why"), name: byId("pose-name", HTMLInputElement), save: byId("pose-save"),
-}, connection);
-
-const thingsHere = attachThingsHere({ section: byId("things-here"), list: byId("things-list") }, connection);
-
-const modes = attachModes({ mode: byId("mode"), axes: byId("axes") }, connection, settings);
+const wayBack = attachWayBack(connection);
+const poses = attachPoses(connection);
+const thingsHere = attachThingsHere(connection);
+const modes = attachModes(connection, settings);
 const inPair = (/** @type {number} */ axes, /** @type {number} */ x, /** @type {number} */ y) =>
   connection.state ? modeInput(settings.values, { ...connection.state, mode: "end_effector", axes }, connection.welcome, x, y) : [0, 0];
-const nextWords = attachToGo(byId("to-go"), byId("axes"), connection, inPair, () => settings.values.panel === "switch");
+const nextWords = attachToGo(connection, inPair, () => settings.values.panel === "switch");
 /** Where each direction leads, as drawn last. @type {Paths | null} */
 let paths = null;
 status.watch(() => ({
   slow: input.lateness.wasSlow, unconfirmed: !checklist.done(), dialog: dialogIsOpen(), pressed: input.source !== null,
   keys: document.documentElement.hasAttribute("data-keys"), practice: practice.step, next: nextWords(paths),
 }));
-attachSpeed(byId("speed"), settings);
-attachHelp({ fieldset: byId("help"), text: byId("help-text") }, connection, settings);
+attachSpeed(settings);
+attachHelp(connection, settings);
 attachCopilot(connection);
-attachZones(byId("zones"), connection);
+attachZones(connection);
 attachTrialBanner(connection, settings, lease);
 attachProfileChoice(connection, settings);
-attachRecording({
-  section: byId("recording"), button: byId("record", HTMLButtonElement), end: byId("record-end"),
-  task: byId("record-task", HTMLInputElement), text: byId("record-text"), teach: byId("record-teach"),
-}, connection);
+attachRecording(connection);
 
-const task = attachTask({
-  panel: byId("task"), steps: byId("task-steps"), fills: byId("task-fills"), said: byId("task-said"), time: byId("task-time"), more: byId("task-more", HTMLDetailsElement), why: byId("task-why"),
-  chooser: byId("task-chooser"), choice: byId("task-choice", HTMLSelectElement),
-  next: byId("task-next", HTMLButtonElement), again: byId("task-again", HTMLButtonElement),
-  then: byId("enable"),
-}, connection, feedback.tell);
-
-const gripper = attachGripper({
-  panel: byId("gripper"), open: byId("gripper-open", HTMLButtonElement), close: byId("gripper-close", HTMLButtonElement),
-  state: byId("gripper-state"), hold: byId("gripper-hold"),
-}, connection, input, status.refused);
-attachStick(byId("stick"), byId("stick-value"), input, settings);
-const rim = attachRim(byId("stick"));
-attachDpad(byId("dpad"), byId("dpad-help"), input, settings, status.refused);
+const task = attachTask(connection, feedback.tell);
+const gripper = attachGripper(connection, input, status.refused);
+attachStick(input, settings);
+const rim = attachRim();
+attachDpad(input, settings, status.refused);
 attachWatching([byId("stick"), byId("dpad")], connection, status.refused);
 attachInputChoice(input, settings);
 const scanner = attachScanning(input, settings, stop, (stopIt, group) => {
@@ -156,9 +136,9 @@ const scanner = attachScanning(input, settings, stop, (stopIt, group) => {
 attachKeyboard(input, settings, { enable, nextMode: modes.next, axes: modes.axes, gripper: () => gripper.toggle("keyboard") });
 attachGamepad(input, settings, {
   enable, stop, gripper: () => gripper.toggle("gamepad"), nextMode: modes.next, press: (number, down) => scanner.press(number, down),
-}, (names) => sayUnrested(byId("unrested"), names));
+});
 
-const predictions = attachPredictions(byId("ghosts"));
+const predictions = attachPredictions();
 byId("trail-clear").addEventListener("click", () => connection.send({ type: "trail_clear" }));
 
 let wordsAt = -Infinity;

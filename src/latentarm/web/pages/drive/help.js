@@ -1,6 +1,6 @@
 /** How much the robot helps: the person chooses a level, which is kept with their settings. */
 
-import { setHidden, setText } from "../layout/dom.js";
+import { byId, setHidden, setText } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 
 /** @import {Connection} from "../connection/connection.js" */
@@ -13,15 +13,10 @@ export function helpWords({ mode, help }) {
   return say(mode === "end_effector" ? "help.not_here" : `help.${help}_does`);
 }
 
-/**
- * Asks for the person's level once they drive, and again whenever they choose another one.
- *
- * @param {{fieldset: HTMLElement, text: HTMLElement}} parts
- * @param {Connection} connection
- * @param {Settings} settings
- */
-export function attachHelp(parts, connection, settings) {
-  const radios = /** @type {HTMLInputElement[]} */ ([...parts.fieldset.querySelectorAll("input")]);
+/** Asks for the person's level once they drive, and again whenever they choose another one. @param {Connection} connection @param {Settings} settings */
+export function attachHelp(connection, settings) {
+  const fieldset = byId("help");
+  const radios = fieldset.querySelectorAll("input");
   /** @type {Values["help"] | null} What was asked for since this page drives. */
   let asked = null;
 
@@ -44,13 +39,13 @@ export function attachHelp(parts, connection, settings) {
   const show = () => {
     const { state } = connection;
     if (!state) return;
-    setHidden(parts.fieldset, state.help === null);
+    setHidden(fieldset, state.help === null);
     for (const radio of radios) {
       const checked = radio.value === (state.you ? settings.values.help : state.help);
       if (radio.checked !== checked) radio.checked = checked;
       if (radio.disabled === state.you) radio.disabled = !state.you;
     }
-    setText(parts.text, helpWords(state));
+    setText(byId("help-text"), helpWords(state));
   };
   const follow = () => {
     ask();

@@ -1,6 +1,6 @@
 /** The stick's modes: latent actions, with help or without, or the tool along two axes at a time. */
 
-import { create, setHidden } from "../layout/dom.js";
+import { byId, create, setHidden } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 
 /** @import {Connection} from "../connection/connection.js" */
@@ -37,8 +37,8 @@ function withoutHelp(mode) {
   return mode === "assisted" ? "latent" : mode;
 }
 
-/** @param {{mode: HTMLElement, axes: HTMLElement}} parts the two fieldsets @param {Connection} connection @param {Settings} settings */
-export function attachModes(parts, connection, settings) {
+/** @param {Connection} connection @param {Settings} settings */
+export function attachModes(connection, settings) {
   let askedAt = -Infinity;
 
   const ask = (/** @type {Steering} */ { mode, axes }) => {
@@ -51,19 +51,19 @@ export function attachModes(parts, connection, settings) {
     if (!connection.welcome) return;
     const { end_effector_modes } = connection.welcome;
     const modes = steeringModes(connection.welcome);
-    fill(parts.mode, "mode", modes.map((mode) => say(`modes.${mode}`)), (index) => ask({ mode: modes[index], axes: 0 }));
+    fill(byId("mode"), "mode", modes.map((mode) => say(`modes.${mode}`)), (index) => ask({ mode: modes[index], axes: 0 }));
     // Where there is one alone, nothing is chosen.
-    setHidden(parts.mode, modes.length < 2);
+    setHidden(byId("mode"), modes.length < 2);
     const axes = end_effector_modes.map((name) => say(/** @type {WordKey} */ (`axes.${name}`)));
-    fill(parts.axes, "axes", axes, (index) => ask({ mode: "end_effector", axes: index }));
+    fill(byId("axes"), "axes", axes, (index) => ask({ mode: "end_effector", axes: index }));
   });
   connection.addEventListener("state", () => {
     const { state, welcome } = connection;
     // A new choice stays until the server has had time to say otherwise.
     if (!state || performance.now() - askedAt < ANSWER_MS) return;
-    check(parts.mode, welcome ? steeringModes(welcome).indexOf(withoutHelp(state.mode)) : -1, state.you);
-    check(parts.axes, state.axes, state.you);
-    setHidden(parts.axes, state.mode !== "end_effector");
+    check(byId("mode"), welcome ? steeringModes(welcome).indexOf(withoutHelp(state.mode)) : -1, state.you);
+    check(byId("axes"), state.axes, state.you);
+    setHidden(byId("axes"), state.mode !== "end_effector");
   });
 
   return {

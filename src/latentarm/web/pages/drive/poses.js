@@ -1,6 +1,6 @@
 /** Poses, the robot's own and saved ones: a button for each drives the arm there; where it stands can be saved as another one. */
 
-import { create, createButton, setDisabled, setText, whenever } from "../layout/dom.js";
+import { byId, create, createButton, setDisabled, setText, whenever } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 import { sayTo } from "../connection/notices.js";
 
@@ -29,15 +29,13 @@ export function savesOf({ driving, state }) {
   return driving && state !== null && state.phase !== "moving" && state.phase !== "stopping";
 }
 
-/**
- * @param {{panel: HTMLElement, list: HTMLElement, why: HTMLElement, name: HTMLInputElement, save: HTMLElement}} parts
- * @param {Connection} connection
- */
-export function attachPoses(parts, connection) {
+/** @param {Connection} connection */
+export function attachPoses(connection) {
+  const [poses, field] = [byId("poses"), byId("pose-name", HTMLInputElement)];
   const go = (/** @type {string} */ name, /** @type {BuiltInPose | null} */ built_in) => {
     if (!goingOf(connection).goes) return;
     connection.send({ type: "to_pose", name, built_in });
-    parts.panel.hidePopover();
+    byId("poses-panel").hidePopover();
   };
   /** Where the arm can go: what it is called, and which one of the robot's own it is. @returns {[string, BuiltInPose | null][]} */
   const all = () => [
@@ -45,20 +43,20 @@ export function attachPoses(parts, connection) {
     ...(connection.poses?.names ?? []).map((name) => /** @type {[string, null]} */ ([name, null])),
   ];
   const save = () => {
-    const name = parts.name.value.trim();
-    if (name === "") parts.name.focus();
+    const name = field.value.trim();
+    if (name === "") field.focus();
     else if (savesOf(connection)) {
       connection.send({ type: "save_pose", name });
-      parts.name.value = "";
+      field.value = "";
     }
   };
   const show = () => {
     const { goes, why } = goingOf(connection);
     const problem = connection.poses?.problem ?? null;
-    setText(parts.why, problem === null ? say(why) : sayTo(problem, { you: true, own: connection.own, late: null, absent: false }));
-    for (const button of parts.list.querySelectorAll("[data-go]")) setDisabled(button, !goes);
-    for (const button of parts.list.querySelectorAll("[data-delete]")) setDisabled(button, !connection.driving);
-    setDisabled(parts.save, !savesOf(connection));
+    setText(byId("poses-why"), problem === null ? say(why) : sayTo(problem, { you: true, own: connection.own, late: null, absent: false }));
+    for (const button of poses.querySelectorAll("[data-go]")) setDisabled(button, !goes);
+    for (const button of poses.querySelectorAll("[data-delete]")) setDisabled(button, !connection.driving);
+    setDisabled(byId("pose-save"), !savesOf(connection));
   };
   const list = () => {
     const rows = all().map(([name, own]) => {
@@ -70,10 +68,10 @@ export function attachPoses(parts, connection) {
       forget.dataset.delete = name;
       return create("li", { className: "row" }, there, ...(own === null ? [forget] : []));
     });
-    parts.list.replaceChildren(...rows);
+    poses.replaceChildren(...rows);
     show();
   };
-  parts.save.addEventListener("click", save);
+  byId("pose-save").addEventListener("click", save);
   whenever(connection, ["poses", "welcome"], list);
   whenever(connection, ["state", "open"], show);
 

@@ -1,6 +1,6 @@
 /** Recording what is driven into a dataset, one episode at a time. */
 
-import { setHidden, setText } from "../layout/dom.js";
+import { byId, setHidden, setText } from "../layout/dom.js";
 import { say, sayNotice } from "../layout/words.js";
 
 /** @import {Connection} from "../connection/connection.js" */
@@ -20,32 +20,29 @@ export function recordingWords({ recording, you, phase, guiding }) {
   return episodes ? say("recording.kept", { count: episodes }) : say("recording.none");
 }
 
-/**
- * The page Teach links to the section by its id: its dialog opens there.
- * @param {{section: HTMLElement, button: HTMLButtonElement, end: HTMLElement, task: HTMLInputElement, text: HTMLElement, teach: HTMLElement}} parts
- * @param {Connection} connection
- */
-export function attachRecording(parts, connection) {
+/** The page Teach links to the section by its id: its dialog opens there. @param {Connection} connection */
+export function attachRecording(connection) {
+  const [section, button, end] = [byId("recording"), byId("record", HTMLButtonElement), byId("record-end")];
   const press = () => {
     const on = !connection.state?.recording?.on;
-    const task = parts.task.value.trim();
+    const task = byId("record-task", HTMLInputElement).value.trim();
     connection.send(on && task ? { type: "record", on, task } : { type: "record", on });
   };
-  for (const button of [parts.button, parts.end]) button.addEventListener("click", press);
-  if (location.hash === `#${parts.section.id}`) connection.addEventListener("state", () => {
-    parts.section.closest("dialog")?.showModal();
-    parts.section.focus({ preventScroll: true });
-    parts.section.scrollIntoView({ block: "center" });
+  for (const one of [button, end]) one.addEventListener("click", press);
+  if (location.hash === `#${section.id}`) connection.addEventListener("state", () => {
+    section.closest("dialog")?.showModal();
+    section.focus({ preventScroll: true });
+    section.scrollIntoView({ block: "center" });
   }, { once: true });
   connection.addEventListener("state", () => {
     const { state } = connection;
     if (!state) return;
     const on = Boolean(state.recording?.on);
-    parts.button.disabled = !state.you;
-    parts.button.setAttribute("aria-pressed", String(on));
-    setText(parts.button, say(on ? "recording.stop" : "recording.start"));
-    setHidden(parts.end, !(on && state.you));
-    setHidden(parts.teach, on || !state.recording?.episodes);
-    setText(parts.text, recordingWords(state));
+    button.disabled = !state.you;
+    button.setAttribute("aria-pressed", String(on));
+    setText(button, say(on ? "recording.stop" : "recording.start"));
+    setHidden(end, !(on && state.you));
+    setHidden(byId("record-teach"), on || !state.recording?.episodes);
+    setText(byId("record-text"), recordingWords(state));
   });
 }

@@ -1,11 +1,12 @@
 /** Slow, medium and fast, for a stick, buttons and switches alike. */
 
-import { whenever } from "../layout/dom.js";
+import { byId, whenever } from "../layout/dom.js";
 
 /** @import {Settings} from "../settings/settings.js" */
 
-/** @param {HTMLElement} fieldset of shares of the full speed; the setting may also lie between them @param {Settings} settings */
-export function attachSpeed(fieldset, settings) {
+/** Its choices are shares of the full speed; the setting may also lie between them. @param {Settings} settings */
+export function attachSpeed(settings) {
+  const fieldset = byId("speed");
   const radios = fieldset.querySelectorAll("input");
   const show = () => radios.forEach((radio) => (radio.checked = Number(radio.value) === settings.values.sensitivity));
   fieldset.addEventListener("change", ({ target }) => settings.change({ sensitivity: Number(/** @type {HTMLInputElement} */ (target).value) }));

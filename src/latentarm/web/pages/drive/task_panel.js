@@ -1,6 +1,6 @@
 /** The task: its steps tick off, its end is said and heard, and another run is begun. */
 
-import { create, setDisabled, setText } from "../layout/dom.js";
+import { byId, create, setDisabled, setText } from "../layout/dom.js";
 import { thingWords } from "../layout/thing_words.js";
 import { say } from "../layout/words.js";
 import { awayWords, blockedWords, fillWords, outcomeWords, stepNow, stepWords, stuck, stuckWords, wholeSeconds } from "./task_words.js";
@@ -12,20 +12,10 @@ import { awayWords, blockedWords, fillWords, outcomeWords, stepNow, stepWords, s
 /** Words that change all the time change no more often than this, ms. */
 const WORDS_MS = 250;
 
-/**
- * `said` is live: steps as they are done, why they cannot be done, and the end. `more` has what another run is begun with, and
- * `then` the focus once it was begun. `why` says why nothing can be begun now.
- *
- * @typedef {Record<"panel" | "steps" | "fills" | "said" | "time" | "why" | "chooser" | "next" | "again" | "then", HTMLElement>
- *   & {more: HTMLDetailsElement, choice: HTMLSelectElement}} Parts
- */
-
-/**
- * @param {Parts} parts
- * @param {Connection} connection
- * @param {(outcome: "success" | "failure") => void} ended when a run ends while this page looks on
- */
-export function attachTask(parts, connection, ended) {
+/** @param {Connection} connection @param {(outcome: "success" | "failure") => void} ended when a run ends while this page looks on */
+export function attachTask(connection, ended) {
+  const [panel, steps, levels, said] = ["task", "task-steps", "task-fills", "task-said"].map((id) => byId(id));
+  const [nextRun, sameRun, choice] = [byId("task-next"), byId("task-again"), byId("task-choice", HTMLSelectElement)];
   /** @type {TaskState | null} */
   let before = null;
   let wordsAt = -Infinity;
@@ -37,38 +27,38 @@ export function attachTask(parts, connection, ended) {
     if (blocked()) return;
     connection.send({ type: "begin_run", ...what });
     // Enter would begin yet another one.
-    if (document.activeElement === parts.next || document.activeElement === parts.again) parts.then.focus({ preventScroll: true });
+    if (document.activeElement === nextRun || document.activeElement === sameRun) byId("enable").focus({ preventScroll: true });
   };
   const next = () => {
     const { state, welcome } = connection;
     if (state && welcome) begin({ choice: (state.task.choice + 1) % welcome.task.choices.length, anew: true });
   };
   const again = () => begin({ choice: null, anew: false });
-  parts.next.addEventListener("click", next);
-  parts.again.addEventListener("click", again);
-  parts.choice.addEventListener("change", () => {
-    begin({ choice: Number(parts.choice.value), anew: false });
-    parts.choice.value = String(connection.state?.task.choice ?? 0);
+  nextRun.addEventListener("click", next);
+  sameRun.addEventListener("click", again);
+  choice.addEventListener("change", () => {
+    begin({ choice: Number(choice.value), anew: false });
+    choice.value = String(connection.state?.task.choice ?? 0);
   });
 
   connection.addEventListener("welcome", () => {
     const { task } = /** @type {NonNullable<Connection["welcome"]>} */ (connection.welcome);
-    parts.panel.hidden = task.steps.length === 0;
-    parts.steps.replaceChildren(...task.steps.map((step) => {
+    panel.hidden = task.steps.length === 0;
+    steps.replaceChildren(...task.steps.map((step) => {
       const spoken = create("span", { className: "visually-hidden" });
       return create("li", {}, create("span", { textContent: stepWords(step) }), spoken, create("span", { className: "step-away" }));
     }));
-    parts.chooser.hidden = task.choices.length < 2;
-    parts.choice.replaceChildren(...task.choices.map((name, index) =>
+    byId("task-chooser").hidden = task.choices.length < 2;
+    choice.replaceChildren(...task.choices.map((name, index) =>
       create("option", { value: String(index), textContent: thingWords(name), selected: index === task.choice })));
     before = null;
     wordsAt = -Infinity;
-    setText(parts.said, "");
+    setText(said, "");
   });
 
   const showSteps = (/** @type {TaskState} */ task) => {
     const now = task.outcome === null ? stepNow(task) : -1;
-    [...parts.steps.children].forEach((item, index) => {
+    [...steps.children].forEach((item, index) => {
       const state = index === now ? "now" : index < task.done ? "done" : "later";
       const step = /** @type {HTMLElement} */ (item);
       if (step.dataset.step === state) return;
@@ -80,9 +70,9 @@ export function attachTask(parts, connection, ended) {
   };
 
   const showFills = (/** @type {Fill[]} */ fills) => {
-    parts.fills.hidden = fills.length === 0;
-    if (parts.fills.children.length !== fills.length) parts.fills.replaceChildren(...fills.map(() => create("li")));
-    fills.forEach((fill, index) => setText(parts.fills.children[index], fillWords(fill)));
+    levels.hidden = fills.length === 0;
+    if (levels.children.length !== fills.length) levels.replaceChildren(...fills.map(() => create("li")));
+    fills.forEach((fill, index) => setText(levels.children[index], fillWords(fill)));
   };
 
   connection.addEventListener("state", () => {
@@ -94,29 +84,29 @@ export function attachTask(parts, connection, ended) {
     began ||= task.time_s === 0;
     there ||= began || connection.engaged;
     showSteps(task);
-    parts.panel.dataset.outcome = task.outcome ?? (stuck(task) ? "stuck" : "");
-    if (task.outcome !== null) setText(parts.said, there ? outcomeWords(task) : say("task.over"));
-    else if (stuck(task)) setText(parts.said, stuckWords(task));
+    panel.dataset.outcome = task.outcome ?? (stuck(task) ? "stuck" : "");
+    if (task.outcome !== null) setText(said, there ? outcomeWords(task) : say("task.over"));
+    else if (stuck(task)) setText(said, stuckWords(task));
     else if (before !== null && (before.lost || task.done > before.done)) {
       const step = stepWords(welcome.task.steps[task.done]);
       const number = before.lost ? before.lost.step + 1 : task.done;
-      setText(parts.said, say("task.step_done", { number, all: welcome.task.steps.length, step }));
-    } else if (task.done === 0) setText(parts.said, "");
+      setText(said, say("task.step_done", { number, all: welcome.task.steps.length, step }));
+    } else if (task.done === 0) setText(said, "");
     if (before !== null && before.outcome === null && task.outcome !== null) ended(task.outcome);
     const over = task.outcome !== null || stuck(task);
-    if (over !== (before !== null && (before.outcome !== null || stuck(before)))) parts.more.open = over;
+    if (over !== (before !== null && (before.outcome !== null || stuck(before)))) byId("task-more", HTMLDetailsElement).open = over;
     // The remaining way of the current step is announced at once.
     if (before === null || stepNow(task) !== stepNow(before)) wordsAt = -Infinity;
     before = task;
     const why = blocked();
-    setText(parts.why, why);
-    for (const button of [parts.next, parts.again]) setDisabled(button, why !== "");
-    parts.choice.disabled = why !== "";
+    setText(byId("task-why"), why);
+    for (const button of [nextRun, sameRun]) setDisabled(button, why !== "");
+    choice.disabled = why !== "";
     if (performance.now() - wordsAt < WORDS_MS) return;
     wordsAt = performance.now();
-    setText(parts.time, began ? say("task.time", { seconds: wholeSeconds(task.time_s) }) : "");
+    setText(byId("task-time"), began ? say("task.time", { seconds: wholeSeconds(task.time_s) }) : "");
     const away = awayWords(state);
-    [...parts.steps.children].forEach((item, index) => setText(item.children[2], index === stepNow(task) ? away : ""));
+    [...steps.children].forEach((item, index) => setText(item.children[2], index === stepNow(task) ? away : ""));
     showFills(task.fills);
   });
 

@@ -1,6 +1,6 @@
 /** Where the things are: how each place is known, and buttons by which a person says that the tool is at a thing. */
 
-import { create, createButton, setHidden, setText } from "../layout/dom.js";
+import { byId, create, createButton, setHidden, setText } from "../layout/dom.js";
 import { capital, theThing, thingWords } from "../layout/thing_words.js";
 import { say } from "../layout/words.js";
 
@@ -19,24 +19,25 @@ export function seenWords({ name, seen, age_s, source }) {
   return capital(say(`things.${seen}`, { thing: thingWords(name), seconds: age_s }));
 }
 
-/** @param {{section: HTMLElement, list: HTMLElement}} parts @param {Connection} connection */
-export function attachThingsHere(parts, connection) {
+/** @param {Connection} connection */
+export function attachThingsHere(connection) {
+  const list = byId("things-list");
   const seen = () => connection.state?.things?.seen ?? [];
   const choices = () => !connection.driving ? [] : seen().flatMap(({ name, seen: how }) => KINDS.filter((kind) => kind === "place" || how !== "unseen").map((kind) => (
     { id: `thing-${kind}-${name}`, label: say(`things.${kind}`, { thing: theThing(name) }), act: () => connection.send({ type: "touch", thing: name, kind }) })));
   let shown = "";
   connection.addEventListener("state", () => {
-    setHidden(parts.section, seen().length === 0);
+    setHidden(byId("things-here"), seen().length === 0);
     const offered = choices();
     const now = offered.map(({ id }) => id).join();
-    if (now !== shown || !parts.list.children.length) {
+    if (now !== shown || !list.children.length) {
       shown = now;
-      parts.list.replaceChildren(...seen().map(({ name }) => {
+      list.replaceChildren(...seen().map(({ name }) => {
         const buttons = offered.filter(({ id }) => id.endsWith(`-${name}`)).map(({ label, act }) => createButton(label, act));
         return create("li", { className: "row" }, create("p", { className: "small" }), ...buttons);
       }));
     }
-    seen().forEach((thing, index) => setText(parts.list.children[index].children[0], seenWords(thing) || say("things.now", { thing: capital(thingWords(thing.name)) })));
+    seen().forEach((thing, index) => setText(list.children[index].children[0], seenWords(thing) || say("things.now", { thing: capital(thingWords(thing.name)) })));
   });
   return {
     /** Among the choices of a switch. @returns {Choice[]} */

@@ -1,7 +1,7 @@
 /** The remaining way to where the tool is to be next: for each pair of directions, which way to push and how far. */
 
 import { DIRECTIONS, DIRECTION_NAMES } from "../inputs/deflection.js";
-import { create, setText } from "../layout/dom.js";
+import { byId, create, setText } from "../layout/dom.js";
 import { say, sayNumber } from "../layout/words.js";
 import { displacement } from "../views/predictions.js";
 
@@ -94,14 +94,13 @@ export function learnedOn(toGo, paths, switches) {
 /**
  * The list under the task, and the pair to choose next once nothing is left in the one in use.
  *
- * @param {HTMLElement} list
- * @param {HTMLElement} choice where pairs are chosen
  * @param {Connection} connection
  * @param {(axes: number, x: number, y: number) => number[]} shaped from stick to what is sent in a pair
  * @param {() => boolean} switches whether a switch chooses directions
  * @returns {(paths: Paths | null) => (Words & {direction?: Direction}) | null} what brings the task on, in the numbers of the list
  */
-export function attachToGo(list, choice, connection, shaped, switches) {
+export function attachToGo(connection, shaped, switches) {
+  const list = byId("to-go");
   let wordsAt = -Infinity;
   let begun = "";
   /** @type {ReturnType<typeof leftToGo>[]} */
@@ -130,7 +129,7 @@ export function attachToGo(list, choice, connection, shaped, switches) {
     const next = ways[state.axes].length || toGo.gripper ? -1 : ways.findIndex((left) => left.length > 0);
     welcome.end_effector_modes.forEach((_, axes) => {
       const left = ways[axes];
-      choice.querySelectorAll("label")[axes].dataset.next = String(axes === next);
+      byId("axes").querySelectorAll("label")[axes].dataset.next = String(axes === next);
       const item = list.children[axes];
       if (axes === state.axes) item.setAttribute("aria-current", "true");
       else item.removeAttribute("aria-current");

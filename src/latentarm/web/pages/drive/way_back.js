@@ -1,6 +1,6 @@
 /** The button that drives the arm back to its start, and in words why it cannot. */
 
-import { setDisabled, setText, whenever } from "../layout/dom.js";
+import { byId, setDisabled, setText, whenever } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 
 /** @import {Connection} from "../connection/connection.js" */
@@ -22,19 +22,20 @@ export function wayBackOf({ driving, engaged, state }) {
   return { does: "begin", why: "way_back.help" };
 }
 
-/** @param {{button: HTMLElement, why: HTMLElement}} parts @param {Connection} connection */
-export function attachWayBack(parts, connection) {
+/** @param {Connection} connection */
+export function attachWayBack(connection) {
+  const button = byId("way-back");
   const press = () => {
     const { does } = wayBackOf(connection);
     if (does !== null) connection.send({ type: "return", on: does === "begin" });
   };
   const show = () => {
     const { does, why } = wayBackOf(connection);
-    setText(parts.button, say(does === "end" ? "way_back.end" : "way_back.begin"));
-    setText(parts.why, say(why));
-    setDisabled(parts.button, does === null);
+    setText(button, say(does === "end" ? "way_back.end" : "way_back.begin"));
+    setText(byId("way-back-why"), say(why));
+    setDisabled(button, does === null);
   };
-  parts.button.addEventListener("click", press);
+  button.addEventListener("click", press);
   whenever(connection, ["state", "open"], show);
 
   return {

@@ -1,13 +1,14 @@
 /** Where the arm is slow, and what it keeps out of, in words: what is written in the views is no text for a screen reader. */
 
-import { setHidden, setText } from "../layout/dom.js";
+import { byId, setHidden, setText } from "../layout/dom.js";
 import { zoneWords } from "../layout/thing_words.js";
 import { say, sayList, sayNumber } from "../layout/words.js";
 
 /** @import {Connection} from "../connection/connection.js" */
 
-/** @param {HTMLElement} text @param {Connection} connection */
-export function attachZones(text, connection) {
+/** @param {Connection} connection */
+export function attachZones(connection) {
+  const text = byId("zones");
   connection.addEventListener("welcome", () => {
     const { zones, keep_out: solids } = connection.welcome ?? { zones: [], keep_out: [] };
     setHidden(text, zones.length + solids.length === 0);

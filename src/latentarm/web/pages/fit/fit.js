@@ -4,7 +4,7 @@
  */
 
 import { attachDpad } from "../inputs/dpad.js";
-import { attachGamepad, sayUnrested } from "../inputs/gamepad.js";
+import { attachGamepad } from "../inputs/gamepad.js";
 import { attachInputChoice } from "../inputs/input_choice.js";
 import { attachKeyboard } from "../inputs/keyboard.js";
 import { commonChoices } from "../inputs/page_choices.js";
@@ -59,15 +59,15 @@ const input = new AnswerInput();
 const { settings, connection, stop } = attachPage({ drop: () => input.drop(), repaint: () => drawing?.repaint() });
 const pad = () => navigator.getGamepads().find((one) => one?.connected);
 
-attachStick(byId("stick"), byId("stick-value"), input, settings);
+attachStick(input, settings);
 // Nothing stays where no hand is, whatever a press does.
 window.addEventListener("pointerup", () => input.release("pointer"));
-attachDpad(byId("dpad"), byId("dpad-help"), input, settings, () => {});
+attachDpad(input, settings);
 attachInputChoice(input, settings);
 const scanner = attachScanning(input, settings, stop, offered);
 const nothing = { enable: () => {}, gripper: () => {}, nextMode: () => {}, axes: () => {} };
 attachKeyboard(input, settings, nothing);
-attachGamepad(input, settings, { ...nothing, stop, press: (number, down) => scanner.press(number, down) }, (text) => sayUnrested(byId("unrested"), text));
+attachGamepad(input, settings, { ...nothing, stop, press: (number, down) => scanner.press(number, down) });
 
 /** The cells of an exercise, else what stands on the page. @param {Choice} stopIt @param {Group} group @returns {Choice[]} */
 function offered(stopIt, group) {

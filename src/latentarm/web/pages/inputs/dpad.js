@@ -1,6 +1,6 @@
 /** Four large buttons: hold one, or press it for a step, or press it on and off. */
 
-import { setText } from "../layout/dom.js";
+import { byId, setText } from "../layout/dom.js";
 import { say, sayNumber } from "../layout/words.js";
 import { DIRECTIONS } from "./deflection.js";
 import { attachHeldPointer } from "./held_pointer.js";
@@ -8,15 +8,9 @@ import { attachHeldPointer } from "./held_pointer.js";
 /** @import {Direction, PersonInput} from "./deflection.js" */
 /** @import {Settings} from "../settings/settings.js" */
 
-/**
- * @param {HTMLElement} element the group of buttons
- * @param {HTMLElement} help
- * @param {PersonInput} inputs
- * @param {Settings} settings
- * @param {() => void} refused said when a press cannot move the arm yet
- */
-export function attachDpad(element, help, inputs, settings, refused) {
-  const buttons = /** @type {HTMLButtonElement[]} */ ([...element.querySelectorAll("button")]);
+/** @param {PersonInput} inputs @param {Settings} settings @param {() => void} [refused] said when a press cannot move the arm yet */
+export function attachDpad(inputs, settings, refused = () => {}) {
+  const buttons = byId("dpad").querySelectorAll("button");
   let holding = false;
   /** @type {HTMLButtonElement | null} */
   let latched = null;
@@ -87,7 +81,7 @@ export function attachDpad(element, help, inputs, settings, refused) {
   inputs.addEventListener("dropped", letGo);
   const explain = () => {
     const { press, stepS } = settings.values;
-    setText(help, say(`dpad.${press}`, { seconds: sayNumber(stepS, 1) }));
+    setText(byId("dpad-help"), say(`dpad.${press}`, { seconds: sayNumber(stepS, 1) }));
     show(latched);
   };
   settings.addEventListener("change", explain);

@@ -20,9 +20,10 @@ const IDLE_MS = 100;
  * @param {Settings} settings
  * @param {{enable: () => void, stop: () => void, gripper: () => void, nextMode: () => void, press: (number: number, down: boolean) => boolean}} actions
  *   `press` takes a button as a switch, where scanning is on, and says whether it did.
- * @param {(text: string) => void} [tell] told, as long as it is so, what the person must do about a gamepad
  */
-export function attachGamepad(input, settings, actions, tell = () => {}) {
+export function attachGamepad(input, settings, actions) {
+  /** Says what the person must do about a gamepad. */
+  const line = document.getElementById("unrested");
   /** By their index. @type {Map<number, {id: string, down: boolean[], drives: string}>} */
   const known = new Map();
   const isAlive = padLives();
@@ -46,7 +47,9 @@ export function attachGamepad(input, settings, actions, tell = () => {}) {
     const [unrested, guessed] = [pads.filter(read), pads.filter((pad) => isGuessed(settings.values.pads, pad))];
     const about = unrested.length ? unrested : guessed;
     const name = about.map(nameOf).join(", ");
-    tell(about.length ? say(unrested.length ? "gamepad.unrested" : "gamepad.unknown", { name }) : "");
+    if (!line) return;
+    setHidden(line, !about.length);
+    setText(line, about.length ? say(unrested.length ? "gamepad.unrested" : "gamepad.unknown", { name }) : "");
   };
   /** @param {Gamepad} pad @returns {boolean} whether it is pushed and does not count */
   const read = (pad) => {
@@ -82,10 +85,4 @@ export function attachGamepad(input, settings, actions, tell = () => {}) {
   setInterval(() => {
     if (!input.flowing && !document.hidden) poll();
   }, IDLE_MS);
-}
-
-/** @param {HTMLElement} line @param {string} text */
-export function sayUnrested(line, text) {
-  setHidden(line, text === "");
-  setText(line, text);
 }

@@ -1,6 +1,6 @@
 /** The gripper: two buttons, what every other way of driving asks of it, and its state in words. */
 
-import { setHidden, setText } from "../layout/dom.js";
+import { byId, setHidden, setText } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 
 /** @import {Connection} from "../connection/connection.js" */
@@ -40,13 +40,9 @@ export function gripperWords(gripper, widest) {
   return say(gripper.width_m <= END_SHARE * widest ? "gripper.is_closed" : "gripper.is_between", width);
 }
 
-/**
- * @param {{panel: HTMLElement, open: HTMLButtonElement, close: HTMLButtonElement, state: HTMLElement, hold: HTMLElement}} parts
- * @param {Connection} connection
- * @param {DriveInput} input
- * @param {() => void} refused said when the gripper cannot be moved yet
- */
-export function attachGripper(parts, connection, input, refused) {
+/** @param {Connection} connection @param {DriveInput} input @param {() => void} refused said when the gripper cannot be moved yet */
+export function attachGripper(connection, input, refused) {
+  const buttons = { open: byId("gripper-open"), close: byId("gripper-close") };
   let wanted = "";
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let timer;
@@ -70,11 +66,11 @@ export function attachGripper(parts, connection, input, refused) {
   window.addEventListener("pointermove", ({ buttons }) => {
     if (holding === "pointer" && buttons === 0) holding = null;
   });
-  parts.open.addEventListener("pointerdown", () => {
+  buttons.open.addEventListener("pointerdown", () => {
     if (widest() !== null) hold("pointer");
   });
   for (const what of /** @type {("open" | "close")[]} */ (["open", "close"])) {
-    const button = parts[what];
+    const button = buttons[what];
     button.addEventListener("click", () => {
       // The click at the end of holding it asks nothing more.
       if (what === "close" || !(performance.now() - heldAt >= HOLD_MS)) ask(what, "pointer");
@@ -86,20 +82,20 @@ export function attachGripper(parts, connection, input, refused) {
     });
   }
   connection.addEventListener("welcome", () => {
-    parts.panel.hidden = widest() === null;
+    byId("gripper").hidden = widest() === null;
   });
   connection.addEventListener("state", () => {
     const [{ state }, most] = [connection, widest()];
     if (!state || most === null) return;
-    setHidden(parts.hold, connection.engaged || !connection.driving);
+    setHidden(byId("gripper-hold"), connection.engaged || !connection.driving);
     // What the step needs now stands out.
     const next = state.task.to_go?.gripper ?? null;
-    for (const what of /** @type {("open" | "close")[]} */ (["open", "close"])) parts[what].dataset.next = String(what === next);
+    for (const what of /** @type {("open" | "close")[]} */ (["open", "close"])) buttons[what].dataset.next = String(what === next);
     const words = gripperWords(state.gripper, most);
     if (words === wanted) return;
     wanted = words;
     clearTimeout(timer);
-    timer = setTimeout(() => setText(parts.state, wanted), SETTLE_MS);
+    timer = setTimeout(() => setText(byId("gripper-state"), wanted), SETTLE_MS);
   });
 
   return {

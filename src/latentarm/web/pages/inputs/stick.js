@@ -1,6 +1,6 @@
 /** The stick drawn on a grid: a pointer or a finger pushes it, and letting go lets it spring back. */
 
-import { part, setText } from "../layout/dom.js";
+import { byId, part, setText } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 import { attachHeldPointer } from "./held_pointer.js";
 
@@ -12,13 +12,9 @@ const SIZE = 264;
 export const REACH = 96;
 const CELLS = 8;
 
-/**
- * @param {HTMLElement} element
- * @param {HTMLElement} spoken where the position is put into words
- * @param {PersonInput} inputs
- * @param {Settings} settings
- */
-export function attachStick(element, spoken, inputs, settings) {
+/** @param {PersonInput} inputs @param {Settings} settings */
+export function attachStick(inputs, settings) {
+  const [element, spoken] = [byId("stick"), byId("stick-value")];
   const drawing = draw(element);
 
   const push = (/** @type {PointerEvent} */ event) => {

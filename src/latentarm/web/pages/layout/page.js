@@ -46,12 +46,7 @@ export function attachPage({ drop = () => {}, repaint = () => {}, runChanged = (
   // Pages from which nobody drives have no such panel.
   if (document.getElementById("driver")) {
     attachInvitation();
-    attachDriverPanel({
-      text: byId("driver"),
-      ask: byId("ask", HTMLButtonElement),
-      handOver: byId("hand-over", HTMLButtonElement),
-      release: byId("release", HTMLButtonElement),
-    }, connection);
+    attachDriverPanel(connection);
   }
 
   settings.addEventListener("person", () => connection.become(settings.person));

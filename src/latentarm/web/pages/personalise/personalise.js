@@ -1,7 +1,7 @@
 /** The Personalise page: motions are shown, the stick answers, and what was learned can be tried and kept. */
 
 import { attachDpad } from "../inputs/dpad.js";
-import { attachGamepad, sayUnrested } from "../inputs/gamepad.js";
+import { attachGamepad } from "../inputs/gamepad.js";
 import { attachInputChoice } from "../inputs/input_choice.js";
 import { buttonChoice, linkChoices, moreChoices } from "../inputs/page_choices.js";
 import { attachKeyboard } from "../inputs/keyboard.js";
@@ -50,13 +50,12 @@ function tell(message) {
   lease.ask(() => connection.send(message));
 }
 
-const stick = attachStick(byId("stick"), byId("stick-value"), input, settings);
-attachDpad(byId("dpad"), byId("dpad-help"), input, settings, () => {});
+const stick = attachStick(input, settings);
+attachDpad(input, settings);
 attachInputChoice(input, settings);
 const scanner = attachScanning(input, settings, stop, offered);
 attachKeyboard(input, settings, { enable: answer, nextMode: () => {}, axes: () => {}, gripper: () => {} });
-attachGamepad(input, settings, { enable: answer, stop, gripper: () => {}, nextMode: () => {}, press: (number, down) => scanner.press(number, down) },
-  (names) => sayUnrested(byId("unrested"), names));
+attachGamepad(input, settings, { enable: answer, stop, gripper: () => {}, nextMode: () => {}, press: (number, down) => scanner.press(number, down) });
 
 /** A switch's choices at each step: the step's own buttons, and then the pages and settings. @param {Choice} _ @param {Group} group @returns {Choice[]} */
 function offered(_, group) {

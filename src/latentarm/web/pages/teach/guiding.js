@@ -1,7 +1,7 @@
 /** Guiding a real arm by hand: begun and ended here, recorded meanwhile, and the gripper moved by two buttons. */
 
 import { recordingWords } from "../drive/recording.js";
-import { setDisabled, setHidden, setText } from "../layout/dom.js";
+import { byId, setDisabled, setHidden, setText } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 
 /** @import {Connection} from "../connection/connection.js" */
@@ -30,24 +30,19 @@ export function guidingOf(state, { waiting, confirmed }) {
   return { does: confirmed ? "begin" : null, why: own ? "guiding.own" : "guiding.off", records: own };
 }
 
-/** @typedef {"panel" | "check" | "button" | "why" | "doing" | "record" | "recorded" | "gripper" | "open" | "close"} Part */
-
-/**
- * @param {Record<Part, HTMLElement> & Record<"confirmed" | "task", HTMLInputElement>} parts
- * @param {Connection} connection
- * @param {DriverLease} lease
- */
-export function attachGuiding(parts, connection, lease) {
+/** @param {Connection} connection @param {DriverLease} lease */
+export function attachGuiding(connection, lease) {
+  const [button, recorder, confirmed] = [byId("guiding-begin"), byId("guiding-record"), byId("guiding-loaded", HTMLInputElement)];
   /** Whether this page has asked for it. */
   let asked = false;
   /** Whether it has begun since. */
   let begun = false;
   let askedAt = -Infinity;
-  const now = () => guidingOf(connection.state, { waiting: asked && !begun, confirmed: parts.confirmed.checked });
+  const now = () => guidingOf(connection.state, { waiting: asked && !begun, confirmed: confirmed.checked });
 
   // A confirmation counts once: the person who held the arm may have let go.
   const over = () => {
-    if (begun) parts.confirmed.checked = false;
+    if (begun) confirmed.checked = false;
     asked = begun = false;
   };
   const end = () => {
@@ -72,7 +67,7 @@ export function attachGuiding(parts, connection, lease) {
     const { state } = connection;
     const on = !state?.recording?.on;
     if (!connection.driving || (on && !now().records)) return;
-    connection.send({ type: "record", on, task: parts.task.value.trim(), by_hand: true });
+    connection.send({ type: "record", on, task: byId("guiding-task", HTMLInputElement).value.trim(), by_hand: true });
   };
   const grip = (/** @type {"open" | "close"} */ gripper) => {
     if (connection.driving && connection.state?.guiding === "on") connection.send({ type: "guided", gripper });
@@ -82,17 +77,17 @@ export function attachGuiding(parts, connection, lease) {
     if (state === null || welcome === null) return;
     const { does, why, records } = now();
     const recording = Boolean(state.recording?.on);
-    setHidden(parts.panel, state.guiding === null);
-    setText(parts.button, say(does === "end" ? "guiding.end" : "guiding.begin"));
-    setDisabled(parts.button, does === null);
-    setText(parts.why, say(why));
-    setHidden(parts.check, does === "end");
-    setHidden(parts.doing, !(records || recording));
-    setText(parts.record, say(recording ? "recording.stop" : "recording.start"));
-    parts.record.setAttribute("aria-pressed", String(recording));
-    setDisabled(parts.record, !state.you);
-    setText(parts.recorded, recordingWords(state));
-    setHidden(parts.gripper, welcome.gripper_width_m === null || state.guiding !== "on");
+    setHidden(byId("guiding"), state.guiding === null);
+    setText(button, say(does === "end" ? "guiding.end" : "guiding.begin"));
+    setDisabled(button, does === null);
+    setText(byId("guiding-why"), say(why));
+    setHidden(byId("guiding-check"), does === "end");
+    setHidden(byId("guiding-doing"), !(records || recording));
+    setText(recorder, say(recording ? "recording.stop" : "recording.start"));
+    recorder.setAttribute("aria-pressed", String(recording));
+    setDisabled(recorder, !state.you);
+    setText(byId("guiding-recorded"), recordingWords(state));
+    setHidden(byId("guiding-gripper"), welcome.gripper_width_m === null || state.guiding !== "on");
   };
   const look = () => {
     const on = connection.state?.guiding === "on";
@@ -102,11 +97,11 @@ export function attachGuiding(parts, connection, lease) {
     show();
   };
 
-  parts.button.addEventListener("click", press);
-  parts.record.addEventListener("click", record);
-  parts.open.addEventListener("click", () => grip("open"));
-  parts.close.addEventListener("click", () => grip("close"));
-  parts.confirmed.addEventListener("change", show);
+  button.addEventListener("click", press);
+  recorder.addEventListener("click", record);
+  byId("guiding-open").addEventListener("click", () => grip("open"));
+  byId("guiding-close").addEventListener("click", () => grip("close"));
+  confirmed.addEventListener("change", show);
   connection.addEventListener("state", look);
   connection.addEventListener("open", () => {
     over();

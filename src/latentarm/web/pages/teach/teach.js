@@ -23,12 +23,7 @@ let going = { run: "", until: -Infinity };
 const { connection, settings, lease, stop } = attachPage({ runChanged: () => {}, drop: () => guiding.stopped() });
 attachWholePage(settings, stop);
 attachLostArm(connection, lease);
-const guiding = attachGuiding({
-  panel: byId("guiding"), check: byId("guiding-check"), confirmed: byId("guiding-loaded", HTMLInputElement),
-  button: byId("guiding-begin"), why: byId("guiding-why"), doing: byId("guiding-doing"),
-  task: byId("guiding-task", HTMLInputElement), record: byId("guiding-record"), recorded: byId("guiding-recorded"),
-  gripper: byId("guiding-gripper"), open: byId("guiding-open"), close: byId("guiding-close"),
-}, connection, lease);
+const guiding = attachGuiding(connection, lease);
 
 /** Whether somebody else drives, who alone may train and choose. */
 let watching = false;

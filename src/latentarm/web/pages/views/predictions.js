@@ -1,7 +1,7 @@
 /** Predictions for each direction: the tool's paths over the next second, for this person, and in words. */
 
 import { DIRECTIONS, DIRECTION_NAMES } from "../inputs/deflection.js";
-import { create, setText } from "../layout/dom.js";
+import { byId, create, setText } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 
 /** @import {State} from "../connection/messages.js" */
@@ -66,15 +66,15 @@ function shortened(path, share) {
   return points.length > 1 ? points : path.slice(0, 2);
 }
 
-/** The list next to the views: the same in words. @param {HTMLElement} list */
-export function attachPredictions(list) {
+/** The list next to the views: the same in words. */
+export function attachPredictions() {
   const rows = DIRECTION_NAMES.map((direction) => {
     const sign = create("span", { className: "ghost-mark", textContent: MARKS[direction] });
     sign.setAttribute("aria-hidden", "true");
     const words = create("span");
     const item = create("li", {}, sign, create("span", { textContent: say(`directions.${direction}`) }), words);
     item.dataset.ghost = direction;
-    list.append(item);
+    byId("ghosts").append(item);
     return { direction, item, words };
   });
   return {
