@@ -47,15 +47,15 @@ beforeEach(() => {
   input = Object.assign(new Deflection(), { flowing: true, halt: (why) => done.push(why) });
   settings = new Settings();
   ({ told } = elementsOf({ told: "unrested" }));
-  attachGamepad(input, settings, {
+  const press = (number, down) => {
+    if (scanning && down) done.push(`switch ${number}`);
+    return scanning;
+  };
+  attachGamepad(input, settings, { press }, {
     enable: () => done.push("enable"),
     stop: () => done.push("stop"),
     gripper: () => done.push("gripper"),
     nextMode: () => done.push("mode"),
-    press: (number, down) => {
-      if (scanning && down) done.push(`switch ${number}`);
-      return scanning;
-    },
   });
 });
 

@@ -5,7 +5,6 @@ import { Connection } from "#pages/connection/connection.js";
 import { attachDialogs, dialogIsOpen } from "#pages/inputs/dialogs.js";
 import { DriveInput } from "#pages/inputs/drive_input.js";
 import { Lateness } from "#pages/inputs/lateness.js";
-import { attachNeutralFirst } from "#pages/inputs/neutral_first.js";
 import { paced } from "#pages/inputs/paced.js";
 import { FakeSocket, newBrowser, pass, stateOf } from "./browser.js";
 
@@ -125,8 +124,7 @@ test("inputs that go first are no more than others: the server would hang up on 
 });
 
 test("what goes on by itself is let go where the stick means something else; what is held is not", () => {
-  const { connection, input, state } = driving();
-  attachNeutralFirst(connection, input);
+  const { input, state } = driving();
   input.hold("dpad", 1, 0, true);
   state({ let_go_first: true });
   assert.equal(input.source, null);

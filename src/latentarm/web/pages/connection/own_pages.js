@@ -1,32 +1,22 @@
 /** Which pages this browser tab has been: each connection gets a new id, and the server names people by those. */
 
+import * as storage from "../settings/storage.js";
+
 const KEY = "latentarm.pages";
 const KEPT = 20;
 
-/** @returns {string[]} */
-function known() {
-  try {
-    const kept = JSON.parse(sessionStorage.getItem(KEY) ?? "[]");
-    return Array.isArray(kept) ? kept : [];
-  } catch {
-    return [];
-  }
-}
-
 export class OwnPages {
   constructor() {
-    this._ids = known();
+    const kept = storage.parsed(storage.read(KEY, "sessionStorage"));
+    /** @type {string[]} */
+    this._ids = Array.isArray(kept) ? kept : [];
   }
 
   /** @param {string} id of this connection */
   add(id) {
     if (this._ids.includes(id)) return;
     this._ids = [...this._ids, id].slice(-KEPT);
-    try {
-      sessionStorage.setItem(KEY, JSON.stringify(this._ids));
-    } catch {
-      // Refused: they are known for as long as the page is open.
-    }
+    storage.write(KEY, JSON.stringify(this._ids), "sessionStorage");
   }
 
   /** Whether this tab was the page with this id. @param {unknown} id */

@@ -13,7 +13,6 @@ import { attachGamepad } from "../inputs/gamepad.js";
 import { attachGripper } from "../inputs/gripper.js";
 import { attachInputChoice } from "../inputs/input_choice.js";
 import { attachKeyboard } from "../inputs/keyboard.js";
-import { attachNeutralFirst } from "../inputs/neutral_first.js";
 import { paced } from "../inputs/paced.js";
 import { attachLatchLimit } from "../inputs/latch_limit.js";
 import { moreChoices, radioChoices } from "../inputs/page_choices.js";
@@ -72,7 +71,6 @@ attachLatchLimit(input, connection, settings, status.asksToPushAgain);
 attachChatterGuard(input);
 input.addEventListener("halted", (event) => status.halted(/** @type {CustomEvent} */ (event).detail));
 attachDialogs(input);
-attachNeutralFirst(connection, input);
 
 const practice = attachPractice(connection, input, settings);
 attachCard(connection, settings);
@@ -134,9 +132,7 @@ const scanner = attachScanning(input, settings, stop, (stopIt, group) => {
     : [{ id: "enable", label: say("layout.enable"), act: enable }, mode, ...task.choices(), more];
 });
 attachKeyboard(input, settings, { enable, nextMode: modes.next, axes: modes.axes, gripper: () => gripper.toggle("keyboard") });
-attachGamepad(input, settings, {
-  enable, stop, gripper: () => gripper.toggle("gamepad"), nextMode: modes.next, press: (number, down) => scanner.press(number, down),
-});
+attachGamepad(input, settings, scanner, { enable, stop, gripper: () => gripper.toggle("gamepad"), nextMode: modes.next });
 
 const predictions = attachPredictions();
 byId("trail-clear").addEventListener("click", () => connection.send({ type: "trail_clear" }));

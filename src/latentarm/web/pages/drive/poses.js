@@ -8,20 +8,13 @@ import { sayTo } from "../connection/notices.js";
 /** @typedef {Welcome["poses"][number]} BuiltInPose */
 /** @import {Connection} from "../connection/connection.js" */
 /** @import {Choice} from "../inputs/scanner.js" */
-/** @import {WordKey} from "../layout/words.js" */
 
-/**
- * Whether the arm can go to a pose now, and what is said about it.
- *
- * @param {Pick<Connection, "driving" | "engaged" | "state">} connection
- * @returns {{goes: boolean, why: WordKey}}
- */
+/** Why the arm cannot go to a pose now, or "help" where it can. @param {Pick<Connection, "driving" | "engaged" | "state">} connection */
 export function goingOf({ driving, engaged, state }) {
-  if (!driving || state === null) return { goes: false, why: "poses.driver_only" };
-  if (state.returning) return { goes: false, why: "poses.on" };
-  if (!engaged) return { goes: false, why: "poses.enable_first" };
-  if (state.phase === "moving" || state.let_go_first) return { goes: false, why: "poses.let_go" };
-  return { goes: true, why: "poses.help" };
+  if (!driving || state === null) return "driver_only";
+  if (state.returning) return "on";
+  if (!engaged) return "enable_first";
+  return state.phase === "moving" || state.let_go_first ? "let_go" : "help";
 }
 
 /** @param {Pick<Connection, "driving" | "state">} connection whether where the arm stands can be saved now */
@@ -33,7 +26,7 @@ export function savesOf({ driving, state }) {
 export function attachPoses(connection) {
   const [poses, field] = [byId("poses"), byId("pose-name", HTMLInputElement)];
   const go = (/** @type {string} */ name, /** @type {BuiltInPose | null} */ built_in) => {
-    if (!goingOf(connection).goes) return;
+    if (goingOf(connection) !== "help") return;
     connection.send({ type: "to_pose", name, built_in });
     byId("poses-panel").hidePopover();
   };
@@ -51,10 +44,10 @@ export function attachPoses(connection) {
     }
   };
   const show = () => {
-    const { goes, why } = goingOf(connection);
+    const why = goingOf(connection);
     const problem = connection.poses?.problem ?? null;
-    setText(byId("poses-why"), problem === null ? say(why) : sayTo(problem, { you: true, own: connection.own, late: null, absent: false }));
-    for (const button of poses.querySelectorAll("[data-go]")) setDisabled(button, !goes);
+    setText(byId("poses-why"), problem === null ? say(`poses.${why}`) : sayTo(problem, { you: true, own: connection.own, late: null, absent: false }));
+    for (const button of poses.querySelectorAll("[data-go]")) setDisabled(button, why !== "help");
     for (const button of poses.querySelectorAll("[data-delete]")) setDisabled(button, !connection.driving);
     setDisabled(byId("pose-save"), !savesOf(connection));
   };
@@ -78,7 +71,7 @@ export function attachPoses(connection) {
   return {
     /** All of them among the choices of a switch, where the arm can go to them. @returns {Choice[]} */
     choices() {
-      if (!goingOf(connection).goes) return [];
+      if (goingOf(connection) !== "help") return [];
       return all().map(([name, own]) => ({ id: `pose-${own ?? "saved"}-${name}`, label: say("poses.go", { pose: name }), act: () => go(name, own) }));
     },
   };

@@ -2,38 +2,29 @@
 
 import { byId, setDisabled, setText, whenever } from "../layout/dom.js";
 import { say } from "../layout/words.js";
+import { goingOf } from "./poses.js";
 
 /** @import {Connection} from "../connection/connection.js" */
 /** @import {Choice} from "../inputs/scanner.js" */
-/** @import {WordKey} from "../layout/words.js" */
 
-/**
- * The button's action now, and the text next to it.
- *
- * @param {Pick<Connection, "driving" | "engaged" | "state">} connection
- * @returns {{does: "begin" | "end" | null, why: WordKey}}
- */
-export function wayBackOf({ driving, engaged, state }) {
-  if (!driving || state === null) return { does: null, why: "way_back.driver_only" };
-  if (state.returning) return { does: "end", why: "way_back.on" };
-  if (state.at_start) return { does: null, why: "way_back.at_start" };
-  if (!engaged) return { does: null, why: "way_back.enable_first" };
-  if (state.phase === "moving" || state.let_go_first) return { does: null, why: "way_back.let_go" };
-  return { does: "begin", why: "way_back.help" };
+/** Why the arm cannot go back now, or "help" where it can. @param {Pick<Connection, "driving" | "engaged" | "state">} connection */
+export function wayBackOf(connection) {
+  const why = goingOf(connection);
+  return why !== "driver_only" && why !== "on" && connection.state?.at_start ? "at_start" : why;
 }
 
 /** @param {Connection} connection */
 export function attachWayBack(connection) {
   const button = byId("way-back");
   const press = () => {
-    const { does } = wayBackOf(connection);
-    if (does !== null) connection.send({ type: "return", on: does === "begin" });
+    const why = wayBackOf(connection);
+    if (why === "help" || why === "on") connection.send({ type: "return", on: why === "help" });
   };
   const show = () => {
-    const { does, why } = wayBackOf(connection);
-    setText(button, say(does === "end" ? "way_back.end" : "way_back.begin"));
-    setText(byId("way-back-why"), say(why));
-    setDisabled(button, does === null);
+    const why = wayBackOf(connection);
+    setText(button, say(why === "on" ? "way_back.end" : "way_back.begin"));
+    setText(byId("way-back-why"), say(`way_back.${why}`));
+    setDisabled(button, why !== "help" && why !== "on");
   };
   button.addEventListener("click", press);
   whenever(connection, ["state", "open"], show);
@@ -41,7 +32,7 @@ export function attachWayBack(connection) {
   return {
     /** Its place among the choices of a switch, where it can begin. @returns {Choice[]} */
     choices() {
-      return wayBackOf(connection).does === "begin" ? [{ id: "way-back", label: say("way_back.begin"), act: press }] : [];
+      return wayBackOf(connection) === "help" ? [{ id: "way-back", label: say("way_back.begin"), act: press }] : [];
     },
   };
 }

@@ -1,5 +1,6 @@
 /** Sounds and vibrations when the arm is enabled or stops, or when a task ends, as far as the person wants them. */
 
+import { whenever } from "../layout/dom.js";
 import { play } from "./sounds.js";
 
 /** @import {Connection} from "../connection/connection.js" */
@@ -24,7 +25,6 @@ export function attachFeedback(connection, settings) {
     engaged = connection.engaged;
     tell(engaged ? "enabled" : "stopped");
   };
-  connection.addEventListener("state", look);
-  connection.addEventListener("open", look);
+  whenever(connection, ["state", "open"], look);
   return { tell };
 }

@@ -11,7 +11,7 @@ import { commonChoices } from "../inputs/page_choices.js";
 import { pageControls } from "../inputs/page_controls.js";
 import { attachScanning } from "../inputs/scanning.js";
 import { attachStick } from "../inputs/stick.js";
-import { byId, create, fillBar, setHidden, setText } from "../layout/dom.js";
+import { byId, create, fillBar, setHidden, setText, whenever } from "../layout/dom.js";
 import { attachPage } from "../layout/page.js";
 import { say } from "../layout/words.js";
 import { AnswerInput } from "../personalise/answer_input.js";
@@ -65,9 +65,8 @@ window.addEventListener("pointerup", () => input.release("pointer"));
 attachDpad(input, settings);
 attachInputChoice(input, settings);
 const scanner = attachScanning(input, settings, stop, offered);
-const nothing = { enable: () => {}, gripper: () => {}, nextMode: () => {}, axes: () => {} };
-attachKeyboard(input, settings, nothing);
-attachGamepad(input, settings, { ...nothing, stop, press: (number, down) => scanner.press(number, down) });
+attachKeyboard(input, settings, {});
+attachGamepad(input, settings, scanner, { stop });
 
 /** The cells of an exercise, else what stands on the page. @param {Choice} stopIt @param {Group} group @returns {Choice[]} */
 function offered(stopIt, group) {
@@ -226,6 +225,5 @@ connection.addEventListener("state", () => {
   if (connection.engaged && exercises.length) begin();
   if (connection.state) drawing?.show(connection.state, NOTHING_PREDICTED, [], { ...settings.values, showGhosts: false, showTrail: false });
 });
-settings.addEventListener("change", follow);
-follow();
+whenever(settings, ["change"], follow);
 attachViews(settings, say("fit.cannot_draw"), (loaded) => (drawing = loaded));

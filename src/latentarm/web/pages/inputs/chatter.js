@@ -3,7 +3,7 @@
  * mean them are the switch's or the button's own: the arm stops.
  */
 
-import { REACTION_MS } from "./reaction.js";
+import { REACTION_MS } from "./switch_timing.js";
 
 /** @import {PersonInput} from "./deflection.js" */
 

@@ -1,6 +1,6 @@
 /** Four large buttons: hold one, or press it for a step, or press it on and off. */
 
-import { byId, setText } from "../layout/dom.js";
+import { byId, setText, whenever } from "../layout/dom.js";
 import { say, sayNumber } from "../layout/words.js";
 import { DIRECTIONS } from "./deflection.js";
 import { attachHeldPointer } from "./held_pointer.js";
@@ -84,6 +84,5 @@ export function attachDpad(inputs, settings, refused = () => {}) {
     setText(byId("dpad-help"), say(`dpad.${press}`, { seconds: sayNumber(stepS, 1) }));
     show(latched);
   };
-  settings.addEventListener("change", explain);
-  explain();
+  whenever(settings, ["change"], explain);
 }

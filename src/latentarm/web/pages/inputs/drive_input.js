@@ -160,6 +160,8 @@ export class DriveInput extends Deflection {
   }
 
   _onState() {
+    // After a change of what the stick does, what goes on without being held is let go; what is held, people let go.
+    if (this._connection.driving && this._connection.state?.let_go_first && this.latched) this.neutral();
     if (!this.flowing) return;
     this.goFirst();
     const engaged = this._connection.engaged;

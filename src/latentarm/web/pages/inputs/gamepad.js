@@ -18,10 +18,10 @@ const IDLE_MS = 100;
 /**
  * @param {PersonInput} input
  * @param {Settings} settings
- * @param {{enable: () => void, stop: () => void, gripper: () => void, nextMode: () => void, press: (number: number, down: boolean) => boolean}} actions
- *   `press` takes a button as a switch, where scanning is on, and says whether it did.
+ * @param {Pick<import("./scanner.js").Scanner, "press">} scanner takes a button as a switch where scanning is on
+ * @param {{stop: () => void, enable?: () => void, gripper?: () => void, nextMode?: () => void}} actions
  */
-export function attachGamepad(input, settings, actions) {
+export function attachGamepad(input, settings, scanner, actions) {
   /** Says what the person must do about a gamepad. */
   const line = document.getElementById("unrested");
   /** By their index. @type {Map<number, {id: string, down: boolean[], drives: string}>} */
@@ -74,8 +74,8 @@ export function attachGamepad(input, settings, actions) {
     const use = uses[number];
     // While the settings ask which button is for what, a press is the answer.
     const asked = document.querySelector("[data-pad-asking]") !== null;
-    if ((!asked && actions.press(number, isDown)) || !isDown || !use) return;
-    if (use === "stop" || !dialogIsOpen()) actions[use]();
+    if ((!asked && scanner.press(number, isDown)) || !isDown || !use) return;
+    if (use === "stop" || !dialogIsOpen()) actions[use]?.();
   };
 
   window.addEventListener("gamepaddisconnected", (event) => lost(event.gamepad.index));

@@ -1,6 +1,6 @@
 /** Which way of pressing is shown: the stick, the buttons or the switch. */
 
-import { byId } from "../layout/dom.js";
+import { byId, whenever } from "../layout/dom.js";
 
 /** @import {PersonInput} from "./deflection.js" */
 /** @import {Settings, Values} from "../settings/settings.js" */
@@ -24,6 +24,5 @@ export function attachInputChoice(input, settings) {
   for (const radio of radios) {
     radio.addEventListener("change", () => settings.change({ panel: /** @type {Values["panel"]} */ (radio.value) }));
   }
-  settings.addEventListener("change", show);
-  show();
+  whenever(settings, ["change"], show);
 }

@@ -14,7 +14,7 @@ const LETTERS = { KeyW: up, KeyS: down, KeyA: left, KeyD: right };
 /**
  * @param {PersonInput} input
  * @param {Settings} settings
- * @param {{enable: () => void, nextMode: () => void, axes: (index: number) => void, gripper: () => void}} actions
+ * @param {{enable?: () => void, nextMode?: () => void, axes?: (index: number) => void, gripper?: () => void}} actions
  */
 export function attachKeyboard(input, settings, actions) {
   /** @type {Map<string, [number, number]>} */
@@ -51,12 +51,12 @@ export function attachKeyboard(input, settings, actions) {
     }
   });
   const act = (/** @type {KeyboardEvent} */ event) => {
-    if (event.code === "Enter" && !isInteractive(event.target)) actions.enable();
+    if (event.code === "Enter" && !isInteractive(event.target)) actions.enable?.();
     if (!settings.values.shortcuts) return;
-    if (event.code === "KeyM") actions.nextMode();
-    if (event.code === "KeyG") actions.gripper();
+    if (event.code === "KeyM") actions.nextMode?.();
+    if (event.code === "KeyG") actions.gripper?.();
     const digit = /^Digit([1-9])$/.exec(event.code);
-    if (digit) actions.axes(Number(digit[1]) - 1);
+    if (digit) actions.axes?.(Number(digit[1]) - 1);
   };
   window.addEventListener("click", unfocus);
   window.addEventListener("keyup", (event) => {

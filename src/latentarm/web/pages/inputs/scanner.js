@@ -7,9 +7,8 @@
  */
 
 import { DIRECTIONS } from "./deflection.js";
-import { REACTION_MS } from "./reaction.js";
 import { inRows } from "./rows.js";
-import { SwitchTiming } from "./switch_timing.js";
+import { REACTION_MS, SwitchTiming } from "./switch_timing.js";
 
 /** @import {Direction, PersonInput} from "./deflection.js" */
 /** @import {Settings} from "../settings/settings.js" */

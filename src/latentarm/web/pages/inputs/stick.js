@@ -1,6 +1,6 @@
 /** The stick drawn on a grid: a pointer or a finger pushes it, and letting go lets it spring back. */
 
-import { byId, part, setText } from "../layout/dom.js";
+import { byId, part, setText, whenever } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 import { attachHeldPointer } from "./held_pointer.js";
 
@@ -56,8 +56,7 @@ export function attachStick(inputs, settings) {
   };
   inputs.addEventListener("change", show);
   const outline = () => drawing.dead.setAttribute("r", String(settings.values.deadZone * REACH));
-  settings.addEventListener("change", outline);
-  outline();
+  whenever(settings, ["change"], outline);
   show();
 
   return {

@@ -18,5 +18,5 @@ export function attachWholePage(settings, stop) {
   /** Nothing on such a page moves the arm: what is pushed is only known. @type {PersonInput} */
   const input = Object.assign(new Deflection(), { live: false, flowing: false, halt: () => input.neutral() });
   const scanner = attachScanning(input, settings, stop, (_, group) => [...pageControls(byId("controls"), group), ...commonChoices(group)]);
-  attachGamepad(input, settings, { enable: () => {}, stop, gripper: () => {}, nextMode: () => {}, press: (number, down) => scanner.press(number, down) });
+  attachGamepad(input, settings, scanner, { stop });
 }

@@ -12,7 +12,7 @@ import { isSwitch } from "../inputs/keys.js";
 import { Settings } from "../settings/settings.js";
 import { attachSettingsDialog } from "../settings/settings_dialog.js";
 import { attachTheme } from "../settings/theme.js";
-import { byId, setHidden, setText } from "./dom.js";
+import { byId, setHidden, setText, whenever } from "./dom.js";
 import { attachKeysAtHand } from "./keys_at_hand.js";
 import { robotWords } from "./thing_words.js";
 import { attachTooLong } from "./too_long.js";
@@ -35,8 +35,7 @@ export function attachPage({ drop = () => {}, repaint = () => {}, runChanged = (
   }, spaceStops);
   attachPersonSync(settings);
   const showKeys = () => byId("stop").setAttribute("aria-keyshortcuts", spaceStops() ? "Space Escape" : "Escape");
-  settings.addEventListener("change", showKeys);
-  showKeys();
+  whenever(settings, ["change"], showKeys);
   const dialog = attachSettingsDialog(byId("settings", HTMLDialogElement), byId("settings-open"), settings);
   attachTheme(byId("theme"), settings, repaint);
   const feedback = attachFeedback(connection, settings);

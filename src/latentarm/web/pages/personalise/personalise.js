@@ -54,8 +54,8 @@ const stick = attachStick(input, settings);
 attachDpad(input, settings);
 attachInputChoice(input, settings);
 const scanner = attachScanning(input, settings, stop, offered);
-attachKeyboard(input, settings, { enable: answer, nextMode: () => {}, axes: () => {}, gripper: () => {} });
-attachGamepad(input, settings, { enable: answer, stop, gripper: () => {}, nextMode: () => {}, press: (number, down) => scanner.press(number, down) });
+attachKeyboard(input, settings, { enable: answer });
+attachGamepad(input, settings, scanner, { enable: answer, stop });
 
 /** A switch's choices at each step: the step's own buttons, and then the pages and settings. @param {Choice} _ @param {Group} group @returns {Choice[]} */
 function offered(_, group) {

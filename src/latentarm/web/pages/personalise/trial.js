@@ -1,6 +1,6 @@
 /** An alignment that is tried: whose it is, and whether it is kept. */
 
-import { byId, setHidden, setText } from "../layout/dom.js";
+import { byId, setHidden, setText, whenever } from "../layout/dom.js";
 import { say, sayNotice } from "../layout/words.js";
 
 /** @import {Connection} from "../connection/connection.js" */
@@ -45,6 +45,5 @@ export function attachTrialBanner(connection, settings, lease) {
     setHidden(byId("trial-why"), !tried.why);
     setText(byId("trial-why"), tried.why ? sayNotice(tried.why) : "");
   };
-  connection.addEventListener("learning", show);
-  connection.addEventListener("state", show);
+  whenever(connection, ["learning", "state"], show);
 }

@@ -138,23 +138,13 @@ export class Settings extends EventTarget {
 
 /** @param {string | null} stored @returns {Person | null} */
 function personIn(stored) {
-  try {
-    const person = JSON.parse(stored ?? "null");
-    return typeof person?.id === "string" && typeof person.name === "string" ? { id: person.id, name: person.name } : null;
-  } catch {
-    return null;
-  }
+  const person = storage.parsed(stored);
+  return typeof person?.id === "string" && typeof person.name === "string" ? { id: person.id, name: person.name } : null;
 }
 
 /** The stored values that make sense: they may be from another version. @param {string | null} stored @returns {Values} */
 function valid(stored) {
-  /** @type {any} */
-  let kept = null;
-  try {
-    kept = JSON.parse(stored ?? "{}");
-  } catch {
-    return { ...DEFAULTS };
-  }
+  let kept = storage.parsed(stored);
   // These zeros were the old defaults. Every change stores all values, so nobody need have chosen them.
   if (kept && !kept.debounced && kept.acceptS === 0 && kept.releaseS === 0) {
     kept = { ...kept, acceptS: DEFAULTS.acceptS, releaseS: DEFAULTS.releaseS };

@@ -1,18 +1,29 @@
 /** The browser's storage for this site. It may refuse to keep anything; settings then last as long as the page. */
 
-/** @param {string} key @returns {string | null} */
-export function read(key) {
+/** @typedef {"localStorage" | "sessionStorage"} Area */
+
+/** @param {string} key @param {Area} [area] @returns {string | null} */
+export function read(key, area = "localStorage") {
   try {
-    return localStorage.getItem(key);
+    return globalThis[area].getItem(key);
   } catch {
     return null;
   }
 }
 
-/** @param {string} key @param {string} value */
-export function write(key, value) {
+/** What was written as JSON; null where it is none. @param {string | null} text @returns {any} */
+export function parsed(text) {
   try {
-    localStorage.setItem(key, value);
+    return JSON.parse(text ?? "null");
+  } catch {
+    return null;
+  }
+}
+
+/** @param {string} key @param {string} value @param {Area} [area] */
+export function write(key, value, area = "localStorage") {
+  try {
+    globalThis[area].setItem(key, value);
   } catch {
     // Refused, or full: see above.
   }

@@ -1,5 +1,7 @@
 /** Light or dark: follows the system until the person chooses. */
 
+import { whenever } from "../layout/dom.js";
+
 /**
  * @param {HTMLElement} button
  * @param {import("./settings.js").Settings} settings
@@ -21,6 +23,5 @@ export function attachTheme(button, settings, repaint) {
     settings.change({ theme: dark ? "light" : "dark" });
   });
   system.addEventListener("change", show);
-  settings.addEventListener("change", show);
-  show();
+  whenever(settings, ["change"], show);
 }

@@ -1,6 +1,6 @@
 /** The two views of a page. They are loaded after the page works: they are large, and all else works without them. */
 
-import { byId, setText } from "../layout/dom.js";
+import { byId, setText, whenever } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 
 /** @import {Settings} from "../settings/settings.js" */
@@ -15,8 +15,7 @@ import { say } from "../layout/words.js";
 export async function attachViews(settings, without, loaded, where = "") {
   const caption = /** @type {HTMLElement} */ (byId("view-front").querySelector("figcaption span"));
   const name = () => setText(caption, say(settings.values.seat === "facing" ? "views.front" : "views.shoulder"));
-  settings.addEventListener("change", name);
-  name();
+  whenever(settings, ["change"], name);
   try {
     const { Drawing } = await import("./drawing.js");
     const elements = { canvas: byId("scene", HTMLCanvasElement), front: byId("view-front"), side: byId("view-side") };
