@@ -53,12 +53,10 @@ export function attachPoses(connection) {
   };
   const list = () => {
     const rows = all().map(([name, own]) => {
-      const there = createButton(say("poses.go", { pose: name }), () => go(name, own));
-      there.dataset.go = name;
+      const there = createButton(say("poses.go", { pose: name }), () => go(name, own), { dataset: { go: name } });
       const forget = createButton("×", () => {
         if (connection.driving) connection.send({ type: "delete_pose", name });
-      }, { className: "quiet", ariaLabel: say("poses.delete", { pose: name }) });
-      forget.dataset.delete = name;
+      }, { className: "quiet", ariaLabel: say("poses.delete", { pose: name }), dataset: { delete: name } });
       return create("li", { className: "row" }, there, ...(own === null ? [forget] : []));
     });
     poses.replaceChildren(...rows);

@@ -103,8 +103,7 @@ function titleOf(drive) {
 /** @param {Drive} drive */
 function driveRow(drive) {
   const when = sayTime(drive.started);
-  const outcome = create("strong", { textContent: outcomeWords(drive) });
-  outcome.dataset.outcome = drive.outcome ?? "";
+  const outcome = create("strong", { textContent: outcomeWords(drive), dataset: { outcome: drive.outcome ?? "" } });
   const label = `${titleOf(drive)}, ${when}`;
   const path = `/records/drives/${drive.id}`;
   const row = rowOf(titleOf(drive), `${when} · ${nameOf(drive.person)}`, [outcome, ` · ${figureWords(drive)}`], [

@@ -56,16 +56,10 @@ export function attachScanning(input, settings, stop, offered) {
   const group = (id, label, inner) => groupOf(id, label, inner, [stops]);
 
   const paint = () => {
-    list.replaceChildren(...scanner.choices.map((choice, index) => {
-      const item = create("li", { textContent: choice.label });
-      item.dataset.choice = choice.id;
-      if (choice.id === scanner.moving) item.dataset.moving = "true";
-      if (choice.id === scanner.ready) item.dataset.ready = "true";
-      if (index === scanner.lit) {
-        item.setAttribute("aria-current", "true");
-        item.dataset.hint = hint();
-      }
-      return item;
+    list.replaceChildren(...scanner.choices.map(({ id, label }, index) => {
+      const state = { ...(id === scanner.moving && { moving: "true" }), ...(id === scanner.ready && { ready: "true" }) };
+      if (index !== scanner.lit) return create("li", { textContent: label, dataset: { choice: id, ...state } });
+      return create("li", { textContent: label, ariaCurrent: "true", dataset: { choice: id, ...state, hint: hint() } });
     }));
     showLit();
     const label = scanner.choices[scanner.lit]?.label ?? "";

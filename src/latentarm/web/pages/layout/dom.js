@@ -44,7 +44,9 @@ export function whenever(target, types, act) {
  * @returns {HTMLElementTagNameMap[K]}
  */
 export function create(tag, properties = {}, ...children) {
-  const made = Object.assign(document.createElement(tag), properties);
+  const { dataset, ...others } = properties;
+  const made = Object.assign(document.createElement(tag), others);
+  Object.assign(made.dataset, dataset);
   if (children.length) made.append(...children);
   return made;
 }

@@ -61,10 +61,7 @@ function rowOf(person) {
     if (pins) tools.append(person.pin ? button("people.pin_remove", person, () => removePin(person)) : button("people.pin_set", person, () => setPin(person)));
   }
   // Its label is the row's name for a switch.
-  const row = create("li", { ariaLabel: called }, name, tools);
-  row.dataset.person = person?.id ?? "";
-  row.dataset.here = String(here);
-  return row;
+  return create("li", { ariaLabel: called, dataset: { person: person?.id ?? "", here: String(here) } }, name, tools);
 }
 
 /** @param {Person} person */
@@ -115,9 +112,8 @@ function driven({ drives, last }) {
  * @param {{pressed?: boolean}} [state]
  */
 function button(word, person, act, { pressed } = {}) {
-  const made = createButton(say(pressed ? "people.chosen" : word), act, { ariaLabel: say(`${word}_of`, { name: person?.name ?? say("settings.guest") }) });
-  if (pressed !== undefined) made.ariaPressed = String(pressed);
-  return made;
+  const ariaLabel = say(`${word}_of`, { name: person?.name ?? say("settings.guest") });
+  return createButton(say(pressed ? "people.chosen" : word), act, { ariaLabel, ...(pressed !== undefined && { ariaPressed: String(pressed) }) });
 }
 
 /** @param {Person} person */

@@ -31,11 +31,9 @@ export function attachPractice(connection, input, settings) {
     if (practice === null) return;
     const { done } = practice;
     list.replaceChildren(...STEPS.map((name, index) => {
-      const item = create("li", { textContent: say(`practice.short_${name}`) });
-      item.dataset.done = String(index < done);
-      if (index < done) item.setAttribute("aria-label", say("practice.done", { step: item.textContent ?? "" }));
-      if (index === done) item.setAttribute("aria-current", "step");
-      return item;
+      const step = say(`practice.short_${name}`);
+      const state = { ...(index < done && { ariaLabel: say("practice.done", { step }) }), ...(index === done && { ariaCurrent: "step" }) };
+      return create("li", { textContent: step, ...state, dataset: { done: String(index < done) } });
     }));
   };
   const become = (/** @type {Practice | null} */ now) => {

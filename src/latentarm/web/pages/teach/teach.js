@@ -167,11 +167,7 @@ function showLesson(lesson) {
   list.hidden = lesson === null;
   const rows = lesson === null ? [] : lessonWords(lesson);
   if (rows.map(({ text }) => text).join() === [...list.children].map((row) => row.textContent).join()) return;
-  list.replaceChildren(...rows.map(({ good, text }) => {
-    const row = create("li", { textContent: text });
-    row.dataset.good = String(good);
-    return row;
-  }));
+  list.replaceChildren(...rows.map(({ good, text }) => create("li", { textContent: text, dataset: { good: String(good) } })));
 }
 
 let listedRuns = "";

@@ -69,11 +69,9 @@ function shortened(path, share) {
 /** The list next to the views: the same in words. */
 export function attachPredictions() {
   const rows = DIRECTION_NAMES.map((direction) => {
-    const sign = create("span", { className: "ghost-mark", textContent: MARKS[direction] });
-    sign.setAttribute("aria-hidden", "true");
+    const sign = create("span", { className: "ghost-mark", textContent: MARKS[direction], ariaHidden: "true" });
     const words = create("span");
-    const item = create("li", {}, sign, create("span", { textContent: say(`directions.${direction}`) }), words);
-    item.dataset.ghost = direction;
+    const item = create("li", { dataset: { ghost: direction } }, sign, create("span", { textContent: say(`directions.${direction}`) }), words);
     byId("ghosts").append(item);
     return { direction, item, words };
   });
