@@ -62,9 +62,6 @@ class Drive:
         note: shown to the person first; None for nothing.
         observers: also called after every command.
         calls: records every call of the arm's `Step`; None for nowhere.
-
-    Attributes:
-        change: the order that ended the loop to restart it; None if it ended for good.
     """
 
     def __init__(
@@ -118,7 +115,7 @@ class Drive:
         self._goals = setup.step_goals()
         self._note = note
         self._note_until_s = -math.inf if note is None else clock.now_s() + NOTE_S
-        self.change: Change | None = None
+        self.change: Change | None = None  # the order that ended the loop to restart it
         self._choose(steering.mode, steering.axes, steering.help)
 
     def run(self, ticks: int | None = None) -> Change | None:

@@ -30,22 +30,14 @@ _Meaning = tuple[int, HelpLevel]
 @final
 @dataclass(eq=False)
 class _Way:
-    """The prediction so far, along every direction.
-
-    Attributes:
-        context: of the moment at which it began.
-        q: (K, n), joint positions, rad.
-        transforms: (K, n, 4, 4), of the links.
-        heights: (K, capsules, planes), see `GhostPaths._heights`, m.
-        points: where the tool was after each stretch so far, (K, 3), m.
-    """
+    """The prediction so far, along every direction."""
 
     meaning: _Meaning
-    context: Context
-    q: FloatArray
-    transforms: FloatArray
-    heights: FloatArray
-    points: list[FloatArray]
+    context: Context  # of the moment at which it began
+    q: FloatArray  # (K, n), joint positions, rad
+    transforms: FloatArray  # (K, n, 4, 4), of the links
+    heights: FloatArray  # (K, capsules, planes), see `GhostPaths._heights`, m
+    points: list[FloatArray]  # where the tool was after each stretch so far, (K, 3), m
 
 
 @final

@@ -27,16 +27,13 @@ class IdleLimit:
     Args:
         limit_s: the arm is disabled after this, s.
         stop: disables it.
-
-    Attributes:
-        left_s: whole seconds until the arm is disabled, in the last `SAID_S`; else None.
     """
 
     def __init__(self, limit_s: float, stop: Callable[[Notice], None]) -> None:
         self._limit_s = limit_s
         self._stop = stop
         self._used_s = -math.inf
-        self.left_s: int | None = None
+        self.left_s: int | None = None  # whole seconds until it is disabled, in the last `SAID_S`
 
     def look(self, now_s: float, *, used: bool) -> None:
         """Call once a tick; ``used``: whether the arm is disabled, or somebody gives an input."""

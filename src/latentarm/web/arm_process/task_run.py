@@ -26,21 +26,13 @@ _LOOK_EVERY_S: Final = 0.1
 @final
 @dataclass(frozen=True, eq=False)
 class Todo:
-    """The work in a run.
+    """The work in a run."""
 
-    Attributes:
-        task: its name.
-        choices: names of things or goals to choose from.
-        choice: index of the one of this run.
-        steps: in order; empty where nothing counts as done.
-        failures: what ends the run.
-    """
-
-    task: str
-    choices: tuple[str, ...]
-    choice: int
-    steps: tuple[TaskStep, ...]
-    failures: tuple[Failure, ...] = ()
+    task: str  # its name
+    choices: tuple[str, ...]  # names of things or goals to choose from
+    choice: int  # index of the one of this run
+    steps: tuple[TaskStep, ...]  # in order; empty where nothing counts as done
+    failures: tuple[Failure, ...] = ()  # what ends the run
     vessels: tuple[Vessel, ...] = ()
 
 

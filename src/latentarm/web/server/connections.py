@@ -41,22 +41,14 @@ _Phase = Literal["head", "body", "answer", "socket", "closing"]
 @final
 @dataclass(frozen=True)
 class ConnectionLimits:
-    """How many connections there may be, and how long a peer may take, s.
+    """How many connections there may be, and how long a peer may take, s."""
 
-    Attributes:
-        most: connections in all; far above what `Gate` admits, so that only idle ones are dropped.
-        head_s: for the TLS handshake, and again for a request's headers or until the next request.
-        stalled_s: how long a peer may read nothing that it is sent.
-        closing_s: for reading the rest after the server has closed the connection.
-        look_s: how often this is checked.
-    """
-
-    most: int = 384
-    head_s: float = 5.0
+    most: int = 384  # far above what `Gate` admits, so that only idle ones are dropped
+    head_s: float = 5.0  # for the TLS handshake, and again for a request's headers or until the next request
     body_s: float = 5.0
-    stalled_s: float = 10.0
-    closing_s: float = 2.0
-    look_s: float = 0.25
+    stalled_s: float = 10.0  # how long a peer may read nothing that it is sent
+    closing_s: float = 2.0  # for reading the rest after the server has closed the connection
+    look_s: float = 0.25  # how often this is checked
 
 
 def limits_here() -> ConnectionLimits:
