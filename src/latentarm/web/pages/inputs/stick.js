@@ -1,21 +1,20 @@
-/** The stick drawn on a grid: a pointer or a finger pushes it, and letting go lets it spring back. */
+/** The stick, drawn on a grid by the template: a pointer or a finger pushes it, and letting go lets it spring back. */
 
-import { byId, part, setText, whenever } from "../layout/dom.js";
+import { byId, setText, whenever } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 import { attachHeldPointer } from "./held_pointer.js";
 
-/** @import {Direction, PersonInput} from "./deflection.js" */
+/** @import {PersonInput} from "./deflection.js" */
 /** @import {Settings} from "../settings/settings.js" */
 
 const SIZE = 264;
 /** From the middle to where the input is 1, in the drawing's units. */
 export const REACH = 96;
-const CELLS = 8;
 
 /** @param {PersonInput} inputs @param {Settings} settings */
 export function attachStick(inputs, settings) {
   const [element, spoken] = [byId("stick"), byId("stick-value")];
-  const drawing = draw(element);
+  const [dead, arm, knob, mark] = [".dead", ".arm", ".knob", ".mark"].map((name) => /** @type {Element} */ (element.querySelector(name)));
 
   const push = (/** @type {PointerEvent} */ event) => {
     const box = element.getBoundingClientRect();
@@ -49,21 +48,21 @@ export function attachStick(inputs, settings) {
   inputs.addEventListener("dropped", forget);
   const show = () => {
     const [x, y] = [inputs.x, inputs.y];
-    drawing.knob.setAttribute("transform", `translate(${x * REACH} ${-y * REACH})`);
-    drawing.arm.setAttribute("x2", String(x * REACH));
-    drawing.arm.setAttribute("y2", String(-y * REACH));
+    knob.setAttribute("transform", `translate(${x * REACH} ${-y * REACH})`);
+    arm.setAttribute("x2", String(x * REACH));
+    arm.setAttribute("y2", String(-y * REACH));
     setText(spoken, deflectionWords(x, y));
   };
   inputs.addEventListener("change", show);
-  const outline = () => drawing.dead.setAttribute("r", String(settings.values.deadZone * REACH));
+  const outline = () => dead.setAttribute("r", String(settings.values.deadZone * REACH));
   whenever(settings, ["change"], outline);
   show();
 
   return {
     /** A dot that stays, or none. @param {[number, number] | null} at */
     mark(at) {
-      drawing.mark.setAttribute("visibility", at ? "visible" : "hidden");
-      if (at) drawing.mark.setAttribute("transform", `translate(${at[0] * REACH} ${-at[1] * REACH})`);
+      mark.setAttribute("visibility", at ? "visible" : "hidden");
+      if (at) mark.setAttribute("transform", `translate(${at[0] * REACH} ${-at[1] * REACH})`);
     },
   };
 }
@@ -81,34 +80,4 @@ export function deflectionWords(x, y) {
 /** @param {number} value */
 function clamp(value) {
   return Math.min(Math.max(value, -1), 1);
-}
-
-/** @param {HTMLElement} element */
-function draw(element) {
-  const half = SIZE / 2;
-  const svg = part("svg", { viewBox: `${-half} ${-half} ${SIZE} ${SIZE}`, "aria-hidden": "true" });
-  svg.append(part("rect", { class: "pad", x: 1 - half, y: 1 - half, width: SIZE - 2, height: SIZE - 2, rx: 10 }));
-  for (let cell = -CELLS / 2; cell <= CELLS / 2; cell += 1) {
-    const at = (cell * REACH) / (CELLS / 2);
-    const kind = cell === 0 ? "axis" : "grid-line";
-    svg.append(part("line", { class: kind, x1: at, x2: at, y1: -REACH, y2: REACH }));
-    svg.append(part("line", { class: kind, y1: at, y2: at, x1: -REACH, x2: REACH }));
-  }
-  const dead = part("circle", { class: "dead" });
-  const arm = part("line", { class: "arm", x1: 0, y1: 0 });
-  const knob = part("g", {});
-  knob.append(part("circle", { class: "knob", r: 31 }));
-  svg.append(dead, arm);
-  for (const [name, y] of /** @type {[Direction, number][]} */ ([["up", 5 - REACH - 14], ["down", REACH + 22]])) {
-    svg.append(part("text", { x: 0, y, "text-anchor": "middle", "data-ghost": name }, say(`directions.${name}`)));
-  }
-  for (const [name, side] of /** @type {[Direction, number][]} */ ([["left", -1], ["right", 1]])) {
-    const turn = { x: side * (REACH + 17), y: 5, transform: `rotate(${side * 90} ${side * (REACH + 17)} 0)` };
-    svg.append(part("text", { ...turn, "text-anchor": "middle", "data-ghost": name }, say(`directions.${name}`)));
-  }
-  const mark = part("g", { class: "mark", visibility: "hidden" });
-  mark.append(part("circle", { class: "mark-edge", r: 13 }), part("circle", { class: "mark-dot", r: 8 }));
-  svg.append(knob, mark);
-  element.replaceChildren(svg);
-  return { knob, arm, dead, mark };
 }
