@@ -31,8 +31,7 @@ export class CameraLink {
     /** @type {RTCPeerConnection | null} */
     this._peer = null;
     this._waitMs = FIRST_WAIT_MS;
-    /** @type {ReturnType<typeof setTimeout> | undefined} */
-    this._timer = undefined;
+    this._timer = 0;
   }
 
   /** Whether pictures may come. */

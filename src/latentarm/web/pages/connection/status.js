@@ -46,8 +46,7 @@ export function attachStatus(parts, connection, settings) {
   let found = null;
   let look = () => NO_CONTROL;
   const speak = attachSpeech(settings, "speakNext", SPOKEN_MS);
-  /** @type {ReturnType<typeof setTimeout> | undefined} */
-  let timer;
+  let timer = 0;
   const canEnable = document.getElementById("enable") !== null;
   const canConnect = document.getElementById("lost") !== null;
 

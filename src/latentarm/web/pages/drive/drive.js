@@ -29,7 +29,7 @@ import { attachTrialBanner } from "../personalise/trial.js";
 import { attachPractice } from "../practice/attach_practice.js";
 import { attachViews } from "../views/attach_views.js";
 import { motionWords } from "../views/directions.js";
-import { attachPredictions, personalPaths, personalRing } from "../views/predictions.js";
+import { personalPaths, personalRing, showPredictions } from "../views/predictions.js";
 import { attachChecklist } from "./checklist.js";
 import { attachHelp } from "./help.js";
 import { attachModes } from "./modes.js";
@@ -134,7 +134,6 @@ const scanner = attachScanning(input, settings, stop, (stopIt, group) => {
 attachKeyboard(input, settings, { enable, nextMode: modes.next, axes: modes.axes, gripper: () => gripper.toggle("keyboard") });
 attachGamepad(input, settings, scanner, { enable, stop, gripper: () => gripper.toggle("gamepad"), nextMode: modes.next });
 
-const predictions = attachPredictions();
 byId("trail-clear").addEventListener("click", () => connection.send({ type: "trail_clear" }));
 
 let wordsAt = -Infinity;
@@ -154,7 +153,7 @@ function show() {
   const pair = state.mode === "end_effector" ? welcome.end_effector_modes[state.axes] : null;
   const turns = (/** @type {Direction} */ direction) =>
     pair !== null && movedPart(pair, shaped(...DIRECTIONS[direction])).part.of === "turn_rad";
-  predictions.show(paths, pressed, (motion, direction) =>
+  showPredictions(paths, pressed, (motion, direction) =>
     turns(direction) ? say("motion.turns") : motionWords(motion, settings.values.seat));
   setText(byId("scene-text"), [whereWords(welcome, state, wanted), ...(state.things?.seen ?? []).map(seenWords)].filter(Boolean).join(" "));
   return moved;

@@ -65,12 +65,11 @@ export class Player extends EventTarget {
     this.t = 0;
     this.length = trace.t[trace.t.length - 1] ?? 0;
     this._before = 0;
-    /** @type {ReturnType<typeof setInterval> | undefined} */
-    this._timer = undefined;
+    this._timer = 0;
   }
 
   get playing() {
-    return this._timer !== undefined;
+    return this._timer !== 0;
   }
 
   play() {
@@ -84,7 +83,7 @@ export class Player extends EventTarget {
   pause() {
     if (!this.playing) return;
     clearInterval(this._timer);
-    this._timer = undefined;
+    this._timer = 0;
     this.dispatchEvent(new Event("playing"));
   }
 

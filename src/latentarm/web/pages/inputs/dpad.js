@@ -14,8 +14,7 @@ export function attachDpad(inputs, settings, refused = () => {}) {
   let holding = false;
   /** @type {HTMLButtonElement | null} */
   let latched = null;
-  /** @type {ReturnType<typeof setTimeout> | undefined} */
-  let timer;
+  let timer = 0;
 
   const show = (/** @type {HTMLButtonElement | null} */ pressed) => {
     for (const button of buttons) {

@@ -29,12 +29,10 @@ export class DriveInput extends Deflection {
     this._steady = steady;
     this._connection = connection;
     this._shaped = shaped;
-    /** @type {ReturnType<typeof setInterval> | undefined} */
-    this._timer = undefined;
-    /** @type {ReturnType<typeof setTimeout> | undefined} */
-    this._enabling = undefined;
-    /** @type {ReturnType<typeof setInterval> | undefined} While what opens the gripper is held. */
-    this._opening = undefined;
+    this._timer = 0;
+    this._enabling = 0;
+    /** While what opens the gripper is held. */
+    this._opening = 0;
     this._wasEngaged = false;
     this._askedAt = -Infinity;
     this._tickedAt = -Infinity;
@@ -51,7 +49,7 @@ export class DriveInput extends Deflection {
 
   /** Whether inputs are going out. */
   get flowing() {
-    return this._timer !== undefined;
+    return this._timer !== 0;
   }
 
   /** Whether a press that begins now would move the arm. */
@@ -65,7 +63,7 @@ export class DriveInput extends Deflection {
     this._say(null);
     this._askedAt = performance.now();
     this._wasEngaged = false;
-    this._timer ??= setInterval(() => this._onTimer(), PERIOD_MS);
+    this._timer ||= setInterval(() => this._onTimer(), PERIOD_MS);
     this._send(this.source ?? "pointer");
     clearTimeout(this._enabling);
     this._enabling = setTimeout(() => this._connection.send({ type: "enable" }), NEUTRAL_FIRST_MS);
@@ -123,7 +121,7 @@ export class DriveInput extends Deflection {
     clearTimeout(this._enabling);
     clearInterval(this._timer);
     clearInterval(this._opening);
-    this._timer = undefined;
+    this._timer = 0;
     this.lateness.rest();
   }
 

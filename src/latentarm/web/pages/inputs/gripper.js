@@ -44,8 +44,7 @@ export function gripperWords(gripper, widest) {
 export function attachGripper(connection, input, refused) {
   const buttons = { open: byId("gripper-open"), close: byId("gripper-close") };
   let wanted = "";
-  /** @type {ReturnType<typeof setTimeout> | undefined} */
-  let timer;
+  let timer = 0;
 
   /** How wide it opens, m, or null where there is no gripper. */
   const widest = () => connection.welcome?.gripper_width_m ?? null;

@@ -8,18 +8,17 @@
  */
 export function paced(act, gapMs) {
   let doneAt = -Infinity;
-  /** @type {ReturnType<typeof setTimeout> | undefined} */
-  let waiting;
+  let waiting = 0;
 
   const now = () => {
     clearTimeout(waiting);
-    waiting = undefined;
+    waiting = 0;
     const began = performance.now();
     if (act()) doneAt = began;
   };
   return () => {
     const early = doneAt + gapMs() - performance.now();
     if (early <= 0) now();
-    else waiting ??= setTimeout(now, early);
+    else waiting ||= setTimeout(now, early);
   };
 }

@@ -62,8 +62,7 @@ export class Scanner extends EventTarget {
     this._going = false;
     /** Whether the press under way has ended a motion, and means no more. */
     this._spent = false;
-    /** @type {ReturnType<typeof setTimeout> | undefined} */
-    this._timer = undefined;
+    this._timer = 0;
     const times = () => this._settings.values;
     const nothing = () => {};
     this._switches = [

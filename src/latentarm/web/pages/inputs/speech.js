@@ -10,8 +10,7 @@
  */
 export function attachSpeech(settings, option, settleMs = 0) {
   let said = "";
-  /** @type {ReturnType<typeof setTimeout> | undefined} */
-  let waiting;
+  let waiting = 0;
   return (text) => {
     const { [option]: wanted, speakVolume } = settings.values;
     if (!wanted || text === said || !("speechSynthesis" in window)) {

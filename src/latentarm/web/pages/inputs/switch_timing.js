@@ -34,8 +34,7 @@ export class SwitchTiming {
     this._repetitions = 0;
     /** True once the press that repeats has counted, or came too early to count. */
     this._spent = false;
-    /** @type {ReturnType<typeof setTimeout> | undefined} */
-    this._timer = undefined;
+    this._timer = 0;
   }
 
   /** Whether a press that counts is under way. */
@@ -73,7 +72,7 @@ export class SwitchTiming {
   /** It was pressed by something that cannot hold it. @param {boolean} ends see `down` */
   tap(ends) {
     this.down(ends);
-    if (this._timer !== undefined && !this._accepted) {
+    if (this._timer !== 0 && !this._accepted) {
       clearTimeout(this._timer);
       this._accept();
     }
@@ -83,7 +82,7 @@ export class SwitchTiming {
   /** A press under way comes to nothing, as when the page has lost the focus. */
   forget() {
     clearTimeout(this._timer);
-    this._timer = undefined;
+    this._timer = 0;
     this._down = this._accepted = false;
   }
 

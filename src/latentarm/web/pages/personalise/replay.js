@@ -20,8 +20,7 @@ export class Replay {
     /** @type {Motion | null} */
     this._motion = null;
     this._began = 0;
-    /** @type {ReturnType<typeof setInterval> | undefined} */
-    this._timer = undefined;
+    this._timer = 0;
     this._still.addEventListener("change", () => this.again());
   }
 

@@ -12,8 +12,7 @@ const WAIT_MS = 300;
 export function attachPersonSync(settings) {
   /** @type {{id: string, values: string} | null} */
   let waiting = null;
-  /** @type {ReturnType<typeof setTimeout> | undefined} */
-  let timer;
+  let timer = 0;
 
   const send = () => {
     clearTimeout(timer);

@@ -1,8 +1,7 @@
 /** Predictions for each direction: the tool's paths over the next second, for this person, and in words. */
 
 import { DIRECTIONS, DIRECTION_NAMES } from "../inputs/deflection.js";
-import { byId, create, setText } from "../layout/dom.js";
-import { say } from "../layout/words.js";
+import { byId, setText } from "../layout/dom.js";
 
 /** @import {State} from "../connection/messages.js" */
 /** @import {Direction} from "../inputs/deflection.js" */
@@ -66,25 +65,13 @@ function shortened(path, share) {
   return points.length > 1 ? points : path.slice(0, 2);
 }
 
-/** The list next to the views: the same in words. */
-export function attachPredictions() {
-  const rows = DIRECTION_NAMES.map((direction) => {
-    const sign = create("span", { className: "ghost-mark", textContent: MARKS[direction], ariaHidden: "true" });
-    const words = create("span");
-    const item = create("li", { dataset: { ghost: direction } }, sign, create("span", { textContent: say(`directions.${direction}`) }), words);
-    byId("ghosts").append(item);
-    return { direction, item, words };
-  });
-  return {
-    /** @param {Paths} paths @param {Direction[]} pressed @param {(motion: number[], direction: Direction) => string} describe */
-    show(paths, pressed, describe) {
-      for (const { direction, item, words } of rows) {
-        const path = paths[direction];
-        setText(words, path === null ? "–" : describe(displacement(path), direction));
-        item.dataset.pressed = String(pressed.includes(direction));
-      }
-    },
-  };
+/** The list next to the views: the same in words. @param {Paths} paths @param {Direction[]} pressed @param {(motion: number[], direction: Direction) => string} describe */
+export function showPredictions(paths, pressed, describe) {
+  for (const direction of DIRECTION_NAMES) {
+    const [item, path] = [byId(`ghost-${direction}`), paths[direction]];
+    setText(item.children[2], path === null ? "–" : describe(displacement(path), direction));
+    item.dataset.pressed = String(pressed.includes(direction));
+  }
 }
 
 /** From the first point of a path to its last, m. @param {number[][]} path */
