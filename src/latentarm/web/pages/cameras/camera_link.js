@@ -1,6 +1,5 @@
 /** The connection that pictures come through: WebRTC to the server alone, and to no other address. */
 
-/** @import {Notice} from "../connection/messages.js" */
 /** @import {CameraState} from "./camera_view.js" */
 /** @import {ServerClock} from "./picture_age.js" */
 

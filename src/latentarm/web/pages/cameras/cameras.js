@@ -6,9 +6,6 @@ import { CameraLink } from "./camera_link.js";
 import { CameraView } from "./camera_view.js";
 import { ServerClock } from "./picture_age.js";
 
-/** @import {Connection} from "../connection/connection.js" */
-/** @import {Settings} from "../settings/settings.js" */
-
 /** How often the age of the pictures is checked, ms. */
 const LOOK_MS = 50;
 

@@ -5,8 +5,6 @@ import { byId, setText, whenever } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 import { stepKey } from "../practice/step_words.js";
 
-/** @import {Connection} from "../connection/connection.js" */
-/** @import {Settings} from "../settings/settings.js" */
 /** @import {Step} from "../practice/steps.js" */
 
 /** @param {Connection} connection @param {Settings} settings */

@@ -3,9 +3,6 @@
 import { byId, setHidden, setText } from "../layout/dom.js";
 import { say, sayName, sayPercent } from "../layout/words.js";
 
-/** @import {Connection} from "./connection.js" */
-/** @import {State} from "./messages.js" */
-
 /** How often the co-pilot's page says how fast the arm may be, ms; the arm stops where it does not. */
 const PERIOD_MS = 100;
 

@@ -3,9 +3,6 @@
 import { byId, setHidden, setText } from "../layout/dom.js";
 import { say, sayName } from "../layout/words.js";
 
-/** @import {Connection} from "./connection.js" */
-/** @import {State} from "./messages.js" */
-
 /** How long the server may take to let this page drive where nobody does, ms. */
 const ANSWER_MS = 1000;
 

@@ -4,9 +4,6 @@ import { setDisabled, setText, whenever } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 import { whoAsks } from "./driver_lease.js";
 
-/** @import {Connection} from "./connection.js" */
-/** @import {WordKey} from "../layout/words.js" */
-
 /**
  * The button's action now.
  *

@@ -3,10 +3,6 @@
 import { byId, setDisabled, setHidden, setText, whenever } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 
-/** @import {Connection} from "./connection.js" */
-/** @import {DriverLease} from "./driver_lease.js" */
-/** @import {Choice} from "../inputs/scanner.js" */
-
 /** @param {Connection} connection @param {DriverLease} lease */
 export function attachLostArm(connection, lease) {
   const button = byId("lost-again");

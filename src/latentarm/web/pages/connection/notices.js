@@ -3,9 +3,7 @@
 import { theThing } from "../layout/thing_words.js";
 import { say, sayNotice } from "../layout/words.js";
 
-/** @import {Notice} from "./messages.js" */
 /** @import {OwnPages} from "./own_pages.js" */
-/** @import {WordKey} from "../layout/words.js" */
 
 /** Notices about a page, which name it by its id. */
 const DONE_BY_A_PAGE = ["stop_pressed_by", "page_stopped", "driver_gone", "driver_released", "handed_over"];

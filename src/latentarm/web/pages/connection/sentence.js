@@ -8,11 +8,7 @@ import { enableButtonOf } from "./enable_button.js";
 import { concerns, sayTo } from "./notices.js";
 
 /** @import {HaltReason} from "../inputs/deflection.js" */
-/** @import {WordKey} from "../layout/words.js" */
 /** @import {Step} from "../practice/steps.js" */
-/** @import {Values} from "../settings/settings.js" */
-/** @import {Connection} from "./connection.js" */
-/** @import {Notice, State} from "./messages.js" */
 /** @import {Reader} from "./notices.js" */
 
 /** What a key of the words says. @typedef {{key: WordKey, parameters?: Record<string, string | number>}} Words */

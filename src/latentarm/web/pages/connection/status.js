@@ -6,9 +6,6 @@ import { sayTo } from "./notices.js";
 import { sentenceOf, textOf } from "./sentence.js";
 
 /** @import {HaltReason} from "../inputs/deflection.js" */
-/** @import {Settings} from "../settings/settings.js" */
-/** @import {Connection} from "./connection.js" */
-/** @import {State} from "./messages.js" */
 /** @import {Reader} from "./notices.js" */
 /** @import {PageState} from "./sentence.js" */
 

@@ -4,8 +4,6 @@
  * Where a person has made Space one of their switches, Space is that while they scan.
  */
 
-/** @import {Connection} from "./connection.js" */
-
 /**
  * @param {Connection} connection
  * @param {() => void} [alsoHere] what this page lets go of

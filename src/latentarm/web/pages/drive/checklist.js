@@ -6,9 +6,6 @@
 import { byId, create } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 
-/** @import {Connection} from "../connection/connection.js" */
-/** @import {Choice} from "../inputs/scanner.js" */
-
 /** @param {Connection} connection */
 export function attachChecklist(connection) {
   const boxes = ["stop", "area", "payload"].map((id) => byId(`checklist-${id}`, HTMLInputElement));

@@ -45,9 +45,6 @@ import { whereWords } from "./where_words.js";
 import { attachWayBack } from "./way_back.js";
 import { attachZones } from "./zones.js";
 
-/** @import {Direction} from "../inputs/deflection.js" */
-/** @import {Welcome} from "../connection/messages.js" */
-/** @import {Drawing} from "../views/drawing.js" */
 /** @import {Paths} from "../views/predictions.js" */
 
 /** Words next to the views change no more often than this, ms. */

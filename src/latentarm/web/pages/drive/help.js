@@ -3,10 +3,6 @@
 import { byId, setHidden, setText } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 
-/** @import {Connection} from "../connection/connection.js" */
-/** @import {State} from "../connection/messages.js" */
-/** @import {Settings, Values} from "../settings/settings.js" */
-
 /** The effect of the current level. @param {Pick<State, "mode" | "help">} state */
 export function helpWords({ mode, help }) {
   if (help === null) return "";

@@ -3,11 +3,6 @@
 import { byId, create, setHidden } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 
-/** @import {Connection} from "../connection/connection.js" */
-/** @import {Settings} from "../settings/settings.js" */
-/** @import {State, Welcome} from "../connection/messages.js" */
-/** @import {WordKey} from "../layout/words.js" */
-
 /** @typedef {Exclude<State["mode"], "assisted">} ModeName with help or without is chosen apart */
 /** @typedef {{mode: ModeName, axes: number}} Steering a mode, and which pair of the end-effector's axes */
 

@@ -4,10 +4,7 @@ import { byId, create, createButton, setDisabled, setText, whenever } from "../l
 import { say } from "../layout/words.js";
 import { sayTo } from "../connection/notices.js";
 
-/** @import {Welcome} from "../connection/messages.js" */
 /** @typedef {Welcome["poses"][number]} BuiltInPose */
-/** @import {Connection} from "../connection/connection.js" */
-/** @import {Choice} from "../inputs/scanner.js" */
 
 /** Why the arm cannot go to a pose now, or "help" where it can. @param {Pick<Connection, "driving" | "engaged" | "state">} connection */
 export function goingOf({ driving, engaged, state }) {

@@ -3,9 +3,6 @@
 import { TRIAL } from "../personalise/trial.js";
 import { NO_PROFILE } from "../settings/settings.js";
 
-/** @import {Connection} from "../connection/connection.js" */
-/** @import {Settings} from "../settings/settings.js" */
-
 /**
  * Asks for it and says where they sit once they drive and the arm is not enabled, once for each choice. Without a choice of an
  * alignment the server's stays.

@@ -3,9 +3,6 @@
 import { byId, setHidden, setText } from "../layout/dom.js";
 import { say, sayNotice } from "../layout/words.js";
 
-/** @import {Connection} from "../connection/connection.js" */
-/** @import {State} from "../connection/messages.js" */
-
 /** Samples a second: the control loop's rate. */
 const RATE_HZ = 100;
 

@@ -2,8 +2,6 @@
 
 import { byId, whenever } from "../layout/dom.js";
 
-/** @import {Settings} from "../settings/settings.js" */
-
 /** Its choices are shares of the full speed; the setting may also lie between them. @param {Settings} settings */
 export function attachSpeed(settings) {
   const fieldset = byId("speed");

@@ -5,9 +5,7 @@ import { thingWords } from "../layout/thing_words.js";
 import { say } from "../layout/words.js";
 import { awayWords, blockedWords, fillWords, outcomeWords, stepNow, stepWords, stuck, stuckWords, wholeSeconds } from "./task_words.js";
 
-/** @import {Connection} from "../connection/connection.js" */
 /** @import {Fill, TaskState} from "../connection/messages.js" */
-/** @import {Choice} from "../inputs/scanner.js" */
 
 /** Words that change all the time change no more often than this, ms. */
 const WORDS_MS = 250;

@@ -4,7 +4,7 @@ import { capital, intoThing, theThing, thingWords } from "../layout/thing_words.
 import { say, sayPercent } from "../layout/words.js";
 import { centimetresToGo } from "./to_go.js";
 
-/** @import {Fill, State, StepToDo, TaskState, Welcome} from "../connection/messages.js" */
+/** @import {Fill, StepToDo, TaskState} from "../connection/messages.js" */
 
 /** A turn that need not be told, degrees. */
 const SMALL_TURN = 10;

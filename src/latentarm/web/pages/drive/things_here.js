@@ -4,9 +4,6 @@ import { byId, create, createButton, setHidden, setText } from "../layout/dom.js
 import { capital, theThing, thingWords } from "../layout/thing_words.js";
 import { say } from "../layout/words.js";
 
-/** @import {State} from "../connection/messages.js" */
-/** @import {Connection} from "../connection/connection.js" */
-/** @import {Choice} from "../inputs/scanner.js" */
 /** @typedef {NonNullable<State["things"]>["seen"][number]} SeenThing */
 
 /** How old a sighting is before its age is told, s. */

@@ -5,11 +5,8 @@ import { byId, create, setText } from "../layout/dom.js";
 import { say, sayNumber } from "../layout/words.js";
 import { displacement } from "../views/predictions.js";
 
-/** @import {Connection} from "../connection/connection.js" */
 /** @import {ToGo} from "../connection/messages.js" */
-/** @import {Direction} from "../inputs/deflection.js" */
 /** @import {Words} from "../connection/sentence.js" */
-/** @import {WordKey} from "../layout/words.js" */
 /** @import {Paths} from "../views/predictions.js" */
 
 /** @typedef {{of: "shift_m" | "turn_rad", axis: number}} Part one of the six ways in which the tool can move */

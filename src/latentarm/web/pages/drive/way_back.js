@@ -4,9 +4,6 @@ import { byId, setDisabled, setText, whenever } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 import { goingOf } from "./poses.js";
 
-/** @import {Connection} from "../connection/connection.js" */
-/** @import {Choice} from "../inputs/scanner.js" */
-
 /** Why the arm cannot go back now, or "help" where it can. @param {Pick<Connection, "driving" | "engaged" | "state">} connection */
 export function wayBackOf(connection) {
   const why = goingOf(connection);

@@ -5,8 +5,6 @@ import { say } from "../layout/words.js";
 import { isLikeliest } from "../views/likeliest.js";
 import { distance, placeOf } from "./task_words.js";
 
-/** @import {State, Welcome} from "../connection/messages.js" */
-
 /**
  * @param {Pick<Welcome, "goals" | "things">} welcome
  * @param {Pick<State, "tool" | "belief" | "things">} state

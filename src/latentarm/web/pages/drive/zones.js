@@ -4,8 +4,6 @@ import { byId, setHidden, setText } from "../layout/dom.js";
 import { zoneWords } from "../layout/thing_words.js";
 import { say, sayList, sayNumber } from "../layout/words.js";
 
-/** @import {Connection} from "../connection/connection.js" */
-
 /** @param {Connection} connection */
 export function attachZones(connection) {
   const text = byId("zones");

@@ -3,8 +3,6 @@
 import { whenever } from "../layout/dom.js";
 import { play } from "./sounds.js";
 
-/** @import {Connection} from "../connection/connection.js" */
-/** @import {Settings} from "../settings/settings.js" */
 /** @import {Occasion} from "./sounds.js" */
 
 /** Lengths of what is felt and of the pauses between, ms. @type {Partial<Record<Occasion, number[]>>} */

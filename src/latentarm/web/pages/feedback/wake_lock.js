@@ -1,7 +1,5 @@
 /** The screen stays on while this page drives an enabled arm, or guides one: a screen that goes dark takes Stop with it. */
 
-/** @import {Connection} from "../connection/connection.js" */
-
 /** A lock that was refused or taken back is asked for so much later, ms. */
 const AGAIN_MS = 1000;
 

@@ -3,7 +3,6 @@
 import { DIRECTIONS } from "../inputs/deflection.js";
 import { driftOf } from "./measures.js";
 
-/** @import {Direction} from "../inputs/deflection.js" */
 /** @import {Sample} from "./measures.js" */
 
 const [REST_S, PUSH_S] = [6, 3];

@@ -21,9 +21,6 @@ import { NOTHING_PREDICTED } from "../views/predictions.js";
 import { CELLS, Hold, Trials } from "./exercises.js";
 import { changes, findingsOf, proposals, textsOf } from "./results.js";
 
-/** @import {Choice, Group} from "../inputs/scanner.js" */
-/** @import {Values} from "../settings/settings.js" */
-
 /** The settings under which each input is in use. @type {Record<string, Partial<Values>>} */
 const INPUTS = {
   stick: { panel: "stick" }, keys: { panel: "dpad" }, pad: { panel: "stick" },

@@ -2,7 +2,6 @@
 
 import { TremorFilter } from "../inputs/tremor.js";
 
-/** @import {Values} from "../settings/settings.js" */
 /** @typedef {[number, number, number]} Sample a push, right and up, in [-1, 1], and when */
 
 /** So much of a hold is the way there. */

@@ -6,8 +6,6 @@ import { sayTime } from "../records/ask.js";
 import { Hold, Trials } from "./exercises.js";
 import { acceptFor, deadZoneFor, driftOf, dwellFor, quantile, reachFor, releaseFor, settled, shakingOf, STEADY, tremorFor } from "./measures.js";
 
-/** @import {WordKey} from "../layout/words.js" */
-/** @import {Values} from "../settings/settings.js" */
 /** @typedef {{key: keyof typeof KINDS, value: number, measured?: string, proposed?: string | number, why?: WordKey}} Finding `measured` and `why` where they are not the usual ones */
 /** @typedef {{words: (value: any) => string, least: number, setting?: "deadZone" | "tremor" | "reach" | "dwellS" | "acceptS" | "releaseS", name?: WordKey}} Kind how it is said, from which difference on it is another, and the setting that it is about */
 

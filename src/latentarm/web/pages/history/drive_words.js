@@ -3,7 +3,6 @@
 import { taskTitle, thingWords } from "../layout/thing_words.js";
 import { say, sayNumber } from "../layout/words.js";
 
-/** @import {WordKey} from "../layout/words.js" */
 /** @import {Drive} from "./weeks.js" */
 
 /** @type {Record<string, WordKey>} */

@@ -8,9 +8,6 @@ import { timeWords } from "./drive_words.js";
 import { NOTHING_PREDICTED } from "../views/predictions.js";
 import { Player } from "./player.js";
 
-/** @import {State} from "../connection/messages.js" */
-/** @import {Settings} from "../settings/settings.js" */
-/** @import {Drawing} from "../views/drawing.js" */
 /** @import {Moment} from "./player.js" */
 /** @import {Drive} from "./weeks.js" */
 

@@ -8,7 +8,6 @@ import { inputWords, outcomeWords, stoppedBy, taskWords, timeWords } from "./dri
 import { FIGURES, figureOf } from "./figures.js";
 import { counted } from "./weeks.js";
 
-/** @import {WordKey} from "../layout/words.js" */
 /** @import {Figure} from "./figures.js" */
 /** @import {Drive} from "./weeks.js" */
 

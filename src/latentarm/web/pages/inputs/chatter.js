@@ -5,8 +5,6 @@
 
 import { REACTION_MS } from "./switch_timing.js";
 
-/** @import {PersonInput} from "./deflection.js" */
-
 /** @param {PersonInput} input */
 export function attachChatterGuard(input) {
   let latched = false;

@@ -1,7 +1,5 @@
 /** The dialog or menu above the page. Nothing moves behind a dialog: however one opens, the arm stops. */
 
-/** @import {DriveInput} from "./drive_input.js" */
-
 /** The dialog or the menu above everything else: opening a dialog closes the menu. @returns {HTMLElement | null} */
 export function topmost() {
   return document.querySelector(":is(dialog[open], :popover-open)");

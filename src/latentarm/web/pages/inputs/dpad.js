@@ -5,9 +5,6 @@ import { say, sayNumber } from "../layout/words.js";
 import { DIRECTIONS } from "./deflection.js";
 import { attachHeldPointer } from "./held_pointer.js";
 
-/** @import {Direction, PersonInput} from "./deflection.js" */
-/** @import {Settings} from "../settings/settings.js" */
-
 /** @param {PersonInput} inputs @param {Settings} settings @param {() => void} [refused] said when a press cannot move the arm yet */
 export function attachDpad(inputs, settings, refused = () => {}) {
   const buttons = byId("dpad").querySelectorAll("button");

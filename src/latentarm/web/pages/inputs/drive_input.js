@@ -8,7 +8,6 @@
 import { Deflection } from "./deflection.js";
 import { Lateness } from "./lateness.js";
 
-/** @import {Connection} from "../connection/connection.js" */
 /** @import {HaltReason, Source} from "./deflection.js" */
 
 const PERIOD_MS = 20;

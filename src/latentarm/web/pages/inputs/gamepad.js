@@ -9,9 +9,7 @@ import { isGuessed, mappingOf, nameOf, stickOf } from "../settings/pads.js";
 import { dialogIsOpen } from "./dialogs.js";
 import { padLives } from "./pad_life.js";
 
-/** @import {PersonInput} from "./deflection.js" */
 /** @import {Mapping} from "../settings/pads.js" */
-/** @import {Settings} from "../settings/settings.js" */
 
 const IDLE_MS = 100;
 

@@ -3,11 +3,8 @@
 import { byId, setHidden, setText } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 
-/** @import {Connection} from "../connection/connection.js" */
 /** @import {GripperState} from "../connection/messages.js" */
 /** @import {Source} from "./deflection.js" */
-/** @import {DriveInput} from "./drive_input.js" */
-/** @import {Choice} from "./scanner.js" */
 
 /** Narrower than this share of its opening it is closed, and wider than the rest of it, open. */
 const END_SHARE = 0.03;

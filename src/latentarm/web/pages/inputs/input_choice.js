@@ -2,9 +2,6 @@
 
 import { byId, whenever } from "../layout/dom.js";
 
-/** @import {PersonInput} from "./deflection.js" */
-/** @import {Settings, Values} from "../settings/settings.js" */
-
 /** The switch shows itself. */
 const PANELS = ["stick", "dpad"];
 

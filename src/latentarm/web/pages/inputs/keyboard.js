@@ -2,9 +2,6 @@
 
 import { DIRECTIONS } from "./deflection.js";
 
-/** @import {PersonInput} from "./deflection.js" */
-/** @import {Settings} from "../settings/settings.js" */
-
 const { up, down, left, right } = DIRECTIONS;
 /** @type {Record<string, [number, number]>} */
 const ARROWS = { ArrowUp: up, ArrowDown: down, ArrowLeft: left, ArrowRight: right };

@@ -2,8 +2,6 @@
 
 import { say } from "../layout/words.js";
 
-/** @import {Values} from "../settings/settings.js" */
-
 /** @param {string} code as in `KeyboardEvent.code` */
 export function keyWords(code) {
   return code === "Space" ? say("keys.space") : code.replace(/^(Key|Digit)/, "");

@@ -3,10 +3,6 @@
  * and before the server would stop the arm. Somebody who holds a stick and a stick that is dead look alike.
  */
 
-/** @import {Connection} from "../connection/connection.js" */
-/** @import {Settings} from "../settings/settings.js" */
-/** @import {DriveInput} from "./drive_input.js" */
-
 /** So long before is said that it ends, s. */
 const SAID_S = 3;
 /** A push that is held ends so long before the server's time, s, so that the arm stays enabled. */

@@ -4,8 +4,6 @@ import { byId } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 import { fieldChoice, settingChoices } from "../settings/setting_choices.js";
 
-/** @import {Choice, Group} from "./scanner.js" */
-
 /** Buttons of the page, most wanted first. */
 const BUTTONS = [
   "copilot-accept", "copilot-end", "trial-keep", "trial-discard", "record", "view-swap", "trail-clear", "hand-over", "ask", "release",

@@ -2,8 +2,6 @@
 
 import { fieldChoice, wordsOf } from "../settings/setting_choices.js";
 
-/** @import {Choice, Group} from "./scanner.js" */
-
 const PRESSED = "button, a[href], summary";
 const FIELDS = "select, input[type=radio], input[type=checkbox], input[type=range]";
 /** Parts that are a choice of their own, which opens what is in them: each has a name. */

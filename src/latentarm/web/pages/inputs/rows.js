@@ -3,8 +3,6 @@
 import { say } from "../layout/words.js";
 import { DIRECTIONS } from "./deflection.js";
 
-/** @import {Choice} from "./scanner.js" */
-
 /** A list that is no longer than this has no rows, and a row is no longer than that. */
 const SHORT = 5;
 const IN_A_ROW = 4;

@@ -10,9 +10,6 @@ import { DIRECTIONS } from "./deflection.js";
 import { inRows } from "./rows.js";
 import { REACTION_MS, SwitchTiming } from "./switch_timing.js";
 
-/** @import {Direction, PersonInput} from "./deflection.js" */
-/** @import {Settings} from "../settings/settings.js" */
-
 /** After a motion that ended by itself, a press is still meant for the motion, ms. */
 const LATE_PRESS_MS = 800;
 /** A direction that waits to be held is forgotten after this long, ms. */

@@ -12,10 +12,6 @@ import { attachSpeech } from "./speech.js";
 import { attachSwitchKeys } from "./switch_keys.js";
 import { attachSwitchPlace } from "./switch_place.js";
 
-/** @import {PersonInput} from "./deflection.js" */
-/** @import {Choice, Group} from "./scanner.js" */
-/** @import {Settings} from "../settings/settings.js" */
-
 /** How often the offered choices are checked, ms. */
 const LOOK_MS = 100;
 const LIT = "lit";

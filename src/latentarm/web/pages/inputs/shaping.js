@@ -1,8 +1,5 @@
 /** From the stick to what is sent: the person's own dead zone, reach, sensitivity and axes, and what the mode expects. */
 
-/** @import {State, Welcome} from "../connection/messages.js" */
-/** @import {Values} from "../settings/settings.js" */
-
 /** @typedef {Pick<Values, "deadZone" | "reach" | "sensitivity" | "swapAxes" | "invertX" | "invertY">} StickSettings */
 
 /** From the edge of the dead zone to a full push it is at least so far: a smaller way would be a switch. */

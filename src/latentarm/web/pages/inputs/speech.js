@@ -1,7 +1,5 @@
 /** What is lit, and what is to be done now, out loud in the language of the page. */
 
-/** @import {Settings, Values} from "../settings/settings.js" */
-
 /**
  * @param {Pick<Settings, "values">} settings
  * @param {"speak" | "speakNext"} option which setting asks for it

@@ -4,9 +4,6 @@ import { byId, setText, whenever } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 import { attachHeldPointer } from "./held_pointer.js";
 
-/** @import {PersonInput} from "./deflection.js" */
-/** @import {Settings} from "../settings/settings.js" */
-
 const SIZE = 264;
 /** From the middle to where the input is 1, in the drawing's units. */
 export const REACH = 96;

@@ -2,9 +2,7 @@
 
 import { isSwitch } from "./keys.js";
 
-/** @import {PersonInput} from "./deflection.js" */
 /** @import {Scanner} from "./scanner.js" */
-/** @import {Settings} from "../settings/settings.js" */
 
 /** Somebody types in a field for so long after the last click or other key in it, ms. */
 const TYPING_MS = 5000;

@@ -6,8 +6,6 @@
  * there is nothing to steady: letting go counts at once.
  */
 
-/** @import {Values} from "../settings/settings.js" */
-
 /** Cut-off of a hand that is still, Hz, and by how much it rises with the hand's speed, Hz per 1/s. */
 const STRENGTHS = {
   light: { stillHz: 2, perSpeed: 0.5 },

@@ -1,7 +1,5 @@
 /** Where another page drives, the stick and the buttons do nothing, and are shown so; a press of them says why. */
 
-/** @import {Connection} from "../connection/connection.js" */
-
 /** @param {HTMLElement[]} controls @param {Connection} connection @param {() => void} refused */
 export function attachWatching(controls, connection, refused) {
   let watching = "false";

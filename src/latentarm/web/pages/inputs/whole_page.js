@@ -7,9 +7,6 @@ import { pageControls } from "./page_controls.js";
 import { commonChoices } from "./page_choices.js";
 import { attachScanning } from "./scanning.js";
 
-/** @import {PersonInput} from "./deflection.js" */
-/** @import {Settings} from "../settings/settings.js" */
-
 /**
  * @param {Settings} settings
  * @param {() => void} stop

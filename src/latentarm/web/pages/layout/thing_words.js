@@ -2,8 +2,6 @@
 
 import { knows, say } from "./words.js";
 
-/** @import {WordKey} from "./words.js" */
-
 /** How it is called next to it. @param {string} name as in the scene */
 export function thingWords(name) {
   return inWords(name, "");

@@ -6,7 +6,6 @@
  */
 
 /** @typedef {keyof typeof import("../../words/en.json")} WordKey */
-/** @import {Notice} from "../connection/messages.js" */
 /** @typedef {string | Record<string, string>} Entry */
 
 /** @type {Record<string, Entry>} */

@@ -20,8 +20,6 @@ import { missedWords, STEPS, stepOf } from "./steps.js";
 import { attachTrial, TRIAL } from "./trial.js";
 
 /** @import {ClientMessage, Personalise} from "../connection/messages.js" */
-/** @import {Choice, Group} from "../inputs/scanner.js" */
-/** @import {Drawing} from "../views/drawing.js" */
 
 /** @type {Drawing | null} */
 let drawing = null;

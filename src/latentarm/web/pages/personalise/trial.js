@@ -3,10 +3,6 @@
 import { byId, setHidden, setText, whenever } from "../layout/dom.js";
 import { say, sayNotice } from "../layout/words.js";
 
-/** @import {Connection} from "../connection/connection.js" */
-/** @import {DriverLease} from "../connection/driver_lease.js" */
-/** @import {Settings} from "../settings/settings.js" */
-
 /** The profile's name while it is tried. */
 export const TRIAL = ".trial";
 

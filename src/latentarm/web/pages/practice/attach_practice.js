@@ -5,11 +5,6 @@ import { byId, create, setText } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 import { Practice, STEPS } from "./steps.js";
 
-/** @import {Connection} from "../connection/connection.js" */
-/** @import {DriveInput} from "../inputs/drive_input.js" */
-/** @import {Choice} from "../inputs/scanner.js" */
-/** @import {Settings} from "../settings/settings.js" */
-
 /** @param {Connection} connection @param {DriveInput} input @param {Settings} settings */
 export function attachPractice(connection, input, settings) {
   const panel = byId("practice");

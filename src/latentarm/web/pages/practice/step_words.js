@@ -1,8 +1,5 @@
 /** Instructions for the input that the person has chosen, as keys of the words. */
 
-/** @import {State} from "../connection/messages.js" */
-/** @import {WordKey} from "../layout/words.js" */
-/** @import {Values} from "../settings/settings.js" */
 /** @import {Step} from "./steps.js" */
 
 /** @param {Exclude<Step, "watch" | "reach">} step @param {Pick<Values, "panel" | "press" | "switchMotion">} values @returns {WordKey} */

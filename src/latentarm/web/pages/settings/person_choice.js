@@ -4,8 +4,6 @@ import { create } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 import { ask } from "../records/ask.js";
 
-/** @import {Settings} from "./settings.js" */
-
 /** @param {HTMLSelectElement} select @param {Settings} settings */
 export function attachPersonChoice(select, settings) {
   /** Those who have a PIN, which the People page asks for. @type {Set<string>} */

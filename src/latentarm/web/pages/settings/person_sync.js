@@ -3,8 +3,6 @@
 import { UNSENT_KEY } from "./settings.js";
 import * as storage from "./storage.js";
 
-/** @import {Settings} from "./settings.js" */
-
 /** Changes in quick succession are sent once, ms. */
 const WAIT_MS = 300;
 

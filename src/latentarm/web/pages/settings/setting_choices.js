@@ -2,8 +2,6 @@
 
 import { say } from "../layout/words.js";
 
-/** @import {Choice, Group} from "../inputs/scanner.js" */
-
 /** How many steps a slider has for a switch, at most. */
 const STEPS = 10;
 

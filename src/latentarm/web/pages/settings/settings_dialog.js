@@ -9,8 +9,6 @@ import { attachPadSection } from "./pad_section.js";
 import { attachPersonChoice } from "./person_choice.js";
 import { NO_PROFILE } from "./settings.js";
 
-/** @import {Settings, Values} from "./settings.js" */
-
 const seconds = (/** @type {number} */ value) => say("unit.seconds", { value: sayNumber(value, 1) });
 const hundredths = (/** @type {number} */ value) => say("unit.seconds", { value: sayNumber(value, 2) });
 

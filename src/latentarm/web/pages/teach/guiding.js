@@ -4,11 +4,6 @@ import { recordingWords } from "../drive/recording.js";
 import { byId, setDisabled, setHidden, setText } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 
-/** @import {Connection} from "../connection/connection.js" */
-/** @import {State} from "../connection/messages.js" */
-/** @import {DriverLease} from "../connection/driver_lease.js" */
-/** @import {WordKey} from "../layout/words.js" */
-
 /** The server ends guiding where it does not hear from this page for five times as long, ms. */
 const PERIOD_MS = 200;
 /** The arm takes no longer to begin, ms. */

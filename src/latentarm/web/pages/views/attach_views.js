@@ -3,9 +3,6 @@
 import { byId, setText, whenever } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 
-/** @import {Settings} from "../settings/settings.js" */
-/** @import {Drawing} from "./drawing.js" */
-
 /**
  * @param {Settings} settings
  * @param {string} without what is said where this browser cannot draw

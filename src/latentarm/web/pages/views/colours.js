@@ -1,7 +1,5 @@
 /** The page's colours, as the style sheet has them now, for what is drawn by other means. */
 
-/** @import {Direction} from "../inputs/deflection.js" */
-
 /** @type {Direction[]} */
 const ROUND = ["right", "up", "left", "down"];
 

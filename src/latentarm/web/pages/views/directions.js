@@ -2,8 +2,6 @@
 
 import { say } from "../layout/words.js";
 
-/** @import {Values} from "../settings/settings.js" */
-
 const LEAST_M = 0.01;
 /** A part of a motion is named where it is at least this share of the largest part. */
 const NAMED_SHARE = 0.4;

@@ -7,7 +7,6 @@ import { ROUND } from "./fineness.js";
 import { merged } from "./merged.js";
 import { MARKS } from "./predictions.js";
 
-/** @import {Direction} from "../inputs/deflection.js" */
 /** @import {Labels} from "./labels.js" */
 /** @import {Paths} from "./predictions.js" */
 

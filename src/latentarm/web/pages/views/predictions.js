@@ -3,9 +3,6 @@
 import { DIRECTIONS, DIRECTION_NAMES } from "../inputs/deflection.js";
 import { byId, setText } from "../layout/dom.js";
 
-/** @import {State} from "../connection/messages.js" */
-/** @import {Direction} from "../inputs/deflection.js" */
-
 /** Points of the tool, m, for each direction; null where nothing is known. @typedef {Record<Direction, number[][] | null>} Paths */
 
 /** The ring has a row for each of so many directions: x, y, z (m) and a quaternion w, x, y, z; none where nothing is known. @typedef {{paths: Paths, ring: number[][]}} Predicted */

@@ -11,7 +11,6 @@ import { ToolMarker } from "./tool_marker.js";
 import { Trail } from "./trail.js";
 import { Zones } from "./zones.js";
 
-/** @import {State} from "../connection/messages.js" */
 /** @import {SceneDescription} from "./scene_description.js" */
 /** @import {Meshes} from "./shapes.js" */
 

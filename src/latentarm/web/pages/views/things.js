@@ -4,7 +4,6 @@ import * as THREE from "../three/three.module.min.js";
 import { ROUND } from "./fineness.js";
 import { groupOf, materialOf, place, standing } from "./shapes.js";
 
-/** @import {State} from "../connection/messages.js" */
 /** @import {Grains, Thing} from "./scene_description.js" */
 /** @import {Meshes} from "./shapes.js" */
 

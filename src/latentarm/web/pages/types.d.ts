@@ -1,0 +1,16 @@
+/** Types that most modules of the page name: known everywhere, so that nobody need import them. */
+
+type Connection = import("./connection/connection.js").Connection;
+type DriverLease = import("./connection/driver_lease.js").DriverLease;
+type Notice = import("./connection/messages.js").Notice;
+type State = import("./connection/messages.js").State;
+type Welcome = import("./connection/messages.js").Welcome;
+type Direction = import("./inputs/deflection.js").Direction;
+type PersonInput = import("./inputs/deflection.js").PersonInput;
+type DriveInput = import("./inputs/drive_input.js").DriveInput;
+type Choice = import("./inputs/scanner.js").Choice;
+type Group = import("./inputs/scanner.js").Group;
+type WordKey = import("./layout/words.js").WordKey;
+type Settings = import("./settings/settings.js").Settings;
+type Values = import("./settings/settings.js").Values;
+type Drawing = import("./views/drawing.js").Drawing;
