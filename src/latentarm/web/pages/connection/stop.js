@@ -24,13 +24,14 @@ export function attachStop(connection, alsoHere = () => {}, spaceStops = () => t
   }, { capture: true });
   window.addEventListener("keydown", (event) => {
     if (event.code !== "Space" && event.code !== "Escape") return;
-    if (event.code === "Space" && !spaceStops()) return;
-    const writing = event.code === "Space" && isWritingIn(event.target);
-    // While the arm stands disengaged and nobody guides it, Space may press buttons and tick boxes as it always does.
-    const still = !connection.engaged && connection.state?.guiding !== "on";
-    const pressing = event.code === "Space" && still && isControl(event.target);
-    if (writing || pressing) return;
-    if (event.code === "Space") event.preventDefault();
+    if (event.code === "Space") {
+      const target = event.target instanceof Element ? event.target : null;
+      // While the arm stands disengaged and nobody guides it, Space may press buttons and tick boxes as it always does.
+      const still = !connection.engaged && connection.state?.guiding !== "on";
+      const means = target?.matches("textarea, input[type=text]:not([readonly])") || (still && target?.closest("button, input, select, summary, a"));
+      if (!spaceStops() || means) return;
+      event.preventDefault();
+    }
     stop();
   }, { capture: true });
   // A button that has the focus acts when Space comes up.
@@ -43,14 +44,4 @@ export function attachStop(connection, alsoHere = () => {}, spaceStops = () => t
 /** @param {EventTarget | null} target */
 function isStop(target) {
   return target instanceof Element && target.closest("#stop, [data-stop]") !== null;
-}
-
-/** @param {EventTarget | null} target */
-function isWritingIn(target) {
-  return target instanceof Element && target.matches("textarea, input[type=text]:not([readonly])");
-}
-
-/** @param {EventTarget | null} target */
-function isControl(target) {
-  return target instanceof Element && target.closest("button, input, select, summary, a") !== null;
 }

@@ -3,7 +3,7 @@
 import { byId, create, setDisabled, setText } from "../layout/dom.js";
 import { thingWords } from "../layout/thing_words.js";
 import { say } from "../layout/words.js";
-import { awayWords, blockedWords, fillWords, outcomeWords, stepNow, stepWords, stuck, stuckWords, wholeSeconds } from "./task_words.js";
+import { awayWords, blockedWords, fillWords, outcomeWords, stepNow, stepWords, stuck, stuckWords } from "./task_words.js";
 
 /** @import {Fill, TaskState} from "../connection/messages.js" */
 
@@ -102,7 +102,7 @@ export function attachTask(connection, ended) {
     choice.disabled = why !== "";
     if (performance.now() - wordsAt < WORDS_MS) return;
     wordsAt = performance.now();
-    setText(byId("task-time"), began ? say("task.time", { seconds: wholeSeconds(task.time_s) }) : "");
+    setText(byId("task-time"), began ? say("task.time", { seconds: Math.round(task.time_s) }) : "");
     const away = awayWords(state);
     [...steps.children].forEach((item, index) => setText(item.children[2], index === stepNow(task) ? away : ""));
     showFills(task.fills);

@@ -2,7 +2,6 @@
 
 import { capital, intoThing, theThing, thingWords } from "../layout/thing_words.js";
 import { say, sayPercent } from "../layout/words.js";
-import { centimetresToGo } from "./to_go.js";
 
 /** @import {Fill, StepToDo, TaskState} from "../connection/messages.js" */
 
@@ -12,11 +11,6 @@ const SMALL_TURN = 10;
 /** A step's task in words. @param {StepToDo} step */
 export function stepWords({ kind, thing }) {
   return capital(say(`task.step.${kind}`, { thing: kind === "placed" ? intoThing(thing) : theThing(thing) }));
-}
-
-/** Whole seconds that are shown. @param {number} time s */
-export function wholeSeconds(time) {
-  return Math.round(time);
 }
 
 /** Index of the step that is to be done now. @param {Pick<TaskState, "done" | "lost">} task */
@@ -43,7 +37,7 @@ export function fillWords({ thing, share, enough }) {
 
 /** How a run has ended; empty while it goes on. @param {TaskState} task */
 export function outcomeWords({ outcome, why, time_s }) {
-  if (outcome === "success") return say("task.success", { seconds: wholeSeconds(time_s) });
+  if (outcome === "success") return say("task.success", { seconds: Math.round(time_s) });
   if (why === null) return "";
   return say("task.failure", { what: say(`task.failed.${why.code}`, { thing: theThing(why.thing) }) });
 }
@@ -87,6 +81,6 @@ export function distance(tool, place) {
  */
 export function awayWords({ mode, task: { outcome, to_go } }) {
   if (to_go === null || outcome !== null || to_go.gripper || mode === "end_effector") return "";
-  const [centimetres, degrees] = [centimetresToGo(to_go), Math.round((180 * Math.hypot(...to_go.turn_rad)) / Math.PI)];
+  const [centimetres, degrees] = [100 * Math.hypot(...to_go.shift_m), (180 * Math.hypot(...to_go.turn_rad)) / Math.PI].map(Math.round);
   return degrees > SMALL_TURN ? say("task.away_turn", { centimetres, degrees }) : say("task.away", { centimetres });
 }

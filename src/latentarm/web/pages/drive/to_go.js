@@ -26,11 +26,6 @@ const WORDS_MS = 250;
 /** A prediction that brings the tool nearer by less is not worth a push, m. */
 const NEARER_M = 0.01;
 
-/** How far the tool has yet to go, cm. @param {ToGo} toGo */
-export function centimetresToGo({ shift_m }) {
-  return Math.round(100 * Math.hypot(...shift_m));
-}
-
 /** The part that a direction moves, and which way: 1 or -1. @param {string} pair @param {number[]} sent what is sent for it */
 export function movedPart(pair, sent) {
   const axis = Math.abs(sent[1] ?? 0) > Math.abs(sent[0]) ? 1 : 0;

@@ -3,7 +3,7 @@
 import { create, part } from "../layout/dom.js";
 import { say, sayNumber } from "../layout/words.js";
 import { sayTime } from "../records/ask.js";
-import { count } from "./figures.js";
+import { COUNTED } from "./figures.js";
 import { byDay, byWeek, inDays } from "./weeks.js";
 
 /** @import {Counted} from "./figures.js" */
@@ -31,7 +31,7 @@ export function charts(drives) {
   const periods = daily ? byDay(drives) : byWeek(drives);
   const told = (/** @type {string} */ day, /** @type {string} */ value) =>
     daily ? say("history.chart_day", { day, value }) : say("history.chart_week", { week: day, value });
-  return CHARTS.map(([title, figure, words]) => chart(say(title), periods, ({ drives: here }) => count(figure, here), words, told));
+  return CHARTS.map(([title, figure, words]) => chart(say(title), periods, ({ drives: here }) => COUNTED[figure](here), words, told));
 }
 
 /**

@@ -40,12 +40,7 @@ export function timeWords(seconds) {
   return say("history.minutes", { minutes: Math.floor(seconds / 60), seconds: Math.round(seconds % 60) });
 }
 
-/** One that stays on one line. @param {string} text */
-function unbroken(text) {
-  return text.replaceAll(" ", "\u00a0");
-}
-
-/** @param {Drive} drive */
+/** Each figure stays on one line. @param {Drive} drive */
 export function figureWords(drive) {
   const steps = drive.steps === null ? "" : say("history.steps", { done: drive.steps_done ?? 0, all: drive.steps });
   return [
@@ -55,5 +50,5 @@ export function figureWords(drive) {
     stoppedBy(drive),
     say("history.presses", { count: drive.presses }),
     steps,
-  ].filter(Boolean).map(unbroken).join(" · ");
+  ].filter(Boolean).map((text) => text.replaceAll(" ", "\u00a0")).join(" · ");
 }

@@ -6,7 +6,7 @@ import { inputWords, timeWords } from "./drive_words.js";
 /** @import {Drive} from "./weeks.js" */
 
 /** Numbers; null where no drive has one. @type {Record<Counted, (drives: Drive[]) => number | null>} */
-const COUNTED = {
+export const COUNTED = {
   driven: (drives) => sum(drives.map(({ time_s }) => time_s)),
   success: (drives) => mean(drives.filter(isWatched).map((drive) => Number(isDone(drive)))),
   time: (drives) => median(drives.filter(isDone).map(({ time_s }) => time_s)),
@@ -22,16 +22,11 @@ const COUNTED = {
 /** @type {Figure[]} */
 export const FIGURES = ["drives", "driven", "success", "time", "stops_person", "stops_page", "stops_arm", "presses", "input"];
 
-/** @param {Counted} figure @param {Drive[]} drives */
-export function count(figure, drives) {
-  return COUNTED[figure](drives);
-}
-
 /** A figure in words. @param {Figure} figure @param {Drive[]} drives */
 export function figureOf(figure, drives) {
   if (figure === "drives") return String(drives.length);
   if (figure === "input") return inputMost(drives);
-  const value = count(figure, drives);
+  const value = COUNTED[figure](drives);
   if (value === null) return "–";
   if (figure !== "success") return figure === "driven" || figure === "time" ? timeWords(value) : sayNumber(value, 1);
   return say("report.share_of", { share: sayPercent(value), part: drives.filter(isDone).length, all: drives.filter(isWatched).length });

@@ -42,12 +42,8 @@ let rename = async () => {};
 let undo = async () => {};
 
 function query() {
-  const given = Object.entries(fields).filter(([name]) => Number.isNaN(Number(name)));
-  const asked = new URLSearchParams();
-  for (const [name, field] of given) {
-    if (field.value !== "*" && (field.value || name === "person")) asked.set(name, field.value);
-  }
-  return asked.toString();
+  const given = /** @type {[string, string][]} */ ([...new FormData(filters)]);
+  return new URLSearchParams(given.filter(([name, value]) => value !== "*" && (value || name === "person"))).toString();
 }
 
 async function refresh() {

@@ -46,13 +46,7 @@ export function momentAt(trace, things, t) {
 
 /** Index of the last time that is not later; -1 where all are. @param {number[]} times @param {number} t */
 function lastBefore(times, t) {
-  let [low, high] = [0, times.length];
-  while (low < high) {
-    const middle = (low + high) >> 1;
-    if (times[middle] <= t) low = middle + 1;
-    else high = middle;
-  }
-  return low - 1;
+  return times.findLastIndex((time) => time <= t);
 }
 
 /** Event "moment" with each moment that is to be shown, in `detail`; "playing" when it begins or ends. */

@@ -14,16 +14,6 @@ const SETTLE_MS = 250;
 const HOLD_MS = 1000;
 
 /**
- * Whether the gripper is closed or on its way: then the next thing to do is to open it.
- *
- * @param {GripperState} gripper
- * @param {number} widest m
- */
-export function isClosed({ width_m, holding, closing }, widest) {
-  return closing ?? (holding || width_m < widest / 2);
-}
-
-/**
  * Open, closed or holding something, and how wide.
  *
  * @param {GripperState | null} gripper
@@ -51,6 +41,7 @@ export function attachGripper(connection, input, refused) {
   /** The control that opens the gripper of an arm that is not enabled, while it is held. @type {Source | null} */
   let holding = null;
   let heldAt = NaN;
+  const padPressed = () => navigator.getGamepads().some((pad) => pad?.connected && pad.buttons.some(({ pressed }) => pressed));
   const hold = (/** @type {Source} */ source) => {
     holding = source;
     const begins = input.holdOpen(source, () => holding === source && (source !== "gamepad" || padPressed()));
@@ -103,7 +94,9 @@ export function attachGripper(connection, input, refused) {
     choices() {
       const [{ state }, most] = [connection, widest()];
       if (!state?.gripper || most === null) return [];
-      const closed = isClosed(state.gripper, most);
+      // Where it is closed or on its way, the next thing to do is to open it.
+      const { width_m, holding, closing } = state.gripper;
+      const closed = closing ?? (holding || width_m < most / 2);
       return [{
         id: "gripper",
         label: say(closed ? "gripper.open" : "gripper.close"),
@@ -111,9 +104,4 @@ export function attachGripper(connection, input, refused) {
       }];
     },
   };
-}
-
-/** Whether any button of any gamepad is pressed. */
-function padPressed() {
-  return [...navigator.getGamepads()].some((pad) => pad?.connected && pad.buttons.some(({ pressed }) => pressed));
 }

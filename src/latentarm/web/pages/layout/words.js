@@ -38,7 +38,8 @@ export function readWords() {
 export function say(key, parameters = {}) {
   const entry = catalogue[key];
   if (entry === undefined) throw new Error(`the catalogue has no words for ${key}`);
-  const text = typeof entry === "string" ? entry : entry[pluralForm(Number(parameters.count))] ?? entry.other;
+  const form = () => (plurals ??= new Intl.PluralRules(language)).select(Number(parameters.count));
+  const text = typeof entry === "string" ? entry : entry[form()] ?? entry.other;
   return text.replace(/\{(\w+)\}/g, (_, name) => String(parameters[name]));
 }
 
@@ -73,10 +74,4 @@ export function sayList(texts) {
 /** A share as a percentage. @param {number} share @param {number} [digits] */
 export function sayPercent(share, digits = 0) {
   return say("unit.percent", { value: digits ? sayNumber(100 * share, digits) : Math.round(100 * share) });
-}
-
-/** @param {number} count */
-function pluralForm(count) {
-  plurals ??= new Intl.PluralRules(language);
-  return plurals.select(count);
 }

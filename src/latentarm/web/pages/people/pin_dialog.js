@@ -48,7 +48,9 @@ export function attachPinDialog() {
   return {
     /** Do something with a person's record, once it is open. @param {Pinned | null} person @param {() => void} act */
     async opened(person, act) {
-      if (!person?.pin || (await isOpen(person.id))) act();
+      // This browser may have opened it before.
+      const isOpen = !person?.pin || await ask("GET", `/records/people/${person.id}`).then(() => true, () => false);
+      if (isOpen) act();
       else open(say("pin.title", { name: person.name }), say("pin.help"), "password", async (pin) => {
         await ask("POST", `/records/people/${person.id}/unlock`, { pin });
         act();
@@ -62,10 +64,4 @@ export function attachPinDialog() {
       });
     },
   };
-}
-
-/** Whether this browser may open a person's record. @param {string} id */
-async function isOpen(id) {
-  const answer = await fetch(`/records/people/${id}`, { cache: "no-store" }).catch(() => null);
-  return Boolean(answer?.ok);
 }

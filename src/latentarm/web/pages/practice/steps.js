@@ -1,5 +1,7 @@
 /** The guided practice: what a person does first, ticked off by what they really do. */
 
+import { distance } from "../drive/task_words.js";
+
 /** @typedef {"enable" | "press" | "watch" | "let_go" | "stop" | "reach"} Step */
 /** @typedef {[number, number, number]} Point */
 
@@ -62,18 +64,13 @@ export class Practice {
     switch (this.step) {
       case "enable": return engaged;
       case "press": return engaged && moving && pressed;
-      case "watch": return moving && apart(tool, this._from ?? tool) >= SEEN_M;
+      case "watch": return moving && distance(tool, this._from ?? tool) >= SEEN_M;
       case "let_go": return engaged && !moving && !pressed;
       case "reach": {
-        if (goals.length) return goals.some((goal) => apart(tool, goal) <= REACH_M);
-        return apart(tool, this._from ?? tool) >= FAR_M;
+        if (goals.length) return goals.some((goal) => distance(tool, goal) <= REACH_M);
+        return distance(tool, this._from ?? tool) >= FAR_M;
       }
       default: return false;
     }
   }
-}
-
-/** @param {Point} one @param {Point} other @returns {number} m */
-function apart(one, other) {
-  return Math.hypot(...one.map((value, axis) => value - other[axis]));
 }

@@ -42,11 +42,7 @@ export async function attempt(act, where) {
 
 /** A moment as people write it. @param {string} iso @param {Intl.DateTimeFormatOptions} [style] */
 export function sayTime(iso, style = { dateStyle: "medium", timeStyle: "short" }) {
-  return new Date(iso).toLocaleString(locale(), style);
-}
-
-/** The page's language as it is written where the browser is from: `en-GB` writes dates otherwise than `en`. */
-function locale() {
   const { lang } = document.documentElement;
-  return navigator.languages.find((one) => one.startsWith(`${lang}-`)) ?? lang;
+  // The page's language as it is written where the browser is from: `en-GB` writes dates otherwise than `en`.
+  return new Date(iso).toLocaleString(navigator.languages.find((one) => one.startsWith(`${lang}-`)) ?? lang, style);
 }

@@ -15,8 +15,7 @@ export function symbolOf(index) {
 
 /** The ring in views: how many corners, and how far it is turned, rad. @param {number} index of the goal */
 export function shapeOf(index) {
-  const { corners, turn } = SHAPES[index % SHAPES.length];
-  return { corners, turn };
+  return SHAPES[index % SHAPES.length];
 }
 
 /** The number of its colour in the style sheet, from 1 on. @param {number} index of the goal */
