@@ -17,12 +17,5 @@ export function attachLostArm(connection, lease) {
   };
   button.addEventListener("click", again);
   whenever(connection, ["state", "open"], show);
-
-  return {
-    again,
-    /** Its place among the choices of a switch. @returns {Choice[]} */
-    choices() {
-      return connection.state?.lost && free() ? [{ id: "lost-again", label: say("connection.again"), act: again }] : [];
-    },
-  };
+  return { again };
 }

@@ -15,7 +15,7 @@ import { attachInputChoice } from "../inputs/input_choice.js";
 import { attachKeyboard } from "../inputs/keyboard.js";
 import { paced } from "../inputs/paced.js";
 import { attachLatchLimit } from "../inputs/latch_limit.js";
-import { moreChoices, radioChoices } from "../inputs/page_choices.js";
+import { buttonChoice, moreChoices, radioChoices } from "../inputs/page_choices.js";
 import { attachScanning, directionChoices } from "../inputs/scanning.js";
 import { modeInput } from "../inputs/shaping.js";
 import { attachRim } from "../inputs/rim.js";
@@ -87,7 +87,7 @@ const enable = () => {
 };
 attachEnableButton(byId("enable"), connection, enable);
 const lostArm = attachLostArm(connection, lease);
-const wayBack = attachWayBack(connection);
+attachWayBack(connection);
 const poses = attachPoses(connection);
 const thingsHere = attachThingsHere(connection);
 const modes = attachModes(connection, settings);
@@ -121,8 +121,8 @@ const scanner = attachScanning(input, settings, stop, (stopIt, group) => {
   if (does === "ask") return [{ id: "ask", label: say(label), act: () => connection.send({ type: "ask_to_drive" }) }, stopIt];
   // On the way back any press ends it.
   if (connection.state?.returning || !(connection.driving || does)) return [stopIt];
-  const more = moreChoices(radioChoices(byId("help"), group), [...radioChoices(byId("speed"), group), ...wayBack.choices(), ...poses.choices(), ...thingsHere.choices(), ...practice.choices()], group);
-  if (connection.state?.lost) return [...lostArm.choices(), stopIt, more];
+  const more = moreChoices(radioChoices(byId("help"), group), [...radioChoices(byId("speed"), group), ...buttonChoice("way-back"), ...poses.choices(), ...thingsHere.choices(), ...practice.choices()], group);
+  if (connection.state?.lost) return [...buttonChoice("lost-again"), stopIt, more];
   const unconfirmed = checklist.choices();
   if (unconfirmed.length) return [...unconfirmed, stopIt, more];
   return input.live ? [...directionChoices(settings.values.bestFirst ? nextWords(paths)?.direction : undefined), ...gripper.choices(), mode, stopIt, more]

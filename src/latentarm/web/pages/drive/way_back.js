@@ -25,11 +25,4 @@ export function attachWayBack(connection) {
   };
   button.addEventListener("click", press);
   whenever(connection, ["state", "open"], show);
-
-  return {
-    /** Its place among the choices of a switch, where it can begin. @returns {Choice[]} */
-    choices() {
-      return wayBackOf(connection) === "help" ? [{ id: "way-back", label: say("way_back.begin"), act: press }] : [];
-    },
-  };
 }

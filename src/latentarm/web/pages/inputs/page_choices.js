@@ -2,6 +2,7 @@
 
 import { byId } from "../layout/dom.js";
 import { say } from "../layout/words.js";
+import { canPress } from "./page_controls.js";
 import { fieldChoice, settingChoices } from "../settings/setting_choices.js";
 
 /** Buttons of the page, most wanted first. */
@@ -17,8 +18,8 @@ const BUTTONS = [
  */
 export function buttonChoice(id) {
   const button = document.getElementById(id);
-  if (!(button instanceof HTMLButtonElement) || button.disabled || button.closest("[hidden]") !== null) return [];
-  return [{ id: `button-${id}`, label: button.ariaLabel ?? button.textContent.trim(), act: () => button.click() }];
+  if (!(button instanceof HTMLButtonElement) || !canPress(button) || button.closest("[hidden]") !== null) return [];
+  return [{ id, label: button.ariaLabel ?? button.textContent.trim(), act: () => button.click() }];
 }
 
 /** One of several, while it can be chosen. @param {HTMLElement} fieldset @param {Group} group @returns {Choice[]} */

@@ -57,7 +57,7 @@ function controlsIn(root) {
 }
 
 /** @param {HTMLElement} element */
-function canPress(element) {
+export function canPress(element) {
   if (!(element instanceof HTMLButtonElement)) return true;
   if (element.disabled || element.getAttribute("aria-disabled") === "true") return false;
   // A form that still needs typing cannot be sent.
