@@ -277,9 +277,9 @@ def test_saved_poses_go_into_the_export_and_come_back(records):
     path = records.export(ada.id)
     brought = records.bring(path.read_bytes())
     path.unlink()
-    assert read_poses(records.people.folder_of(brought.person)) == poses
-    records.erase(brought.person)
-    assert not records.people.folder_of(brought.person).exists()
+    assert read_poses(records.people.folder_of(brought["person"])) == poses
+    records.erase(brought["person"])
+    assert not records.people.folder_of(brought["person"]).exists()
 
 
 @given(at=st.integers(0, 10**6), byte=st.integers(0, 255))
@@ -298,7 +298,7 @@ def test_a_damaged_export_adds_a_person_or_nothing(records, about, at, byte):
     except UserError:
         assert len(records.people.all()) == before
         return
-    records.erase(brought.person)
+    records.erase(brought["person"])
     assert len(records.people.all()) == before
 
 
@@ -318,7 +318,7 @@ def test_an_export_of_a_stranger_writes_nowhere_else(records, tmp_path, names):
         for name, content in names.items():
             zipped.writestr(name, content)
     if "../../evil.json" in names:
-        assert records.bring(archive.getvalue()).drives == 0
+        assert records.bring(archive.getvalue())["drives"] == 0
     else:
         with pytest.raises(UserError):
             records.bring(archive.getvalue())

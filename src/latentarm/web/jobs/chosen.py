@@ -44,7 +44,8 @@ def check_alike(episodes: Mapping[int, JournalEpisode]) -> None:
         for code, facts in _ALIKE.items():
             if facts(one) != facts(other):
                 raise NoticeError(code, number=number, other=first)
-    names = {number: name for number, one in episodes.items() if (name := _task_name(one))}
+    named = {number: one.header.provenance.task_name for number, one in episodes.items()}
+    names = {number: name for number, name in named.items() if name}
     (first, known), *_ = sorted(names.items()) or [(0, "")]
     for number, name in names.items():
         if name != known:
@@ -62,10 +63,6 @@ def _things(one: JournalEpisode) -> object:
     """Goals and things by name: where they stood may differ."""
     header = one.header
     return [goal.name for goal in header.goals], header.objects, header.things
-
-
-def _task_name(one: JournalEpisode) -> str:
-    return one.header.provenance.task_name
 
 
 _ALIKE: Final[dict[NoticeCode, Callable[[JournalEpisode], object]]] = {

@@ -12,7 +12,6 @@ from latentarm.core.errors import UserError
 from latentarm.core.untrusted.opening import read_bytes
 from latentarm.demonstrations.folders import staged_folder
 from latentarm.models.saving import WEIGHTS_LIMIT
-from latentarm.web.protocol.notice import Message
 from latentarm.web.records import person_zip
 from latentarm.web.records.drive_log import Logged
 from latentarm.web.records.drives import TRACE, Drives, Wanted
@@ -23,26 +22,6 @@ from latentarm.web.records.recordings import Recordings
 from latentarm.web.records.scenes import Scenes
 
 FOLDER: Final = "records"  # name of the records' folder in the output folder
-
-
-@final
-class Contents(Message):
-    """Numbers of a person's records."""
-
-    drives: int
-    profiles: int
-    episodes: int
-
-
-@final
-class Imported(Message):
-    """The imported person, numbers of their records, and of profiles that fit no run here."""
-
-    person: str
-    name: str
-    drives: int
-    profiles: int
-    left_out: int
 
 
 @final
@@ -76,14 +55,13 @@ class Records:
             scene = self.scenes.keep(logged.scene)
             self.drives.keep(logged.record.model_copy(update={"scene": scene}), logged.trace())
 
-    def contents(self, person: str) -> Contents:
+    def contents(self, person: str) -> dict[str, int]:
         """Count a person's records."""
-        known = self.people.known(person)
-        return Contents(
-            drives=len(self.drives.wanted(Wanted(person=person))),
-            profiles=len(self._profiles(known)),
-            episodes=len(self.recordings.of_person(person)),
-        )
+        return {
+            "drives": len(self.drives.wanted(Wanted(person=person))),
+            "profiles": len(self._profiles(self.people.known(person))),
+            "episodes": len(self.recordings.of_person(person)),
+        }
 
     def export(self, person: str) -> Path:
         """Write all of a person's records to a temporary zip file, for the caller to delete."""
@@ -96,8 +74,11 @@ class Records:
             raise
         return path
 
-    def bring(self, content: bytes) -> Imported:
-        """Import a person from an `export`, under a new id."""
+    def bring(self, content: bytes) -> dict[str, str | int]:
+        """Import a person from an `export`, under a new id.
+
+        Returns their id and name, numbers of their records, and of profiles that fit no run here.
+        """
         brought = person_zip.read_zip(content)
         profiles = brought.person.profiles
 
@@ -115,13 +96,8 @@ class Records:
             self._take_profile(person.id, profile, files)
             for profile, files in zip(profiles, brought.profiles, strict=True)
         ]
-        return Imported(
-            person=person.id,
-            name=person.name,
-            drives=len(brought.drives),
-            profiles=sum(taken),
-            left_out=len(taken) - sum(taken),
-        )
+        kept = {"drives": len(brought.drives), "profiles": sum(taken), "left_out": len(taken) - sum(taken)}
+        return {"person": person.id, "name": person.name, **kept}
 
     def erase(self, person: str) -> None:
         """Delete everything of a person, the person last, so that a failure can be repeated."""

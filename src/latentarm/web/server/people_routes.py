@@ -108,7 +108,7 @@ class PeopleRoutes:
     async def _person(self, request: Request) -> Response:
         person = self._found(request)
         contents = await asyncio.to_thread(self._records.contents, person.id)
-        return json_answer({**_shown(person), "settings": person.settings, **contents.model_dump()})
+        return json_answer({**_shown(person), "settings": person.settings, **contents})
 
     def _found(self, request: Request) -> PersonRecord:
         """The person whom a request names, if the visitor may open their record."""
@@ -184,9 +184,7 @@ class PeopleRoutes:
         )
 
     async def _import(self, request: Request) -> Response:
-        return json_answer(
-            (await asyncio.to_thread(self._records.bring, await request.body())).model_dump(), 201
-        )
+        return json_answer(await asyncio.to_thread(self._records.bring, await request.body()), 201)
 
 
 def _with_key(request: Request, person: str, key: str) -> Response:
