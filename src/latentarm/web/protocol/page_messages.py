@@ -9,7 +9,6 @@ from typing import Annotated, Final, Literal, final
 from pydantic import Field, TypeAdapter
 
 from latentarm.core.types import GripperAsk
-from latentarm.web.protocol.copilot_messages import CopilotMessage
 from latentarm.web.protocol.learning_messages import PickRun, Train
 from latentarm.web.protocol.notice import Message
 from latentarm.web.protocol.orders import BuiltInPose, DriverOrder
@@ -143,9 +142,28 @@ class EditPoses(Message):
     name: PoseName
 
 
+@final
+class PressCopilot(Message):
+    """A watcher asks to be the driver's co-pilot, who may slow or stop the arm, or one of the two ends that.
+
+    The arm stops if there was a co-pilot.
+    """
+
+    type: Literal["ask_to_copilot", "end_copilot"]
+
+
+@final
+class CopilotPace(Message):
+    """The share of the driver's speed that the co-pilot allows, 10 times a second, or the arm stops."""
+
+    type: Literal["copilot_pace"]
+    pace: Annotated[float, Field(ge=0.0, le=1.0)]
+    nonce: Annotated[str, Field(max_length=64)]  # of the newest `State` that the page has seen
+
+
 ClientMessage = (
     Hello | DriverInput | ConfirmChecklist | Press | PressStop | HandOver | RecordEpisode | SwitchMotion
-    | GoToPose | EditPoses | Train | PickRun | PersonaliseMessage | CopilotMessage | DriverOrder
+    | GoToPose | EditPoses | Train | PickRun | PersonaliseMessage | PressCopilot | CopilotPace | DriverOrder
 )  # fmt: skip
 _CLIENT: Final[TypeAdapter[ClientMessage]] = TypeAdapter(
     Annotated[ClientMessage, Field(discriminator="type")]

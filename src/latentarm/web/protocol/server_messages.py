@@ -7,7 +7,6 @@ to the driver and 30 to watchers, and `Refused` before it closes the connection.
 from typing import Literal, final
 
 from latentarm.tasks.steps import StepKind
-from latentarm.web.protocol.copilot_messages import CopilotState, Person
 from latentarm.web.protocol.notice import Message, Notice, PersonName
 from latentarm.web.protocol.orders import BuiltInPose, ModeName
 from latentarm.web.protocol.report import ArmState, Point
@@ -80,6 +79,23 @@ class Welcome(Message):
     task: TaskToDo
     real: RealArm | None  # null if the arm is simulated
     poses: tuple[BuiltInPose, ...]  # of the robot's model
+
+
+@final
+class Person(Message):
+    """The person at a page; ``id`` is the page's."""
+
+    id: str
+    name: PersonName
+
+
+@final
+class CopilotState(Message):
+    """The co-pilot; ``id`` is the page's."""
+
+    id: str
+    name: PersonName
+    pace: float  # share of the driver's speed that they allow, in [0, 1]
 
 
 @final

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Final, Literal, final
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from latentarm.web.protocol import orders, page_messages
-from latentarm.web.protocol.copilot_messages import CopilotPace, PressCopilot
 from latentarm.web.protocol.learning_messages import PickRun, Train
 from latentarm.web.protocol.notice import Notice, NoticeCode
+from latentarm.web.protocol.page_messages import CopilotPace, PressCopilot
 from latentarm.web.protocol.personalise_messages import AnswerQuestion, PersonaliseMessage
 from latentarm.web.protocol.server_messages import Refused
 from latentarm.web.records.drive_record import Ending

@@ -14,11 +14,10 @@ import numpy as np
 from latentarm.core.errors import UserError
 from latentarm.core.untrusted.terminal import one_line
 from latentarm.robots.kinematics.pose_rows import STORED
-from latentarm.web.protocol.copilot_messages import CopilotState, Person
 from latentarm.web.protocol.notice import Notice, notice_of
 from latentarm.web.protocol.report import ArmState, Ghosts, Report, Things
 from latentarm.web.protocol.scene import pose_of
-from latentarm.web.protocol.server_messages import State
+from latentarm.web.protocol.server_messages import CopilotState, Person, State
 from latentarm.web.server.loaded_run import (
     Beginning,
     LoadedRun,

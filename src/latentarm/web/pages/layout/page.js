@@ -36,8 +36,8 @@ export function attachPage({ drop = () => {}, repaint = () => {}, runChanged = (
   attachPersonSync(settings);
   const showKeys = () => byId("stop").setAttribute("aria-keyshortcuts", spaceStops() ? "Space Escape" : "Escape");
   whenever(settings, ["change"], showKeys);
-  const dialog = attachSettingsDialog(byId("settings", HTMLDialogElement), byId("settings-open"), settings);
-  attachTheme(byId("theme"), settings, repaint);
+  const dialog = attachSettingsDialog(settings);
+  attachTheme(settings, repaint);
   const feedback = attachFeedback(connection, settings);
   attachWakeLock(connection);
   attachTooLong();

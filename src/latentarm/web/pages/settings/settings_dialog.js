@@ -19,13 +19,9 @@ const TEXTS = {
   repeatS: (value) => (value === 0 ? say("settings.never") : seconds(value)),
 };
 
-/**
- * @param {HTMLDialogElement} dialog
- * @param {HTMLElement} opener
- * @param {Settings} settings
- */
-export function attachSettingsDialog(dialog, opener, settings) {
-  const form = /** @type {HTMLFormElement} */ (dialog.querySelector("form"));
+/** @param {Settings} settings */
+export function attachSettingsDialog(settings) {
+  const [dialog, form] = [byId("settings", HTMLDialogElement), byId("settings-form", HTMLFormElement)];
   const fields = /** @type {HTMLInputElement[]} */ ([...form.querySelectorAll("input[name], select[name]")]);
 
   const show = () => {
@@ -43,7 +39,7 @@ export function attachSettingsDialog(dialog, opener, settings) {
   };
 
   const chooser = attachPersonChoice(byId("settings-person", HTMLSelectElement), settings);
-  opener.addEventListener("click", (event) => {
+  byId("settings-open").addEventListener("click", (event) => {
     // The browser gives the focus back at once when the dialog closes: to the opener only where keys had opened it.
     unfocus(event);
     chooser.offer();

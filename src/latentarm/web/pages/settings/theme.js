@@ -1,13 +1,10 @@
 /** Light or dark: follows the system until the person chooses. */
 
-import { whenever } from "../layout/dom.js";
+import { byId, whenever } from "../layout/dom.js";
 
-/**
- * @param {HTMLElement} button
- * @param {import("./settings.js").Settings} settings
- * @param {() => void} repaint
- */
-export function attachTheme(button, settings, repaint) {
+/** @param {Settings} settings @param {() => void} repaint */
+export function attachTheme(settings, repaint) {
+  const button = byId("theme");
   const system = matchMedia("(prefers-color-scheme: dark)");
   const show = () => {
     const { theme } = settings.values;
