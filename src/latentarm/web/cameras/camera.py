@@ -32,23 +32,11 @@ _BLACK, _WHITE = 16.0, 235.0
 _EVERY: Final = 8
 
 
-@final
-class Light:
-    """Judges the light picture by picture, with hysteresis."""
-
-    def __init__(self) -> None:
-        self.dark = False
-
-    def see(self, planes: NDArray[np.uint8]) -> None:
-        """Judge a picture, see `Picture.planes`."""
-        self.dark = brightness(planes) < (LIGHT if self.dark else DARK)
-
-
-def brightness(planes: NDArray[np.uint8]) -> float:
-    """Mean brightness of a picture, from 0 for black to 1 for white, by one pixel in 64."""
+def is_dark(planes: NDArray[np.uint8], was: bool) -> bool:
+    """Whether a picture (see `Picture.planes`) is too dark, by one pixel in 64; ``was``: the one before."""
     rows = 2 * planes.shape[0] // 3
     mean = float(planes[:rows:_EVERY, ::_EVERY].mean(dtype=np.float64))
-    return min(max((mean - _BLACK) / (_WHITE - _BLACK), 0.0), 1.0)
+    return (mean - _BLACK) / (_WHITE - _BLACK) < (LIGHT if was else DARK)
 
 
 @final
@@ -64,7 +52,7 @@ class Camera:
         self._lookers = 0
         self._closing = threading.Event()
         self._thread: threading.Thread | None = None
-        self._light = Light()
+        self._dark = False
         self._newest: tuple[int, Picture] | None = None
         self._shown_s = self._opened_s = -_OPENING_S
         self._seen = False
@@ -75,7 +63,7 @@ class Camera:
         """The current state."""
         now_s = time.monotonic()
         if now_s - self._shown_s <= LOST_AFTER_S:
-            return "dark" if self._light.dark else "live"
+            return "dark" if self._dark else "live"
         return "opening" if not self._seen and now_s - self._opened_s < _OPENING_S else "lost"
 
     @property
@@ -120,7 +108,7 @@ class Camera:
             try:
                 for picture in self._open_pictures(self.source, closing):
                     number += 1
-                    self._light.see(picture.planes)
+                    self._dark = is_dark(picture.planes, self._dark)
                     self._loop.call_soon_threadsafe(self._show, closing, number, picture)
             except UserError:
                 pass  # the page says that there is no picture

@@ -9,15 +9,12 @@ import { attachPadSection } from "./pad_section.js";
 import { attachPersonChoice } from "./person_choice.js";
 import { NO_PROFILE } from "./settings.js";
 
-const seconds = (/** @type {number} */ value) => say("unit.seconds", { value: sayNumber(value, 1) });
-const hundredths = (/** @type {number} */ value) => say("unit.seconds", { value: sayNumber(value, 2) });
-
-/** The text next to a slider. @type {Record<string, (value: number) => string>} */
-const TEXTS = {
-  sensitivity: sayPercent, deadZone: sayPercent, reach: sayPercent, speakVolume: sayPercent, stepS: seconds, latchS: seconds, dwellS: seconds,
-  firstS: seconds, acceptS: hundredths, releaseS: hundredths,
-  repeatS: (value) => (value === 0 ? say("settings.never") : seconds(value)),
-};
+/** The text next to a slider: a time, whose name ends in S, or a share. @param {string} name @param {number} value */
+function sliderWords(name, value) {
+  if (!name.endsWith("S")) return sayPercent(value);
+  if (name === "repeatS" && value === 0) return say("settings.never");
+  return say("unit.seconds", { value: sayNumber(value, name === "acceptS" || name === "releaseS" ? 2 : 1) });
+}
 
 /** @param {Settings} settings */
 export function attachSettingsDialog(settings) {
@@ -34,7 +31,7 @@ export function attachSettingsDialog(settings) {
     }
     for (const text of /** @type {NodeListOf<HTMLElement>} */ (form.querySelectorAll("[data-shows]"))) {
       const name = text.dataset.shows ?? "";
-      text.textContent = TEXTS[name](Number(settings.values[/** @type {keyof Values} */ (name)]));
+      text.textContent = sliderWords(name, Number(settings.values[/** @type {keyof Values} */ (name)]));
     }
   };
 
