@@ -3,14 +3,14 @@
 from collections.abc import Awaitable, Callable, Mapping
 from typing import Final, TypeVar, cast
 
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 from starlette.requests import Request
 from starlette.responses import JSONResponse, Response
 from starlette.routing import Route
 
 from latentarm.core.errors import UserError
 from latentarm.core.untrusted.documents import parse_object
-from latentarm.web.protocol.notice import Message, NoticeError, notice_of
+from latentarm.web.protocol.notice import NoticeError, notice_of
 
 NO_STORE: Final = {"cache-control": "no-store"}  # header of answers with personal data
 
@@ -23,7 +23,7 @@ _STATUS: Final = {
 }
 
 Answer = Callable[[Request], Awaitable[Response]]
-Asked = TypeVar("Asked", bound=Message)
+Asked = TypeVar("Asked", bound=BaseModel)
 
 
 def routes_of(answers: Mapping[str, Mapping[str, Answer]]) -> list[Route]:
@@ -46,19 +46,11 @@ def json_answer(content: object, status: int = 200) -> Response:
     return JSONResponse(content, status, headers=NO_STORE)
 
 
-def object_in(body: bytes) -> dict[str, object]:
-    """The JSON object of a request. Raises NoticeError if the body is not a JSON object."""
-    try:
-        return parse_object(body, "The request")
-    except UserError as error:
-        raise NoticeError("request_invalid") from error
-
-
 async def body_of(request: Request, kind: type[Asked]) -> Asked:
     """A request's body, validated. Raises NoticeError if the body is invalid."""
     body = await request.body()
-    object_in(body)
     try:
+        parse_object(body, "The request")
         return kind.model_validate_json(body)
-    except ValidationError as error:
+    except (UserError, ValidationError) as error:
         raise NoticeError("request_invalid") from error

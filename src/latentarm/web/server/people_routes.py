@@ -5,13 +5,12 @@ checked the origin and the length of each request.
 """
 
 import asyncio
-import json
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from datetime import date
 from typing import Annotated, Final, final
 
-from pydantic import Field, TypeAdapter, ValidationError
+from pydantic import Field, RootModel
 from starlette.background import BackgroundTask
 from starlette.requests import Request
 from starlette.responses import FileResponse, Response
@@ -25,7 +24,7 @@ from latentarm.web.records.people import PersonRecord, Settings
 from latentarm.web.records.pin import PIN
 from latentarm.web.records.record_files import new_id
 from latentarm.web.records.records import Records
-from latentarm.web.server.answers import NO_STORE, body_of, json_answer, object_in, refused, routes_of
+from latentarm.web.server.answers import NO_STORE, body_of, json_answer, refused, routes_of
 from latentarm.web.server.history import History
 from latentarm.web.server.pins import OPEN_S, Pins, cookie_of
 from latentarm.web.server.security import COOKIE
@@ -47,8 +46,6 @@ class _Pinned(Message):
 
 _BROWSER: Final = "latentarm_browser"
 """Cookie that tells browsers of this machine apart if the gate gives none."""
-
-_SETTINGS: Final[TypeAdapter[Settings]] = TypeAdapter(Settings)
 
 
 @final
@@ -150,14 +147,10 @@ class PeopleRoutes:
         )
 
     async def _keep_settings(self, request: Request) -> Response:
-        try:
-            settings = _SETTINGS.validate_json(json.dumps(object_in(await request.body())))
-        except ValidationError as error:
-            raise NoticeError("request_invalid") from error
-        person = self._found(request)
+        settings, person = await body_of(request, RootModel[Settings]), self._found(request)
         if self._lock_of_setup.on:
             raise NoticeError("setup_locked")
-        await asyncio.to_thread(self._records.people.keep_settings, person.id, settings)
+        await asyncio.to_thread(self._records.people.keep_settings, person.id, settings.root)
         return Response(status_code=204, headers=NO_STORE)
 
     async def _erase(self, request: Request) -> Response:
