@@ -114,7 +114,7 @@ class RecordEpisode(Message):
 
 
 @final
-class SwitchMotion(Message):
+class MotionWithoutStick(Message):
     """Begin or end a motion without the stick.
 
     ``guide`` lets the arm be guided by hand, while it is not enabled. ``return`` moves it back to its start,
@@ -162,7 +162,7 @@ class CopilotPace(Message):
 
 
 ClientMessage = (
-    Hello | DriverInput | ConfirmChecklist | Press | PressStop | HandOver | RecordEpisode | SwitchMotion
+    Hello | DriverInput | ConfirmChecklist | Press | PressStop | HandOver | RecordEpisode | MotionWithoutStick
     | GoToPose | EditPoses | Train | PickRun | PersonaliseMessage | PressCopilot | CopilotPace | DriverOrder
 )  # fmt: skip
 _CLIENT: Final[TypeAdapter[ClientMessage]] = TypeAdapter(

@@ -206,9 +206,9 @@ class DriveSocket:
         match message:
             case page_messages.DriverInput():
                 self._give(message)
-            case page_messages.Press(type="enable") | page_messages.SwitchMotion(type="guide", on=True) if (
-                self._stands_still
-            ):
+            case (
+                page_messages.Press(type="enable") | page_messages.MotionWithoutStick(type="guide", on=True)
+            ) if self._stands_still:
                 pass
             case page_messages.Press(type="enable") if not self._confirmed_by(page):
                 self._states.say(Notice(code="checklist_first"))
@@ -226,9 +226,9 @@ class DriveSocket:
                 self._control.order(
                     orders.Record(on=on, task=task, person=_recorded_as(page), by_hand=by_hand)
                 )
-            case page_messages.SwitchMotion(type="guide", on=on):
+            case page_messages.MotionWithoutStick(type="guide", on=on):
                 self._control.order(orders.Guide(on=on, stops=self._control.stops))
-            case page_messages.SwitchMotion(on=on):
+            case page_messages.MotionWithoutStick(on=on):
                 self._control.order(orders.Return(on=on))
             case page_messages.GoToPose(name=name, built_in=built_in):
                 loaded = self._states.loaded

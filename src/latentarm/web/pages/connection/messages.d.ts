@@ -187,6 +187,11 @@ export interface Mark {
   code: string;
 }
 
+export interface MotionWithoutStick {
+  type: "guide" | "return";
+  on: boolean;
+}
+
 export interface NamedPlace {
   name: string;
   position: [number, number, number];
@@ -370,11 +375,6 @@ export interface StepToDo {
   thing: string;
 }
 
-export interface SwitchMotion {
-  type: "guide" | "return";
-  on: boolean;
-}
-
 export interface TaskState {
   choice: number;
   done: number;
@@ -479,6 +479,6 @@ export interface Why {
   thing: string;
 }
 
-export type ClientMessage = Hello | DriverInput | ConfirmChecklist | Press | PressStop | HandOver | RecordEpisode | SwitchMotion | GoToPose | EditPoses | Train | PickRun | BeginPersonalise | AnswerQuestion | LeaveQuestion | PressPersonalise | PressCopilot | CopilotPace | ChooseMode | ChooseHelp | ChooseProfile | KeepGuiding | Reconnect | TouchThing | Reset | BeginTask;
+export type ClientMessage = Hello | DriverInput | ConfirmChecklist | Press | PressStop | HandOver | RecordEpisode | MotionWithoutStick | GoToPose | EditPoses | Train | PickRun | BeginPersonalise | AnswerQuestion | LeaveQuestion | PressPersonalise | PressCopilot | CopilotPace | ChooseMode | ChooseHelp | ChooseProfile | KeepGuiding | Reconnect | TouchThing | Reset | BeginTask;
 
 export type ServerMessage = Welcome | State | LearningState | Poses | Refused;
