@@ -45,9 +45,7 @@ class Body:
         # (L, P), whether the displacement of link l moves point p
         self.moves = np.ascontiguousarray(chain.moves[self.link].T)
         # (P, L), `lever` by links
-        self.link_lever: FloatArray = np.array(
-            [self._levers(int(link), point) for link, point in zip(self.link, self.local, strict=True)]
-        ).reshape(-1, chain.links)
+        self.link_lever: FloatArray = self._levers()
         # (P, n), m (1 where the joint is prismatic)
         self.lever: FloatArray = self.by_joints(self.link_lever)
 
@@ -114,26 +112,24 @@ class Body:
         ends = np.stack([ratio * limits.lower, ratio * limits.upper]).sum(axis=-1)
         return ends.min(axis=0), ends.max(axis=0)
 
-    def _levers(self, link: int, point: FloatArray) -> FloatArray:
-        """Levers by links (L,) of one point, walking from its link to the base with a ball that holds it."""
+    def _levers(self) -> FloatArray:
+        """Levers by links (P, L): from the outermost link to the base, with a ball that holds each point."""
         chain, (lower, upper) = self.robot.chain, self._ends
-        lever = np.zeros(chain.links)
-        centre, radius = point, 0.0
-        while link >= 0:
-            axis = chain.axis[link]
+        centre, radius = self.local.copy(), np.zeros(len(self.link))
+        lever = np.zeros((len(self.link), chain.links))
+        for link in reversed(range(chain.links)):
+            on = chain.moves[self.link, link]
+            axis, offset, at = chain.axis[link], chain.offset[link], centre[on]
             if chain.link_slide[link]:
-                lever[link] = 1.0
-                centre = centre + axis * 0.5 * (lower[link] + upper[link])
-                radius += 0.5 * float(upper[link] - lower[link])
+                lever[on, link] = 1.0
+                at = at + axis * 0.5 * (lower[link] + upper[link])
+                radius[on] += 0.5 * (upper[link] - lower[link])
             else:
-                on_axis = chain.anchor[link] + axis * float(axis @ (centre - chain.anchor[link]))
-                away = centre - on_axis
-                radius += float(np.sqrt(away @ away))
-                lever[link] = radius
-                centre = on_axis
-            offset = chain.offset[link]
-            centre = offset[:3, :3] @ centre + offset[:3, 3]
-            link = int(chain.parent[link])
+                on_axis = chain.anchor[link] + np.outer((at - chain.anchor[link]) @ axis, axis)
+                radius[on] += np.linalg.norm(at - on_axis, axis=1)
+                lever[on, link] = radius[on]
+                at = on_axis
+            centre[on] = at @ offset[:3, :3].T + offset[:3, 3]
         return lever
 
 

@@ -246,15 +246,12 @@ def _heights_change(body: Body, planes: list[HalfSpace]) -> BoolArray:
     A shoulder that turns about the table's normal keeps its height. Heights are analytic in the joint
     positions: where they are equal in some random configurations they are equal in all.
     """
-    limits = body.robot.limits
-    rng = np.random.default_rng(0)
-    states = rng.uniform(limits.lower, limits.upper, (16, body.robot.dof))
-    points = np.stack([Placement(body, q).points[: 2 * body.count] for q in states])
-    change = np.zeros((len(planes), body.count), dtype=np.bool_)
-    for index, plane in enumerate(planes):
-        spread = np.ptp(points @ plane.normal, axis=0)
-        change[index] = np.maximum(spread[: body.count], spread[body.count :]) > _STILL_M
-    return change
+    chain, limits, ends = body.robot.chain, body.robot.limits, slice(2 * body.count)
+    states = np.random.default_rng(0).uniform(limits.lower, limits.upper, (16, body.robot.dof))
+    points = chain.points(chain.link_transforms(states), body.link[ends], body.local[ends])
+    normals = np.array([plane.normal for plane in planes]).reshape(-1, 3)
+    spread = np.ptp(points @ normals.T, axis=0).reshape(2, body.count, len(planes))
+    return spread.max(axis=0).T > _STILL_M
 
 
 def _motion(
