@@ -24,7 +24,7 @@ def robot(request):
 def everything(robot, q, obstacles=OBSTACLES):
     """A proximity for which every pair matters, with its contacts."""
     body = Body(robot)
-    proximity = Proximity(body, obstacles, link_speed=0.25, nearest_m=50.0, horizon_s=0.3)
+    proximity = Proximity(body, obstacles, link_speed=0.25, nearest_m=50.0, horizon_s=0.3, clearance=0.02)
     return proximity, proximity.measured(Placement(body, q), np.full(robot.dof, 0.5))
 
 
@@ -92,7 +92,9 @@ def test_what_is_held_covers_all_that_matters(arm, oracle):
     body = Body(arm)
     used = 0
     for _ in range(20):
-        proximity = Proximity(body, OBSTACLES, link_speed=0.25, nearest_m=0.021, horizon_s=0.3)
+        proximity = Proximity(
+            body, OBSTACLES, link_speed=0.25, nearest_m=0.021, horizon_s=0.3, clearance=0.02
+        )
         q = rng.uniform(arm.limits.lower, arm.limits.upper)
         speed = rng.uniform(0.0, 0.3, 7)
         proximity.measured(Placement(body, q), speed)
@@ -103,7 +105,9 @@ def test_what_is_held_covers_all_that_matters(arm, oracle):
             if held is None:
                 break
             used += 1
-            fresh = Proximity(body, OBSTACLES, link_speed=0.25, nearest_m=0.021, horizon_s=0.3)
+            fresh = Proximity(
+                body, OBSTACLES, link_speed=0.25, nearest_m=0.021, horizon_s=0.3, clearance=0.02
+            )
             needed = fresh.measured(Placement(body, q), now_speed)
             assert set(needed.pair) <= set(held.pair)
     assert used > 50
@@ -112,7 +116,7 @@ def test_what_is_held_covers_all_that_matters(arm, oracle):
 def test_a_shoulder_that_turns_over_the_table_does_not_matter(arm):
     body = Body(arm)
     table = HalfSpace("table", np.array([0.0, 0.0, 0.25]), np.array([0.0, 0.0, 1.0]))
-    proximity = Proximity(body, (table,), link_speed=0.25, nearest_m=0.02, horizon_s=0.3)
+    proximity = Proximity(body, (table,), link_speed=0.25, nearest_m=0.02, horizon_s=0.3, clearance=0.02)
     over_table = {name.split(" and ")[0] for name in proximity.names if name.endswith("table")}
     assert "link1" not in over_table
     assert "link5" in over_table
@@ -122,14 +126,16 @@ def test_two_arms_may_approach_each_other_at_twice_the_speed_of_one(two_arms):
     """Whatever two points at the largest speed bring too near within the horizon is among the contacts."""
     rng = np.random.default_rng(8)
     body, speed, nearest_m, horizon_s = Body(two_arms), 0.25, 0.02, 0.3
-    everyone = Proximity(body, (), link_speed=speed, nearest_m=50.0, horizon_s=horizon_s)
+    everyone = Proximity(body, (), link_speed=speed, nearest_m=50.0, horizon_s=horizon_s, clearance=0.02)
     parts = [{part.split("_")[0] for part in name.split(" and ")} for name in everyone.names]
     across_arms = np.array([both == {"left", "right"} for both in parts])
     count, met = 0, 0
     while met < 20 and count < 5000:
         count += 1
         q = rng.uniform(two_arms.limits.lower, two_arms.limits.upper)
-        proximity = Proximity(body, (), link_speed=speed, nearest_m=nearest_m, horizon_s=horizon_s)
+        proximity = Proximity(
+            body, (), link_speed=speed, nearest_m=nearest_m, horizon_s=horizon_s, clearance=0.02
+        )
         here = Placement(body, q)
         all_pairs = everyone.measured(here, np.ones(two_arms.dof))
         height = np.where(across_arms[all_pairs.pair], all_pairs.height.min(axis=1), np.inf)

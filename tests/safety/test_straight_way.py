@@ -89,7 +89,7 @@ def test_a_way_that_was_found_clear_keeps_clear(arm, seed):
     if looked(arm, arm.home, goal, *things) is not None:
         return
     body = Body(arm)
-    judge = Proximity(body, things, np.inf, 0.02, 0.0)
+    judge = Proximity(body, things, np.inf, 0.02, 0.0, 0.02)
     allowed = np.full(len(judge.names), 0.02)
     for share in np.linspace(0.0, 1.0, 200):
         contacts = judge.measured(Placement(body, arm.home + share * (goal - arm.home)), np.zeros(7))

@@ -136,7 +136,7 @@ def test_what_is_left_of_a_wish_is_nothing_only_where_no_way_out_leads_along_it(
     rows = np.concatenate([rows, -rows[: rng.integers(0, count + 1)]])
     wish = rng.normal(size=7)
     nothing, limits = np.zeros(len(rows)), (np.full(7, -1.0), np.full(7, 1.0))
-    slid, _ = slide(wish, limits, rows, nothing, rng.uniform(size=len(rows)) < 0.5)
+    slid, _ = slide(wish, limits, rows, nothing, rng.uniform(size=len(rows)) < 0.5, np.eye(7))
     most = gain(rows / np.linalg.norm(rows, axis=1)[:, None], wish)
     assert (slid @ wish > 0.0) == (most > 1e-6) or most < 1e-3
 

@@ -26,6 +26,7 @@ from latentarm.core.types import (
     StepRecord,
     Stop,
 )
+from latentarm.robots.kinematics.obstacles import Box
 from latentarm.robots.robot import Robot
 from latentarm.safety.config import SafetyConfig
 from latentarm.safety.filter import Freshness
@@ -309,6 +310,14 @@ class Step:
         if goals.shape != (len(self._shared.belief), self._dof) or not np.isfinite(goals).all():
             raise UserError(f"Goals that moved must be {len(self._shared.belief)} finite configurations.")
         self._shared.move_goals(goals)
+
+    @logged
+    def hold(self, *things: Box) -> None:
+        """From the fourth step on these are parts of the arm; boxes in the frame of its first tool.
+
+        They may be put down on what is level. What is too near or too fast already may leave, see `Guard`.
+        """
+        self._stack.hold(things)
 
     @logged
     def guided(self, ask: GripperAsk | None) -> None:

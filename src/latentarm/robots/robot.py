@@ -39,6 +39,7 @@ class Robot:
     # whether the robot or its model states ``home``; else it is the middle of the joints' ranges, where an
     # arm may never have been
     home_stated: bool = True
+    held: int = 0  # how many of the capsules, the last ones, stand for what the gripper holds
 
     @property
     def dof(self) -> int:

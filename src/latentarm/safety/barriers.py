@@ -13,6 +13,10 @@ from latentarm.safety.small import any_nonzero, largest, smallest
 if TYPE_CHECKING:
     from latentarm.safety.filter import Situation
 
+_HELD = (
+    1000.0  # weighs the squared twist of what is held, in m/s and rad/s, against that of the joints, rad/s
+)
+
 
 @final
 @dataclass(frozen=True, slots=True, eq=False)
@@ -44,7 +48,7 @@ def past_barriers(velocity: FloatArray, situation: "Situation", limited_by: list
     rows = np.concatenate([np.zeros((0, bounds.dof)), *(kind.rows for kind in near)])
     room = np.concatenate([np.zeros(0), *(kind.room for kind in near)])
     floor = -bounds.damping_per_s * np.maximum(room - BUFFER_M, 0.0)
-    slid, acting = slide(velocity, (down, up), rows, floor, room <= 0.0)
+    slid, acting = slide(velocity, (down, up), rows, floor, room <= 0.0, _metric(situation))
     if any_nonzero(acting[: bounds.dof]):
         limited_by.append("joint position")
     size, share, first = np.abs(slid), 1.0, bounds.dof
@@ -56,6 +60,20 @@ def past_barriers(velocity: FloatArray, situation: "Situation", limited_by: list
             limited_by.append(kind.kind)
         share = min(share, slow)
     return slid if share == 1.0 else share * slid
+
+
+def _metric(situation: "Situation") -> FloatArray:
+    """(n, n), how the size of a change of a velocity counts.
+
+    The joints' nearest velocity along a table turns the hand: a cup would tilt, not come down. So what
+    is held is kept on its way rather than the joints.
+    """
+    body, still = situation.surroundings.body, np.eye(situation.bounds.dof)
+    if not body.held.any():
+        return still
+    tool = situation.placement.jacobian[:, :, 2 * body.count]
+    metric = still + _HELD * tool @ tool.T
+    return metric / metric.trace()
 
 
 def _contacts(velocity: FloatArray, situation: "Situation") -> Distances | None:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, final
 
 import numpy as np
 
-from latentarm.core.types import FloatArray, IntArray
+from latentarm.core.types import BoolArray, FloatArray, IntArray
 from latentarm.robots.kinematics.chain import SKEW
 
 if TYPE_CHECKING:
@@ -30,6 +30,8 @@ class Body:
         capsules, chain = robot.capsules, robot.chain
         # (K,), index into the robot's capsules of each moving capsule
         self.capsule: IntArray = np.flatnonzero(capsules.link >= 0)
+        # (K,), whether a moving capsule stands for what the gripper holds
+        self.held: BoolArray = self.capsule >= len(capsules) - robot.held
         tools = [tool for tool in chain.tools if tool.link >= 0]
         links = capsules.link[self.capsule]
         # (P,), the link that carries each point

@@ -27,7 +27,12 @@ class GuardedArm:
         self.bounds = bounds
         self.body = body
         self.proximity = Proximity(
-            body, bounds.config.obstacles, bounds.config.link_speed, bounds.nearest_m, bounds.horizon_s
+            body,
+            bounds.config.obstacles,
+            bounds.config.link_speed,
+            bounds.nearest_m,
+            bounds.horizon_s,
+            bounds.config.clearance,
         )
         self.zones = ZoneDistances(body, bounds.config.zones)
         self.reference: Placement | None = None

@@ -21,14 +21,15 @@ def slide(
     rows: FloatArray,
     floor: FloatArray,
     passed: BoolArray,
+    metric: FloatArray,
 ) -> tuple[FloatArray, BoolArray]:
     """The nearest velocity that approaches nothing too fast.
 
     Rest is within the half-spaces ``rows @ v >= floor`` and the ``limits``, so there is a nearest velocity P:
     an arm that is pushed obliquely at a table slides along it. P is rest only where every velocity d within
-    them leads backwards, ``d @ velocity <= 0``. Where a distance is too small already, the result leans
-    away if it can, because a path along a curved surface would come nearer. The result is never longer than
-    ``velocity`` nor turned against it.
+    them leads backwards, ``d @ metric @ velocity <= 0``. Where a distance is too small already, the result
+    leans away if it can, because a path along a curved surface would come nearer. The result is never longer
+    than ``velocity`` nor turned against it.
 
     Args:
         velocity: (n,), rad/s.
@@ -36,6 +37,7 @@ def slide(
         rows: (C, n), how joint velocities change C distances, m/s per rad/s.
         floor: (C,), the smallest rate of each distance, zero or below, m/s.
         passed: (C,), whether the distance is too small already.
+        metric: (n, n), the squared length of d is ``d @ metric @ d``, at most ``d @ d``.
 
     Returns:
         (n,), rad/s, ``velocity`` itself where nothing is too fast; which of n + C limits changed it.
@@ -46,25 +48,30 @@ def slide(
         return (clipped if any_nonzero(acting) else velocity), acting
     norm = np.maximum(np.sqrt(np.vecdot(rows, rows)), _UNFELT)
     rows, floor = rows / norm[:, None], floor / norm
-    slid, acting = _nearest(velocity, limits, rows, floor)
-    size = float(np.sqrt(velocity @ velocity))
-    if slid @ slid <= (_ROUNDING * size) ** 2:
+    slid, acting = _nearest(velocity, limits, rows, floor, metric)
+    wish = metric @ velocity
+    if slid @ metric @ slid <= _ROUNDING**2 * (velocity @ wish):
         return np.zeros_like(velocity), acting
     lean = np.where(passed & (norm > _UNFELT), _LEAN * np.sqrt(slid @ slid), floor)
-    leaning, leant = _nearest(slid, limits, rows, lean)
-    if leaning @ velocity > 0.0 and not any_nonzero(rows @ leaning < np.minimum(0.5 * lean, lean) - 1e-9):
-        slid, acting = leaning * min(1.0, size / float(np.sqrt(leaning @ leaning))), acting | leant
+    leaning, leant = _nearest(slid, limits, rows, lean, metric)
+    if leaning @ wish > 0.0 and not any_nonzero(rows @ leaning < np.minimum(0.5 * lean, lean) - 1e-9):
+        longer = float(np.sqrt((leaning @ metric @ leaning) / (velocity @ wish)))
+        slid, acting = leaning / max(1.0, longer), acting | leant
     return (slid if any_nonzero(acting) else velocity), acting
 
 
 def _nearest(
-    velocity: FloatArray, limits: tuple[FloatArray, FloatArray], rows: FloatArray, floor: FloatArray
+    velocity: FloatArray,
+    limits: tuple[FloatArray, FloatArray],
+    rows: FloatArray,
+    floor: FloatArray,
+    metric: FloatArray,
 ) -> tuple[FloatArray, BoolArray]:
     """The velocity within limits and half-spaces of unit rows that is nearest, and which hold it."""
     kinds = np.repeat(np.array([0, 8], dtype=np.int32), [len(velocity), len(rows)])  # hard, soft
     nearest, _, flag, info = daqp.solve(
-        np.eye(len(velocity)),
-        -velocity,
+        metric,
+        -metric @ velocity,
         rows,
         np.concatenate([limits[1], np.full(len(rows), np.inf)]),
         np.concatenate([limits[0], floor]),

@@ -1,7 +1,7 @@
 """Shapes near the arm, obstacles and its own links, as heights above supporting planes."""
 
 from dataclasses import dataclass, replace
-from typing import final
+from typing import TypeVar, final
 
 import numpy as np
 
@@ -10,9 +10,12 @@ from latentarm.robots.kinematics.distances import box_separation, segment_distan
 from latentarm.robots.kinematics.obstacles import Box, Capsule, HalfSpace, Obstacle, Sphere
 from latentarm.safety.body import Body, Placement
 from latentarm.safety.small import any_nonzero, largest
+from latentarm.safety.supports import beneath
 
 _CROSSING_M = 1e-9
 """Segments closer than this intersect, so the line between their closest points has no direction."""
+
+_Solid = TypeVar("_Solid", HalfSpace, Box)
 
 _STALE_RAD = 0.02  # contacts older than this are measured again, because their planes have tilted
 _STILL_M = 1e-9  # a capsule whose points no joint moves further than this per rad cannot approach anything
@@ -54,17 +57,17 @@ class Proximity:
         link_speed: float,
         nearest_m: float,
         horizon_s: float,
+        clearance: float,
     ) -> None:
         self._body, self._nearest_m, self._horizon_s = body, nearest_m, horizon_s
         rods, planes, boxes = _sorted_by_kind(obstacles)
         self._stay_start, self._stay_end, stay_radius, stay_names = _standing_still(body, rods)
-        first, second = _segment_pairs(body, rods)
-        moving = np.arange(body.count)
+        segments = _segment_pairs(body, rods)
+        by_planes, planes = _solid_pairs(body, planes, clearance)
+        by_boxes, boxes = _solid_pairs(body, boxes, clearance)
         # Pairs of all kinds in one list: segments, then planes, then boxes. `a` indexes its own kind.
-        b = np.concatenate([first, np.tile(moving, len(planes) + len(boxes))])
-        others = (np.repeat(np.arange(len(solids)), body.count) for solids in (planes, boxes))
-        a = np.concatenate([second, *others])
-        kind = np.repeat([0, 1, 2], [len(first), len(planes) * body.count, len(boxes) * body.count])
+        b, a = np.concatenate([segments, by_planes, by_boxes], axis=1)
+        kind = np.repeat([0, 1, 2], [part.shape[1] for part in (segments, by_planes, by_boxes)])
         a_link = np.full(len(b), -1)
         on_arm = (kind == 0) & (a < body.count)
         a_link[on_arm] = body.link[a[on_arm]]
@@ -223,21 +226,26 @@ class Proximity:
         return Contacts(pair, height, row, since=np.zeros(row.shape[-1]), fresh=True)
 
 
-def _segment_pairs(body: Body, rods: list[Capsule | Sphere]) -> tuple[IntArray, IntArray]:
-    """Pairs (B, A) of segments; B moves, and A carries it, is on another branch, or stands still."""
+def _segment_pairs(body: Body, rods: list[Capsule | Sphere]) -> IntArray:
+    """Pairs (2, pairs) of segments B and A; B moves, and A carries it, is on another branch, or stands."""
     capsules, chain = body.robot.capsules, body.robot.chain
-    order = [*body.capsule, *np.flatnonzero(capsules.link < 0)]
-    place = {int(capsule): index for index, capsule in enumerate(order)}
-    pairs: list[tuple[int, int]] = []
-    for one, other in body.robot.self_pairs:
-        link, other_link = capsules.link[one], capsules.link[other]
-        if link >= 0 and (other_link < 0 or chain.moves[link, other_link]):
-            pairs.append((place[int(one)], place[int(other)]))
-        elif other_link >= 0:
-            pairs.append((place[int(other)], place[int(one)]))
-    pairs += [(b, len(order) + a) for a in range(len(rods)) for b in range(body.count)]
-    both = np.array(pairs, dtype=np.int64).reshape(-1, 2)
-    return both[:, 0], both[:, 1]
+    place = np.empty(len(capsules), dtype=np.int64)
+    place[np.concatenate([body.capsule, np.flatnonzero(capsules.link < 0)])] = np.arange(len(capsules))
+    one, other = body.robot.self_pairs.T
+    link, other_link = capsules.link[one], capsules.link[other]
+    as_is = (link >= 0) & ((other_link < 0) | chain.moves[link, other_link])
+    apart = as_is | (other_link >= 0)
+    both = place[np.where(as_is, [one, other], [other, one])[:, apart]]
+    rod, moving = np.indices((len(rods), body.count)).reshape(2, -1)
+    return np.concatenate([both, [moving, len(capsules) + rod]], axis=1)
+
+
+def _solid_pairs(body: Body, solids: list[_Solid], clearance: float) -> tuple[IntArray, list[_Solid]]:
+    """Pairs (2, pairs) of capsules and solids, and the solids: those for held things come last."""
+    placed = list(beneath(solids, clearance)) if body.held.any() else []
+    for_held = np.repeat([False, True], [len(solids), len(placed)])
+    a, b = np.nonzero(for_held[:, None] == body.held)
+    return np.stack([b, a]), solids + placed
 
 
 def _heights_change(body: Body, planes: list[HalfSpace]) -> BoolArray:

@@ -1,11 +1,14 @@
 """The filters in order, and the final check after them."""
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import final
 
 import numpy as np
 
 from latentarm.core.types import FloatArray, Stop
+from latentarm.robots.held import holding
+from latentarm.robots.kinematics.obstacles import Box
 from latentarm.robots.robot import Robot
 from latentarm.safety.barriers import past_barriers
 from latentarm.safety.body import Body
@@ -51,6 +54,7 @@ class SafetyStack:
 
     def __init__(self, config: SafetyConfig, robot: Robot, dt_s: float) -> None:
         self.bounds = bounds = Bounds(config, robot, dt_s)
+        self._robot = robot
         self.body = Body(robot)
         self._surroundings = GuardedArm(bounds, self.body)
         self._first: tuple[SafetyFilter, ...] = (Finite(), Freshness(), JointVelocity())
@@ -70,6 +74,7 @@ class SafetyStack:
         self._brake_ticks = 0
         self._brake_began_s = 0.0
         self._now_s = 0.0
+        self._reshaping: Iterator[None] = iter(())
 
     @property
     def at_rest(self) -> bool:
@@ -87,9 +92,27 @@ class SafetyStack:
         self._by_steps = False
         self._brake = None
 
+    def hold(self, things: Sequence[Box]) -> None:
+        """From the fourth tick on the arm's shape includes these things, see `holding`, and no others.
+
+        A motion that this makes too fast or too near goes on as the stop that was proven before.
+        """
+        self._reshaping = self._reshaped(things)
+
+    def _reshaped(self, things: Sequence[Box]) -> Iterator[None]:
+        """Take on another shape, a part of the work in each tick: 1 ms is too short for all of it."""
+        robot = holding(self._robot, things)
+        yield
+        body = Body(robot)
+        yield
+        arm = GuardedArm(self.bounds, body)
+        yield
+        self._surroundings = arm  # which its first command measures
+
     def tick(self, time_s: float) -> None:
         """Take note of the loop's clock, for a stop that is under way when ticks come late."""
         self._now_s = time_s
+        next(self._reshaping, None)
 
     def command(self, wanted: FloatArray, state: FloatArray, input_age_s: float, pace: float = 1.0) -> Passed:
         """The next command: a velocity that keeps all limits, or a stop that is under way.

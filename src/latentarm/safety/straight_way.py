@@ -1,11 +1,14 @@
 """Whether the straight way of the joints to a pose is clear, before the arm sets out."""
 
 import math
+from collections.abc import Sequence
 from typing import Final, final
 
 import numpy as np
 
 from latentarm.core.types import FloatArray
+from latentarm.robots.held import holding
+from latentarm.robots.kinematics.obstacles import Box
 from latentarm.robots.robot import Robot
 from latentarm.safety.body import Body, Placement
 from latentarm.safety.config import SafetyConfig
@@ -25,21 +28,19 @@ class StraightWay:
     """
 
     def __init__(self, robot: Robot, safety: SafetyConfig) -> None:
-        self._body = Body(robot)
-        self._clearance = safety.clearance
-        self._proximity = Proximity(self._body, safety.obstacles, math.inf, safety.clearance, 1.0)
-        self._start = self._way = np.zeros(robot.dof)
-        self._share = self._step = 1.0
-        self._allowed = np.full(len(self._proximity.names), safety.clearance)
+        self._robot, self._safety = robot, safety
+        self.begin(robot.home, robot.home)
         self.clear = True
 
-    def begin(self, start: FloatArray, goal: FloatArray) -> None:
-        """Look at another way, from where the arm is to where it goes, (n,), rad."""
+    def begin(self, start: FloatArray, goal: FloatArray, held: Sequence[Box] = ()) -> None:
+        """Look at another way, from where the arm is to where it goes, (n,), rad, with what it holds."""
+        self._body, keep_m = Body(holding(self._robot, held)), self._safety.clearance
+        self._proximity = Proximity(self._body, self._safety.obstacles, math.inf, keep_m, 1.0, keep_m)
+        self._allowed = np.full(len(self._proximity.names), keep_m)
         self._start, self._way = start, goal - start
         farthest = float(np.abs(self._way).max())
         self._step = min(1.0, LARGEST_RAD / max(farthest, LARGEST_RAD))
         self._share = 0.0
-        self._allowed[:] = self._clearance
         self.clear = False
 
     def look(self, times: int) -> tuple[str, str] | None:
