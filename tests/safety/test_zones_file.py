@@ -28,6 +28,12 @@ shape = "sphere"
 centre_m = [0.6, 0.5, 0.55]
 radius_m = 0.1
 """
+MUG = """
+[gripped.mug]
+centre_m = [0.0, 0.0, 0.1]
+size_m = [0.03, 0.02, 0.3]
+turned_deg = [0, 0, 90]
+"""
 
 
 @pytest.fixture
@@ -76,6 +82,13 @@ def test_a_box_may_be_turned_and_a_half_space_needs_a_direction_only(written):
     np.testing.assert_allclose(wall.shape.normal, [-1.0, 0.0, 0.0])
 
 
+def test_what_the_gripper_holds_is_a_box(written):
+    (mug,) = read_zones(written(MUG)).gripped
+    assert mug.name == "mug"
+    np.testing.assert_allclose(mug.half_extents, [0.015, 0.01, 0.15])
+    np.testing.assert_allclose(mug.rotation @ [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], atol=1e-12)
+
+
 @pytest.mark.parametrize(
     ("text", "said"),
     [
@@ -83,7 +96,7 @@ def test_a_box_may_be_turned_and_a_half_space_needs_a_direction_only(written):
         ("[zones.face", "cannot be read as TOML"),
         (FACE + FACE, "cannot be read as TOML"),
         (FACE + FACE.replace("face", "Face"), "Two zones are called 'Face'"),
-        ("[zone.face]", "there is no key zone; use zones, keep_out"),
+        ("[zone.face]", "there is no key zone; use zones, keep_out, gripped"),
         (OUT + "speed_m_per_s = 0.1", "there is no key keep_out.pillar.speed_m_per_s; use shape, centre_m"),
         (
             OUT.replace("radius_m = 0.1", ""),
@@ -93,6 +106,8 @@ def test_a_box_may_be_turned_and_a_half_space_needs_a_direction_only(written):
         (OUT.replace("pillar", '"a,b"'), "The obstacle 'a,b' needs another name"),
         ("".join(OUT.replace("pillar", f"p{one}") for one in range(9)), "There are 9 solids to keep out of"),
         ("zones = 3", "zones must be a table of names"),
+        (MUG.replace("size_m", "radius_m"), "there is no key gripped.mug.radius_m; use shape, centre_m"),
+        (MUG + MUG.replace("mug", "cup"), "states 2 things in the gripper: state one that is as large"),
         (FACE.replace("sphere", "ball"), "zones.face.shape must be one of sphere, capsule, box, half_space"),
         (FACE.replace('"sphere"', "1"), "zones.face.shape must be one of"),
         (FACE.replace("radius_m = 0.15", ""), "zones.face lacks radius_m: a sphere needs centre_m, radius_m"),

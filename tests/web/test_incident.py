@@ -336,16 +336,22 @@ def test_what_a_controller_sees_of_things_is_in_the_file(tmp_path, desk_of, setu
     assert again.agreed == len(desk.records)
 
 
-def test_zones_obstacles_speeds_and_limits_come_along(tmp_path, desk_of):
+def test_zones_obstacles_held_things_and_limits_come_along(tmp_path, desk_of, monkeypatch):
     zone = Zone(Sphere("face", np.array([0.4, 0.0, 0.5]), 0.15), 0.05)
     wall = Box("wall", np.array([0.9, 0.0, 0.5]), np.eye(3), np.array([0.1, 1.0, 1.0]))
     limits = tmp_path / "limits.toml"
     limits.write_text("tool_speed_m_per_s = 0.5\n")
     named = RobotOptions("panda", limits=limits)
-    spec = Spec(task="reach", zones=(zone,), keep_out=(wall,), robot=named)
-    with desk_of(load_setup(spec)) as desk, recorded(desk, tmp_path / "out"):
-        drive_straight(desk)
+    mug = Box("mug", np.zeros(3), np.eye(3), np.full(3, 0.05))
+    spec = Spec(task="reach", zones=(zone,), keep_out=(wall,), gripped=(mug,), robot=named)
+    with desk_of(load_setup(spec)) as desk:
+        read, holds = desk.arm.read, GripperReading(0.05, holding=True)
+        monkeypatch.setattr(desk.arm, "read", lambda: replace(read(), gripper=holds))
+        with recorded(desk, tmp_path / "out"):
+            drive_straight(desk)
+    assert desk.reports[-1].held == ("mug",)
     limits.unlink()
+    assert any(line.get("call") == "hold" for line in read_calls(newest(tmp_path / "out")))
     found = replay(newest(tmp_path / "out"))
     assert found["agreed"] == found["ticks"] > 0
 

@@ -89,7 +89,7 @@ def report(tick, phase, tool, code=None, **changes):
         task=BEGUN,
         profile=None, loading=False,
         q=(0.0, *[0.1 * tool] * 6), tool=(tool, 0.0, 0.0), gripper=None,
-        things=None, ghosts=None, belief=(), alpha=0.5, recording=None, journal=None, late_share=0.0,
+        things=None, held=(), ghosts=None, belief=(), alpha=0.5, recording=None, journal=None, late_share=0.0,
         **changes,
     )  # fmt: skip
 

@@ -18,9 +18,12 @@ from latentarm.demonstrations.things import ENVIRONMENT
 from latentarm.recordings.dataset_export import export_journal
 from latentarm.recordings.journal_reader import read_journal
 from latentarm.robots.catalogue import load_robot
+from latentarm.robots.kinematics.rotations import angle_between
+from latentarm.robots.scene.containers import cup
 from latentarm.robots.scene.scene import Scene, SceneState
 from latentarm.robots.scene.thing import Grains, Part, Thing
 from latentarm.tasks.eating import dessert
+from latentarm.tasks.inverse_kinematics import solve
 from latentarm.tasks.place import ScenePlace
 from latentarm.web.arm_process.drive import Drive
 from latentarm.web.arm_process.drive_setup import Spec, load_setup
@@ -28,7 +31,7 @@ from latentarm.web.arm_process.episode_writer import EpisodeWriter
 from latentarm.web.arm_process.steering import Steering
 from latentarm.web.arm_process.thing_poses import ThingPoses
 from latentarm.web.protocol.channel import new_channel
-from latentarm.web.protocol.orders import Enable, Given, Record
+from latentarm.web.protocol.orders import AskedGripper, Enable, Given, Record
 from latentarm.web.protocol.report import Report, Things
 from latentarm.web.protocol.scene import drawable
 from latentarm.web.protocol.things import described, things_at
@@ -186,3 +189,42 @@ def test_a_recording_says_where_things_went_and_a_model_can_see_them(tmp_path):
 def test_a_task_with_things_needs_an_arm_that_can_touch_them():
     with pytest.raises(UserError, match="--arm kinematic has no things about it"):
         load_setup(Spec(task="marshmallows", arm="kinematic"))
+
+
+def test_a_cup_is_picked_up_as_part_of_the_arm_and_put_down_upright_where_it_stood(tmp_path):
+    begun = load_setup(Spec(task="pour", arm="mujoco"))
+    robot, above = begun.task.robot, Pose(np.array([0.5, 0.0, 0.06]), np.diag([1.0, -1.0, -1.0]))
+    scene = Scene((Thing("cup", cup().parts, 0.2, Pose(np.array([0.5, 0.0, 0.0]), UPRIGHT)),))
+    setup = replace(
+        begun,
+        task=ScenePlace(robot, (), (scene.table,)),
+        todo=replace(begun.todo, steps=(), failures=()),
+        scene=scene,
+        start=solve(robot, above, robot.home),
+    )
+    reading, orders = Pipe(duplex=False)
+    clock, writer, channel = SimulatedClock(), EpisodeWriter(tmp_path / "teleop"), new_channel(reading)
+    reports, poses = [], []
+
+    def give(record):
+        reports.append(Report.parse(channel.report.read()[1]))
+        poses.append(arm.scene_state().poses["cup"])
+        tick, nonce = len(reports), reports[-1].nonce
+        asked = AskedGripper(ask="close" if tick < 450 else "open", seq=tick, nonce=nonce)
+        u = (1.0 if 120 < tick < 180 else -1.0 if 200 < tick < 440 else 0.0, 0.0)
+        given = Given(driver=1, seq=tick, nonce=nonce, u=u, latched=False, source="keyboard")
+        given = given.model_copy(update={"gripper": asked if tick > 20 else None})
+        channel.given.write(given.model_dump_json().encode())
+
+    with make_scene_arm("mujoco", setup.task.robot, setup.start, clock.now_s, scene) as arm:
+        orders.send_bytes(Enable(driver=1, stops=0).model_dump_json().encode())
+        steering = Steering("end_effector", axes=setup.axes.index("z-yaw"))
+        Drive(setup, arm, channel, clock, writer, lambda: False, steering, observers=[give]).run(500)
+    writer.close()
+    orders.close()
+    reading.close()
+    assert [reports[tick].held for tick in (0, 115, 430, -1)] == [(), ("cup",), ("cup",), ()]
+    assert poses[190].position[2] > 0.05
+    assert 0.0 <= poses[440].position[2] < 0.004
+    assert angle_between(poses[440].rotation, UPRIGHT) < np.deg2rad(2.0)
+    assert np.abs(poses[440].position - poses[0].position)[:2].max() < 0.005

@@ -55,8 +55,8 @@ def teleop(
         Path | None,
         arg(
             metavar="FILE",
-            help="TOML file of zones in which the arm is slow, such as about a face, and of what it keeps out"
-            " of, such as a table; see docs/your-arm.md.",
+            help="TOML file of zones in which the arm is slow, such as about a face, of what it keeps out of,"
+            " such as a table, and of what it grips, such as a cup; see docs/your-arm.md.",
         ),
     ] = None,
     joint_speed: JointSpeed = None,
@@ -150,6 +150,7 @@ def teleop(
         robot=named,
         zones=slow,
         keep_out=stated.keep_out,
+        gripped=stated.gripped,
         speeds=speeds,
         incidents=incidents,
         seat=seat,

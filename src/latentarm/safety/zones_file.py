@@ -1,4 +1,4 @@
-"""A zones file: where the arm is slow and what it keeps out of, in TOML, with units in the keys.
+"""A zones file: where the arm is slow, what it keeps out of and what it grips: TOML, with units in the keys.
 
 An example::
 
@@ -13,6 +13,10 @@ An example::
     point_m = [0.0, 0.0, 0.0]
     normal = [0.0, 0.0, 1.0]
     clearance_m = 0.08  # kept from it; without this key, what the safety limits keep from everything
+
+    [gripped.cup]  # what the gripper holds where nothing else says it: a box in the frame of the tool
+    centre_m = [0.0, 0.0, 0.0]
+    size_m = [0.09, 0.09, 0.1]
 
 Shapes and their keys: ``sphere`` (``centre_m``, ``radius_m``), ``capsule`` (``start_m``, ``end_m``,
 ``radius_m``), ``box`` (``centre_m``, ``size_m``, and ``turned_deg`` about the base's x, y and z axes in this
@@ -37,6 +41,7 @@ from latentarm.safety.zones import MOST_ZONES, Zone, check_name, checked_zones
 
 _SLOW: Final = "zones"
 _KEEP_OUT: Final = "keep_out"
+_GRIPPED: Final = "gripped"
 _SPEED: Final = "speed_m_per_s"
 _CLEARANCE: Final = "clearance_m"
 _MOST_CLEARANCE_M: Final = 0.5
@@ -49,6 +54,7 @@ class StatedZones:
 
     slow: tuple[Zone, ...]  # where the arm is slow
     keep_out: tuple[Obstacle, ...]  # enlarged by the clearance that they need beyond the usual one
+    gripped: tuple[Box, ...] = ()  # one thing at most, in the tool's frame
 
 
 def read_zones(path: Path) -> StatedZones:
@@ -63,16 +69,21 @@ def parse_zones(document: object, where: str) -> StatedZones:
     or there are too many.
     """
     top = table_of(document, where, "")
-    check_keys(top, (_SLOW, _KEEP_OUT), where, "")
-    slow, keep_out = (table_of(top.get(key, {}), where, key) for key in (_SLOW, _KEEP_OUT))
-    if not slow and not keep_out:
+    kinds = (_SLOW, _KEEP_OUT, _GRIPPED)
+    check_keys(top, kinds, where, "")
+    slow, keep_out, gripped = (table_of(top.get(key, {}), where, key) for key in kinds)
+    if len(gripped) > 1:
+        raise UserError(f"{where} states {len(gripped)} things in the gripper: state one that is as large.")
+    if not (slow or keep_out or gripped):
         raise UserError(f"{where} states no zones: begin one with [{_SLOW}.face] or [{_KEEP_OUT}.table].")
     found = [_entry(f"{_SLOW}.{name}", entry, where, (_SPEED,)) for name, entry in slow.items()]
     solid = [_solid(name, entry, where) for name, entry in keep_out.items()]
+    held = [_gripped(name, entry, where) for name, entry in gripped.items()]
     try:
         return StatedZones(
             checked_zones([Zone(make(name), speed) for name, (make, speed) in zip(slow, found, strict=True)]),
             _kept_out([make() for make in solid]),
+            cast("tuple[Box, ...]", _kept_out([make() for make in held])),
         )
     except UserError as error:
         raise UserError(f"{where}: {error}") from error
@@ -86,6 +97,12 @@ def _kept_out(solids: list[Obstacle]) -> tuple[Obstacle, ...]:
     for solid in solids:
         check_name(solid.name, f"The obstacle {solid.name!r}")
     return tuple(checked_obstacle(solid) for solid in solids)
+
+
+def _gripped(name: str, entry: object, where: str) -> Callable[[], Obstacle]:
+    key = f"{_GRIPPED}.{name}"
+    make, _ = _entry(key, {**table_of(entry, where, key), "shape": "box"}, where)
+    return lambda: make(name)
 
 
 def _solid(name: str, entry: object, where: str) -> Callable[[], Obstacle]:

@@ -25,7 +25,7 @@ class Grasp:
 
     def __init__(self, things: Sequence[Thing]) -> None:
         movable = [thing for thing in things if not thing.fixed]
-        self._solids = {thing.name: _bounds(thing.parts) for thing in movable}
+        self._solids = {thing.name: bounds(thing.parts) for thing in movable}
         self._food = [thing.name for thing in movable if thing.food is not None]
         self._holding = False
         self._held_s = -math.inf
@@ -62,7 +62,7 @@ class Grasp:
         return float(np.linalg.norm(np.maximum(np.maximum(lower - point, point - upper), 0.0)))
 
 
-def _bounds(parts: Sequence[Part]) -> tuple[FloatArray, FloatArray]:
+def bounds(parts: Sequence[Part]) -> tuple[FloatArray, FloatArray]:
     """The corners (3,) of a box about solids, in the frame of their thing, m."""
     middles = np.array([part.position for part in parts]).reshape(-1, 3)
     half = np.array([_half(part) for part in parts]).reshape(-1, 3)

@@ -133,7 +133,7 @@ class Tracker:
         """From now on a thing moves with the tool; ``sensed``: whether the gripper says so."""
         track = self._tracks[name]
         if self._tool is not None and track.estimate is not None:
-            track.in_tool = _within(self._tool, track.estimate.pose)
+            track.in_tool = within(self._tool, track.estimate.pose)
             track.sensed, track.other = sensed, None
 
     def let_go(self, name: str, now_s: float) -> None:
@@ -145,6 +145,11 @@ class Tracker:
     def carried(self) -> Mapping[str, bool]:
         """The things that move with the tool, each with whether the gripper says so."""
         return {name: track.sensed for name, track in self._tracks.items() if track.in_tool is not None}
+
+    @property
+    def in_tool(self) -> Mapping[str, Pose]:
+        """Poses of these things in the tool's frame, as they were taken."""
+        return {name: track.in_tool for name, track in self._tracks.items() if track.in_tool is not None}
 
     def update(self, tool: Pose | None, now_s: float) -> None:
         """Take where the tool is, once a tick; None where it is unknown, which leaves it where it was."""
@@ -250,7 +255,8 @@ def _jumps(before: Pose | None, after: Pose | None) -> bool:
     return moved_m > JUMP_M or float(angle_between(after.rotation, before.rotation)) > JUMP_RAD
 
 
-def _within(tool: Pose, pose: Pose) -> Pose:
+def within(tool: Pose, pose: Pose) -> Pose:
+    """A pose in the base frame, in the tool's."""
     return Pose((pose.position - tool.position) @ tool.rotation, tool.rotation.T @ pose.rotation)
 
 

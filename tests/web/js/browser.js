@@ -174,7 +174,7 @@ export function key(type, code, fields = {}) {
 
 const STATE = {
   type: "state", nonce: "n", tick: 0, phase: "disengaged", note: null, reason: null, held_back: null, zone: null, mode: "latent", axes: 0, help: "off", profile: null, bodies: [], tool: [0, 0, 0],
-  gripper: null, task: { choice: 0, done: 0, outcome: null, why: null, time_s: 0, to_go: null, lost: null, short: false }, things: null, ghosts: null, belief: null, alpha: 0, bound_m: null, driver: null, driver_name: null, watchers: 0, asking: null,
+  gripper: null, held: [], task: { choice: 0, done: 0, outcome: null, why: null, time_s: 0, to_go: null, lost: null, short: false }, things: null, ghosts: null, belief: null, alpha: 0, bound_m: null, driver: null, driver_name: null, watchers: 0, asking: null,
   asking_name: null, returning: false, bound_for: null, guiding: null, lost: false, at_start: false, let_go_first: false, idle_left_s: null, copilot: null, copilot_asking: null, recording: null, trail: 0, late_share: 0, you: false,
 };
 

@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 
 import { attachZones } from "#pages/drive/zones.js";
-import { elementsOf, newBrowser, welcomeOf } from "./browser.js";
+import { elementsOf, newBrowser, stateOf, welcomeOf } from "./browser.js";
 
 beforeEach(newBrowser);
 
@@ -30,5 +30,19 @@ test("what the arm keeps out of is listed after them, or alone", () => {
   connection.welcome = welcomeOf({ zones: [], keep_out: ["table"] });
   connection.dispatchEvent(new Event("welcome"));
   assert.ok(!text.hidden);
+  assert.equal(text.textContent, "The arm keeps out of: table.");
+});
+
+test("what counts as held is said, and that a thing of unknown size does not count", () => {
+  const { text } = elementsOf({ text: "zones" });
+  const connection = Object.assign(new EventTarget(), { welcome: welcomeOf({ keep_out: ["table"] }), state: stateOf({ held: ["cup", "long spoon"] }) });
+  attachZones(connection);
+  connection.dispatchEvent(new Event("state"));
+  assert.equal(text.textContent, "The arm keeps out of: table. Counts as part of the arm, because it holds it: cup and long spoon.");
+  connection.state = stateOf({ gripper: { width_m: 0.03, holding: true, closing: true } });
+  connection.dispatchEvent(new Event("state"));
+  assert.match(text.textContent, /Nobody has said how large the thing in the gripper is/);
+  connection.state = stateOf();
+  connection.dispatchEvent(new Event("state"));
   assert.equal(text.textContent, "The arm keeps out of: table.");
 });

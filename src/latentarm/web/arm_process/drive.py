@@ -286,7 +286,8 @@ class Drive:
         self._setup.help.choose("off")
         self._to_pose.lead_to(goal)
         self._step.choose_mode(self._setup.way_back)
-        self._way_back.begin(record.time_s, self._readings.q, goal, None if pose is None else pose.name)
+        name = None if pose is None else pose.name
+        self._way_back.begin(record.time_s, self._readings.q, goal, self._things.held.now, name)
 
     def _end_way_back(self) -> None:
         self._choose(self._steering.mode, self._steering.axes, self._steering.help)
@@ -309,7 +310,8 @@ class Drive:
 
         What a held stick does changes too where a thing is suddenly elsewhere: it must be let go first.
         """
-        self._things.update(record, self._readings.q)
+        if self._things.update(record, self._readings.q):
+            self._step.hold(*self._things.held.now)
         if self._steering.mode == "end_effector" or self._way_back.on:
             return
         if (unknown := self._things.unknown) is not None:
@@ -415,6 +417,7 @@ class Drive:
             reading_age_s=self._readings.age_s(record.time_s),
             tool=(tool[0], tool[1], tool[2]),
             gripper=self._readings.gripper,
+            held=tuple(box.name for box in self._things.held.now),
             task=self._run.state,
             things=self._things.look(self._steering.tick),
             ghosts=self._ghosts.newest(self._mode_index),

@@ -27,7 +27,7 @@ from latentarm.core.journal_limits import JournalLimits
 from latentarm.core.types import FloatArray, Pose
 from latentarm.demonstrations.provenance import provenance_now
 from latentarm.recordings.journal_writer import EpisodeHeader
-from latentarm.robots.kinematics.obstacles import Obstacle
+from latentarm.robots.kinematics.obstacles import Box, Obstacle
 from latentarm.robots.scene.scene import Scene
 from latentarm.robots.scene.thing import Part, Thing
 from latentarm.runs.folder import Run, read_run, weights_fingerprint
@@ -82,6 +82,7 @@ class Spec:
         found: names and values found out about a real arm.
         zones: where the arm is slow.
         keep_out: obstacles besides the task's.
+        gripped: what the gripper holds while it holds no known thing.
         speeds: limits everywhere.
         incidents: whether calls are kept for a while, see `latentarm.web.arm_process.incident`.
         seat: where a person without a profile sits, see `latent_controller`; None for z = u.
@@ -107,6 +108,7 @@ class Spec:
     found: tuple[tuple[str, str], ...] = ()
     zones: tuple[Zone, ...] = ()
     keep_out: tuple[Obstacle, ...] = ()
+    gripped: tuple[Box, ...] = ()
     speeds: Speeds = field(default_factory=Speeds)
     incidents: bool = True
     seat: Seat | None = None

@@ -1,6 +1,7 @@
 """Slow motions to the start or a saved pose, while the driver's page is connected and nobody pushes."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Final, Literal, final
 
@@ -8,6 +9,7 @@ import numpy as np
 
 from latentarm.control.input_port import InputSource
 from latentarm.core.types import FloatArray, Input
+from latentarm.robots.kinematics.obstacles import Box
 from latentarm.safety.straight_way import StraightWay
 from latentarm.web.arm_process.neutral_interlock import NeutralInterlock
 from latentarm.web.arm_process.page_inputs import PageInputs
@@ -60,9 +62,11 @@ class PoseMotion(InputSource):
         self._closest = math.inf
         self.on = False  # whether the arm is on its way
 
-    def begin(self, time_s: float, q: FloatArray, goal: FloatArray, pose: str | None = None) -> None:
+    def begin(
+        self, time_s: float, q: FloatArray, goal: FloatArray, held: Sequence[Box], pose: str | None = None
+    ) -> None:
         """Check the way from ``q`` to ``goal``, (n,), rad, and set out if it is clear; ``pose`` names it."""
-        self._straight.begin(q, goal)
+        self._straight.begin(q, goal, held)
         self._goal, self.pose = goal, pose
         self.on, self._pushed = True, False
         self._began_s = self._closer_s = time_s

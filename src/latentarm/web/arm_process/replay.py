@@ -18,6 +18,7 @@ from latentarm.core.errors import UserError
 from latentarm.core.exact_json import of_json
 from latentarm.core.types import FloatArray, GripperReading, Input, Reading, Stop
 from latentarm.core.untrusted.opening import opened
+from latentarm.robots.kinematics.obstacles import Box
 from latentarm.web.arm_process import incident
 from latentarm.web.arm_process.drive_setup import DriveSetup
 
@@ -149,7 +150,7 @@ def replay(path: Path) -> dict[str, Any]:
 
 
 def _make(again: Replay, line: Mapping[str, Any], path: Path) -> None:
-    kinds = (Input, Reading, GripperReading, Stop)
+    kinds = (Input, Reading, GripperReading, Stop, Box)
     try:
         given, poses = of_json(line["given"], *kinds), of_json(line["seen"])
         again.make(line["call"], given, poses, line.get("answer"))

@@ -11,9 +11,10 @@ from latentarm.arms.contract import SceneArm
 from latentarm.core.types import FloatArray, Pose, StepRecord
 from latentarm.robots.kinematics.pose_rows import thing_rows
 from latentarm.surroundings.catalogue import SCENE
+from latentarm.surroundings.held_things import HeldThings
 from latentarm.surroundings.surroundings import Surroundings
 from latentarm.surroundings.touch import TouchKind
-from latentarm.surroundings.tracker import Whereabouts
+from latentarm.surroundings.tracker import Whereabouts, within
 from latentarm.web.protocol.notice import Notice
 from latentarm.web.protocol.report import SeenThing, Things
 from latentarm.web.protocol.things import things_at
@@ -58,6 +59,9 @@ class ThingPoses:
         self._sources = setup.sources
         self._recorded: tuple[str, ...] = ()
         self._newest: dict[str, tuple[Pose, int, float]] = {}
+        self._carried: Mapping[str, Pose] = {}  # by the newest look, in the tool's frame
+        known = () if self._scene is None or not setup.stand else self._scene.things
+        self.held = HeldThings([thing for thing in known if not thing.fixed], setup.spec.gripped)
 
     def surroundings(self, setup: "DriveSetup", arm: SceneArm | None) -> Callable[[], FloatArray] | None:
         """A function that gives a `Step` the poses of the things in its context."""
@@ -65,11 +69,13 @@ class ThingPoses:
             return setup.surroundings(arm)
         return self._followed.rows(self._needed, self._now_s)
 
-    def update(self, record: StepRecord, q: FloatArray) -> None:
-        """Follow things, once a tick; ``q``: (n,), the newest joint positions, rad."""
+    def update(self, record: StepRecord, q: FloatArray) -> bool:
+        """Follow things, once a tick; whether others are held now. ``q``: (n,), newest joints, rad."""
         if self._followed is not None:
             tool = None if np.isnan(record.state[0]) else self._chain.forward(q)
             self._followed.update(tool, record.gripper, self._now_s())
+            self._carried = self._followed.tracker.in_tool
+        return self.held.update(self._carried, record.gripper)
 
     @property
     def unknown(self) -> Notice | None:
@@ -145,7 +151,11 @@ class ThingPoses:
         return [(name, self._where(name, self._now_s())) for name in names]
 
     def _poses(self) -> dict[str, Pose]:
-        poses = {} if self._arm is None else dict(self._arm.scene_state().poses)
+        poses = dict[str, Pose]()
+        if self._arm is not None:
+            state = self._arm.scene_state()
+            poses = dict(state.poses)
+            self._carried = {name: within(state.tool, poses[name]) for name in state.stabbed | state.gripped}
         for name, where in self._all():
             poses.pop(name, None)
             if where.pose is not None:

@@ -145,6 +145,7 @@ class ArmState(Message):
     profile: str | None  # whose alignment
     tool: Point
     gripper: GripperState | None  # as last read; None if the arm has no gripper, or before the first reading
+    held: tuple[str, ...]  # names of what counts as a part of the arm because it holds it
     task: TaskState
     things: Things | None  # where they are; None in an empty scene, and if they have not changed
     ghosts: Ghosts | None  # None, only in a `State`, while the last ones hold

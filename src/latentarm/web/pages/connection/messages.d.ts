@@ -349,6 +349,7 @@ export interface State {
   profile: string | null;
   tool: [number, number, number];
   gripper: GripperState | null;
+  held: string[];
   task: TaskState;
   things: Things | null;
   ghosts: Ghosts | null;

@@ -1,18 +1,23 @@
-/** Where the arm is slow, and what it keeps out of, in words: what is written in the views is no text for a screen reader. */
+/** Where the arm is slow, what it keeps out of, and what it holds, in words: what is written in the views is no text for a screen reader. */
 
 import { byId, setHidden, setText } from "../layout/dom.js";
-import { zoneWords } from "../layout/thing_words.js";
+import { thingWords, zoneWords } from "../layout/thing_words.js";
 import { say, sayList, sayNumber } from "../layout/words.js";
 
 /** @param {Connection} connection */
 export function attachZones(connection) {
   const text = byId("zones");
-  connection.addEventListener("welcome", () => {
+  const show = () => {
     const { zones, keep_out: solids } = connection.welcome ?? { zones: [], keep_out: [] };
-    setHidden(text, zones.length + solids.length === 0);
+    const { held, gripper } = connection.state ?? { held: [], gripper: null };
     const entries = zones.map(({ name, speed }) => say("zone.entry", { zone: zoneWords(name), centimetres: sayNumber(100 * speed) }));
     const slow = zones.length ? [say("zone.list", { zones: sayList(entries) })] : [];
     const out = solids.length ? [say("zone.keep_out", { zones: sayList(solids.map(zoneWords)) })] : [];
-    setText(text, [...slow, ...out].join(" "));
-  });
+    const holds = held.length ? [say("zone.held", { things: sayList(held.map(thingWords)) })] : gripper?.holding ? [say("zone.held_unknown")] : [];
+    const said = [...slow, ...out, ...holds];
+    setHidden(text, said.length === 0);
+    setText(text, said.join(" "));
+  };
+  connection.addEventListener("welcome", show);
+  connection.addEventListener("state", show);
 }
