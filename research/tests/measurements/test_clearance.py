@@ -3,10 +3,12 @@
 import numpy as np
 import pytest
 
+from latentarm.control.step import Step
 from latentarm.robots.assemble import assemble
 from latentarm.robots.kinematics.obstacles import Box, Capsule, HalfSpace, Sphere
 from latentarm.robots.kinematics.reader import read
 from latentarm.robots.limits import JointLimits
+from latentarm_research.measurements import held_things
 from latentarm_research.measurements.clearance import ARMS, PERIODS_S, ROUNDING_M, arm, drive
 from latentarm_research.measurements.geom_distances import Judge, outside, solid_geoms
 from latentarm_research.measurements.pushing import HARMS, scene
@@ -63,6 +65,16 @@ def test_the_judge_does_not_depend_on_how_far_it_looks():
 def test_no_arm_comes_nearer_than_it_may(name, harm):
     rng = np.random.default_rng([7, ARMS.index(name)])
     assert drive(arm(name), harm, 0.01, rng) >= 0.02 - ROUNDING_M
+
+
+@pytest.mark.parametrize("number", range(3, 15, 2))
+def test_a_held_spoon_is_kept_clear_and_slow(number):
+    assert held_things.drive((1, number))[-1] == 0
+
+
+def test_that_is_no_chance(monkeypatch):
+    monkeypatch.setattr(Step, "hold", lambda step, *things: None)
+    assert sum(held_things.drive((1, number))[-1] > 0 for number in range(3, 15, 2)) >= 2
 
 
 @pytest.mark.slow

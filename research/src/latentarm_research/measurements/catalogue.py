@@ -23,6 +23,7 @@ class Clearance:
     """Push arms at things and at themselves; MuJoCo measures the distances that they keep."""
 
     drives: Annotated[int, arg(help="How many, over all arms.")] = 2000
+    held_ticks: Annotated[int, arg(help="Ticks of 10 ms with a cup or a long spoon, about.")] = 100_000
 
 
 @dataclass(frozen=True)
@@ -143,7 +144,7 @@ class Surroundings:
 
 
 MEASUREMENTS: Final[Mapping[str, Measurement]] = {
-    "clearance": Measurement(Clearance, {"drives": 2}),
+    "clearance": Measurement(Clearance, {"drives": 2, "held_ticks": 300}),
     "limits": Measurement(Limits, {"ticks": 240}),
     "zones": Measurement(Drives, {"drives": 1}),
     "force": Measurement(Force, {"drives": 1, "stiffness_n_mm": (75.0,)}),

@@ -19,6 +19,7 @@ from latentarm.robots.catalogue import load_robot
 from latentarm.robots.robot import Robot
 from latentarm.safety.config import SafetyConfig
 from latentarm_research.measurements.catalogue import Clearance
+from latentarm_research.measurements.held_things import measure_held
 from latentarm_research.measurements.measurement import Outcome, Work, line
 from latentarm_research.measurements.pushing import HARMS, Pusher, scene
 
@@ -45,7 +46,8 @@ def measure(options: Clearance, work: Work) -> Outcome:
         }
         rows += line("clearance", name, len(mine), figures)
         broken += [f"{name}, drive {number}: {1000 * mine[number]:.3f} mm" for number in near]
-    return Outcome(rows, broken)
+    with_things = measure_held(options.held_ticks, work)
+    return Outcome([*rows, *with_things.rows], [*broken, *with_things.broken])
 
 
 def numbered(seed: int, number: int) -> float:

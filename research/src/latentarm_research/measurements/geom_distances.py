@@ -5,7 +5,7 @@ from typing import Any, Final, final
 import mujoco
 import numpy as np
 
-from latentarm.core.types import FloatArray
+from latentarm.core.types import BoolArray, FloatArray
 from latentarm.robots.kinematics.distances import segment_distance
 from latentarm.robots.kinematics.obstacles import Box, Capsule, HalfSpace, Obstacle, Sphere
 from latentarm.robots.kinematics.reader import read
@@ -63,6 +63,14 @@ class Judge:
         return np.array(
             [mujoco.mj_geomDistance(self._model, self._data, g, h, most_m, None) for g, h in self._pairs]
         )
+
+    def pairs_of(self, body: str) -> tuple[BoolArray, list[str]]:
+        """Which pairs have a geom of the body of this name, (pairs,), and their other geoms."""
+        pairs = np.array([[int(g), int(h)] for g, h in self._pairs]).reshape(-1, 2)
+        mine = self._model.geom_bodyid[pairs] == self._model.body(body).id
+        others = np.where(mine[:, 0], pairs[:, 1], pairs[:, 0])
+        names = [self._model.geom(int(one)).name.removeprefix(_MARK) or str(one) for one in others]
+        return mine.any(axis=1), names
 
 
 _MARK: Final = "obstacle "

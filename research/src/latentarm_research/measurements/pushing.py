@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Final, final
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from latentarm.arms.kinematic import KinematicArm
 from latentarm.arms.mujoco import Imperfections, MujocoArm
@@ -16,6 +17,7 @@ from latentarm.robots.robot import Robot
 from latentarm_research.measurements.geom_distances import Judge
 
 HARMS: Final = ("wall", "box", "ball", "rod", "itself")
+TRAY: Final = "tray"  # a level box, on which a held thing may be put down
 
 START_M: Final = 0.03
 
@@ -79,7 +81,7 @@ def scene(
 ) -> tuple[tuple[Obstacle, ...], Judge, FloatArray, Push]:
     """Obstacles, their judge, a start and a push, with all distances above `START_M`."""
     limits, capsules, chain = robot.limits, robot.capsules, robot.chain
-    outer = np.flatnonzero(capsules.link >= max(1, robot.dof // 3))
+    outer = np.flatnonzero(capsules.link >= max(1, robot.dof // 3))[-robot.held :]  # what is held, if any
     while True:
         q = rng.uniform(limits.lower + 0.15, limits.upper - 0.15)
         starts, ends = capsules.placed(chain, chain.link_transforms(q))
@@ -104,6 +106,9 @@ def scene(
             case "rod":
                 across = np.cross(out, turn[:, 0]) * rng.uniform(0.1, 0.4)
                 thing = Capsule("rod", middle - across, middle + across, size)
+            case "tray":
+                turn = Rotation.from_euler("z", rng.uniform(0.0, np.pi)).as_matrix()
+                thing = Box(TRAY, middle, turn, rng.uniform(0.3, 2.0, 3) * size)
             case _:
                 thing = Box("box", middle, turn, rng.uniform(0.3, 1.0, 3) * size)
         obstacles = (table,) if harm == "itself" else (table, thing)
