@@ -53,9 +53,7 @@ ALLOWED = {
     "web/arm_process/replay.py": {"packed.open", "path.open"},  # a member of a report within bounds; its copy
     "web/arm_process/incident.py": {"path.open"},  # copies, in a folder of its own
     "cli.py": {"os.open"},  # the null device
-    "demonstrations/importers/npz_file.py": {
-        "archive.open"
-    },  # a member of an archive opened within bounds
+    "demonstrations/importers/npz_file.py": {"archive.open"},  # a member of an archive opened within bounds
     "web/records/person_zip.py": {"archive.open"},  # the same
     "research/studies/results_folder.py": {
         "json.loads",  # what it has just written
