@@ -16,10 +16,11 @@ from latentarm_research.studies.study import ALWAYS_MADE, Request, run_study
 from latentarm_research.user_studies import session
 from latentarm_research.user_studies.catalogue import NAMES, load_definition
 from latentarm_research.user_studies.definition import Definition
+from latentarm_research.user_studies.drive_record import in_the_end, together
 from latentarm_research.user_studies.record import read_trials
 from latentarm_research.user_studies.recorded import read_recorded
 from latentarm_research.user_studies.run import SESSIONS, study_of
-from latentarm_research.user_studies.session import choices_of, in_the_end, together
+from latentarm_research.user_studies.session import choices_of
 from latentarm_research.user_studies.sizes import Sizes, sizes_of
 from latentarm_research.user_studies.trace import read_traces
 
@@ -73,8 +74,8 @@ def test_a_stopped_study_goes_on_with_the_sessions_that_it_has(
     assert len(sessions) == 4
     sessions[2].unlink()
     gone_through: list[int] = []
-    measured = session.in_the_end
-    monkeypatch.setattr(session, "in_the_end", lambda one: gone_through.append(1) or measured(one))
+    measured = session.trial_of
+    monkeypatch.setattr(session, "trial_of", lambda *given: gone_through.append(1) or measured(*given))
     run_study(study, asked)
     assert gone_through == [1]
     assert {name: (tmp_path / name).read_bytes() for name in made} == before

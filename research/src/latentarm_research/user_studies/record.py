@@ -4,11 +4,12 @@ from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
 from math import isfinite
 from pathlib import Path
-from typing import Any, TypeVar, cast, final
+from typing import Any, Literal, TypeVar, cast, final
 
 from latentarm.core.errors import UserError
 
 Listed = TypeVar("Listed")
+PeopleAre = Literal["simulated", "real"]
 
 
 @final

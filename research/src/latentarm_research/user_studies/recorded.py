@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final, Literal, cast, final
+from typing import Any, Final, cast, final
 
 from latentarm.core.errors import UserError
 from latentarm.core.untrusted.documents import read_object
@@ -13,11 +13,9 @@ from latentarm_research.studies.results_folder import CONFIG
 from latentarm_research.user_studies.catalogue import NAMES, load_definition
 from latentarm_research.user_studies.definition import PREFIX, Definition
 from latentarm_research.user_studies.own.definition_file import read_definition
-from latentarm_research.user_studies.record import Trial, read_trials
+from latentarm_research.user_studies.record import PeopleAre, Trial, read_trials
 from latentarm_research.user_studies.sizes import PRESETS, Sizes
 from latentarm_research.user_studies.trace import Trace, read_traces
-
-PeopleAre = Literal["simulated", "real"]
 
 DEFINITION: Final = "definition.json"
 TRIALS: Final = "trials.json"

@@ -16,7 +16,15 @@ from latentarm_research.studies import fitting, streams
 from latentarm_research.studies.results_folder import package_versions, source_digest
 from latentarm_research.studies.streams import generator
 from latentarm_research.studies.study import Grid, Keep, Report, Request, Study, again
-from latentarm_research.user_studies import alignments, conditions, designs, scenes, session, training
+from latentarm_research.user_studies import (
+    alignments,
+    conditions,
+    designs,
+    drive_record,
+    scenes,
+    session,
+    training,
+)
 from latentarm_research.user_studies.definition import Definition
 from latentarm_research.user_studies.designs import design_of
 from latentarm_research.user_studies.record import read_trials
@@ -137,7 +145,7 @@ def _trained_as(cell: SessionCell) -> str:
 
 def _depends_on(definition: Definition) -> dict[str, object]:
     """The definition, and the code of a session, so that a study does not go on with other code."""
-    used = (alignments, conditions, designs, fitting, scenes, session, streams, training)
+    used = (alignments, conditions, designs, drive_record, fitting, scenes, session, streams, training)
     code = source_digest([Path(module.__file__ or "") for module in used])
     return {"definition": definition.digest, "code": code, "versions": package_versions()}
 
