@@ -1,0 +1,232 @@
+"""The study's database: places, people, drives and answers. Every change is one transaction."""
+
+import secrets
+from collections.abc import Generator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final, final
+
+from sqlalchemy import Connection, create_engine, delete, event, func, select
+from sqlalchemy.exc import DatabaseError
+from sqlalchemy.orm import Session
+
+from latentarm.core.errors import UserError
+from latentarm.core.untrusted.opening import check_file, is_missing
+from latentarm_research.user_studies.answers.items import Answer
+from latentarm_research.user_studies.drive_record import DriveRecord
+from latentarm_research.user_studies.serving.tables import Answers, Drive, Person, Place, Table
+
+MOST_BYTES: Final = 1 << 32  # of a database
+KEY_BYTES: Final = 16  # of random keys
+
+
+@final
+@dataclass(frozen=True)
+class Standing:
+    """How far a person has come."""
+
+    key: str
+    number: int | None  # of their place; None where they have none, any more or yet
+    lapsed: bool  # whether their place went to somebody else, because they were away for too long
+    consented: bool
+    practised: int  # conditions that they have practised
+    drives: tuple[DriveRecord, ...]  # in their order
+    answered: frozenset[int]  # places in the order of the conditions after which they have answered
+    completion: str | None  # their code, once everything is saved
+
+
+@final
+@dataclass(frozen=True)
+class Finished:
+    """What a person who has finished has done, all of it in order."""
+
+    drives: tuple[DriveRecord, ...]
+    answers: tuple[Answer, ...]
+
+
+@final
+class Store:
+    """The database of a study, a file of its own. Raises a `UserError` where the file is something else."""
+
+    def __init__(
+        self,
+        path: Path,
+        away_s: float = float("inf"),  # a person who does nothing for so long loses their place, s
+    ) -> None:
+        if not is_missing(path):
+            check_file(path, MOST_BYTES)
+        self._away_s = away_s
+        self._engine = create_engine(f"sqlite:///{path}")
+        event.listen(self._engine, "connect", _connected)
+        event.listen(self._engine, "begin", _begins)
+        try:
+            Table.metadata.create_all(self._engine)
+        except DatabaseError as error:
+            raise UserError(f"{path} is not the database of a study, or cannot be written.") from error
+
+    def open_places(self, count: int) -> list[str]:
+        """Have so many places, with the numbers from 0, and codes for links to them, which it returns."""
+        with self._change() as session:
+            places = list(session.scalars(select(Place).order_by(Place.number)))
+            new = [Place(number=one, code=_random()) for one in range(len(places), count)]
+            session.add_all(new)
+            return [one.code for one in (*places, *new)]
+
+    def close(self) -> None:
+        """Close the file."""
+        self._engine.dispose()
+
+    def arrive(self, link: str, visit: str, now_s: float) -> str | None:
+        """The key of the person with this link, new or known.
+
+        ``visit`` is what a recruiting site calls their visit, "" for a code of ours. None for a code that is
+        unknown, and for a person of the site who was there in another visit.
+        """
+        with self._change() as session:
+            if not visit and session.scalar(select(Place).where(Place.code == link)) is None:
+                return None
+            person = session.scalar(select(Person).where(Person.link == link))
+            if person is None:
+                person = Person(key=_random(), link=link, visit=visit, seen_s=now_s)
+                session.add(person)
+            return person.key if person.visit == visit else None
+
+    def consent(self, key: str, digest: str, when: str) -> None:
+        """Note that a person consents to a text."""
+        with self._change() as session:
+            if (person := session.get(Person, key)) is not None and person.consent is None:
+                person.consent, person.consented = digest, when
+
+    def place(self, key: str, now_s: float) -> int | None:
+        """Give a person the first free place, unless they have one; None where none is left.
+
+        Places of people who were away for too long are free. Someone who has begun takes up no other place
+        than their own. All of this is one transaction, so no place is given twice.
+        """
+        with self._change() as session:
+            person = session.get(Person, key)
+            if person is None:
+                return None
+            held = session.scalar(select(Place).where(Place.person == key))
+            if held is not None:
+                person.seen_s = now_s
+                return held.number
+            for gone in session.scalars(
+                select(Place)
+                .join(Person, Place.person == Person.key)
+                .where(Person.seen_s < now_s - self._away_s, Person.completion.is_(None))
+            ):
+                gone.person = None
+            free = select(Place).where(Place.person.is_(None)).order_by(Place.number).limit(1)
+            if person.number is not None:
+                free = free.where(Place.number == person.number)
+            found = session.scalar(free)
+            if found is None:
+                return None
+            session.flush()
+            found.person, person.number, person.seen_s = key, found.number, now_s
+            return found.number
+
+    def practised(self, key: str, conditions: int) -> None:
+        """Note that a person has practised so many conditions."""
+        with self._change() as session:
+            if (person := session.get(Person, key)) is not None:
+                person.practised = max(person.practised, conditions)
+
+    def keep_drive(self, key: str, record: DriveRecord) -> None:
+        """Keep a drive, unless it is there already, or the person has withdrawn."""
+        where = (key, record.order, record.task, record.trial, record.choice, record.attempt)
+        with self._change() as session:
+            if session.get(Person, key) is None or session.get(Drive, where) is not None:
+                return
+            number = session.scalar(select(func.coalesce(func.max(Drive.number), 0))) or 0
+            names = ("person", "order", "task", "trial", "choice", "attempt")
+            given: dict[str, Any] = dict(zip(names, where, strict=True))
+            session.add(Drive(**given, number=number + 1, record=record.model_dump_json()))
+
+    def keep_answers(self, key: str, order: int, condition: str, points: Mapping[str, int]) -> None:
+        """Keep the answers after a condition; the first ones count."""
+        with self._change() as session:
+            if session.get(Person, key) is None or session.get(Answers, (key, order)) is not None:
+                return
+            session.add(Answers(person=key, order=order, condition=condition, points=dict(points)))
+
+    def finish(self, key: str, code: str) -> str:
+        """Give a person their completion code, and return it; the first one stays."""
+        with self._change() as session:
+            if (person := session.get(Person, key)) is None:
+                return ""
+            person.completion = code = person.completion or code
+            return code
+
+    def withdraw(self, key: str) -> None:
+        """Delete a person with everything about them; their place is free again."""
+        with self._change() as session:
+            session.execute(delete(Person).where(Person.key == key))
+
+    def standing(self, key: str) -> Standing | None:
+        """How far a person has come; None for nobody who is known."""
+        with self._change() as session:
+            person = session.get(Person, key)
+            if person is None:
+                return None
+            held = session.scalar(select(Place.number).where(Place.person == key))
+            answered = session.scalars(select(Answers.order).where(Answers.person == key))
+            return Standing(
+                key,
+                held,
+                person.number is not None and held is None,
+                person.consent is not None,
+                person.practised,
+                _drives(session, key),
+                frozenset(answered),
+                person.completion,
+            )
+
+    def finished(self) -> list[Finished]:
+        """Everybody who has finished, by number."""
+        with self._change() as session:
+            done = select(Person).where(Person.completion.is_not(None)).order_by(Person.number)
+            return [
+                Finished(
+                    _drives(session, person.key),
+                    tuple(
+                        Answer(person.number or 0, one.condition, item, points)
+                        for one in session.scalars(
+                            select(Answers).where(Answers.person == person.key).order_by(Answers.order)
+                        )
+                        for item, points in one.points.items()
+                    ),
+                )
+                for person in session.scalars(done)
+            ]
+
+    @contextmanager
+    def _change(self) -> Generator[Session]:
+        """A transaction, which is on disk when the block ends."""
+        with Session(self._engine) as session, session.begin():
+            yield session
+
+
+def _random() -> str:
+    return secrets.token_urlsafe(KEY_BYTES)
+
+
+def _drives(session: Session, key: str) -> tuple[DriveRecord, ...]:
+    kept = session.scalars(select(Drive.record).where(Drive.person == key).order_by(Drive.number))
+    try:
+        return tuple(DriveRecord.model_validate_json(one) for one in kept)
+    except ValueError as error:
+        raise UserError("The study's database holds a drive that is not one.") from error
+
+
+def _begins(connection: Connection) -> None:
+    connection.exec_driver_sql("BEGIN IMMEDIATE")
+
+
+def _connected(connection: Any, _: object) -> None:
+    """SQLAlchemy begins the transactions; what is deleted is overwritten on disk."""
+    connection.isolation_level = None
+    for pragma in ("foreign_keys=ON", "secure_delete=ON", "synchronous=FULL", "busy_timeout=10000"):
+        connection.execute(f"PRAGMA {pragma}")

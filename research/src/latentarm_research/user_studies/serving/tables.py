@@ -1,0 +1,64 @@
+"""The tables of a study's database.
+
+Neither addresses nor names of people are in it: a person is a random key, and a code of ours or the id that a
+recruiting site gives them.
+"""
+
+from sqlalchemy import JSON, ForeignKey
+from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
+
+
+class Table(DeclarativeBase):
+    """Base of all tables."""
+
+
+class Person(Table):
+    """Somebody who has opened their link."""
+
+    __tablename__ = "people"
+
+    key: Mapped[str] = mapped_column(primary_key=True)  # random; a cookie of their browser has it
+    link: Mapped[str] = mapped_column(unique=True)  # a code of ours, or the id of a recruiting site
+    visit: Mapped[str]  # its name at the recruiting site, which nobody else knows; "" with a code of ours
+    seen_s: Mapped[float]  # when they last opened a page of the study, s since 1970
+    number: Mapped[int | None]  # of their place, also after it was given to somebody else; None before
+    consent: Mapped[str | None]  # SHA-256 of the text; None before
+    consented: Mapped[str | None]  # when, ISO 8601
+    practised: Mapped[int] = mapped_column(default=0)  # conditions that they have practised
+    completion: Mapped[str | None]  # code that they get once everything is saved; None before
+
+
+class Place(Table):
+    """A place in the study's design; its number decides the order of conditions."""
+
+    __tablename__ = "places"
+
+    number: Mapped[int] = mapped_column(primary_key=True)
+    code: Mapped[str] = mapped_column(unique=True)  # of a link of ours; it opens whichever place is free
+    person: Mapped[str | None] = mapped_column(ForeignKey("people.key", ondelete="SET NULL"), unique=True)
+
+
+class Drive(Table):
+    """A finished drive."""
+
+    __tablename__ = "drives"
+
+    person: Mapped[str] = mapped_column(ForeignKey("people.key", ondelete="CASCADE"), primary_key=True)
+    order: Mapped[int] = mapped_column(primary_key=True)
+    task: Mapped[str] = mapped_column(primary_key=True)
+    trial: Mapped[int] = mapped_column(primary_key=True)
+    choice: Mapped[int] = mapped_column(primary_key=True)
+    attempt: Mapped[int] = mapped_column(primary_key=True)
+    number: Mapped[int]  # counts the drives of everybody, in the order in which they were saved
+    record: Mapped[str]  # a `DriveRecord`, JSON
+
+
+class Answers(Table):
+    """The answers to the questionnaire after one condition."""
+
+    __tablename__ = "answers"
+
+    person: Mapped[str] = mapped_column(ForeignKey("people.key", ondelete="CASCADE"), primary_key=True)
+    order: Mapped[int] = mapped_column(primary_key=True)
+    condition: Mapped[str]
+    points: Mapped[dict[str, int]] = mapped_column(JSON)  # by item
