@@ -10,6 +10,7 @@ import pytest
 from documentation import PAGES, ROOT, SLOW, commands, name_of, run_page
 from latentarm import __version__
 from latentarm.cli import main
+from study_participant import participant, serving
 
 SHARED = ROOT.parent / "shared" / "demonstrations"
 
@@ -86,6 +87,10 @@ def test_commands_of_the_user_studies_run(tmp_path: Path, monkeypatch: pytest.Mo
     monkeypatch.chdir(tmp_path)
     Path("examples").symlink_to(ROOT / "examples")
     for line in USER_STUDIES:
+        if line.startswith("latentarm study serve "):
+            with serving(*shlex.split(line)[3:]) as (link, _), participant(link, link) as person:
+                person.take_part()
+            continue
         small = " --simulated 3 --preset smoke" if line.startswith("latentarm study run ") else ""
         assert main(shlex.split(line + small)[1:]) == 0, line
 

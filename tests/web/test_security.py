@@ -54,7 +54,7 @@ class Visitor:
         )
         self.cookie = None
 
-    def stop(self):
+    def stop(self, headers):
         self.stops += 1
 
     def scope(self, kind, path, headers, **more):

@@ -33,6 +33,7 @@ CHECKED = {
     "rosbag2.Reader",
     "safe_open",
     "sqlite3.connect",
+    "create_engine",
     "mujoco.MjSpec.from_file",
     "pq.ParquetFile",
     "zipfile.ZipFile",

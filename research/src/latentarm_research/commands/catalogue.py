@@ -54,6 +54,11 @@ COMMANDS: Final = CommandSet(
             "Write a study's questionnaire: after each condition all items, in a random order"
             " for each person.",
         ),
+        "study serve": _ours(
+            "study_serve:serve_study",
+            "Take real people through a study on the page: consent, practice, trials, questions, completion"
+            " code.",
+        ),
         "study analyse": _ours(
             "study_answers:analyse_study",
             "Analyse recorded trials, with the answers of real people, and write the report.",
@@ -66,6 +71,6 @@ COMMANDS: Final = CommandSet(
     {
         "reproduce": "Reproduce a study of the paper; `reproduce --help` lists them.",
         "measure": "Measure what is behind a figure of the documentation; `measure --help` lists them.",
-        "study": "Send simulated people through the paper's user studies; `study --help` lists how.",
+        "study": "Send simulated or real people through user studies; `study --help` lists how.",
     },
 )

@@ -74,6 +74,8 @@ def analyse_study(
     recorded = read_recorded(folder)
     definition = recorded.definition
     ratings, digest = None, None
+    if recorded.answers:
+        ratings = rate(definition, recorded.answers, recorded.trials)
     if answers is not None:
         if recorded.people_are == "simulated":
             raise UserError(

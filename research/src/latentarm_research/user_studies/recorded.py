@@ -10,6 +10,7 @@ from latentarm.core.untrusted.documents import read_object
 from latentarm_research.people.population import draw_people
 from latentarm_research.people.traits import Traits
 from latentarm_research.studies.results_folder import CONFIG
+from latentarm_research.user_studies.answers.items import Answer
 from latentarm_research.user_studies.catalogue import NAMES, load_definition
 from latentarm_research.user_studies.definition import PREFIX, Definition
 from latentarm_research.user_studies.own.definition_file import read_definition
@@ -21,6 +22,7 @@ DEFINITION: Final = "definition.json"
 TRIALS: Final = "trials.json"
 TRACES: Final = "traces.json"
 PEOPLE: Final = "people.json"
+DATABASE: Final = "study.sqlite"  # of a served study, in place of trials and traces
 DOCUMENTS: Final = (DEFINITION, TRIALS, TRACES, PEOPLE)
 
 PEOPLE_ARE: Final[tuple[PeopleAre, ...]] = ("simulated", "real")
@@ -36,7 +38,8 @@ class Recorded:
     trials: tuple[Trial, ...]  # of all people
     traces: tuple[Trace, ...]  # of their drives; empty where none were kept
     simulated: tuple[Traits, ...]  # what the simulated people are like; empty for real people
-    sizes: Sizes  # of the run; whole for real people
+    sizes: Sizes  # of the run
+    answers: tuple[Answer, ...] = ()  # on the page of a served study
 
     @property
     def documents(self) -> dict[str, object]:
@@ -68,12 +71,11 @@ class Recorded:
     @property
     def who(self) -> str:
         """The people in words, such as ``12 simulated people``."""
-        number = len(self.met)
-        return self.sizes.people(number) if self.people_are == "simulated" else f"{number} real people"
+        return self.sizes.people(len(self.met), self.people_are)
 
 
 def read_recorded(folder: Path) -> Recorded:
-    """Read a folder of `latentarm study run`, or one of trials of real people with the same documents.
+    """Read a folder of `latentarm study run` or `serve`, or trials of real people with the same documents.
 
     Of real people it holds ``config.json`` (``study``, ``definition``, ``people_are``), ``trials.json``,
     ``definition.json`` where the study is not one of the paper's, and ``traces.json`` where ways were kept.
@@ -83,6 +85,8 @@ def read_recorded(folder: Path) -> Recorded:
     people_are: Any = config.get("people_are")
     if people_are not in PEOPLE_ARE:
         raise UserError(f"{folder / CONFIG}: people_are must be one of {', '.join(PEOPLE_ARE)}.")
+    if (folder / DATABASE).exists():
+        return _served(definition, folder, _sizes(folder / CONFIG, config))
     document = _document(folder / TRIALS, definition)
     if document.get("people_are") != people_are:
         raise UserError(f"{folder / TRIALS}: people_are must be {people_are!r}, as in {CONFIG}.")
@@ -97,6 +101,27 @@ def read_recorded(folder: Path) -> Recorded:
         _simulated(folder, config) if people_are == "simulated" else (),
         _sizes(folder / CONFIG, config),
     )
+
+
+def _served(definition: Definition, folder: Path, sizes: Sizes) -> Recorded:
+    """Everybody who has finished a served study."""
+    from latentarm_research.user_studies.drive_record import trial_of
+    from latentarm_research.user_studies.serving.store import Store  # SQLAlchemy, which help does not need
+
+    store = Store(folder / DATABASE)
+    finished = store.finished()
+    store.close()
+    if not finished:
+        raise UserError(f"Nobody has finished the study in {folder} yet.")
+    trials: list[Trial] = []
+    for one in finished:
+        keys = dict.fromkeys((drive.order, drive.task, drive.trial) for drive in one.drives)
+        for key in keys:
+            theirs = [drive for drive in one.drives if (drive.order, drive.task, drive.trial) == key]
+            trials.append(trial_of(definition.measures, theirs))
+    traces = tuple(drive.trace for one in finished for drive in one.drives)
+    answers = tuple(answer for one in finished for answer in one.answers)
+    return Recorded(definition, "real", tuple(trials), traces, (), sizes, answers)
 
 
 def _definition(folder: Path, config: Mapping[str, Any]) -> Definition:

@@ -8,6 +8,7 @@ from typing import Final, final
 from latentarm.core.errors import UserError
 from latentarm_research.studies.page import SMOKE
 from latentarm_research.user_studies.definition import StudyTask
+from latentarm_research.user_studies.record import PeopleAre
 
 
 @final
@@ -34,9 +35,10 @@ class Sizes:
         """Why no claim is tested in a run of these sizes; empty where claims are."""
         return f"preset {SMOKE}: it only shows that the study runs" if self.name == SMOKE else ""
 
-    def people(self, number: int) -> str:
-        """Simulated people in words, with the preset where that is not the whole study."""
-        return f"{number} simulated people" + (f" (preset {SMOKE})" if self.not_judged else "")
+    def people(self, number: int, people_are: PeopleAre) -> str:
+        """So many people in words, with the preset where that is not the whole study."""
+        kind = f"{number} {people_are} {'person' if number == 1 else 'people'}"
+        return kind + (f" (preset {SMOKE})" if self.not_judged else "")
 
     def as_run(self, task: StudyTask) -> StudyTask:
         """A task as a run of these sizes does it."""

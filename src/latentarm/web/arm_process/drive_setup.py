@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import Any, Final, final
 
@@ -9,7 +10,7 @@ import numpy as np
 
 from latentarm.alignment.contract import Seat
 from latentarm.arms.address import MARK, is_address
-from latentarm.arms.catalogue import check_named
+from latentarm.arms.catalogue import PHYSICAL_ARM, check_named
 from latentarm.arms.contract import Arm, SceneArm
 from latentarm.assistance.belief import BELIEF_PERIOD_S
 from latentarm.assistance.boltzmann import BoltzmannBelief
@@ -39,9 +40,10 @@ from latentarm.tasks.catalogue import HELD_OUT
 from latentarm.tasks.place import Place, ScenePlace, surroundings_of, watched
 from latentarm.tasks.step_goals import StepGoals
 from latentarm.tasks.task import Task
+from latentarm.web.arm_process.fixed_drive import FixedDrive
 from latentarm.web.arm_process.help import Help
 from latentarm.web.arm_process.idle_limit import USUAL_MINUTES, idle_s_of
-from latentarm.web.arm_process.initial_state import FREE, RobotOptions, begin, begin_real
+from latentarm.web.arm_process.initial_state import FREE, RobotOptions, begin, begin_real, with_scene
 from latentarm.web.arm_process.page_inputs import INPUT_TIMEOUT_S
 from latentarm.web.arm_process.speeds import Speeds
 from latentarm.web.arm_process.task_run import Todo
@@ -89,6 +91,7 @@ class Spec:
         shadow: whether a real arm is read and nothing is sent to it.
         objects: sources of where things are, see `latentarm.surroundings.catalogue`.
         idle_s: without an input for so long, the arm is disabled, s.
+        fixed: decides task, controls and help, instead of run and task; None leaves them to the page.
 
     Raises:
         UserError: the seed is out of range, a profile is named without a run, or a simulated arm gets a
@@ -115,6 +118,7 @@ class Spec:
     shadow: bool = False
     idle_s: float = idle_s_of(USUAL_MINUTES)
     objects: tuple[str, ...] = ()
+    fixed: FixedDrive | None = None
 
     def __post_init__(self) -> None:
         if not 0 <= self.seed < SEEDS:
@@ -186,6 +190,8 @@ class DriveSetup:
     @property
     def modes(self) -> tuple[ModeName, ...]:
         """The modes to choose from; without goals there is no help."""
+        if self.spec.fixed is not None:
+            return ("latent",) if self.latent_dim else ("end_effector",)
         if not self.latent_dim:
             return ("end_effector",)
         return ("latent", "assisted", "end_effector") if self.task.goals else ("latent", "end_effector")
@@ -306,13 +312,16 @@ class DriveSetup:
     ) -> Step:
         """Algorithm 1 with its safety filters, disengaged; things stand where they begin by default."""
         goals = np.array([goal.configuration for goal in self.task.goals])
+        fixed, rule, assists = self.spec.fixed, BoltzmannBelief, partial(GoalBlending, arbitration=self.help)
+        if fixed is not None:
+            rule, assists = fixed.rule, fixed.assistance
         return Step(
             self.task.robot,
             JoinedController([self.controller, to_pose or self.to_pose()]),
             self._safety,
             goals=self.task.goals,
-            belief=BoltzmannBelief(goals, period_s=BELIEF_PERIOD_S) if self.task.goals else None,
-            assistance=GoalBlending(goals, self.help) if self.task.goals else None,
+            belief=rule(goals, period_s=BELIEF_PERIOD_S) if self.task.goals else None,
+            assistance=assists(goals) if self.task.goals and assists is not None else None,
             dt_s=PERIOD_S,
             surroundings=surroundings or self.surroundings(None),
             calls=calls,
@@ -352,6 +361,8 @@ def load_setup(spec: Spec) -> DriveSetup:
     Raises:
         UserError: the arm, the run, its dataset or the profile cannot be loaded, or do not fit each other.
     """
+    if spec.fixed is not None:
+        return _fixed_setup(spec, spec.fixed)
     run = None if spec.run is None else read_run(spec.run)
     name = spec.task_for(run)
     arm = spec.arm or usual_arm(name)
@@ -396,6 +407,27 @@ def load_setup(spec: Spec) -> DriveSetup:
             " that it was trained for with --task."
         )
     setup.step()  # what cannot be driven fails now rather than later
+    return setup
+
+
+def _fixed_setup(spec: Spec, fixed: FixedDrive) -> DriveSetup:
+    arm = spec.arm or PHYSICAL_ARM
+    check_named(arm)
+    begun = with_scene(fixed.task, spec.choice, fixed.begin(), arm)
+    controller = fixed.controller()
+    setup = DriveSetup(
+        spec=spec,
+        arm=arm,
+        task=begun.place,
+        controller=JoinedController([controller]),
+        latent_dim=controller.input_dim if fixed.latent else 0,
+        axes=() if fixed.latent else controller.modes,
+        help=Help(),
+        start=begun.start,
+        todo=begun.todo,
+        scene=begun.scene,
+    )
+    setup.step()
     return setup
 
 

@@ -19,6 +19,7 @@ from latentarm.runs.folder import Run
 from latentarm.runs.tasks import task_of_run, task_without_run
 from latentarm.tasks.catalogue import SCENE_TASKS, make_scene_task
 from latentarm.tasks.place import Place, ScenePlace
+from latentarm.tasks.scene_task import Beginning, SceneTask
 from latentarm.web.arm_process.task_run import Todo, goal_to_reach, things_to_do
 
 FREE: Final = "free"  # name of the task where none is named: nothing in particular is to be done
@@ -64,16 +65,23 @@ def begin(
         with_things = make_scene_task(task)
         _check_own_robot(task, with_things.robot, robot)
         _check_choice(choice, with_things.choices)
-        begun = with_things.begin(choice, rng)
-        _check_things(task, begun.scene)
-        # Made here too, so that an arm that can touch nothing is refused where the command was typed.
-        make_scene_arm(arm, with_things.robot, begun.state, lambda: 0.0, begun.scene)
-        place = ScenePlace(with_things.robot, begun.goals, with_things.obstacles, begun.objects)
-        return InitialState(place, begun.state, things_to_do(with_things, choice, begun), begun.scene)
+        return with_scene(with_things, choice, with_things.begin(choice, rng), arm)
     named = (robot.robot, robot.end_effector, robot.stated)
     made = task_without_run(task, *named) if run is None else task_of_run(run, task, *named, option=False)
     _check_choice(choice, made.goals)
     return InitialState(made, made.sample_start(choice, rng), goal_to_reach(made, choice))
+
+
+def with_scene(task: SceneTask, choice: int, begun: Beginning, arm: str) -> InitialState:
+    """A simulated arm among the things of a task.
+
+    Raises UserError if it can touch none, or they are too many.
+    """
+    _check_things(task.name, begun.scene)
+    # Made here too, so that an arm that can touch nothing is refused where the command was typed.
+    make_scene_arm(arm, task.robot, begun.state, lambda: 0.0, begun.scene)
+    place = ScenePlace(task.robot, begun.goals, task.obstacles, begun.objects)
+    return InitialState(place, begun.state, things_to_do(task, choice, begun), begun.scene)
 
 
 def begin_real(run: Run | None, task: str | None, choice: int, robot: RobotOptions) -> InitialState:

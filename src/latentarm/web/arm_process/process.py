@@ -14,6 +14,7 @@ from typing import Final, final
 
 from threadpoolctl import threadpool_limits
 
+from latentarm.arms.contract import SceneArm
 from latentarm.control.clock import MonotonicClock
 from latentarm.core.errors import UserError
 from latentarm.core.logs import LogSettings, log_settings, logging_as
@@ -69,8 +70,10 @@ def run_control(spec: Spec, channel: Channel, server: int, logs: LogSettings) ->
         def drive(driven: Driven, note: Notice | None) -> orders.Change | None:
             calls = begin_incident(driven.setup)
             given = (driven.setup, driven.arm, channel, clock, writer, orphaned, driven.steering, note)
+            fixed, arm = driven.setup.spec.fixed, driven.arm
+            observers = [fixed.watch(arm)] if fixed is not None and isinstance(arm, SceneArm) else []
             try:
-                return Drive(*given, calls=calls).run()
+                return Drive(*given, observers=observers, calls=calls).run()
             finally:
                 if calls is not None:
                     calls.close()

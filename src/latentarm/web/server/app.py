@@ -148,8 +148,8 @@ def _serve_alone(
         gate = gated(
             app, control, config, port, keys, (lambda: "") if invitations is None else invitations.next
         )
-        server = _Server(server_config(gate, config))
-        with _ended_by_signals(server):
+
+        def open_it() -> None:
             first = f"{base}/" if invitations is None else invitations.first()
             say(f"The page is at {first} (end with Ctrl-C).")
             if invitations is not None:
@@ -166,12 +166,21 @@ def _serve_alone(
                     "Without a run the page has end-effector control alone; `latentarm demo` or `latentarm"
                     " train` makes one, and `latentarm teleop RUN` drives it."
                 )
-            # Every input passes through here.
-            with short_collections():
-                asyncio.run(serve_on(listening, server, limits_here()))
+
+        serve_gate(gate, config, listening, open_it)
         say("The page is closed.")
     for journal in sorted(set(out.glob(f"*{JOURNAL_SUFFIX}")) - before):
         say(f"To use what was recorded: latentarm export {shlex.quote(str(journal))} --out NEW_FOLDER")
+
+
+def serve_gate(gate: Gate, config: TeleopConfig, listening: socket.socket, ready: Callable[[], None]) -> None:
+    """Serve until Ctrl-C, SIGTERM or a closed terminal; ``ready`` is called once before."""
+    server = _Server(server_config(gate, config))
+    with _ended_by_signals(server):
+        ready()
+        # Every input passes through here.
+        with short_collections():
+            asyncio.run(serve_on(listening, server, limits_here()))
 
 
 @final
@@ -278,7 +287,7 @@ def build_app(
 
     assets = Assets()
     camera_names = [] if cameras is None else [source.name for source in cameras.sources]
-    pages = Pages(assets, model_names(), camera_names, locked=lock.on)
+    pages = Pages(assets, model_names(), camera_names, locked=lock.on, fixed=spec.fixed is not None)
     camera_routes = None if cameras is None else CameraRoutes(cameras, sessions)
 
     @asynccontextmanager
@@ -344,7 +353,7 @@ def gated(
         origins,
         keys,
         secure=config.encrypted,
-        stop=lambda: control.stop(Notice(code="stop_pressed")),
+        stop=lambda _: control.stop(Notice(code="stop_pressed")),
         invite=invite,
         long_bodies={IMPORT: IMPORT_LIMIT},
     )

@@ -66,13 +66,21 @@ class Pages:
     """Every page in every language.
 
     ``models`` are names in the catalogue, in the order of the Teach page; ``cameras`` names of the cameras;
-    ``locked``: whether the host has locked Set up, which leaves out the pages in `LOCKED`.
+    ``locked``: whether the host has locked Set up, which leaves out the pages in `LOCKED`. ``fixed``: whether
+    it is decided what is driven and how, as in a study, which leaves the page Drive alone.
     """
 
     def __init__(
-        self, assets: Assets, models: Sequence[str], cameras: Sequence[str] = (), *, locked: bool = False
+        self,
+        assets: Assets,
+        models: Sequence[str],
+        cameras: Sequence[str] = (),
+        *,
+        locked: bool = False,
+        fixed: bool = False,
     ) -> None:
-        self.all = tuple(page for page in PAGES if not (locked and page.name in LOCKED))
+        found = PAGES[:1] if fixed else PAGES
+        self.all = tuple(page for page in found if not (locked and page.name in LOCKED))
         templates = Environment(
             loader=FileSystemLoader(FOLDER), autoescape=True, undefined=StrictUndefined, trim_blocks=True
         )
@@ -82,6 +90,7 @@ class Pages:
                 page=page,
                 pages=self.all,
                 locked=locked,
+                fixed=fixed,
                 asset=assets.path,
                 cameras=cameras,
                 modules=assets.modules(page.script),

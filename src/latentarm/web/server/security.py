@@ -62,6 +62,7 @@ class Gate:
         keys: None admits everybody, for a server on the loopback.
         secure: whether the cookie is for TLS alone.
         long_bodies: paths that take bodies longer than `BODY_LIMIT`, with their limits, bytes.
+        stop: stops the arm; gets the request's headers.
         invite: makes a link for the next person; called when a link was used, and for the host's page.
     """
 
@@ -73,7 +74,7 @@ class Gate:
         keys: Keys | None = None,
         *,
         secure: bool = False,
-        stop: Callable[[], None],
+        stop: Callable[[Headers], None],
         long_bodies: Mapping[str, int] = MappingProxyType({}),
         invite: Callable[[], str] = lambda: "",
     ) -> None:
@@ -144,7 +145,7 @@ class Gate:
         if scope["path"] == STOP:
             if scope["method"] != "POST":
                 return PlainTextResponse("Stop is a POST.", 405, headers={"allow": "POST"})
-            self._stop()
+            self._stop(Headers(scope=scope))
             return Response(status_code=204)
         if scope["path"] == INVITATION:
             is_host = self._keys is not None and self._keys.is_host(_cookie(Headers(scope=scope)))

@@ -60,8 +60,11 @@ const { settings, connection, status, lease, stop, feedback } = attachPage({
   repaint: () => drawing?.repaint(),
 });
 
+// In a study nothing is chosen here, and everybody drives at full speed.
+const fixed = document.documentElement.hasAttribute("data-fixed");
+const values = () => (fixed ? { ...settings.values, sensitivity: 1 } : settings.values);
 const shaped = (/** @type {number} */ x, /** @type {number} */ y) =>
-  modeInput(settings.values, connection.state, connection.welcome, x, y);
+  modeInput(values(), connection.state, connection.welcome, x, y);
 
 const input = new DriveInput(connection, shaped, attachTremor(settings));
 attachLatchLimit(input, connection, settings, status.asksToPushAgain);
@@ -92,7 +95,7 @@ const poses = attachPoses(connection);
 const thingsHere = attachThingsHere(connection);
 const modes = attachModes(connection, settings);
 const inPair = (/** @type {number} */ axes, /** @type {number} */ x, /** @type {number} */ y) =>
-  connection.state ? modeInput(settings.values, { ...connection.state, mode: "end_effector", axes }, connection.welcome, x, y) : [0, 0];
+  connection.state ? modeInput(values(), { ...connection.state, mode: "end_effector", axes }, connection.welcome, x, y) : [0, 0];
 const nextWords = attachToGo(connection, inPair, () => settings.values.panel === "switch");
 /** Where each direction leads, as drawn last. @type {Paths | null} */
 let paths = null;
@@ -121,12 +124,14 @@ const scanner = attachScanning(input, settings, stop, (stopIt, group) => {
   if (does === "ask") return [{ id: "ask", label: say(label), act: () => connection.send({ type: "ask_to_drive" }) }, stopIt];
   // On the way back any press ends it.
   if (connection.state?.returning || !(connection.driving || does)) return [stopIt];
-  const more = moreChoices(radioChoices(byId("help"), group), [...radioChoices(byId("speed"), group), ...buttonChoice("way-back"), ...poses.choices(), ...thingsHere.choices(), ...practice.choices()], group);
+  const more = moreChoices(radioChoices(byId("help"), group), [
+    ...(fixed ? [] : [...radioChoices(byId("speed"), group), ...buttonChoice("way-back"), ...poses.choices(), ...thingsHere.choices()]), ...practice.choices(),
+  ], group);
   if (connection.state?.lost) return [...buttonChoice("lost-again"), stopIt, more];
   const unconfirmed = checklist.choices();
   if (unconfirmed.length) return [...unconfirmed, stopIt, more];
   return input.live ? [...directionChoices(settings.values.bestFirst ? nextWords(paths)?.direction : undefined), ...gripper.choices(), mode, stopIt, more]
-    : [{ id: "enable", label: say("layout.enable"), act: enable }, mode, ...task.choices(), more];
+    : [{ id: "enable", label: say("layout.enable"), act: enable }, mode, ...(fixed ? [] : task.choices()), more];
 });
 attachKeyboard(input, settings, { enable, nextMode: modes.next, axes: modes.axes, gripper: () => gripper.toggle("keyboard") });
 attachGamepad(input, settings, scanner, { enable, stop, gripper: () => gripper.toggle("gamepad"), nextMode: modes.next });

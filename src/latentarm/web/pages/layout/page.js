@@ -61,6 +61,10 @@ export function attachPage({ drop = () => {}, repaint = () => {}, runChanged = (
   connection.addEventListener("run_changed", runChanged);
   // It may be another arm, with other limits: nothing that was drawn, confirmed or chosen before counts.
   connection.addEventListener("server_changed", () => location.reload());
+  // In a study: what comes next is at the same address.
+  connection.addEventListener("refused", (event) => {
+    if (/** @type {CustomEvent} */ (event).detail.notice.code === "drive_over") location.reload();
+  });
   connection.addEventListener("learning", () => {
     const { welcome, learning } = connection;
     if (!welcome || !learning || learning.profiles.join() === welcome.profiles.join()) return;

@@ -11,7 +11,9 @@ export function attachPractice(connection, input, settings) {
   const list = byId("practice-steps");
   /** @type {Practice | null} */
   let practice = null;
-  let open = !settings.values.practised;
+  // A study has practice of its own.
+  const offered = () => !settings.values.practised && !document.documentElement.hasAttribute("data-fixed");
+  let open = offered();
 
   const show = () => {
     panel.hidden = !open;
@@ -49,7 +51,7 @@ export function attachPractice(connection, input, settings) {
   byId("practice-skip").addEventListener("click", close);
   settings.addEventListener("change", () => {
     // Somebody else may sit here now.
-    if (practice === null) open = !settings.values.practised;
+    if (practice === null) open = offered();
     show();
   });
   connection.addEventListener("state", () => {

@@ -1,0 +1,101 @@
+"""`latentarm study serve`: a study with real people, on the page."""
+
+import json as json_format
+import os
+from functools import partial
+from pathlib import Path
+from typing import Annotated
+
+from tyro.conf import Positional, arg
+
+from latentarm.commands.output import say
+from latentarm.core.errors import UserError
+from latentarm.runs.options import Json, Seed
+from latentarm_research.commands.study_options import StudyName
+from latentarm_research.user_studies.own.definition_file import find_definition
+from latentarm_research.user_studies.sizes import PRESETS
+
+
+def serve_study(
+    name: Positional[StudyName],
+    out: Annotated[
+        Path | None, arg(metavar="DIR", help="Folder of the study; by default studies/NAME-people.")
+    ] = None,
+    host: Annotated[str, arg(help="The address to serve.")] = "127.0.0.1",
+    port: Annotated[int, arg(help="Port; 0 takes any free one.")] = 8461,
+    certfile: Annotated[Path | None, arg(metavar="PEM", help="Certificate for TLS.")] = None,
+    keyfile: Annotated[Path | None, arg(metavar="PEM", help="Its private key.")] = None,
+    public_url: Annotated[
+        str | None,
+        arg(
+            metavar="URL",
+            help="The address that people open where a proxy serves the page; see docs/deploy.md.",
+        ),
+    ] = None,
+    information: Annotated[
+        Path | None,
+        arg(metavar="FILE", help="Markdown that people read and consent to; without it, a general text."),
+    ] = None,
+    prolific: Annotated[
+        str | None,
+        arg(metavar="STUDY_ID", help="Let participants of this study at Prolific in by its links too."),
+    ] = None,
+    completion_code: Annotated[
+        str | None,
+        arg(metavar="CODE", help="What everybody gets at the end; without it, a code of their own."),
+    ] = None,
+    at_once: Annotated[
+        int | None,
+        arg(metavar="N", help="How many people may drive at the same time; by default one per processor."),
+    ] = None,
+    away_hours: Annotated[
+        float, arg(metavar="H", help="Who is away for longer loses the place to the next.")
+    ] = 2.0,
+    preset: Annotated[
+        str, arg(metavar="{" + ",".join(PRESETS) + "}", help="smoke: trials of a second, to try it out.")
+    ] = "paper",
+    seed: Seed = 0,
+    json: Json = False,
+) -> int:
+    """Take real people through a study on the page: consent, practice, trials, questions, completion code.
+
+    Prints the links for participants; Ctrl-C ends it, and the same command goes on with it.
+    For example: latentarm study serve eating
+    """
+    from latentarm.core.untrusted.opening import read_bytes
+    from latentarm.demonstrations.bounds import MAX_TEXT_BYTES
+    from latentarm.web.arm_process.drive_setup import Spec
+    from latentarm.web.server.config import TeleopConfig
+    from latentarm_research.user_studies.serving.options import Serving, general_information
+    from latentarm_research.user_studies.serving.serve import serve
+
+    definition = find_definition(name)
+    if preset not in PRESETS:
+        raise UserError(f"There is no preset {preset!r}: choose from {', '.join(PRESETS)}.")
+    if not 0.0 < away_hours <= 24 * 365:
+        raise UserError(f"--away-hours must be above 0 and at most a year, not {away_hours:g}.")
+    if at_once is not None and at_once < 1:
+        raise UserError(f"--at-once must be 1 or more, not {at_once}.")
+    folder = Path("studies", f"{definition.name}-people") if out is None else out
+    if information is None:
+        text = general_information(definition, away_hours)
+    else:
+        text = read_bytes(information, MAX_TEXT_BYTES).decode("utf-8", "replace")
+    serving = Serving(
+        definition,
+        PRESETS[preset],
+        seed,
+        TeleopConfig(Spec(out=folder), host, port, certfile, keyfile, public_url=public_url),
+        text,
+        at_once or os.cpu_count() or 1,
+        prolific,
+        completion_code,
+        3600.0 * away_hours,
+    )
+
+    def ready(address: str) -> None:
+        if json:
+            print(json_format.dumps({"address": address}), flush=True)
+
+    serve(serving, partial(say, json=json), ready)
+    return 0

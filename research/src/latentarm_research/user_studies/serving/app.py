@@ -1,0 +1,249 @@
+"""The server of a study: the participants' pages, and the Drive page of each who drives."""
+
+import asyncio
+import secrets
+import shutil
+import time
+from collections.abc import AsyncGenerator, Awaitable, Callable
+from contextlib import asynccontextmanager
+from datetime import UTC, datetime
+from typing import Annotated, Final, final
+
+from pydantic import Field
+from starlette.applications import Starlette
+from starlette.datastructures import Headers, QueryParams
+from starlette.requests import HTTPConnection, Request
+from starlette.responses import PlainTextResponse, RedirectResponse, Response
+from starlette.routing import Route
+from starlette.types import Receive, Scope, Send
+
+from latentarm.core.errors import UserError
+from latentarm.web.protocol.notice import Message, Notice
+from latentarm.web.server.answers import NO_STORE, body_of, json_answer
+from latentarm.web.server.assets import Assets
+from latentarm_research.user_studies.answers.items import items_of
+from latentarm_research.user_studies.serving.models import Models
+from latentarm_research.user_studies.serving.options import Serving
+from latentarm_research.user_studies.serving.participant_pages import HOME, ParticipantPages, answer_file
+from latentarm_research.user_studies.serving.running import DRIVES, RunningDrive, recovered, refuse_socket
+from latentarm_research.user_studies.serving.store import Standing, Store
+from latentarm_research.user_studies.serving.way import Next, ToAnswer, ToDrive, Way
+
+COOKIE: Final = "latentarm_study"
+SITE_IDS: Final = ("PROLIFIC_PID", "STUDY_ID", "SESSION_ID")  # that a recruiting site adds to its link
+MOST: Final = 64  # characters of a code or id in a link, at most
+_READING: Final = ("GET", "HEAD")
+
+
+@final
+class _Consented(Message):
+    digest: str  # of the text that the page has shown
+
+
+@final
+class _Answered(Message):
+    order: Annotated[int, Field(ge=0)]
+    points: dict[str, int]  # by item; one that is absent was left out
+
+
+@final
+class StudyServer:
+    """The application of a study. Each participant who drives has an arm of their own."""
+
+    def __init__(self, serving: Serving, store: Store, models: Models) -> None:
+        self._serving = serving
+        self._store = store
+        self._models = models
+        self._way = Way(serving.definition, serving.sizes, serving.seed)
+        assets = Assets()
+        self._pages = ParticipantPages(serving, self._way, assets)
+        self._drives: dict[str, RunningDrive] = {}  # by the person's key
+        self._following: set[asyncio.Task[None]] = set()
+        self._changing = asyncio.Lock()
+        posts = (self.consent, self.begin, self.ready, self.answers, self.withdraw)
+        self._app = Starlette(
+            routes=[
+                Route(HOME, self._home),
+                *(Route(f"{HOME}/{do.__name__}", self._known(do), methods=["POST"]) for do in posts),
+                *(Route(f"{HOME}/{name}", answer_file) for name in ("study.js", "study.css")),
+                Route("/static/{version}/{name:path}", assets.answer),
+            ],
+            lifespan=self._life,
+        )
+
+    def stop(self, headers: Headers) -> None:
+        """Stop the arm of the person whose browser asks."""
+        key = HTTPConnection({"type": "http", "headers": headers.raw}).cookies.get(COOKIE, "")
+        if (drive := self._drives.get(key)) is not None:
+            drive.stop(Notice(code="stop_pressed"))
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Serve the participants' pages, and those of a drive to the participant who drives."""
+        if scope["type"] == "lifespan" or scope["path"].startswith((HOME, "/static/")):
+            await self._app(scope, receive, send)
+            return
+        drive = self._drives.get(HTTPConnection(scope).cookies.get(COOKIE, ""))
+        if scope["type"] == "websocket":
+            await (refuse_socket(receive, send) if drive is None else drive(scope, receive, send))
+        elif drive is not None and scope["method"] in _READING:
+            await drive(scope, receive, send)
+        else:
+            home = scope["path"] == "/" and scope["method"] in _READING
+            answer = RedirectResponse(HOME, 303) if home else PlainTextResponse("There is no such page.", 404)
+            await answer(scope, receive, send)
+
+    @asynccontextmanager
+    async def _life(self, _: Starlette) -> AsyncGenerator[None]:
+        # Drives that had ended when the server was killed are kept; those under way are driven again.
+        for key, record in recovered(self._serving.out):
+            self._store.keep_drive(key, record)
+        shutil.rmtree(self._serving.out / DRIVES, ignore_errors=True)
+        try:
+            yield
+        finally:
+            async with self._changing:
+                for key in list(self._drives):
+                    await self._end_drive(key)
+
+    def _known(self, do: Callable[[Request, str], Awaitable[Response]]) -> Callable[..., Awaitable[Response]]:
+        """A request of a participant; one that cannot be met is answered by a sentence."""
+
+        async def answer(request: Request) -> Response:
+            key = request.cookies.get(COOKIE, "")
+            if self._store.standing(key) is None:
+                return _refused("Open the link that you were given.", 403)
+            try:
+                return await do(request, key)
+            except UserError as error:
+                return _refused(str(error), 400)
+
+        return answer
+
+    async def _home(self, request: Request) -> Response:
+        if "left" in request.query_params:
+            return self._pages.page("left")
+        link, visit = self._link(request.query_params)
+        if link:
+            return self._arrive(link, visit)
+        standing = self._store.standing(request.cookies.get(COOKIE, ""))
+        if standing is None:
+            return self._pages.page("unknown", status=404)
+        return await self._next_page(standing)
+
+    def _link(self, given: QueryParams) -> tuple[str, str]:
+        """Code of a link of ours, or the person and visit of a link of the recruiting site; "" for none."""
+        pid, study, visit = (given.get(name, "") for name in SITE_IDS)
+        fits = all(one.isascii() and one.isalnum() and len(one) <= MOST for one in (pid, visit))
+        if study and study == self._serving.prolific and fits:
+            return pid, visit
+        return given.get("code", pid)[:MOST], ""
+
+    def _arrive(self, link: str, visit: str) -> Response:
+        key = self._store.arrive(link, visit, time.time())
+        if key is None:
+            return self._pages.page("unknown", status=404)
+        answer = RedirectResponse(HOME, 303, headers=NO_STORE)
+        secure = self._serving.config.encrypted
+        # Lax: people come from the page of another site.
+        answer.set_cookie(COOKIE, key, max_age=90 * 86400, secure=secure, httponly=True, samesite="lax")
+        return answer
+
+    async def _next_page(self, standing: Standing) -> Response:
+        key = standing.key
+        if standing.consented and standing.completion is None:
+            if await asyncio.to_thread(self._store.place, key, time.time()) is None:
+                return self._pages.page("lapsed" if standing.lapsed else "full")
+            standing = self._store.standing(key) or standing
+        due = self._way.after(standing)
+        if due == "finished":
+            code = self._store.finish(key, self._serving.completion or secrets.token_hex(4).upper())
+            return self._pages.page("finished", code=code)
+        if due == "consent":
+            return self._pages.consent()
+        return self._pages.due(due, standing, running=key in self._drives)
+
+    async def consent(self, request: Request, key: str) -> Response:
+        """Note that they consent."""
+        given = await body_of(request, _Consented)
+        if given.digest == self._serving.digest:
+            when = datetime.now(UTC).isoformat(timespec="seconds")
+            await asyncio.to_thread(self._store.consent, key, given.digest, when)
+        return _onward(HOME)
+
+    async def begin(self, _: Request, key: str) -> Response:
+        """Begin the drive that is due, or go on with it."""
+        async with self._changing:
+            due, standing = self._due(key)
+            if not isinstance(due, ToDrive) or standing.number is None:
+                return _onward(HOME)
+            if key in self._drives and self._drives[key].due != due:
+                await self._end_drive(key)
+            if key not in self._drives:
+                if len(self._drives) >= self._serving.at_once:
+                    return _refused("All arms are in use. Wait a minute, and press again.", 503)
+                model = self._models.folder(due.condition, due.task)
+                drive = await RunningDrive.begin(standing.number, due, model, self._serving.config, key)
+                self._drives[key] = drive
+                following = asyncio.create_task(self._follow(key, drive))
+                self._following.add(following)
+                following.add_done_callback(self._following.discard)
+        return _onward("/")
+
+    async def _follow(self, key: str, drive: RunningDrive) -> None:
+        """Keep the record of a drive when it ends by itself, and close it."""
+        record = await drive.over()
+        async with self._changing:
+            if self._drives.get(key) is not drive:
+                return
+            if record is not None and drive.due.kind == "trial":
+                await asyncio.to_thread(self._store.keep_drive, key, record)
+            await self._end_drive(key)
+
+    async def _end_drive(self, key: str) -> None:
+        """Close a person's drive, if one is under way."""
+        if (drive := self._drives.pop(key, None)) is not None:
+            await drive.close()
+
+    async def ready(self, _: Request, key: str) -> Response:
+        """End the practice."""
+        async with self._changing:
+            due, _standing = self._due(key)
+            if isinstance(due, ToDrive) and due.kind == "practice":
+                await self._end_drive(key)
+                await asyncio.to_thread(self._store.practised, key, due.order + 1)
+        return _onward(HOME)
+
+    async def answers(self, request: Request, key: str) -> Response:
+        """Keep answers."""
+        given = await body_of(request, _Answered)
+        due, _ = self._due(key)
+        if not isinstance(due, ToAnswer) or given.order != due.order:
+            return _refused("These questions are not asked now: your answers may be saved already.", 409)
+        most = {name: scale.points for name, (scale, _) in items_of(self._serving.definition).items()}
+        if not all(1 <= points <= most.get(name, 0) for name, points in given.points.items()):
+            return _refused("These are not answers to the questions of this study.", 400)
+        await asyncio.to_thread(self._store.keep_answers, key, due.order, due.condition.name, given.points)
+        return _onward(HOME)
+
+    async def withdraw(self, _: Request, key: str) -> Response:
+        """Delete everything about them."""
+        async with self._changing:
+            await self._end_drive(key)
+            await asyncio.to_thread(self._store.withdraw, key)
+        answer = _onward(f"{HOME}?left")
+        answer.delete_cookie(COOKIE)
+        return answer
+
+    def _due(self, key: str) -> tuple[Next, Standing]:
+        standing = self._store.standing(key)
+        if standing is None:
+            raise UserError("Open the link that you were given.")
+        return self._way.after(standing), standing
+
+
+def _onward(to: str) -> Response:
+    return json_answer({"to": to})
+
+
+def _refused(why: str, status: int) -> Response:
+    return json_answer({"problem": why}, status)

@@ -1,0 +1,131 @@
+"""One drive of a study on the Drive page: what is driven, and its record, written by the arm's process."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Final, final
+
+import numpy as np
+
+from latentarm.arms.contract import SceneArm
+from latentarm.assistance.assistance import AssistanceRule
+from latentarm.assistance.belief import Rule
+from latentarm.assistance.controllers.contract import Controller
+from latentarm.core.errors import UserError
+from latentarm.core.files import write_text
+from latentarm.core.types import StepRecord
+from latentarm.models.saving import read_model
+from latentarm.tasks.scene_task import Beginning, SceneTask
+from latentarm.web.arm_process.fixed_drive import FixedDrive
+from latentarm_research.drives.following import Following
+from latentarm_research.user_studies.conditions import assistance_of, belief_of, controller_of
+from latentarm_research.user_studies.definition import Definition
+from latentarm_research.user_studies.drive_record import record_of
+from latentarm_research.user_studies.scenes import AdaptedTask, scene_of
+from latentarm_research.user_studies.serving.way import ToDrive
+from latentarm_research.user_studies.training import Trained
+
+RECORD: Final = "drive.json"  # appears whole in the folder of a drive once it has ended
+
+
+def check_served(definition: Definition) -> None:
+    """Raise a `UserError` where a condition cannot be driven on the page."""
+    for one in definition.conditions:
+        why = ""
+        if one.controls == "two_sticks":
+            why = "needs two sticks, and the page has one"
+        elif one.assists == "interpolation":
+            why = "moves the arm while the stick is let go, which the page forbids"
+        elif one.aligns != "none":
+            why = "needs answers about each person's own directions, which are not asked yet"
+        if why:
+            raise UserError(f"{definition.name} cannot be served: its condition {one.name} {why}.")
+
+
+@final
+@dataclass(frozen=True)
+class PageDrive(FixedDrive):
+    """A drive of a trial, or of practice, as plain values."""
+
+    due: ToDrive  # what is driven, and for how long
+    person: int  # their number
+    model: Path | None  # folder of the condition's model; None where it has none
+    folder: Path  # for the record
+
+    @property
+    def task(self) -> SceneTask:
+        """The scene's task, with this drive's limit."""
+        return AdaptedTask(scene_of(self.due.task.scene), self.due.limit_s)
+
+    def begin(self) -> Beginning:
+        """The same scene and start for a person, a trial and an attempt in every condition.
+
+        A simulated person who comes no nearer is stuck; a real one may think.
+        """
+        begun = self.task.begin(self.due.choice, np.random.default_rng(self.due.seed))
+        return replace(begun, patient=True)
+
+    @property
+    def latent(self) -> bool:
+        """Whether the condition has a model."""
+        return self.model is not None
+
+    def controller(self) -> Controller:
+        """That of the condition, as for simulated people."""
+        trained = None
+        if self.model is not None:
+            key = (self.due.condition.model, self.due.condition.context)
+            trained = Trained(self.due.task.name, {key: read_model(self.model)}, None, 0, 0.0)
+        return controller_of(self.due.condition, self.task.robot, trained, self.person)
+
+    @property
+    def rule(self) -> Rule:
+        """That of the condition."""
+        return belief_of(self.due.condition, self.task.robot)
+
+    @property
+    def assistance(self) -> AssistanceRule | None:
+        """That of the condition."""
+        return assistance_of(self.due.condition, self.task.robot)
+
+    def watch(self, arm: SceneArm) -> Callable[[StepRecord], None]:
+        """Measure the drive as a simulated one is measured, and write its record when it ends."""
+        return _Watch(self, arm)
+
+
+@final
+class _Watch:
+    """Follows a drive from when the arm is first enabled until it has ended or its time is over."""
+
+    def __init__(self, drive: PageDrive, arm: SceneArm) -> None:
+        self._drive = drive
+        self._arm = arm
+        self._chain = drive.task.robot.chain
+        self._limit_s = drive.task.time_limit_s
+        self._follow = Following(drive.begin())
+        self._stops = 0
+        self._enabled = False
+        self._over = False
+
+    def __call__(self, record: StepRecord) -> None:
+        enabled = record.command.stop is None
+        records = self._follow.records
+        if self._over or not (records or enabled):
+            return
+        self._stops += self._enabled and not enabled
+        self._enabled = enabled
+        self._follow.sees(replace(self._arm.scene_state(), time_s=record.time_s))
+        if self._follow.ending is None:
+            records.append(record)
+        if records and (
+            self._follow.ending is not None or record.time_s - records[0].time_s >= self._limit_s
+        ):
+            self._over = True
+            self._write()
+
+    def _write(self) -> None:
+        due, person = self._drive.due, self._drive.person
+        driven = self._follow.trace(due.choice, self._chain, self._stops)
+        where = (due.condition.name, due.order, due.task, due.trial, due.attempt)
+        found = record_of("real", person, *where, driven)
+        write_text(self._drive.folder / RECORD, found.model_dump_json())

@@ -1,0 +1,50 @@
+/** A participant's page: what is filled in goes to the server, which answers where to go on, or why not. */
+
+const HOME = "/study";
+
+/** The content of a form. @param {HTMLFormElement} form */
+function content(form) {
+  const { to, digest, order } = form.dataset;
+  if (to === "consent") return { digest };
+  if (to !== "answers") return {};
+  const points = Object.fromEntries([...new FormData(form)].map(([name, value]) => [name, Number(value)]));
+  return { order: Number(order), points };
+}
+
+/** @param {HTMLFormElement} form @returns {Promise<{to?: string, problem?: string}>} */
+async function send(form) {
+  const headers = { "content-type": "application/json" };
+  try {
+    const answer = await fetch(`${HOME}/${form.dataset.to}`, { method: "POST", headers, body: JSON.stringify(content(form)) });
+    return await answer.json();
+  } catch {
+    return { problem: "The server cannot be reached. Try again." };
+  }
+}
+
+const problem = document.getElementById("problem");
+const busy = document.getElementById("busy");
+for (const form of document.querySelectorAll("form")) {
+  form.addEventListener("submit", async (event) => {
+    event.preventDefault();
+    const buttons = document.querySelectorAll("button");
+    for (const button of buttons) button.disabled = true;
+    problem?.parentElement?.toggleAttribute("hidden", true);
+    busy?.toggleAttribute("hidden", form.dataset.to !== "begin");
+    const answer = await send(form);
+    if (answer.to) {
+      location.assign(answer.to);
+      return;
+    }
+    // Nothing is lost: the form stays as it is.
+    if (problem) problem.textContent = answer.problem ?? "";
+    problem?.parentElement?.toggleAttribute("hidden", false);
+    busy?.toggleAttribute("hidden", true);
+    for (const button of buttons) button.disabled = false;
+  });
+}
+
+// A page from the history of the browser is an old one.
+window.addEventListener("pageshow", (event) => {
+  if (event.persisted) location.reload();
+});

@@ -1,0 +1,59 @@
+"""The pages of a study itself: information, practice, trials, questions, and the code."""
+
+from pathlib import Path
+from typing import Any, Final, final
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from markdown_it import MarkdownIt
+from starlette.requests import Request
+from starlette.responses import FileResponse, HTMLResponse, Response
+
+from latentarm.web.server.answers import NO_STORE
+from latentarm.web.server.assets import Assets
+from latentarm_research.user_studies.answers.items import items_of
+from latentarm_research.user_studies.serving.options import PAGES, Serving
+from latentarm_research.user_studies.serving.store import Standing
+from latentarm_research.user_studies.serving.way import ToAnswer, ToDrive, Way
+
+HOME: Final = "/study"
+
+
+@final
+class ParticipantPages:
+    """Renders the pages."""
+
+    def __init__(self, serving: Serving, way: Way, assets: Assets) -> None:
+        self._serving = serving
+        self._way = way
+        self._assets = assets
+        templates = Environment(
+            loader=FileSystemLoader(PAGES), autoescape=True, undefined=StrictUndefined, trim_blocks=True
+        )
+        self._template = templates.get_template("study.html")
+
+    def page(self, name: str, *, status: int = 200, **shown: Any) -> Response:
+        """A page; ``name`` is that of a part of the template, and ``shown`` what it needs."""
+        html = self._template.render(
+            name=name, definition=self._serving.definition, asset=self._assets.path, home=HOME, shown=shown
+        )
+        return HTMLResponse(html, status, headers=NO_STORE)
+
+    def consent(self) -> Response:
+        """The information that people consent to."""
+        text = MarkdownIt("commonmark", {"html": False}).render(self._serving.information)
+        return self.page("consent", information=text, digest=self._serving.digest)
+
+    def due(self, due: ToDrive | ToAnswer, standing: Standing, *, running: bool) -> Response:
+        """What is next for a person who has a place; ``running``: whether a drive of theirs is under way."""
+        shown: dict[str, Any] = {"place": due.order + 1, "of": len(self._way.order(standing.number or 0))}
+        if isinstance(due, ToAnswer):
+            items = items_of(self._serving.definition)
+            asked = [(name, items[name][1].text, items[name][0].points) for name in due.items]
+            return self.page("questions", **shown, order=due.order, asked=asked)
+        failed = due.attempt > 0 and not standing.drives[-1].trace.success
+        return self.page(due.kind, **shown, due=due, running=running, failed=failed)
+
+
+async def answer_file(request: Request) -> Response:
+    """The script and the style sheet of the pages."""
+    return FileResponse(PAGES / Path(request.url.path).name, headers=NO_STORE)

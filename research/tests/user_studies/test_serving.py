@@ -1,0 +1,111 @@
+"""A study with a scripted participant over HTTP and WebSocket, in real processes that are killed."""
+
+import json
+import os
+import sqlite3
+import threading
+import time
+from contextlib import closing, suppress
+from pathlib import Path
+
+import httpx
+import numpy as np
+import pytest
+
+from latentarm.cli import main
+from latentarm_research.user_studies.recorded import read_recorded
+from study_participant import LATENT, MODES, TWIST, definition, next_link, participant, serving
+
+KILLS = int(os.environ.get("LATENTARM_STUDY_KILLS", "2"))
+"""How often the server is killed."""
+
+
+@pytest.mark.slow
+def test_a_participant_goes_through_a_study_with_a_learned_model_and_is_reported_as_a_person(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    study, out = tmp_path / "two_ways.json", tmp_path / "people"
+    study.write_text(json.dumps(definition(MODES, LATENT)))
+    with (
+        serving(str(study), "--out", str(out), "--completion-code", "C0DE") as (link, _),
+        participant(link, link) as person,
+    ):
+        assert person.part == "consent"
+        # Nothing is driven before they consent.
+        assert person.post("begin").json()["to"] == "/study"
+        person.consent()
+        person.ready()
+        # A trial whose end they do not see, because the tab is closed, does not count.
+        with suppress(InterruptedError), person.driving():
+            raise InterruptedError
+        time.sleep(1.5)
+        person.take_part()
+        assert "C0DE" in person.page
+        with participant(link, next_link(out)) as other:
+            other.take_part()
+            key = other.client.cookies["latentarm_study"]
+            other.post("withdraw")
+            assert other.part == "unknown"
+    recorded = read_recorded(out)
+    assert (recorded.people_are, len(recorded.met)) == ("real", 1)
+    assert [one.order for one in recorded.trials] == [0, 1]
+    assert {one.condition for one in recorded.trials} == {"Modes", "Latent"}
+    for trial in recorded.trials:
+        assert trial.measures["time_s"] == pytest.approx(1.0, abs=0.05)
+        assert 0.2 < trial.measures["input_magnitude"] <= 1.0
+        assert trial.measures["path_length"] > 0.01
+    assert len(recorded.answers) == 8
+    # Of the person who has left no byte remains, and nobody's address was kept.
+    content = b"".join(path.read_bytes() for path in out.rglob("*") if path.is_file())
+    assert key.encode() not in content
+    assert content.count(b'"people_are":"real"') == 2
+    assert b"127.0.0.1" not in (out / "study.sqlite").read_bytes()
+    os.chdir(tmp_path)
+    assert main(["study", "analyse", str(out), "--out", str(tmp_path / "report")]) == 0
+    page = (tmp_path / "report" / "report.html").read_text()
+    assert "1 real person (preset smoke)" in page
+    assert "simulated" not in page
+
+
+@pytest.mark.slow
+def test_no_finished_drive_is_lost_or_doubled_when_the_server_is_killed(tmp_path: Path) -> None:
+    study, out, rng = tmp_path / "two_ways.json", tmp_path / "people", np.random.default_rng(KILLS)
+    study.write_text(json.dumps({**definition(MODES, TWIST), "people": KILLS + 1}))
+    command = (str(study), "--out", str(out))
+    number = 0
+    for _ in range(KILLS):
+        with serving(*command) as (link, server), participant(link, next_link(out, number)) as person:
+            before = drives(out)
+            if person.part == "consent":
+                person.consent()
+                person.ready()
+            killing = threading.Timer(rng.uniform(0.0, 5.0), server.kill)
+            killing.start()
+            over = 0
+            with suppress(httpx.TransportError, OSError, AssertionError):
+                person.drive()
+                over = 1
+            killing.join()
+        with serving(*command) as (link, _), participant(link, next_link(out, number)) as person:
+            after = drives(out)
+            # A drive whose end they saw is there, and none is there twice.
+            assert before + over <= after <= before + 1
+            assert (person.part == "trial") == (after == before)
+            if person.part == "questions":
+                person.answer()
+            number += person.part == "finished"
+
+
+def drives(out: Path) -> int:
+    """How many drives are kept; each is of another trial, and nobody shares a place."""
+    with closing(sqlite3.connect(out / "study.sqlite")) as database:
+        kept = database.execute('SELECT person, "order", task, trial, choice, attempt FROM drives').fetchall()
+        places = database.execute("SELECT number FROM places WHERE person IS NOT NULL").fetchall()
+    assert len(set(kept)) == len(kept)
+    assert sorted(places) == [(number,) for number in range(len(places))]
+    return len(kept)
+
+
+def test_a_condition_that_the_page_lacks_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["study", "serve", "apple_pie", "--port", "0"]) == 2
+    assert "two sticks" in capsys.readouterr().err

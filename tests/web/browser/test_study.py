@@ -1,0 +1,91 @@
+"""A participant takes a study on the real page, from the link to the completion code, with two real arms."""
+
+import json
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Browser, Page
+
+from latentarm_research.user_studies.recorded import read_recorded
+from study_participant import MODES, TWIST, definition, serving
+
+from .conftest import STICKS_OUT
+
+WITHIN_MS = 60_000
+
+
+def press(page: Page, name: str) -> None:
+    page.get_by_role("button", name=name).click()
+
+
+def looked_at(page: Page, heading: str) -> None:
+    """This page is there, and fits on the screen."""
+    page.get_by_role("heading", name=heading).wait_for(timeout=WITHIN_MS)
+    assert page.evaluate(STICKS_OUT) == []
+
+
+def drive(page: Page) -> None:
+    """Hold a key until the trial is over; a busy computer may stop the arm, and it is enabled again."""
+    page.locator("#stick").focus()
+    for _ in range(100):
+        page.keyboard.press("Enter")
+        page.wait_for_timeout(100)
+        page.keyboard.down("ArrowUp")
+        page.wait_for_timeout(1200)
+        if page.url.endswith("/study"):
+            return
+        page.keyboard.up("ArrowUp")
+    raise AssertionError("the trial is never over")
+
+
+@pytest.mark.parametrize(("width", "height"), [(1280, 720), (390, 844)])
+def test_a_participant_takes_a_study_on_the_page(
+    chromium: Browser, tmp_path: Path, width: int, height: int
+) -> None:
+    study, out = tmp_path / "study.json", tmp_path / "people"
+    given = definition(MODES, TWIST)
+    given["tasks"] = [{**given["tasks"][0], "trials": 1, "trial_s": 6.0}]
+    study.write_text(json.dumps(given))
+    with serving(str(study), "--out", str(out), "--preset", "paper", "--completion-code", "C0DE") as (
+        link,
+        _,
+    ):
+        context = chromium.new_context(viewport={"width": width, "height": height})
+        page = context.new_page()
+        faults: list[str] = []
+        page.on("pageerror", lambda error: faults.append(str(error)))
+        page.goto(link)
+        looked_at(page, given["title"])
+        # Nobody begins without their consent.
+        press(page, "Take part")
+        page.get_by_role("checkbox").check()
+        press(page, "Take part")
+        looked_at(page, "Practice")
+        press(page, "Practise")
+        # What they push is set up now, and the Drive page offers nothing that belongs to no study.
+        page.locator("#status[data-phase=disengaged]").wait_for(timeout=WITHIN_MS)
+        assert page.get_by_role("button", name="Settings").is_enabled()
+        for foreign in ("#practice", "#poses-open", "#speed", "#task-more"):
+            assert not page.locator(foreign).is_visible()
+        page.go_back()
+        press(page, "I am ready")
+        for way in (1, 2):
+            looked_at(page, "Marshmallows")
+            assert page.get_by_text(f"Way of driving {way} of 2").is_visible()
+            press(page, "Begin")
+            page.locator("#status[data-phase=disengaged]").wait_for(timeout=WITHIN_MS)
+            assert page.get_by_role("button", name="Set up is locked").is_disabled()
+            drive(page)
+            looked_at(page, "How was this way of driving?")
+            for item in page.locator("fieldset").all():
+                item.get_by_label("6").check()
+            press(page, "Send my answers")
+        looked_at(page, "Thank you")
+        assert page.get_by_text("C0DE").is_visible()
+        context.close()
+        assert faults == []
+    recorded = read_recorded(out)
+    assert recorded.who == "1 real person"
+    assert {one.condition for one in recorded.trials} == {"Modes", "Retargeting"}
+    assert all(one.measures["path_length"] > 0.0 for one in recorded.trials)
+    assert [one.points for one in recorded.answers] == [6] * 8
