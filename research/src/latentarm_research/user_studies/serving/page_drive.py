@@ -21,7 +21,7 @@ from latentarm_research.drives.following import Following
 from latentarm_research.user_studies.conditions import assistance_of, belief_of, controller_of
 from latentarm_research.user_studies.definition import Definition
 from latentarm_research.user_studies.drive_record import record_of
-from latentarm_research.user_studies.scenes import AdaptedTask, scene_of
+from latentarm_research.user_studies.scenes import scene_of
 from latentarm_research.user_studies.serving.way import ToDrive
 from latentarm_research.user_studies.training import Trained
 
@@ -54,8 +54,8 @@ class PageDrive(FixedDrive):
 
     @property
     def task(self) -> SceneTask:
-        """The scene's task, with this drive's limit."""
-        return AdaptedTask(scene_of(self.due.task.scene), self.due.limit_s)
+        """That of the scene."""
+        return scene_of(self.due.task.scene)
 
     def begin(self) -> Beginning:
         """The same scene and start for a person, a trial and an attempt in every condition.
@@ -101,7 +101,7 @@ class _Watch:
         self._drive = drive
         self._arm = arm
         self._chain = drive.task.robot.chain
-        self._limit_s = drive.task.time_limit_s
+        self._limit_s = min(drive.due.limit_s, drive.task.time_limit_s)
         self._follow = Following(drive.begin())
         self._stops = 0
         self._enabled = False
