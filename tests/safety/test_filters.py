@@ -16,13 +16,13 @@ from latentarm.safety.bounds import Bounds
 from latentarm.safety.config import SafetyConfig, Workspace
 from latentarm.safety.filter import (
     Finite,
-    Freshness,
     GuardedArm,
     JointVelocity,
     LinkSpeed,
     Situation,
 )
 from latentarm.safety.halfspaces import slide
+from latentarm.safety.input_timeout import InputTimeout
 from latentarm.safety.obstacles import table
 from latentarm.safety.ramp import Ramp
 
@@ -70,7 +70,7 @@ def test_finite_wants_one_number_for_each_joint(surroundings, shape):
 @given(st.floats(width=64))
 def test_freshness_stops_unless_the_age_is_known_and_small(surroundings, age):
     velocity = np.ones(7)
-    result = Freshness().apply(velocity, situation(surroundings, state=np.zeros(7), age=age))
+    result = InputTimeout().apply(velocity, situation(surroundings, state=np.zeros(7), age=age))
     if 0.0 <= age <= surroundings.bounds.config.input_timeout_s:
         assert result is velocity
     else:

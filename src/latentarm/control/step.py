@@ -29,8 +29,8 @@ from latentarm.core.types import (
 from latentarm.robots.kinematics.obstacles import Box
 from latentarm.robots.robot import Robot
 from latentarm.safety.config import SafetyConfig
-from latentarm.safety.filter import Freshness
 from latentarm.safety.gripper import GripperFilter
+from latentarm.safety.input_timeout import InputTimeout
 from latentarm.safety.newest_reading import NewestReading
 from latentarm.safety.plausibility import FOLLOWING_ERRORS, Plausibility
 from latentarm.safety.stack import Passed, SafetyStack
@@ -47,7 +47,7 @@ _MISSHAPEN = Stop(
     "The controller gave a latent action or an action of the wrong size.", code="controller_invalid"
 )
 
-_FALTERING = (Freshness.name,)  # the limit of an arm whose inputs are missing for a moment
+_FALTERING = (InputTimeout.name,)  # the limit of an arm whose inputs are missing for a moment
 
 
 @final
@@ -464,7 +464,7 @@ class Step:
     def _usable(self, given: Input, input_age_s: float) -> FloatArray | Stop:
         """The input as (d,) floats in [-1, 1], zero within the dead zone, or why it cannot be used."""
         try:
-            stale = Freshness.refusal(input_age_s, self._config.input_timeout_s)
+            stale = InputTimeout.refusal(input_age_s, self._config.input_timeout_s)
             if stale is not None:
                 return stale
             u = np.asarray(given.u)

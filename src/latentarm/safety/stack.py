@@ -17,7 +17,6 @@ from latentarm.safety.brake import Brake
 from latentarm.safety.config import SafetyConfig
 from latentarm.safety.filter import (
     Finite,
-    Freshness,
     GuardedArm,
     JointVelocity,
     LinkSpeed,
@@ -25,6 +24,7 @@ from latentarm.safety.filter import (
     Situation,
 )
 from latentarm.safety.guard import Guard
+from latentarm.safety.input_timeout import InputTimeout
 from latentarm.safety.ramp import Ramp
 from latentarm.safety.small import any_nonzero, largest, smallest
 from latentarm.safety.zone_speed import ZoneSpeed
@@ -57,7 +57,7 @@ class SafetyStack:
         self._robot = robot
         self.body = Body(robot)
         self._surroundings = GuardedArm(bounds, self.body)
-        self._first: tuple[SafetyFilter, ...] = (Finite(), Freshness(), JointVelocity())
+        self._first: tuple[SafetyFilter, ...] = (Finite(), InputTimeout(), JointVelocity())
         zones = [ZoneSpeed(bounds, index) for index in range(len(config.zones))]
         # Sliding along one thing can speed a joint up.
         self._last: tuple[SafetyFilter, ...] = (JointVelocity(), LinkSpeed(), *zones)
