@@ -355,7 +355,7 @@ def test_without_h5py_an_hdf5_file_says_how_to_get_it(
 ) -> None:
     h5py.File(tmp_path / "demo.hdf5", "w").close()
     for module in ("aloha", "robomimic", "hdf5_tables"):
-        monkeypatch.delitem(sys.modules, f"latentarm.demonstrations.{module}", raising=False)
+        monkeypatch.delitem(sys.modules, f"latentarm.demonstrations.importers.{module}", raising=False)
     monkeypatch.setitem(sys.modules, "h5py", None)
     with pytest.raises(UserError, match=r"pip install 'latentarm\[hdf5\]'"):
         import_demonstrations(tmp_path / "demo.hdf5", spinner)

@@ -21,10 +21,10 @@ from latentarm.web.protocol import personalise_messages as messages
 from latentarm.web.protocol.notice import Notice, NoticeError, notice_of
 from latentarm.web.protocol.orders import ChooseProfile
 from latentarm.web.protocol.personalise_messages import Personalise
-from latentarm.web.server.states import States
 
 if TYPE_CHECKING:
     from latentarm.web.arm_process.process import ControlProcess
+    from latentarm.web.server.states import States
 
 STICK_AXES: Final = 2
 
@@ -33,7 +33,7 @@ STICK_AXES: Final = 2
 class Personalising:
     """Asks at most one person at a time; their alignment can be tried before it is kept."""
 
-    def __init__(self, states: States, control: "ControlProcess") -> None:
+    def __init__(self, states: "States", control: "ControlProcess") -> None:
         self._states = states
         self._control = control
         self._run: Path | None = None
