@@ -42,7 +42,7 @@ def test_the_rates_are_the_pages_own():
 
 def test_newcomers_go_as_fast_as_the_page_lets_a_new_person():
     script = (files("latentarm.web") / "pages" / "settings" / "settings.js").read_text(encoding="utf-8")
-    assert float(re.search(r"sensitivity: ([\d.]+),", script)[1]) == SLOW
+    assert float(re.search(r"sensitivity: within\(([\d.]+),", script)[1]) == SLOW
     assert PEOPLE["reading"].speed.share == PEOPLE["learning"].speed.share == SLOW
 
 
