@@ -1,4 +1,4 @@
-"""What a study refuses, each with a sentence: nothing of anybody else is shown, and nothing changes."""
+"""A study refuses bad requests with a sentence, shows nobody else's data, and changes nothing."""
 
 import json
 import time
@@ -53,7 +53,7 @@ def known(out: Path, person: Participant) -> Standing | None:
 
 
 def is_refused(answer: httpx.Response, status: int) -> bool:
-    """Whether the answer has this status, and a sentence for the person."""
+    """Check that an answer has this status and a sentence for the person."""
     problem = answer.json()["problem"] if "json" in answer.headers["content-type"] else answer.text
     return answer.status_code == status and problem[:1].isupper() and problem.endswith(".")
 

@@ -15,7 +15,7 @@ _LEVEL: Final = 0.98  # a surface is level where the upward part of its unit nor
 
 
 def level_face(solid: HalfSpace | Box) -> FloatArray | None:
-    """The unit normal (3,) of a solid's face that is level and faces up; None where there is none."""
+    """The unit normal (3,) of a solid's level upper face, or None if it has no such face."""
     if isinstance(solid, HalfSpace):
         up = solid.normal
     else:

@@ -62,7 +62,7 @@ def test_a_participant_takes_a_study_on_the_page(
         press(page, "Take part")
         looked_at(page, "Practice")
         press(page, "Practise")
-        # What they push is set up now, and the Drive page offers nothing that belongs to no study.
+        # The input is set up by now. The Drive page offers only what belongs to the study.
         page.locator("#status[data-phase=disengaged]").wait_for(timeout=WITHIN_MS)
         assert page.get_by_role("button", name="Settings").is_enabled()
         for foreign in ("#practice", "#poses-open", "#speed", "#task-more"):

@@ -32,10 +32,10 @@ succeeds where all do."""
 
 @final
 class DriveRecord(BaseModel):
-    """One drive of a trial, by whoever drove. `DriveRecord.model_json_schema()` is published in the docs.
+    """One drive of a trial, by a simulated or a real person.
 
-    A trial is one drive or more: one for each choice, and one more after each that failed while its time
-    lasts.
+    A trial is one drive for each choice, and another after each failed one while time is left. The docs
+    publish this class as a JSON schema.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)

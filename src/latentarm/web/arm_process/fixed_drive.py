@@ -29,7 +29,7 @@ class FixedDrive(ABC):
     @property
     @abstractmethod
     def latent(self) -> bool:
-        """Whether the controller has latent actions, rather than axes of the end-effector in its modes."""
+        """True for latent actions, False for modes of the end-effector."""
 
     @abstractmethod
     def controller(self) -> Controller:

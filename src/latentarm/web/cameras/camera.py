@@ -33,7 +33,7 @@ _EVERY: Final = 8
 
 
 def is_dark(planes: NDArray[np.uint8], was: bool) -> bool:
-    """Whether a picture (see `Picture.planes`) is too dark, by one pixel in 64; ``was``: the one before."""
+    """True if a picture (see `Picture.planes`) is too dark, by every 64th pixel; ``was``: the last result."""
     rows = 2 * planes.shape[0] // 3
     mean = float(planes[:rows:_EVERY, ::_EVERY].mean(dtype=np.float64))
     return (mean - _BLACK) / (_WHITE - _BLACK) < (LIGHT if was else DARK)

@@ -148,7 +148,7 @@ class States:
 
     @property
     def at_rest(self) -> bool:
-        """Whether the arm is disengaged and stands still."""
+        """True while the arm is disengaged and at rest."""
         return self.report is not None and self.report.phase in ("disengaged", "neutral_needed")
 
     def clear_trail(self) -> None:

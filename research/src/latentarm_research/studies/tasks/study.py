@@ -98,7 +98,7 @@ def _drive_cells(request: Request[Preset], learned: Sequence[FittedModel | Orien
 
 
 def _drivers(learned: Sequence[Driver], preset: Preset) -> list[Driver]:
-    """What people steer with at a task: the default also as the page offers it."""
+    """All controllers of a task: mode switching, every model, and the default beside mode switching."""
     page = [replace(one, condition=preset.page) for one in learned if one.condition == preset.default]
     return [Driver(Condition(SWITCHING)), *learned, *page]
 

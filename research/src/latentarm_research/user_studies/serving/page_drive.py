@@ -67,7 +67,7 @@ class PageDrive(FixedDrive):
 
     @property
     def latent(self) -> bool:
-        """Whether the condition has a model."""
+        """True if the condition drives with a trained model."""
         return self.model is not None
 
     def controller(self) -> Controller:

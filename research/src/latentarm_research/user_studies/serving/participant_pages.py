@@ -44,7 +44,7 @@ class ParticipantPages:
         return self.page("consent", information=text, digest=self._serving.digest)
 
     def due(self, due: ToDrive | ToAnswer, standing: Standing, *, running: bool) -> Response:
-        """What is next for a person who has a place; ``running``: whether a drive of theirs is under way."""
+        """The page of the next step for a person with a place; ``running``: they have a drive in progress."""
         shown: dict[str, Any] = {"place": due.order + 1, "of": len(self._way.order(standing.number or 0))}
         if isinstance(due, ToAnswer):
             items = items_of(self._serving.definition)

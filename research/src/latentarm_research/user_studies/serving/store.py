@@ -39,7 +39,7 @@ class Standing:
 @final
 @dataclass(frozen=True)
 class Finished:
-    """What a person who has finished has done, all of it in order."""
+    """All drives and answers of a person who has finished, in order."""
 
     drives: tuple[DriveRecord, ...]
     answers: tuple[Answer, ...]

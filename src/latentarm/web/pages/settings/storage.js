@@ -11,7 +11,7 @@ export function read(key, area = "localStorage") {
   }
 }
 
-/** What was written as JSON; null where it is none. @param {string | null} text @returns {any} */
+/** Parse stored JSON; null if it is not valid. @param {string | null} text @returns {any} */
 export function parsed(text) {
   try {
     return JSON.parse(text ?? "null");
