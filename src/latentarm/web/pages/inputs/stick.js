@@ -11,7 +11,7 @@ export const REACH = 96;
 /** @param {PersonInput} inputs @param {Settings} settings */
 export function attachStick(inputs, settings) {
   const [element, spoken] = [byId("stick"), byId("stick-value")];
-  const [dead, arm, knob, mark] = [".dead", ".arm", ".knob", ".mark"].map((name) => /** @type {Element} */ (element.querySelector(name)));
+  const [dead, arm, knob, mark] = [".dead", ".arm", ".knob", ".mark"].map((name) => /** @type {SVGElement} */ (element.querySelector(name)));
 
   const push = (/** @type {PointerEvent} */ event) => {
     const box = element.getBoundingClientRect();
@@ -45,9 +45,8 @@ export function attachStick(inputs, settings) {
   inputs.addEventListener("dropped", forget);
   const show = () => {
     const [x, y] = [inputs.x, inputs.y];
-    knob.setAttribute("transform", `translate(${x * REACH} ${-y * REACH})`);
-    arm.setAttribute("x2", String(x * REACH));
-    arm.setAttribute("y2", String(-y * REACH));
+    knob.style.transform = `translate(${x * REACH}px, ${-y * REACH}px)`;
+    arm.style.transform = `rotate(${Math.atan2(-y, x)}rad) scaleX(${Math.hypot(x, y)})`;
     setText(spoken, deflectionWords(x, y));
   };
   inputs.addEventListener("change", show);
