@@ -73,7 +73,7 @@ def find_chromium() -> str:
 
 
 @contextmanager
-def _started(folder: Path, *arguments: str) -> Iterator[str]:
+def started(folder: Path, *arguments: str) -> Iterator[str]:
     """Where `latentarm teleop` serves its page; recordings go to ``folder``."""
     command = [sys.executable, "-m", "latentarm", "teleop", *arguments, "--port", "0", "--out", str(folder)]
     with (folder / "said").open("w") as said:
@@ -88,14 +88,14 @@ def _started(folder: Path, *arguments: str) -> Iterator[str]:
 @pytest.fixture(scope="session")
 def address(trained: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     """Where `latentarm teleop RUN` serves its page."""
-    with _started(tmp_path_factory.mktemp("teleop"), str(trained)) as address:
+    with started(tmp_path_factory.mktemp("teleop"), str(trained)) as address:
         yield address
 
 
 @pytest.fixture(scope="session")
 def start_server() -> Callable[..., AbstractContextManager[str]]:
     """A server of its own for a test that changes what is driven."""
-    return _started
+    return started
 
 
 @pytest.fixture(scope="session")
@@ -111,7 +111,7 @@ def serve_task(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Abstra
         path = [str(folder), str(HERE), os.environ.get("PYTHONPATH", "")]
         with pytest.MonkeyPatch.context() as patch:
             patch.setenv("PYTHONPATH", os.pathsep.join(path))
-            with _started(folder, "--task", name, *arguments) as address:
+            with started(folder, "--task", name, *arguments) as address:
                 yield address
 
     return serve_task

@@ -1,15 +1,18 @@
-"""A scripted person who stabs food by what the page shows and nothing else, with the keyboard.
+"""A scripted person who does tasks by what the page shows and nothing else.
 
 They drive straight lines, one direction at a time: look how much of the way is left, choose a direction, push
 for as long as that should take, let go, look again. From each push they learn how long the arm moves on.
 """
 
+import math
 import re
 import time
 from dataclasses import dataclass
 from typing import Any, Final
 
 from playwright.sync_api import Page
+
+from .hands import Hand
 
 LOOK: Final = """() => {
   const words = (element) => element.innerText.replace(/\\s+/g, " ").trim();
@@ -19,11 +22,11 @@ LOOK: Final = """() => {
     said: seen("#task-said").map(words).join(" "),
     pairs: seen("#to-go li").map((item) => [...item.children].map(words)),
     pair: seen("#axes input").findIndex((input) => input.checked),
+    gripper: document.querySelector("#gripper [data-next=true]")?.id.replace("gripper-", "") ?? "",
   };
 }"""
 
 WAY: Final = re.compile(r"(Up|Down|Left|Right) ([\d.]+) ?(cm|°)")
-KEYS: Final = {"Up": "ArrowUp", "Down": "ArrowDown", "Left": "ArrowLeft", "Right": "ArrowRight"}
 OPPOSITE: Final = {"Up": "Down", "Down": "Up", "Left": "Right", "Right": "Left"}
 LEVELS: Final = ({"cm": 1.0, "°": 10.0}, {"cm": 0.5, "°": 5.0}, {"cm": 0.3, "°": 3.0})
 """Distances that they ignore: first they drive the large ones, then the small ones."""
@@ -32,9 +35,10 @@ SPEED: Final = {"cm": 15.0, "°": 28.0}
 """Expected speed of the tool, per second."""
 
 READS_S: Final = 0.3
-TAP_S: Final = 0.08
 SHORTEST_S: Final = 0.04
 GIVES_UP_S: Final = 300.0
+GRIPS_S: Final = 2.0
+"""The gripper takes no longer than this to do what it was asked."""
 ACROSS: Final = 0
 """The pair of directions that is parallel to the table."""
 
@@ -66,15 +70,12 @@ class Left:
 
 
 class Person:
-    """Does the task on a page in English.
+    """Does the task on a page in English, with one input."""
 
-    Args:
-        page: with the stick focused.
-    """
-
-    def __init__(self, page: Page) -> None:
-        self._page = page
+    def __init__(self, page: Page, hand: Hand) -> None:
+        self._page, self.hand = page, hand
         self._more_s = {"cm": 0.02, "°": 0.02}
+        self._gripped_s = -math.inf
 
     def drive(self) -> str:
         """Drive until the page says how the task ended, or for five minutes; the page's last sentence."""
@@ -86,20 +87,26 @@ class Person:
                 break
             left = ways(seen["pairs"])
             if seen["phase"] not in ("ready", "moving"):
-                self._press("Enter")
+                self.hand.enable()
+            elif seen["gripper"]:
+                if time.monotonic() - self._gripped_s > GRIPS_S:
+                    self._gripped_s = time.monotonic()
+                    self.hand.gripper(seen["gripper"])
             elif left and (wanted := choose(left, seen["pair"])):
                 if wanted.pair == seen["pair"]:
                     self._push(wanted)
                 else:
-                    self._press(f"Digit{wanted.pair + 1}")
+                    self.hand.pair(wanted.pair)
             time.sleep(READS_S)
         return seen["said"]
 
     def _push(self, wanted: Left) -> None:
         aim = min(wanted.amount, 30.0) if wanted.unit == "°" else wanted.amount
-        speed = SPEED[wanted.unit]
+        speed = self.hand.speed * SPEED[wanted.unit]
         hold_s = max(aim / speed - self._more_s[wanted.unit], SHORTEST_S)
-        self._press(KEYS[wanted.direction], hold_s)
+        self.hand.push(wanted.direction.lower())
+        time.sleep(hold_s)
+        self.hand.let_go()
         time.sleep(READS_S)
         signs = {wanted.direction: 1.0, OPPOSITE[wanted.direction]: -1.0}
         rest = sum(
@@ -111,11 +118,6 @@ class Person:
         if 0.3 * aim < moved < 2.5 * aim + 2.0 and hold_s > SHORTEST_S:
             more_s = 0.7 * self._more_s[wanted.unit] + 0.3 * (moved / speed - hold_s)
             self._more_s[wanted.unit] = min(max(more_s, -0.05), 0.25)
-
-    def _press(self, key: str, hold_s: float = TAP_S) -> None:
-        self._page.keyboard.down(key)
-        time.sleep(hold_s)
-        self._page.keyboard.up(key)
 
 
 def ways(pairs: list[list[str]]) -> list[Left]:

@@ -3,6 +3,7 @@
 import pytest
 
 from .conftest import ask_to_drive
+from .hands import Keyboard
 from .scripted_person import Person
 
 
@@ -32,9 +33,8 @@ def test_what_the_page_shows_is_enough_to_eat(open_page, arm):
     page = open_page(viewport={"width": 1024, "height": 800}, locale="en-GB")
     ask_to_drive(page)
     page.get_by_role("radio", name="Fast").check()
-    page.locator("#stick").focus()
     page.evaluate(SMALL_VIEW)
-    said = Person(page).drive()
+    said = Person(page, Keyboard(page)).drive()
     assert said.startswith("Done!"), said
     assert arm.state["task"]["outcome"] == "success"
     assert page.locator("#to-go").is_hidden()
