@@ -71,54 +71,31 @@ COMMAND_PERIODS: Final = 5.0
 class Spec:
     """The setup to drive, as plain values that can be sent to another process.
 
-    Attributes:
-        run: a trained run, or None for end-effector control alone at the table-top task.
-        profile: the person whose alignment is used, or None.
-        seed: for where the arm starts and where things stand.
-        out: folder for recordings.
-        arm: a name of `latentarm.arms.catalogue` or the address of a real arm; None for the task's usual one.
-        task: a name of `latentarm.tasks.catalogue`; None for the run's own, or the table-top task.
-        own_task: whether the run is driven at its own task, where it has one, rather than at ``task``.
-        choice: index of what is done first, of the task's choices or goals.
-        robot: used where neither run nor task names one.
-        found: names and values found out about a real arm.
-        zones: where the arm is slow.
-        keep_out: obstacles besides the task's.
-        gripped: what the gripper holds while it holds no known thing.
-        speeds: limits everywhere.
-        incidents: whether calls are kept for a while, see `latentarm.web.arm_process.incident`.
-        seat: where a person without a profile sits, see `latent_controller`; None for z = u.
-        shadow: whether a real arm is read and nothing is sent to it.
-        objects: sources of where things are, see `latentarm.surroundings.catalogue`.
-        idle_s: without an input for so long, the arm is disabled, s.
-        fixed: decides task, controls and help, instead of run and task; None leaves them to the page.
-
-    Raises:
-        UserError: the seed is out of range, a profile is named without a run, or a simulated arm gets a
-            shadow.
+    Raises UserError if the seed is out of range, a profile is named without a run, or a simulated arm gets a
+    shadow.
     """
 
-    run: Path | None = None
-    profile: str | None = None
-    seed: int = 0
-    out: Path = Path("teleop")
+    run: Path | None = None  # a trained one; None for end-effector control alone at the table-top task
+    profile: str | None = None  # the person whose alignment is used
+    seed: int = 0  # for where the arm starts and where things stand
+    out: Path = Path("teleop")  # folder for recordings
     journal: JournalLimits = field(default_factory=JournalLimits)
-    arm: str | None = None
-    task: str | None = None
-    own_task: bool = False
-    choice: int = 0
-    robot: RobotOptions = field(default_factory=RobotOptions)
-    found: tuple[tuple[str, str], ...] = ()
-    zones: tuple[Zone, ...] = ()
-    keep_out: tuple[Obstacle, ...] = ()
-    gripped: tuple[Box, ...] = ()
-    speeds: Speeds = field(default_factory=Speeds)
-    incidents: bool = True
-    seat: Seat | None = None
-    shadow: bool = False
-    idle_s: float = idle_s_of(USUAL_MINUTES)
-    objects: tuple[str, ...] = ()
-    fixed: FixedDrive | None = None
+    arm: str | None = None  # as in `DriveSetup`; None for the task's usual one
+    task: str | None = None  # a name of `tasks.catalogue`; None for the run's own, or the table-top task
+    own_task: bool = False  # whether the run is driven at its own task, if it has one, not at ``task``
+    choice: int = 0  # index of what is done first, of the task's choices or goals
+    robot: RobotOptions = field(default_factory=RobotOptions)  # used where neither run nor task names one
+    found: tuple[tuple[str, str], ...] = ()  # names and values found out about a real arm
+    zones: tuple[Zone, ...] = ()  # where the arm is slow
+    keep_out: tuple[Obstacle, ...] = ()  # obstacles besides the task's
+    gripped: tuple[Box, ...] = ()  # what the gripper holds while it holds no known thing
+    speeds: Speeds = field(default_factory=Speeds)  # limits everywhere
+    incidents: bool = True  # whether calls are kept for a while, see `latentarm.web.arm_process.incident`
+    seat: Seat | None = None  # where a person without a profile sits, see `latent_controller`; None for z = u
+    shadow: bool = False  # whether a real arm is read and nothing is sent to it
+    idle_s: float = idle_s_of(USUAL_MINUTES)  # without an input for so long, the arm is disabled, s
+    objects: tuple[str, ...] = ()  # sources of where things are, see `latentarm.surroundings.catalogue`
+    fixed: FixedDrive | None = None  # decides task, controls and help; None leaves them to run, task and page
 
     def __post_init__(self) -> None:
         if not 0 <= self.seed < SEEDS:
@@ -149,33 +126,23 @@ class Spec:
 @final
 @dataclass(frozen=True, eq=False)
 class DriveSetup:
-    """A spec, loaded.
-
-    Attributes:
-        arm: a name of `latentarm.arms.catalogue` or the address of a real arm.
-        controller: all modes: the latent actions first, if there are any, then the pairs of axes of the
-            end-effector.
-        latent_dim: d, axes of the latent actions; 0 without a run.
-        axes: names of the pairs of axes of end-effector control.
-        start: (n,), where a simulated arm starts, and where the way back leads, rad; for a real arm where it
-            stood when it was connected.
-        run_fingerprint: of the run's weights; "" without a run.
-        scene: the things about the arm; None where they do not count.
-        stand: whether things of a real arm stand as a task says, rather than anywhere.
-    """
+    """A spec, loaded."""
 
     spec: Spec
-    arm: str
+    arm: str  # a name of `latentarm.arms.catalogue` or the address of a real arm
     task: Place
+    # all modes: the latent actions first, if there are any, then the pairs of axes of the end-effector
     controller: JoinedController
-    latent_dim: int
-    axes: tuple[str, ...]
+    latent_dim: int  # d, axes of the latent actions; 0 without a run
+    axes: tuple[str, ...]  # names of the pairs of axes of end-effector control
     help: Help
+    # (n,), where a simulated arm starts, and where the way back leads, rad; for a real arm where it stood
+    # when it was connected
     start: FloatArray
     todo: Todo
-    run_fingerprint: str = ""
-    scene: Scene | None = None
-    stand: bool = True
+    run_fingerprint: str = ""  # of the run's weights; "" without a run
+    scene: Scene | None = None  # the things about the arm; None where they do not count
+    stand: bool = True  # whether things of a real arm stand as a task says, rather than anywhere
 
     @property
     def real(self) -> bool:
@@ -344,8 +311,7 @@ def safety_limits(speeds: Speeds) -> SafetyConfig:
 def with_profile(setup: DriveSetup, profile: str | None, seat: Seat | None) -> DriveSetup:
     """The same setup with another alignment and seat; neither dataset nor robot is read again.
 
-    Raises:
-        UserError: the profile or the model cannot be used.
+    Raises UserError if the profile or the model cannot be used.
     """
     spec = replace(setup.spec, profile=profile, seat=seat)
     if spec.run is None:
@@ -358,8 +324,7 @@ def with_profile(setup: DriveSetup, profile: str | None, seat: Seat | None) -> D
 def load_setup(spec: Spec) -> DriveSetup:
     """Load a spec.
 
-    Raises:
-        UserError: the arm, the run, its dataset or the profile cannot be loaded, or do not fit each other.
+    Raises UserError if arm, run, dataset or profile cannot be loaded, or do not fit each other.
     """
     if spec.fixed is not None:
         return _fixed_setup(spec, spec.fixed)

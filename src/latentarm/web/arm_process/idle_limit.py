@@ -22,12 +22,7 @@ def idle_s_of(minutes: float) -> float:
 
 @final
 class IdleLimit:
-    """Counts the time without an input.
-
-    Args:
-        limit_s: the arm is disabled after this, s.
-        stop: disables it.
-    """
+    """Counts the time without an input; after ``limit_s`` it calls ``stop``."""
 
     def __init__(self, limit_s: float, stop: Callable[[Notice], None]) -> None:
         self._limit_s = limit_s

@@ -86,11 +86,7 @@ class Connections:
         self._said_s = -_SAY_EVERY_S
 
     async def accept(self) -> None:
-        """Accept connections until cancelled.
-
-        Raises:
-            OSError: the listening socket has failed.
-        """
+        """Accept connections until cancelled. Raises OSError if the listening socket has failed."""
         self._listening.setblocking(False)
         loop = asyncio.get_running_loop()
         looking = asyncio.create_task(self._look())

@@ -26,11 +26,9 @@ _MOST_VISITORS: Final = 64
 class Keys:
     """Access to the page by links and cookies.
 
-    The first link of a start makes a host: it is printed for the person who started the server.
-
-    Args:
-        now_s: the time of day, s; it goes on while the machine is off.
-        store: a file that cookies survive a restart in. From a damaged one nobody comes back.
+    The first link of a start makes a host: it is printed for the person who started the server. ``now_s`` is
+    the time of day, s, which goes on while the machine is off. Cookies survive a restart in the file
+    ``store``; from a damaged one nobody comes back.
     """
 
     def __init__(self, now_s: Callable[[], float] = time.time, store: Path | None = None) -> None:

@@ -23,16 +23,12 @@ _WHERE_ALL_IS_FIXED: Final = (
 
 @final
 class SetupLock:
-    """Refuses what changes how the arm behaves.
-
-    Attributes:
-        on: whether the host has locked it.
-    """
+    """Refuses what changes how the arm behaves."""
 
     def __init__(self, people: People, states: States, *, on: bool) -> None:
         self._people = people
         self._states = states
-        self.on = on
+        self.on = on  # whether the host has locked it
 
     def refuses(self, person: str | None, message: page_messages.ClientMessage) -> bool:
         """True if a message is refused from the page of this person, an id, or None for a guest."""
