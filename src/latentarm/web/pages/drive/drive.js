@@ -45,8 +45,6 @@ import { whereWords } from "./where_words.js";
 import { attachWayBack } from "./way_back.js";
 import { attachZones } from "./zones.js";
 
-/** @import {Paths} from "../views/predictions.js" */
-
 /** Words next to the views change no more often than this, ms. */
 const WORDS_MS = 250;
 

@@ -7,7 +7,6 @@ import { displacement } from "../views/predictions.js";
 
 /** @import {ToGo} from "../connection/messages.js" */
 /** @import {Words} from "../connection/sentence.js" */
-/** @import {Paths} from "../views/predictions.js" */
 
 /** @typedef {{of: "shift_m" | "turn_rad", axis: number}} Part one of the six ways in which the tool can move */
 

@@ -7,7 +7,7 @@ import { COUNTED } from "./figures.js";
 import { byDay, byWeek, inDays } from "./weeks.js";
 
 /** @import {Counted} from "./figures.js" */
-/** @import {Drive, Period} from "./weeks.js" */
+/** @import {Period} from "./weeks.js" */
 
 const [WIDTH, HEIGHT, TOP, FOOT] = [300, 124, 20, 24];
 /** Values and days that there is room for, one next to the other. */

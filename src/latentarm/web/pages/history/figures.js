@@ -3,8 +3,6 @@
 import { say, sayNumber, sayPercent } from "../layout/words.js";
 import { inputWords, timeWords } from "./drive_words.js";
 
-/** @import {Drive} from "./weeks.js" */
-
 /** Numbers; null where no drive has one. @type {Record<Counted, (drives: Drive[]) => number | null>} */
 export const COUNTED = {
   driven: (drives) => sum(drives.map(({ time_s }) => time_s)),

@@ -11,7 +11,6 @@ import { attachReplay } from "./replay_panel.js";
 import { report } from "./report.js";
 
 /** @import {RecordingFile} from "../connection/messages.js" */
-/** @import {Drive} from "./weeks.js" */
 
 /** Drives that are listed at first, and more with each press. */
 const PAGE = 25;

@@ -9,7 +9,6 @@ import { NOTHING_PREDICTED } from "../views/predictions.js";
 import { Player } from "./player.js";
 
 /** @import {Moment} from "./player.js" */
-/** @import {Drive} from "./weeks.js" */
 
 /** @param {Settings} settings */
 export function attachReplay(settings) {

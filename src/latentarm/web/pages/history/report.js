@@ -9,7 +9,6 @@ import { FIGURES, figureOf } from "./figures.js";
 import { counted } from "./weeks.js";
 
 /** @import {Figure} from "./figures.js" */
-/** @import {Drive} from "./weeks.js" */
 
 /** Rows that a page has room for. */
 const [MOST_TASKS, MOST_DRIVES] = [4, 6];

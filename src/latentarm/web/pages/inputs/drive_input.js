@@ -8,7 +8,7 @@
 import { Deflection } from "./deflection.js";
 import { Lateness } from "./lateness.js";
 
-/** @import {HaltReason, Source} from "./deflection.js" */
+/** @import {Source} from "./deflection.js" */
 
 const PERIOD_MS = 20;
 /** Neutral inputs that go ahead of `enable`, ms: the server must have seen the stick at rest. */

@@ -19,7 +19,7 @@ import { Replay } from "./replay.js";
 import { missedWords, STEPS, stepOf } from "./steps.js";
 import { attachTrial, TRIAL } from "./trial.js";
 
-/** @import {ClientMessage, Personalise} from "../connection/messages.js" */
+/** @import {Personalise} from "../connection/messages.js" */
 
 /** @type {Drawing | null} */
 let drawing = null;

@@ -10,7 +10,7 @@ import { attachGuiding } from "./guiding.js";
 import { lessonFigures, lessonWords, shortOnes } from "./lesson.js";
 import { freeName, isBusy, leftWords, progressShare, progressWords } from "./training.js";
 
-/** @import {ClientMessage, Lesson, Recorded, LearningState} from "../connection/messages.js" */
+/** @import {Lesson, Recorded} from "../connection/messages.js" */
 
 /** How long a run that was asked for may take to be there, ms: checking it may take a minute, and then it is loaded. */
 const LOADING_MS = 90_000;

@@ -8,7 +8,6 @@ import { merged } from "./merged.js";
 import { MARKS } from "./predictions.js";
 
 /** @import {Labels} from "./labels.js" */
-/** @import {Paths} from "./predictions.js" */
 
 /** @typedef {ReturnType<typeof drawn>} Ghost */
 
