@@ -31,7 +31,6 @@ from latentarm.web.protocol.channel import new_channel
 from latentarm.web.protocol.notice import Notice
 from latentarm.web.protocol.orders import AskedGripper, Given, Order, Paced
 from latentarm.web.protocol.report import Report
-from latentarm.web.records.record_files import SYSTEM_CALENDAR
 from latentarm.web.server.app import build_app, gated, serve_on, server_config
 from latentarm.web.server.config import TeleopConfig, listen
 from latentarm.web.server.connections import ConnectionLimits
@@ -362,7 +361,7 @@ def served(spec: Spec, *, pins: bool = False, locked: bool = False) -> Iterator[
     listening = listen(config)
     port = int(listening.getsockname()[1])
     control = ControlProcess(spec)
-    app = build_app(load_setup(spec), control, config, SYSTEM_CALENDAR)
+    app = build_app(load_setup(spec), control, config)
     server = uvicorn.Server(server_config(gated(app, control, config, port, None, lambda: ""), config))
     loops: list[asyncio.AbstractEventLoop] = []
 

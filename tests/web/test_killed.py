@@ -18,7 +18,6 @@ from latentarm.recordings.journal_reader import read_journal
 from latentarm.web.arm_process.drive_setup import Spec
 from latentarm.web.arm_process.replay import replay
 from latentarm.web.records.drives import Wanted
-from latentarm.web.records.record_files import SYSTEM_CALENDAR
 from latentarm.web.records.records import Records
 
 from .conftest import Site, wait_for
@@ -118,7 +117,7 @@ def running(out):
 
 
 def drives_in(out):
-    return Records(out, dict, lambda: None, SYSTEM_CALENDAR).drives.wanted(Wanted())
+    return Records(out, dict, lambda: None).drives.wanted(Wanted())
 
 
 def test_a_drive_under_a_killed_server_is_kept_as_broken_off_and_the_next_server_starts_at_once(tmp_path):

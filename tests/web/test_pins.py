@@ -10,7 +10,6 @@ import pytest
 from latentarm.web.arm_process.drive_setup import Spec
 from latentarm.web.protocol.notice import NoticeError
 from latentarm.web.records.people import PERSON_NAME, People
-from latentarm.web.records.record_files import SYSTEM_CALENDAR
 from latentarm.web.server.pins import (
     FORGOTTEN_S,
     MOST_CLIENTS,
@@ -34,7 +33,7 @@ class Time:
 
 @pytest.fixture
 def people(tmp_path):
-    return People(tmp_path, SYSTEM_CALENDAR)
+    return People(tmp_path)
 
 
 @pytest.fixture
@@ -63,7 +62,7 @@ def test_the_file_holds_no_pin_and_two_people_with_the_same_one_have_different_h
     assert PIN not in (people.folder_of(ada.id) / PERSON_NAME).read_text()
     assert ada.pin.salt != bea.pin.salt
     assert ada.pin.hash != bea.pin.hash
-    again = People(people.folder_of(ada.id).parent, SYSTEM_CALENDAR)
+    again = People(people.folder_of(ada.id).parent)
     assert again.find(ada.id).pin == ada.pin
 
 

@@ -98,7 +98,7 @@ def test_an_arm_that_is_held_back_says_so_after_a_stated_time(desk):
 
 
 def test_poses_are_kept_by_person_and_robot_and_outlive_the_server(tmp_path):
-    people = People(tmp_path / "people", SYSTEM_CALENDAR)
+    people = People(tmp_path / "people")
     ada = people.add("Ada").id
 
     async def use(act):
@@ -127,7 +127,7 @@ def test_poses_are_kept_by_person_and_robot_and_outlive_the_server(tmp_path):
 
 def test_what_cannot_be_kept_is_said(tmp_path):
     async def use():
-        book = PoseBook(People(tmp_path / "people", SYSTEM_CALENDAR), tmp_path)
+        book = PoseBook(People(tmp_path / "people"), tmp_path)
         book.save(None, "panda", " ", (0.1,))
         nameless = book.told(None, "panda")
         for number in range(MOST_POSES + 1):
@@ -144,6 +144,6 @@ def test_what_cannot_be_kept_is_said(tmp_path):
 
 def test_a_damaged_file_is_said(tmp_path):
     (tmp_path / POSES_NAME).write_text("{")
-    told = PoseBook(People(tmp_path / "people", SYSTEM_CALENDAR), tmp_path).told(None, "panda")
+    told = PoseBook(People(tmp_path / "people"), tmp_path).told(None, "panda")
     assert told.names == ()
     assert told.problem.code == "error"

@@ -5,7 +5,7 @@ import json
 import shutil
 import zipfile
 from dataclasses import replace
-from datetime import datetime, timedelta, timezone
+from datetime import UTC, datetime
 
 import numpy as np
 import pytest
@@ -23,7 +23,7 @@ from latentarm.web.records.drive_record import DriveRecord, checked_trace, packe
 from latentarm.web.records.drives import Drives, Wanted
 from latentarm.web.records.people import People
 from latentarm.web.records.poses import read_poses, with_pose, write_poses
-from latentarm.web.records.record_files import SYSTEM_CALENDAR, Calendar, parse_record
+from latentarm.web.records.record_files import parse_record
 from latentarm.web.records.records import FOLDER, Records
 
 HOURLY = [HealthCheck.function_scoped_fixture]
@@ -32,7 +32,7 @@ LETTERS = st.characters(categories=("L", "N", "M", "S", "P", "Zs"))
 
 @pytest.fixture
 def records(tmp_path):
-    return Records(tmp_path, dict, lambda: None, SYSTEM_CALENDAR)
+    return Records(tmp_path, dict, lambda: None)
 
 
 @pytest.fixture(scope="module")
@@ -47,7 +47,7 @@ def test_any_name_is_kept_or_refused_in_a_sentence(tmp_path, name):
     folder = tmp_path / "people"
     shutil.rmtree(folder, ignore_errors=True)
     try:
-        person = People(folder, SYSTEM_CALENDAR).add(name)
+        person = People(folder).add(name)
     except UserError:
         with pytest.raises(UserError, match="name"):
             clean_name(name)
@@ -56,7 +56,7 @@ def test_any_name_is_kept_or_refused_in_a_sentence(tmp_path, name):
     assert len(person.name) <= MOST_CHARACTERS
     (path,) = folder.iterdir()
     assert path.name == person.id
-    assert People(folder, SYSTEM_CALENDAR).find(person.id) == person
+    assert People(folder).find(person.id) == person
 
 
 @pytest.mark.parametrize("name", ["Zoë Müller", "李雷", "محمد", "नेहा", "O’Brien-Łukasz", "👩‍🦽", "佐藤 花子"])
@@ -94,8 +94,8 @@ def report(tick, phase, tool, code=None, **changes):
     )  # fmt: skip
 
 
-def logged(about, reports, calendar=SYSTEM_CALENDAR):
-    log = DriveLog(calendar)
+def logged(about, reports):
+    log = DriveLog()
     for one in reports:
         if log.begins(one):
             log.begin(one, about)
@@ -124,7 +124,7 @@ def test_the_figures_of_a_drive_are_those_of_its_reports(about):
 
 
 def test_each_input_is_timed_as_long_as_it_is_pushed_while_the_arm_is_enabled(about):
-    log = DriveLog(SYSTEM_CALENDAR)
+    log = DriveLog()
     log.begin(report(0, "ready", 0.0), about)
     for first, last, u, source in (
         (1, 100, (1.0, 0.0), "keyboard"),
@@ -160,14 +160,12 @@ def test_a_record_says_who_stopped_the_arm_and_an_old_one_that_no_input_was_time
     assert parse_record(DriveRecord, old.encode(), "it").input_s is None
 
 
-def test_records_are_dated_by_the_calendar_that_they_were_given_whatever_its_zone(about, tmp_path):
-    evening = datetime(2026, 3, 1, 19, 30, tzinfo=timezone(timedelta(hours=-5)))
-    calendar = Calendar(lambda: evening)
-    enabled = [report(k, "ready", 0.0) for k in range(3)]
-    done = logged(about, enabled, calendar)
-    assert done.record.started == "2026-03-02T00:30:00+00:00"
-    records = Records(tmp_path, dict, lambda: None, calendar)
-    assert records.people.add("Ada").added == done.record.started
+def test_records_are_dated_in_utc(about, records):
+    began = datetime.now(UTC).replace(microsecond=0)
+    done = logged(about, [report(k, "ready", 0.0) for k in range(3)])
+    for dated in (done.record.started, records.people.add("Ada").added):
+        assert dated.endswith("+00:00")
+        assert began <= datetime.fromisoformat(dated) <= datetime.now(UTC)
 
 
 def test_nothing_is_counted_after_the_task_has_ended_but_all_of_it_is_shown_again(about):
@@ -175,7 +173,7 @@ def test_nothing_is_counted_after_the_task_has_ended_but_all_of_it_is_shown_agai
     before = [report(k, "moving", 0.001 * k) for k in range(100)]
     after = [report(k, "moving", 0.001 * k).model_copy(update={"task": end}) for k in range(100, 300)]
     stopped = report(300, "disengaged", 0.3, "stop_pressed").model_copy(update={"task": end})
-    log = DriveLog(SYSTEM_CALENDAR)
+    log = DriveLog()
     log.begin(before[0], about)
     log.given((1.0, 0.0), "keyboard", gripper=False)
     for one in [*before[1:], *after, stopped]:
@@ -218,7 +216,7 @@ def kept(records, about):
 
 def test_what_was_kept_is_there_for_the_next_server(records, about, tmp_path):
     person, record = kept(records, about)
-    again = Records(tmp_path, dict, lambda: None, SYSTEM_CALENDAR)
+    again = Records(tmp_path, dict, lambda: None)
     assert again.drives.wanted(Wanted(person=person.id)) == [record]
     assert again.people.problems + again.drives.problems == []
 
@@ -264,7 +262,7 @@ def test_a_damaged_record_is_named_and_the_rest_is_there(records, about, tmp_pat
     bea = records.people.add("Bea")
     path = tmp_path / FOLDER / "people" / bea.id / "person.json"
     path.write_bytes(damage)
-    again = Records(tmp_path, dict, lambda: None, SYSTEM_CALENDAR)
+    again = Records(tmp_path, dict, lambda: None)
     assert [person.name for person in again.people.all()] == ["Ada"]
     assert again.drives.find(record.id) == record
     assert str(path) in again.people.problems[0].text

@@ -16,7 +16,6 @@ from latentarm.robots.panda import panda
 from latentarm.web.arm_process.drive_setup import Spec
 from latentarm.web.arm_process.initial_state import RobotOptions
 from latentarm.web.records.people import People
-from latentarm.web.records.record_files import SYSTEM_CALENDAR
 
 
 def freeze(site, page, server):
@@ -109,7 +108,7 @@ def test_an_incident_is_reported_and_replayed_to_the_bit(serve, tmp_path, capsys
 
 def test_a_report_names_nobody_and_no_address(serve, trained, tmp_path, capsys):
     out = tmp_path / "teleop"
-    people = People(out / "records" / "people", SYSTEM_CALENDAR)
+    people = People(out / "records" / "people")
     ada = people.keep_pin(people.add("Ada Lovelace").id, "271828")
     with serve(Spec(trained, out=out), pins=True) as site, site.page("Bob Marley") as page:
         page.drive(1.0, 0.0)

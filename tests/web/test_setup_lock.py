@@ -7,7 +7,6 @@ import pytest
 
 from latentarm.web.arm_process.drive_setup import Spec
 from latentarm.web.records.people import People
-from latentarm.web.records.record_files import SYSTEM_CALENDAR
 
 
 @pytest.fixture(scope="module")
@@ -18,7 +17,7 @@ def folder(tmp_path_factory):
 @pytest.fixture(scope="module")
 def ada(folder):
     """A person who has chosen a lot of help."""
-    return People(folder / "records" / "people", SYSTEM_CALENDAR).add("Ada", {"help": "high"}).id
+    return People(folder / "records" / "people").add("Ada", {"help": "high"}).id
 
 
 @pytest.fixture(scope="module")

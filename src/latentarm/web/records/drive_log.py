@@ -15,7 +15,7 @@ from latentarm.web.arm_process.task_run import Todo
 from latentarm.web.protocol.report import Report, Things
 from latentarm.web.protocol.scene import Drawable, pose_of
 from latentarm.web.records.drive_record import DriveRecord, Ending, Mark, Trace, TracedThings
-from latentarm.web.records.record_files import Calendar, new_id
+from latentarm.web.records.record_files import new_id, stamp
 
 PERIOD_S: Final = 0.1  # moments of a trace are at least this far apart, s
 MOST_VALUES: Final = 200_000
@@ -119,8 +119,7 @@ class Logged:
 class DriveLog:
     """Logs one drive after the other."""
 
-    def __init__(self, calendar: Calendar) -> None:
-        self._calendar = calendar
+    def __init__(self) -> None:
         self._open: _Open | None = None
         self._u: tuple[float, ...] = ()
         self._source = ""
@@ -138,7 +137,7 @@ class DriveLog:
 
     def begin(self, report: Report, about: About) -> None:
         """Begin with a report of an enabled arm."""
-        self._open = _Open(about, report, self._calendar.stamp())
+        self._open = _Open(about, report, stamp())
         self._note_things(self._open, self._standing, 0.0)
         self.take(report)
 

@@ -14,10 +14,10 @@ from latentarm.web.protocol.notice import Message, Notice, NoticeError
 from latentarm.web.records.pin import PinHash, hash_of
 from latentarm.web.records.record_files import (
     ID,
-    Calendar,
     disk_errors,
     new_id,
     read_record,
+    stamp,
     unreadable,
     write_record,
 )
@@ -67,9 +67,8 @@ class People:
     Other methods raise `UserError` if there is no such person, or files cannot be written or deleted.
     """
 
-    def __init__(self, folder: Path, calendar: Calendar) -> None:
+    def __init__(self, folder: Path) -> None:
         self._folder = folder
-        self._calendar = calendar
         self._lock = threading.Lock()
         self._people: dict[str, PersonRecord] = {}
         self.problems: list[Notice] = []  # of records that cannot be read, one each
@@ -111,7 +110,7 @@ class People:
             person = PersonRecord(
                 id=new_id(),
                 name=self._free_name(name, None),
-                added=self._calendar.stamp(),
+                added=stamp(),
                 settings=settings or {},
             )
             return self._keep(person)

@@ -2,13 +2,11 @@
 
 import re
 import secrets
-from collections.abc import Callable, Generator
+from collections.abc import Generator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from datetime import UTC, datetime
-from functools import partial
 from pathlib import Path
-from typing import Final, TypeVar, final
+from typing import Final, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
@@ -29,6 +27,11 @@ Record = TypeVar("Record", bound=BaseModel)
 def new_id() -> str:
     """A random id, 64 bits."""
     return secrets.token_hex(8)
+
+
+def stamp() -> str:
+    """The time as records keep it: ISO 8601 in UTC, to the second."""
+    return datetime.now(UTC).isoformat(timespec="seconds")
 
 
 def read_record(kind: type[Record], path: Path) -> Record:
@@ -68,18 +71,3 @@ def unreadable(error: UserError) -> Notice:
 def write_record(record: BaseModel, path: Path) -> None:
     """Write a record to its file. Raises UserError as `write_text` does."""
     write_text(path, record.model_dump_json(indent=1) + "\n")
-
-
-@final
-@dataclass(frozen=True)
-class Calendar:
-    """Dates records; ``now`` is the time with its zone. Durations are measured by monotonic clocks."""
-
-    now: Callable[[], datetime]
-
-    def stamp(self) -> str:
-        """The time as records keep it: ISO 8601 in UTC, to the second."""
-        return self.now().astimezone(UTC).isoformat(timespec="seconds")
-
-
-SYSTEM_CALENDAR: Final = Calendar(partial(datetime.now, UTC))

@@ -17,7 +17,7 @@ from latentarm.web.records.drive_log import Logged
 from latentarm.web.records.drives import TRACE, Drives, Wanted
 from latentarm.web.records.people import PERSON_NAME, KeptProfile, People, PersonRecord
 from latentarm.web.records.poses import POSES_NAME, PosesRecord, read_poses, write_poses
-from latentarm.web.records.record_files import Calendar, disk_errors, new_id
+from latentarm.web.records.record_files import disk_errors, new_id
 from latentarm.web.records.recordings import Recordings
 from latentarm.web.records.scenes import Scenes
 
@@ -38,10 +38,9 @@ class Records:
         out: Path,
         runs: Callable[[], Mapping[str, Path]],
         in_use: Callable[[], Path | None],
-        calendar: Calendar,
     ) -> None:
         folder = out / FOLDER
-        self.people = People(folder / "people", calendar)
+        self.people = People(folder / "people")
         self.drives = Drives(folder, folder / "people")
         self.scenes = Scenes(folder / "scenes")
         self.recordings = Recordings(out, folder, in_use)

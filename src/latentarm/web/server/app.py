@@ -82,7 +82,6 @@ def serve(
     ready: Callable[[str], None] = lambda address: None,
     *,
     draws: bool = False,
-    calendar: Calendar = SYSTEM_CALENDAR,
 ) -> None:
     """Serve the page until Ctrl-C, then say how to use what was recorded.
 
@@ -100,7 +99,7 @@ def serve(
         logging_also_to(out / LOG),
     ):
         _LOG.info("The server begins: %s.", computer())
-        _serve_alone(config, setup, say, ready, draws, calendar)
+        _serve_alone(config, setup, say, ready, draws)
 
 
 def _serve_alone(
@@ -109,7 +108,6 @@ def _serve_alone(
     say: Callable[[str], None],
     ready: Callable[[str], None],
     draws: bool,
-    calendar: Calendar,
 ) -> None:
     if setup.real:
         config, setup = _looked_at(config, setup, say)
@@ -144,7 +142,7 @@ def _serve_alone(
             at_end.callback(sources.end)
         control = ControlProcess(config.spec, None if sources is None else sources.sightings)
         at_end.callback(control.end)
-        app = build_app(setup, control, config, calendar, cameras)
+        app = build_app(setup, control, config, cameras)
         gate = gated(
             app, control, config, port, keys, (lambda: "") if invitations is None else invitations.next
         )
@@ -255,7 +253,6 @@ def build_app(
     setup: DriveSetup,
     control: ControlProcess,
     config: TeleopConfig,
-    calendar: Calendar,
     cameras: CameraProcess | None = None,
 ) -> Starlette:
     """The application: pages, their assets, the scene, and the socket that drives."""
@@ -263,9 +260,9 @@ def build_app(
     spec = setup.spec
     run_list = RunList(spec.out, spec.run)
     states = States(LoadedRun(setup, run_list.name_of(spec.run)), control, sessions, run_list)
-    records = Records(spec.out, run_list.runs, states.journal, calendar)
+    records = Records(spec.out, run_list.runs, states.journal)
     learning = Learning(control, states, run_list, records.recordings, spec.out)
-    history = History(states, sessions, records, calendar)
+    history = History(states, sessions, records)
     health = Health(states, sessions, history, cameras)
     pins = Pins(records.people, wanted=config.pins)
     lock = SetupLock(records.people, states, on=config.lock_setup)

@@ -10,7 +10,6 @@ from latentarm.web.protocol.notice import Notice, notice_of
 from latentarm.web.protocol.report import Report
 from latentarm.web.records.drive_log import About, DriveLog, Logged
 from latentarm.web.records.drive_record import Ending
-from latentarm.web.records.record_files import Calendar
 from latentarm.web.records.records import Records
 from latentarm.web.server.sessions import Sessions
 from latentarm.web.server.states import States
@@ -23,11 +22,11 @@ PURGE_S: Final = 60.0  # how often deleted records are removed for good, s
 class History:
     """Logs what is driven; another thread writes it."""
 
-    def __init__(self, states: States, sessions: Sessions, records: Records, calendar: Calendar) -> None:
+    def __init__(self, states: States, sessions: Sessions, records: Records) -> None:
         self._states = states
         self._sessions = sessions
         self._records = records
-        self._log = DriveLog(calendar)
+        self._log = DriveLog()
         self._keeping: set[asyncio.Task[None]] = set()
         self._written_s = 0.0
         self.problem: Notice | None = None  # why the last drive was not kept; None if it was

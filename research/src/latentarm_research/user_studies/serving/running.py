@@ -17,7 +17,6 @@ from latentarm.web.arm_process.drive_setup import Spec, load_setup
 from latentarm.web.arm_process.process import ControlProcess
 from latentarm.web.protocol.notice import Notice
 from latentarm.web.protocol.server_messages import Refused
-from latentarm.web.records.record_files import SYSTEM_CALENDAR
 from latentarm.web.server.app import build_app
 from latentarm.web.server.config import TeleopConfig
 from latentarm_research.user_studies.drive_record import DriveRecord
@@ -64,7 +63,7 @@ class RunningDrive:
             control = ControlProcess(spec)
             try:
                 served = replace(config, spec=spec, lock_setup=locked)
-                return build_app(load_setup(spec), control, served, SYSTEM_CALENDAR), control
+                return build_app(load_setup(spec), control, served), control
             except BaseException:
                 control.end()
                 raise
