@@ -51,14 +51,14 @@ def drive_in_turn(
                     raise
                 before.steering.tick = driven.steering.tick
                 driven.let_go(before)
-                driven, before, note = before, None, _why_not(error)
+                driven, before, note = before, None, notice_of(error)
                 continue
             if change is None:
                 return
             try:
                 after, note = _changed(driven, change, clock), None
             except Exception as error:  # noqa: BLE001 - whatever a file does, the arm's process goes on
-                note = _why_not(error)
+                note = notice_of(error)
                 continue
             if after is driven:
                 note = Notice(code="reconnected")
@@ -70,12 +70,6 @@ def drive_in_turn(
         if before is not None:
             before.let_go(driven)
         driven.arm.close()
-
-
-def _why_not(error: Exception) -> Notice:
-    if isinstance(error, UserError):
-        return notice_of(error)
-    return Notice(code="not_loaded", parameters={"text": one_line(repr(error))})
 
 
 def _changed(driven: Driven, change: Change, clock: Clock) -> Driven:

@@ -84,9 +84,13 @@ class NoticeError(UserError):
         super().__init__(self.notice.text)
 
 
-def notice_of(error: UserError) -> Notice:
-    """The notice for an error."""
-    return error.notice if isinstance(error, NoticeError) else sentence(str(error))
+def notice_of(error: Exception) -> Notice:
+    """The notice for an error; one that is no `UserError` comes from a file that was loaded."""
+    if isinstance(error, NoticeError):
+        return error.notice
+    if isinstance(error, UserError):
+        return sentence(str(error))
+    return Notice(code="not_loaded", parameters={"text": one_line(repr(error))})
 
 
 def notice_of_stop(stop: Stop) -> Notice:

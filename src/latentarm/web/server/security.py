@@ -4,12 +4,11 @@ import asyncio
 import time
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from http.cookies import CookieError, SimpleCookie
 from types import MappingProxyType
 from typing import Final, final
-from urllib.parse import parse_qs
 
 from starlette.datastructures import Headers, MutableHeaders
+from starlette.requests import ClientDisconnect, HTTPConnection, Request
 from starlette.responses import HTMLResponse, PlainTextResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
@@ -104,8 +103,9 @@ class Gate:
             answer.headers["connection"] = "close"
             await answer(scope, receive, send)
             return
-        body = await _whole_body(receive)
-        if body is None:
+        try:
+            body = await Request(scope, receive).body()
+        except ClientDisconnect:
             return
         self._requests += 1
         try:
@@ -119,7 +119,7 @@ class Gate:
             # Before it is accepted this is an answer of 403.
             await send({"type": "websocket.close", "code": 1008})
             return
-        left_s = None if self._keys is None else self._keys.opens_for(_cookie(headers))
+        left_s = None if self._keys is None else self._keys.opens_for(_cookie(scope))
         await self.app(scope, receive if left_s is None else _until_expired(receive, left_s), send)
 
     def _refusal(self, scope: Scope, headers: Headers) -> Response | None:
@@ -137,7 +137,7 @@ class Gate:
             return PlainTextResponse("The server is busy: try again.", 503)
         if self._keys is None or scope["path"] in (ENTRY, HEALTH):
             return None
-        if self._keys.opens_for(_cookie(headers)) is not None:
+        if self._keys.opens_for(_cookie(scope)) is not None:
             return None
         return PlainTextResponse("Open the link that latentarm has printed; each one works once.", 401)
 
@@ -148,11 +148,11 @@ class Gate:
             self._stop(Headers(scope=scope))
             return Response(status_code=204)
         if scope["path"] == INVITATION:
-            is_host = self._keys is not None and self._keys.is_host(_cookie(Headers(scope=scope)))
+            is_host = self._keys is not None and self._keys.is_host(_cookie(scope))
             return invitation_answer(scope["method"], is_host, self._invite)
         if self._keys is None or scope["path"] != ENTRY:
             return None
-        key = parse_qs(scope["query_string"].decode("latin-1")).get("key", [""])[0]
+        key = HTTPConnection(scope).query_params.get("key", "")
         cookie = self._keys.redeem(key) if scope["method"] == "GET" else None
         if cookie is None:
             return PlainTextResponse("This link was used already. The newest one is in the terminal.", 403)
@@ -162,17 +162,6 @@ class Gate:
         )
         self._invite()
         return answer
-
-
-async def _whole_body(receive: Receive) -> bytes | None:
-    body = bytearray()
-    while True:
-        message = await receive()
-        if message["type"] != "http.request":
-            return None
-        body += message.get("body", b"")
-        if not message.get("more_body", False):
-            return bytes(body)
 
 
 def _once(body: bytes, receive: Receive) -> Receive:
@@ -222,9 +211,5 @@ def _short(headers: Headers, limit: int) -> bool:
     return length.isascii() and length.isdigit() and len(length) <= _MOST_DIGITS and int(length) <= limit
 
 
-def _cookie(headers: Headers) -> str:
-    try:
-        found = SimpleCookie(headers.get("cookie", "")).get(COOKIE)
-    except CookieError:
-        return ""
-    return "" if found is None else found.value
+def _cookie(scope: Scope) -> str:
+    return HTTPConnection(scope).cookies.get(COOKIE, "")

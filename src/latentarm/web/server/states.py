@@ -11,8 +11,6 @@ from typing import TYPE_CHECKING, Any, Final, final
 
 import numpy as np
 
-from latentarm.core.errors import UserError
-from latentarm.core.untrusted.terminal import one_line
 from latentarm.robots.kinematics.pose_rows import STORED
 from latentarm.web.protocol.notice import Notice, notice_of
 from latentarm.web.protocol.report import ArmState, Ghosts, Report, Things
@@ -205,11 +203,8 @@ class States:
             self.loaded = await asyncio.to_thread(load_reported_run, self.loaded.spec, report, name)
             self.report = report
             self._things = None
-        except UserError as error:
-            self._failed = beginning_of(report), notice_of(error)
         except Exception as error:  # noqa: BLE001 - otherwise pages would wait for ever
-            notice = Notice(code="not_loaded", parameters={"text": one_line(repr(error))})
-            self._failed = beginning_of(report), notice
+            self._failed = beginning_of(report), notice_of(error)
         finally:
             self._changing = None
 
