@@ -120,8 +120,7 @@ class PageInputs(InputSource):
 
     def _used(self, device: str) -> None:
         self._was_used = True
-        if device:
-            self.devices.add(device)
+        self.devices.add(device)
 
 
 def _copilot(paced: Paced | None) -> int | None:

@@ -19,6 +19,8 @@ HelpLevel = Literal["off", "low", "medium", "high"]
 
 BuiltInPose = Literal["home", "tuck"]  # poses that a robot's model states
 
+Deflection = Annotated[float, Field(ge=-1.0, le=1.0)]
+
 
 @final
 class AskedGripper(Message):
@@ -42,22 +44,28 @@ class Paced(Message):
     nonce: str  # the newest that the co-pilot's page had seen: it dates this message
 
 
+class PersonInput(Message):
+    """The part of a person's input that a `DriverInput` and a `Given` have in common."""
+
+    seq: Annotated[int, Field(ge=0, le=2**53)]  # grows with every input of a driver
+    nonce: Annotated[str, Field(max_length=64)]  # of the newest `State` that the page has seen
+    source: Literal["pointer", "keyboard", "dpad", "gamepad", "switch"]
+    latched: bool  # continues without being held, for at most `Welcome.latch_max_s`
+    device: Annotated[int, Field(ge=0, le=255)] = 0  # number among devices of that kind
+    # right and up from the device, before shaping and smoothing; null where they are ``u``
+    raw: tuple[Deflection, Deflection] | None = None
+    # whether the control is held down that opens the gripper of an arm that is not enabled
+    opens: bool = False
+
+
 @final
-class Given(Message):
+class Given(PersonInput):
     """The driver's input."""
 
     driver: int  # counts the drivers, so that late inputs of the previous one are ignored
-    seq: int  # grows with every input of a driver
-    nonce: str  # the newest that their page has seen
-    u: tuple[float, ...]  # entries in [-1, 1]
-    latched: bool  # continues without being held, for a limited time
-    source: str = ""  # kind of device
-    device: int = 0  # number among devices of that kind
-    raw: tuple[float, ...] | None = None  # the device's own values; None where they are ``u``
+    u: tuple[float, ...]  # entries in [-1, 1], one for each axis
     gripper: AskedGripper | None = None  # this driver's newest request; None before the first
     paced: Paced | None = None  # the co-pilot's newest pace; None without a co-pilot
-    # whether the control is held down that opens the gripper of an arm that is not enabled
-    opens: bool = False
 
 
 @final

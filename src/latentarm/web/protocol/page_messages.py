@@ -18,7 +18,6 @@ FRAME_LIMIT: Final = 4096  # the longest frame from a page, bytes
 
 Name = Annotated[str, Field(max_length=40)]
 Id = Annotated[str, Field(max_length=32)]
-Deflection = Annotated[float, Field(ge=-1.0, le=1.0)]
 PoseName = Annotated[str, Field(max_length=80)]
 
 
@@ -33,7 +32,7 @@ class Hello(Message):
 
 
 @final
-class DriverInput(Message):
+class DriverInput(PersonInput):
     """The person's input, 50 times a second while the arm is enabled, including neutral.
 
     Also while they hold down the control that opens the gripper of an arm that is not enabled. The process
@@ -41,18 +40,9 @@ class DriverInput(Message):
     """
 
     type: Literal["input"]
-    seq: Annotated[int, Field(ge=0, le=2**53)]  # grows
-    nonce: Annotated[str, Field(max_length=64)]  # of the newest `State` that the page has seen
     # entries in [-1, 1], right and up positive; axes that are not named are zero
     u: Annotated[tuple[Deflection, ...], Field(min_length=1, max_length=8)]
-    source: Literal["pointer", "keyboard", "dpad", "gamepad", "switch"]
-    latched: bool  # continues without being held, for at most `Limits.latch_max_s`
-    device: Annotated[int, Field(ge=0, le=255)] = 0  # number among devices of that kind
-    # right and up from the device, before shaping and smoothing; null where they are ``u``
-    raw: tuple[Deflection, Deflection] | None = None
     gripper: GripperAsk | None = None  # a request; only in the one input that makes it
-    # whether the control is held down that opens the gripper of an arm that is not enabled
-    opens: bool = False
 
 
 @final

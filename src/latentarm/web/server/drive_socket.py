@@ -308,21 +308,9 @@ class DriveSocket:
         padded = message.u + (0.0,) * (self._states.loaded.input_dim - len(message.u))
         if message.gripper is not None:
             self._asked = orders.AskedGripper(ask=message.gripper, seq=message.seq, nonce=message.nonce)
-        self._control.give(
-            orders.Given(
-                driver=self._sessions.turn,
-                seq=message.seq,
-                nonce=message.nonce,
-                u=padded,
-                latched=message.latched,
-                source=message.source,
-                device=message.device,
-                raw=message.raw,
-                gripper=self._asked,
-                paced=self._sessions.copilot.paced,
-                opens=message.opens,
-            )
-        )
+        told = {name: getattr(message, name) for name in orders.PersonInput.model_fields}
+        turn, paced = self._sessions.turn, self._sessions.copilot.paced
+        self._control.give(orders.Given(**told, driver=turn, u=padded, gripper=self._asked, paced=paced))
 
 
 def _of(page: Page, code: NoticeCode) -> Notice:
