@@ -38,7 +38,7 @@ def records(tmp_path):
 @pytest.fixture(scope="module")
 def about():
     setup = load_setup(Spec())
-    return About(None, "panda", setup.todo, None, drawable(setup.task, (), None), setup.task.robot.chain)
+    return About(None, setup, None, drawable(setup.task, (), None))
 
 
 @given(name=st.text(LETTERS, min_size=1, max_size=40))

@@ -10,8 +10,7 @@ from typing import Final, final
 
 import numpy as np
 
-from latentarm.robots.kinematics.chain import Chain
-from latentarm.web.arm_process.task_run import Todo
+from latentarm.web.arm_process.drive_setup import DriveSetup
 from latentarm.web.protocol.report import Report, Things
 from latentarm.web.protocol.scene import Drawable, pose_of
 from latentarm.web.records.drive_record import DriveRecord, Ending, Mark, Trace, TracedThings
@@ -34,12 +33,9 @@ class About:
     """The setup of a drive, and the driver's id (None for a guest)."""
 
     person: str | None
-    robot: str
-    todo: Todo
-    run: str | None
+    setup: DriveSetup
+    run: str | None  # its name
     scene: Drawable
-    chain: Chain
-    real: bool = False
 
 
 @final
@@ -97,7 +93,8 @@ class Logged:
     def trace(self) -> Trace:
         """The trace to replay; takes some milliseconds for each minute."""
         moments = self._drive.moments
-        links = self._drive.about.chain.link_transforms(np.array([moment.q for moment in moments]))
+        chain = self._drive.about.setup.task.robot.chain
+        links = chain.link_transforms(np.array([moment.q for moment in moments]))
         bodies = [pose_of(np.concatenate([np.eye(4)[None], row])) for row in links]
         return Trace(
             period_s=self._drive.period_s,
@@ -232,6 +229,7 @@ class DriveLog:
 
 def _record(drive: _Open, last: Report, why: Ending) -> DriveRecord:
     first, about = drive.first, drive.about
+    setup, todo = about.setup, about.setup.todo
     return DriveRecord.model_validate(
         {
             "id": drive.id,
@@ -239,10 +237,10 @@ def _record(drive: _Open, last: Report, why: Ending) -> DriveRecord:
             "started": drive.started,
             "time_s": round(max(drive.enabled_s, 0.0), 2),
             "moving_s": round(min(drive.moving_s, drive.enabled_s), 2),
-            "robot": about.robot[:200],
-            "real": about.real,
-            "task": about.todo.task[:200],
-            "choice": about.todo.choices[last.task.choice][:200] if about.todo.choices else None,
+            "robot": setup.task.robot.name[:200],
+            "real": setup.real,
+            "task": todo.task[:200],
+            "choice": todo.choices[last.task.choice][:200] if todo.choices else None,
             "run": None if about.run is None else about.run[:200],
             "profile": None if first.profile is None else first.profile[:64],
             "modes": tuple(mode for mode, _ in drive.modes.most_common()) or (first.mode,),
@@ -255,8 +253,8 @@ def _record(drive: _Open, last: Report, why: Ending) -> DriveRecord:
             "way_m": round(drive.way_m, 3),
             "help": round(min(drive.help_s / drive.moving_s, 1.0), 3) if drive.moving_s else None,
             "help_level": last.help,
-            "steps_done": last.task.done if about.todo.steps else None,
-            "steps": len(about.todo.steps) or None,
+            "steps_done": last.task.done if todo.steps else None,
+            "steps": len(todo.steps) or None,
             "outcome": last.task.outcome,
             "why": None if last.task.why is None else last.task.why.code,
             "ended": why,

@@ -275,7 +275,7 @@ class DriveSocket:
 
     def _confirmed_by(self, page: Page) -> bool:
         """True if this page has confirmed the checklist since the connection to the arm was last lost."""
-        return not self._states.loaded.real or self._confirmed.get(page.id) == self._states.arm_start
+        return not self._states.loaded.setup.real or self._confirmed.get(page.id) == self._states.arm_start
 
     def _save_pose(self, page: Page, name: str) -> None:
         report = self._states.report

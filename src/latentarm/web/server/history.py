@@ -88,12 +88,9 @@ class History:
             report,
             About(
                 person=None if driver is None or self._gone(driver.person) else driver.person,
-                robot=loaded.robot_name,
-                todo=loaded.todo,
+                setup=loaded.setup,
                 run=loaded.name,
                 scene=loaded.scene,
-                chain=loaded.chain,
-                real=loaded.real,
             ),
         )
         self._keep_so_far(report)

@@ -30,13 +30,10 @@ class LoadedRun:
         self.name = name
         self.spec = setup.spec
         self.scene = drawable(setup.task, setup.obstacles, setup.shown, setup.spec.zones)
-        self.chain = setup.task.robot.chain
         self.robot_name = setup.task.robot.name
-        self.real = setup.real
-        self.todo = setup.todo
         self.input_dim = setup.controller.input_dim
         self.latent_dim = setup.latent_dim
-        self._setup = setup
+        self.setup = setup
         robot = setup.task.robot
         home: dict[BuiltInPose, FloatArray] = {"home": robot.home} if robot.home_stated else {}
         tuck: dict[BuiltInPose, FloatArray] = {} if robot.tuck is None else {"tuck": robot.tuck}
@@ -59,7 +56,7 @@ class LoadedRun:
 
     def welcome(self, page: str, server: str) -> messages.Welcome:
         """The first message to a page."""
-        setup = self._setup
+        setup = self.setup
         gripper = setup.task.robot.gripper
         return messages.Welcome(
             id=page,
@@ -82,7 +79,7 @@ class LoadedRun:
             keep_out=tuple(one.name for one in setup.spec.keep_out),
             end_effector_modes=setup.axes,
             latch_max_s=LATCH_MAX_S,
-            real=messages.RealArm(facts=setup.spec.found, shadow=setup.spec.shadow) if self.real else None,
+            real=messages.RealArm(facts=setup.spec.found, shadow=setup.spec.shadow) if setup.real else None,
             poses=tuple(self._poses),
             gripper_width_m=None if gripper is None else gripper.width_m,
             task=messages.TaskToDo(

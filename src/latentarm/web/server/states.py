@@ -271,7 +271,7 @@ class States:
         return Notice(code="reconnecting" if connecting else "loading_run")
 
     def _bodies(self, report: Report) -> tuple[tuple[float, ...], ...]:
-        links = self.loaded.chain.link_transforms(np.array(report.q))
+        links = self.loaded.setup.task.robot.chain.link_transforms(np.array(report.q))
         frames = np.concatenate([np.eye(4)[None], links])
         return tuple(tuple(round(value, 4) for value in pose) for pose in pose_of(frames).tolist())
 
