@@ -19,7 +19,6 @@ from starlette.requests import Request
 from starlette.responses import JSONResponse, Response
 from starlette.routing import Route, WebSocketRoute
 from starlette.types import ASGIApp
-from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from latentarm.arms.catalogue import make_real_arm
 from latentarm.arms.checking import look_at
@@ -48,7 +47,13 @@ from latentarm.web.server.answers import refused
 from latentarm.web.server.assets import Assets
 from latentarm.web.server.camera_routes import CameraRoutes
 from latentarm.web.server.config import TeleopConfig, check_certificate, listen
-from latentarm.web.server.connections import HEAD_LIMIT, ConnectionLimits, Connections, limits_here
+from latentarm.web.server.connections import (
+    HEAD_LIMIT,
+    ConnectionLimits,
+    Connections,
+    SlicedProtocol,
+    limits_here,
+)
 from latentarm.web.server.drive_socket import DriveSocket
 from latentarm.web.server.health import Health
 from latentarm.web.server.history import History
@@ -94,26 +99,15 @@ def serve(
     setup = load_setup(config.spec)
     out = config.spec.out
     out.mkdir(parents=True, exist_ok=True)
-    with (
-        locked(out, out / _LOCK, "end it with Ctrl-C, or choose another folder with --out"),
-        logging_also_to(out / LOG),
-    ):
-        _LOG.info("The server begins: %s.", computer())
-        _serve_alone(config, setup, say, ready, draws)
-
-
-def _serve_alone(
-    config: TeleopConfig,
-    setup: DriveSetup,
-    say: Callable[[str], None],
-    ready: Callable[[str], None],
-    draws: bool,
-) -> None:
-    if setup.real:
-        config, setup = _looked_at(config, setup, say)
-    out = config.spec.out
-    before = set(out.glob(f"*{JOURNAL_SUFFIX}"))
     with ExitStack() as at_end:
+        at_end.enter_context(
+            locked(out, out / _LOCK, "end it with Ctrl-C, or choose another folder with --out")
+        )
+        at_end.enter_context(logging_also_to(out / LOG))
+        _LOG.info("The server begins: %s.", computer())
+        if setup.real:
+            config, setup = _looked_at(config, setup, say)
+        before = set(out.glob(f"*{JOURNAL_SUFFIX}"))
         at_end.callback(_LOG.info, "The server ends.")
         listening = at_end.enter_context(listen(config))
         cameras = CameraProcess(config.cameras, listening.getsockname()[0]) if config.cameras else None
@@ -384,8 +378,8 @@ async def serve_on(listening: socket.socket, server: uvicorn.Server, limits: Con
         while not server.started:
             await asyncio.sleep(_STARTED_S)
 
-        def protocol() -> H11Protocol:
-            return H11Protocol(server.config, server.server_state, server.lifespan.state)
+        def protocol() -> SlicedProtocol:
+            return SlicedProtocol(server.config, server.server_state, server.lifespan.state)
 
         await Connections(listening, protocol, server.config.ssl, limits).accept()
 

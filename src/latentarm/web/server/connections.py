@@ -64,23 +64,19 @@ def limits_here() -> ConnectionLimits:
 
 
 @final
+@dataclass(eq=False)
 class Connections:
     """Accepts connections, and ends those that take too long.
 
-    ``serve`` makes a uvicorn protocol for a new connection; ``tls`` is None for plain HTTP.
+    ``_serve`` makes a uvicorn protocol for a new connection; ``_tls`` is None for plain HTTP.
     """
 
-    def __init__(
-        self,
-        listening: socket.socket,
-        serve: Callable[[], H11Protocol],
-        tls: ssl.SSLContext | None,
-        limits: ConnectionLimits,
-    ) -> None:
-        self._listening = listening
-        self._serve = serve
-        self._tls = tls
-        self._limits = limits
+    _listening: socket.socket
+    _serve: "Callable[[], SlicedProtocol]"
+    _tls: ssl.SSLContext | None
+    _limits: ConnectionLimits
+
+    def __post_init__(self) -> None:
         # Longest waiting first.
         self._open: dict[_Connection, None] = {}
         self._said_s = -_SAY_EVERY_S
@@ -149,7 +145,7 @@ class _Connection:
     def __init__(
         self,
         accepted: socket.socket,
-        serve: Callable[[], H11Protocol],
+        serve: "Callable[[], SlicedProtocol]",
         tls: ssl.SSLContext | None,
         limits: ConnectionLimits,
     ) -> None:
@@ -174,9 +170,9 @@ class _Connection:
         if self._transport.is_closing():
             return "closing"
         protocol = self._transport.get_protocol()
-        if not isinstance(protocol, _Sliced):
+        if not isinstance(protocol, SlicedProtocol):
             return "socket"
-        state = protocol.inner.conn.their_state
+        state = protocol.conn.their_state
         if state is h11.IDLE:
             return "head"
         return "body" if state is h11.SEND_BODY else "answer"
@@ -187,7 +183,7 @@ class _Connection:
         unsent = 0 if self._transport is None else self._transport.get_write_buffer_size()
         taken = unsent < self._unsent or (phase in ("answer", "socket") and unsent == 0)
         protocol = None if self._transport is None else self._transport.get_protocol()
-        now = phase, protocol.inner.cycle if isinstance(protocol, _Sliced) else None
+        now = phase, protocol.cycle if isinstance(protocol, SlicedProtocol) else None
         went_on = taken or now != self._before
         self._unsent, self._before = unsent, now
         if went_on:
@@ -215,11 +211,11 @@ class _Connection:
         """Abort a connection that uvicorn has not got yet."""
         self._opening.cancel()
 
-    async def _open(self, serve: Callable[[], H11Protocol], tls: ssl.SSLContext | None) -> None:
+    async def _open(self, serve: "Callable[[], SlicedProtocol]", tls: ssl.SSLContext | None) -> None:
         loop = asyncio.get_running_loop()
         try:
             self._transport, _ = await loop.connect_accepted_socket(
-                lambda: _Sliced(serve()),
+                serve,
                 self._socket,
                 ssl=tls,
                 ssl_handshake_timeout=None if tls is None else self._limits.head_s,
@@ -232,35 +228,14 @@ class _Connection:
 
 
 @final
-class _Sliced(asyncio.Protocol):
+class SlicedProtocol(H11Protocol):
     """uvicorn's HTTP protocol, fed in small pieces: h11 checks its limit only between two pieces."""
 
-    def __init__(self, inner: H11Protocol) -> None:
-        self.inner = inner
-
-    def connection_made(self, transport: asyncio.BaseTransport) -> None:
-        self._transport = cast(asyncio.Transport, transport)
-        self.inner.connection_made(self._transport)
-
     def data_received(self, data: bytes) -> None:
+        """Take bytes, of a WebSocket too from where the request for it ends."""
         for at in range(0, len(data), _SLICE):
-            if self._transport.is_closing():
+            if self.transport.is_closing():
                 return
-            # A WebSocket's from where the request for it ends.
-            protocol = self._transport.get_protocol()
-            receiver = (
-                protocol if isinstance(protocol, asyncio.Protocol) and protocol is not self else self.inner
-            )
+            protocol = self.transport.get_protocol()
+            receiver = super() if protocol is self else cast(asyncio.Protocol, protocol)
             receiver.data_received(data[at : at + _SLICE])
-
-    def eof_received(self) -> bool | None:
-        return self.inner.eof_received()
-
-    def connection_lost(self, exc: Exception | None) -> None:
-        self.inner.connection_lost(exc)
-
-    def pause_writing(self) -> None:
-        self.inner.pause_writing()
-
-    def resume_writing(self) -> None:
-        self.inner.resume_writing()

@@ -3,6 +3,7 @@
 import asyncio
 import math
 import time
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, final
 
@@ -27,22 +28,17 @@ MOST_LISTED: Final = 100
 
 
 @final
+@dataclass(eq=False)
 class Learning:
-    """Recordings, trainings, runs, and people's alignments. ``out`` holds ``datasets`` and ``runs``."""
+    """Recordings, trainings, runs, and people's alignments. ``_out`` holds ``datasets`` and ``runs``."""
 
-    def __init__(
-        self,
-        control: "ControlProcess",
-        states: States,
-        run_list: RunList,
-        journals: Recordings,
-        out: Path,
-    ) -> None:
-        self._control = control
-        self._states = states
-        self._run_list = run_list
-        self._journals = journals
-        self._out = out
+    _control: "ControlProcess"
+    _states: States
+    _run_list: RunList
+    _journals: Recordings
+    _out: Path
+
+    def __post_init__(self) -> None:
         self._job: TrainingJob | None = None
         self._training: Training | None = None
         self._recordings: tuple[Recorded, ...] = ()
@@ -50,10 +46,10 @@ class Learning:
         self._list_again_s = -math.inf
         self._cancelling: asyncio.Task[None] | None = None
         self._choosing: asyncio.Task[None] | None = None
-        self.personalising = Personalising(states, control)
+        self.personalising = Personalising(self._states, self._control)
         self.text = ""  # the state as JSON, for pages
         self.number = 0  # changes with every change of `text`
-        self._tell(run_list.runs())
+        self._tell(self._run_list.runs())
 
     async def follow(self) -> None:
         """Update the state, until cancelled."""

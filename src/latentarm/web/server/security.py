@@ -4,6 +4,7 @@ import asyncio
 import time
 from collections.abc import Callable, Mapping
 from contextlib import suppress
+from dataclasses import KW_ONLY, dataclass
 from types import MappingProxyType
 from typing import Final, final
 
@@ -49,42 +50,27 @@ _WELCOME: Final = (
 
 
 @final
+@dataclass(eq=False)
 class Gate:
     """Guards the whole application and its socket.
 
     It answers `STOP` itself, before anything is counted, looked up or built. The application receives only
     complete requests.
-
-    Args:
-        hosts: exact ``Host`` headers, with the port where it is not the scheme's own.
-        origins: exact ``Origin`` headers.
-        keys: None admits everybody, for a server on the loopback.
-        secure: whether the cookie is for TLS alone.
-        long_bodies: paths that take bodies longer than `BODY_LIMIT`, with their limits, bytes.
-        stop: stops the arm; gets the request's headers.
-        invite: makes a link for the next person; called when a link was used, and for the host's page.
     """
 
-    def __init__(
-        self,
-        app: ASGIApp,
-        hosts: frozenset[str],
-        origins: frozenset[str],
-        keys: Keys | None = None,
-        *,
-        secure: bool = False,
-        stop: Callable[[Headers], None],
-        long_bodies: Mapping[str, int] = MappingProxyType({}),
-        invite: Callable[[], str] = lambda: "",
-    ) -> None:
-        self.app = app
-        self._hosts = hosts
-        self._origins = origins
-        self._keys = keys
-        self._secure = secure
-        self._stop = stop
-        self._long_bodies = long_bodies
-        self._invite = invite
+    app: ASGIApp
+    hosts: frozenset[str]  # exact ``Host`` headers, with the port where it is not the scheme's own
+    origins: frozenset[str]  # exact ``Origin`` headers
+    keys: Keys | None = None  # None admits everybody, for a server on the loopback
+    _: KW_ONLY
+    secure: bool = False  # whether the cookie is for TLS alone
+    stop: Callable[[Headers], None]  # stops the arm; gets the request's headers
+    # paths that take bodies longer than `BODY_LIMIT`, with their limits, bytes
+    long_bodies: Mapping[str, int] = MappingProxyType({})
+    # makes a link for the next person; called when a link was used, and for the host's page
+    invite: Callable[[], str] = lambda: ""
+
+    def __post_init__(self) -> None:
         self._requests = 0
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -119,25 +105,25 @@ class Gate:
             # Before it is accepted this is an answer of 403.
             await send({"type": "websocket.close", "code": 1008})
             return
-        left_s = None if self._keys is None else self._keys.opens_for(_cookie(scope))
+        left_s = None if self.keys is None else self.keys.opens_for(_cookie(scope))
         await self.app(scope, receive if left_s is None else _until_expired(receive, left_s), send)
 
     def _refusal(self, scope: Scope, headers: Headers) -> Response | None:
-        if headers.getlist("host") not in [[host] for host in self._hosts]:
+        if headers.getlist("host") not in [[host] for host in self.hosts]:
             return PlainTextResponse("This server is not reached by that name.", 421)
         origins = headers.getlist("origin")
         must_name_origin = scope["type"] == "websocket" or scope["method"] not in _READING
-        if (origins or must_name_origin) and origins not in [[origin] for origin in self._origins]:
+        if (origins or must_name_origin) and origins not in [[origin] for origin in self.origins]:
             return PlainTextResponse("This page may not be used from another site.", 403)
         if scope["path"] == STOP:
             return None
-        if not _short(headers, self._long_bodies.get(scope["path"], BODY_LIMIT)):
+        if not _short(headers, self.long_bodies.get(scope["path"], BODY_LIMIT)):
             return PlainTextResponse("That is too long.", 413)
         if self._requests >= MOST_REQUESTS:
             return PlainTextResponse("The server is busy: try again.", 503)
-        if self._keys is None or scope["path"] in (ENTRY, HEALTH):
+        if self.keys is None or scope["path"] in (ENTRY, HEALTH):
             return None
-        if self._keys.opens_for(_cookie(scope)) is not None:
+        if self.keys.opens_for(_cookie(scope)) is not None:
             return None
         return PlainTextResponse("Open the link that latentarm has printed; each one works once.", 401)
 
@@ -145,22 +131,22 @@ class Gate:
         if scope["path"] == STOP:
             if scope["method"] != "POST":
                 return PlainTextResponse("Stop is a POST.", 405, headers={"allow": "POST"})
-            self._stop(Headers(scope=scope))
+            self.stop(Headers(scope=scope))
             return Response(status_code=204)
         if scope["path"] == INVITATION:
-            is_host = self._keys is not None and self._keys.is_host(_cookie(scope))
-            return invitation_answer(scope["method"], is_host, self._invite)
-        if self._keys is None or scope["path"] != ENTRY:
+            is_host = self.keys is not None and self.keys.is_host(_cookie(scope))
+            return invitation_answer(scope["method"], is_host, self.invite)
+        if self.keys is None or scope["path"] != ENTRY:
             return None
         key = HTTPConnection(scope).query_params.get("key", "")
-        cookie = self._keys.redeem(key) if scope["method"] == "GET" else None
+        cookie = self.keys.redeem(key) if scope["method"] == "GET" else None
         if cookie is None:
             return PlainTextResponse("This link was used already. The newest one is in the terminal.", 403)
         answer = HTMLResponse(_WELCOME, headers={"cache-control": "no-store"})
         answer.set_cookie(
-            COOKIE, cookie, max_age=LIFE_S, path="/", secure=self._secure, httponly=True, samesite="strict"
+            COOKIE, cookie, max_age=LIFE_S, path="/", secure=self.secure, httponly=True, samesite="strict"
         )
-        self._invite()
+        self.invite()
         return answer
 
 
