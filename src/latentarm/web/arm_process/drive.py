@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import Final, final
 
 import numpy as np
@@ -50,47 +51,34 @@ _SPARE_S: Final = 0.004  # deferrable work needs this much time before the next 
 
 
 @final
+@dataclass(eq=False)
 class Drive:
     """The work of the control loop's thread for one setup, apart from the loop itself.
 
     It takes a few hundred microseconds a tick. Stops are checked in every tick, however full the pipe of
     orders is.
-
-    Args:
-        orphaned: whether the page's server is gone.
-        steering: state from the drive before.
-        note: shown to the person first; None for nothing.
-        observers: also called after every command.
-        calls: records every call of the arm's `Step`; None for nowhere.
     """
 
-    def __init__(
-        self,
-        setup: DriveSetup,
-        arm: Arm,
-        channel: Channel,
-        clock: Clock,
-        writer: EpisodeWriter,
-        orphaned: Callable[[], bool],
-        steering: Steering,
-        note: Notice | None = None,
-        observers: Sequence[Callable[[StepRecord], None]] = (),
-        calls: CallLog | None = None,
-    ) -> None:
-        self._setup = setup
-        self._arm = arm
-        self._channel = channel
-        self._clock = clock
-        self._writer = writer
-        self._orphaned = orphaned
-        self._steering = steering
+    _setup: DriveSetup
+    _arm: Arm
+    _channel: Channel
+    _clock: Clock
+    _writer: EpisodeWriter
+    _orphaned: Callable[[], bool]  # whether the page's server is gone
+    _steering: Steering  # state from the drive before
+    note: Notice | None = None  # shown to the person first; None for nothing
+    observers: Sequence[Callable[[StepRecord], None]] = ()  # also called after every command
+    calls: CallLog | None = None  # records every call of the arm's `Step`; None for nowhere
+
+    def __post_init__(self) -> None:
+        setup, steering, clock = self._setup, self._steering, self._clock
+        arm, channel = self._arm, self._channel
         self._to_pose = setup.to_pose()
-        self._calls = calls
-        self._to_pose.calls = setup.help.calls = calls
+        self._to_pose.calls = setup.help.calls = self.calls
         about = setup.with_things(arm)
         steering.things = follow(setup, steering.things, channel.sightings)
         self._things = ThingPoses(setup, about, steering.things, clock.now_s)
-        self._step = setup.step(self._things.surroundings(setup, about), self._to_pose, calls)
+        self._step = setup.step(self._things.surroundings(setup, about), self._to_pose, self.calls)
         self._inputs = PageInputs(
             channel.given, clock, setup.controller.input_dim, self._step.dead_zone, self._stop_if_enabled
         )
@@ -100,7 +88,7 @@ class Drive:
         self._ended: Notice | None = None
         self._idle = IdleLimit(setup.spec.idle_s, self._stop)
         self._ordered = False
-        self._loop = ControlLoop(self._step, arm, self._way_back, clock, [self._observe, *observers])
+        self._loop = ControlLoop(self._step, arm, self._way_back, clock, [self._observe, *self.observers])
         self._stop_version = channel.stop.version
         self._reasons: dict[str, Notice] = {}
         self._enable_until_s = -math.inf
@@ -108,13 +96,12 @@ class Drive:
         self._readings = LatestReadings(setup.start, setup.task.robot.gripper)
         self._ghosts = GhostPaths(setup.task, setup.controller, setup.help, self._step.safety)
         self._late_share = 0.0
-        self._episodes = Episodes(setup, writer, steering, self._inputs, self._things)
+        self._episodes = Episodes(setup, self._writer, steering, self._inputs, self._things)
         self._disengaged = Disengaged(self._step, arm, self._episodes, self._say)
         self._run = steering.run or TaskRun(setup.todo, about, setup.task.robot.chain)
         steering.run = self._run
         self._goals = setup.step_goals()
-        self._note = note
-        self._note_until_s = -math.inf if note is None else clock.now_s() + NOTE_S
+        self._note_until_s = -math.inf if self.note is None else clock.now_s() + NOTE_S
         self.change: Change | None = None  # the order that ended the loop to restart it
         self._choose(steering.mode, steering.axes, steering.help)
 
@@ -141,8 +128,8 @@ class Drive:
         self._channel.report.write(self._report(record).model_dump_json().encode())
         if self._clock.now_s() + _SPARE_S < record.time_s + PERIOD_S:
             self._look(record)
-        if self._calls is not None:
-            self._record_calls(self._calls)
+        if self.calls is not None:
+            self._record_calls(self.calls)
 
     def _look_for_inputs(self, now_s: float) -> None:
         used = (
@@ -193,7 +180,7 @@ class Drive:
             self._stop(reason)
 
     def _say(self, note: Notice) -> None:
-        self._note = note
+        self.note = note
         self._note_until_s = self._clock.now_s() + NOTE_S
 
     def _carry_out(self, order: Order, record: StepRecord) -> None:
@@ -294,7 +281,7 @@ class Drive:
 
     def _follow_way_back(self, record: StepRecord) -> None:
         if not self._way_back.on:
-            if record.input.any() and self._note is not None and self._note == self._ended:
+            if record.input.any() and self.note is not None and self.note == self._ended:
                 self._note_until_s = -math.inf
             return
         self._step.forget()
@@ -394,7 +381,7 @@ class Drive:
             time_s=record.time_s,
             driver=self._inputs.driver,
             phase=phase,
-            note=self._note if record.time_s < self._note_until_s else None,
+            note=self.note if record.time_s < self._note_until_s else None,
             reason=self._disengaged.lost or self._reason(self._step.stopped),
             held_back=held_back[0] if held_back else None,
             zone=zone,
