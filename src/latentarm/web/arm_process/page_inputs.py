@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Final, final
 
 import numpy as np
@@ -23,25 +23,21 @@ COPILOT_TIMEOUT_S: Final = 0.5  # how long a co-pilot's pace counts, s: five tim
 
 
 @final
+@dataclass(eq=False)
 class PageInputs(InputSource):
-    """The newest input in a slot, if it is the driver's and fresh.
+    """The newest input in a slot, if it is the driver's and fresh."""
 
-    Args:
-        dead_zone: a smaller deflection is neutral.
-        stop: stops the arm: when a deflection has lasted too long without a change, another person starts to
-            drive, or the driver's co-pilot comes, goes, or is silent.
-    """
+    _slot: LatestSlot
+    _clock: Clock
+    _input_dim: int
+    _dead_zone: float  # a smaller deflection is neutral
+    # stops the arm: when a deflection has lasted too long without a change, another person starts to drive,
+    # or the driver's co-pilot comes, goes, or is silent
+    _stop: Callable[[Notice], None]
 
-    def __init__(
-        self, slot: LatestSlot, clock: Clock, input_dim: int, dead_zone: float, stop: Callable[[Notice], None]
-    ) -> None:
-        self._slot = slot
-        self._clock = clock
-        self._input_dim = input_dim
-        self._dead_zone = dead_zone
-        self._stop = stop
-        self._version = slot.version
-        self._port = InputPort(input_dim, clock)
+    def __post_init__(self) -> None:
+        self._version = self._slot.version
+        self._port = InputPort(self._input_dim, self._clock)
         self._same_since_s = math.inf
         self._raw: tuple[float, ...] = ()
         self._paced: Paced | None = None

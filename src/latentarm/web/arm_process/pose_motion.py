@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Final, Literal, final
 
 import numpy as np
@@ -25,21 +25,17 @@ _LOOKS: Final = 2  # places on the way that are checked in each tick before the 
 
 Outcome = Literal["arrived", "stuck", "pushed", "blocked"]
 
-_BACK: Final[dict[Outcome, NoticeCode]] = {
-    "arrived": "at_start",
-    "stuck": "return_stuck",
-    "pushed": "return_pushed",
-    "blocked": "return_blocked",
+_ENDINGS: Final[dict[Outcome, tuple[NoticeCode, NoticeCode]]] = {
+    "arrived": ("at_start", "at_pose"),
+    "stuck": ("return_stuck", "pose_stuck"),
+    "pushed": ("return_pushed", "pose_pushed"),
+    "blocked": ("return_blocked", "path_blocked"),
 }
-_TO_POSE: Final[dict[Outcome, NoticeCode]] = {
-    "arrived": "at_pose",
-    "stuck": "pose_stuck",
-    "pushed": "pose_pushed",
-    "blocked": "path_blocked",
-}
+"""Notices at the end of a way back to the start, and of one to a saved pose."""
 
 
 @final
+@dataclass(eq=False)
 class PoseMotion(InputSource):
     """The person's inputs; on the way to a pose, the input that drives it, with the age of theirs.
 
@@ -48,14 +44,14 @@ class PoseMotion(InputSource):
     a fraction of a second.
     """
 
-    def __init__(
-        self, gate: NeutralInterlock, inputs: PageInputs, start: FloatArray, straight: StraightWay
-    ) -> None:
-        self._straight = straight
+    _gate: NeutralInterlock
+    _inputs: PageInputs
+    _start: FloatArray
+    _straight: StraightWay
+
+    def __post_init__(self) -> None:
         self._blocked: tuple[str, str] | None = None
-        self._gate = gate
-        self._inputs = inputs
-        self._start = self._goal = start
+        self._goal = self._start
         self.pose: str | None = None  # the name of the pose that it leads to; None for the start
         self._pushed = False
         self._began_s = self._closer_s = -math.inf
@@ -116,6 +112,7 @@ class PoseMotion(InputSource):
             parameters["seconds"] = round(STUCK_S)
         if outcome == "blocked" and self._blocked is not None:
             parameters["first"], parameters["second"] = self._blocked
+        back, to_pose = _ENDINGS[outcome]
         if self.pose is None:
-            return Notice(code=_BACK[outcome], parameters=parameters)
-        return Notice(code=_TO_POSE[outcome], parameters={**parameters, "pose": self.pose})
+            return Notice(code=back, parameters=parameters)
+        return Notice(code=to_pose, parameters={**parameters, "pose": self.pose})

@@ -6,6 +6,7 @@ import threading
 import time
 from collections.abc import Callable
 from contextlib import closing, suppress
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Final, Literal, final
 
@@ -60,29 +61,25 @@ class _Titles(Message):
 
 
 @final
+@dataclass(eq=False)
 class Recordings:
     """Journals by file name.
 
     All methods wait for the disk, and raise `UserError` if there is no such recording, or files cannot be
-    read, written, moved or deleted. ``out`` is the folder of the journals, ``folder`` that of the titles;
-    ``in_use`` returns the path of the journal that is being written.
+    read, written, moved or deleted.
     """
 
-    def __init__(
-        self,
-        out: Path,
-        folder: Path,
-        in_use: Callable[[], Path | None],
-        now_s: Callable[[], float] = time.monotonic,
-    ) -> None:
-        self._out = out
-        self._titles_path = folder / _TITLES
-        self._in_use = in_use
-        self._now_s = now_s
+    _out: Path  # folder of the journals
+    _folder: Path  # that of the titles
+    _in_use: Callable[[], Path | None]  # path of the journal that is being written
+    now_s: Callable[[], float] = time.monotonic
+
+    def __post_init__(self) -> None:
+        self._titles_path = self._folder / _TITLES
         self._lock = threading.Lock()
         self._deleted: dict[str, float] = {}
         self._listed: dict[str, tuple[tuple[int, int], tuple[RecordedEpisode, ...]]] = {}
-        for path in out.glob(f"{_HIDDEN}*"):
+        for path in self._out.glob(f"{_HIDDEN}*"):
             with suppress(OSError):
                 path.unlink()
 
@@ -107,7 +104,7 @@ class Recordings:
             if self._used(path):
                 raise NoticeError("recording_in_use")
             _move(path, path.with_name(_HIDDEN + name))
-            self._deleted[name] = self._now_s() + UNDO_S
+            self._deleted[name] = self.now_s() + UNDO_S
 
     def restore(self, name: str) -> None:
         """Bring back a deleted recording."""
@@ -120,7 +117,7 @@ class Recordings:
     def purge(self) -> None:
         """Remove recordings that can no longer be restored."""
         with self._lock:
-            for name in [name for name, until_s in self._deleted.items() if until_s <= self._now_s()]:
+            for name in [name for name, until_s in self._deleted.items() if until_s <= self.now_s()]:
                 _unlink(self._out / (_HIDDEN + name))
                 del self._deleted[name]
 

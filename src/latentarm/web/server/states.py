@@ -6,6 +6,7 @@ import math
 import time
 from collections.abc import Callable
 from contextlib import suppress
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, final
 
@@ -70,18 +71,18 @@ class PageMemory:
 
 
 @final
+@dataclass(eq=False)
 class States:
     """The newest state of the arm, for pages to wait for."""
 
-    def __init__(
-        self, loaded: LoadedRun, control: "ControlProcess", sessions: Sessions, run_list: RunList
-    ) -> None:
-        self.loaded = loaded  # the setup that is driven
-        self._control = control
-        self._sessions = sessions
+    loaded: LoadedRun  # the setup that is driven
+    _control: "ControlProcess"
+    _sessions: Sessions
+    _run_list: RunList
+
+    def __post_init__(self) -> None:
         self.standstill: Notice | None = None  # why the arm may not be enabled; None if it may
         self.heard: list[Callable[[Report], None]] = []  # called with every report about `loaded`
-        self._run_list = run_list
         self.loading = False  # whether another setup is being loaded, here or in the control process
         self._failed: tuple[Beginning, Notice] | None = None
         self._changing: asyncio.Task[None] | None = None
