@@ -35,7 +35,6 @@ const SETTINGS = {
   // (Dhakal et al., CHI 2018): 0.05 s is nearly three below.
   acceptS: within(0.05, 0, 2),
   releaseS: within(0.2, 0, 2), // how long a switch must have been up before a press counts, s
-  debounced: any(true), // whether these two were stored by a version that debounces switches by default
   repeatS: within(0, 0, 3), // how often a switch that is held counts again, s; 0 for never
   rows: any(false), // whether long lists are scanned by rows
   bestFirst: any(false), // whether the direction that brings the task on is lit first
@@ -144,15 +143,10 @@ function personIn(stored) {
 
 /** The stored values that make sense: they may be from another version. @param {string | null} stored @returns {Values} */
 function valid(stored) {
-  let kept = storage.parsed(stored);
-  // These zeros were the old defaults. Every change stores all values, so nobody need have chosen them.
-  if (kept && !kept.debounced && kept.acceptS === 0 && kept.releaseS === 0) {
-    kept = { ...kept, acceptS: DEFAULTS.acceptS, releaseS: DEFAULTS.releaseS };
-  }
+  const kept = storage.parsed(stored);
   const values = /** @type {Values} */ (Object.fromEntries(Object.entries(SETTINGS).map(([key, one]) => (
     [key, typeof kept?.[key] === typeof one.usual ? one.valid(kept[key]) : one.usual]))));
-  values.debounced = true;
-  // A version before had one setting for all gamepads. Where Stop was elsewhere, every button stops until they are mapped.
+  // Version 0.1.0 had one setting for all gamepads. Where Stop was elsewhere, every button stops until they are mapped.
   if (kept?.gamepadStop !== undefined && kept.gamepadStop !== "1") values.pads = { ...values.pads, "": EVERY_STOP };
   return values;
 }
