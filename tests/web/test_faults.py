@@ -94,7 +94,7 @@ from latentarm.web.arm_process.process import ControlProcess
 
 if __name__ == "__main__":
     control = ControlProcess(Spec(Path(sys.argv[1]), out=Path(sys.argv[2])))
-    print(control.pid, flush=True)
+    print(control._process.pid, flush=True)
     control.order(Record(on=True, task="fault"))
     control.order(Enable(driver=1, stops=control.stops))
     nonce, sequence, moving = "", 0, 0
@@ -146,7 +146,7 @@ def test_a_killed_server(trained, tmp_path):
 
 def test_a_control_process_that_dies_is_told_to_every_page(trained, tmp_path):
     with served(Spec(trained, out=tmp_path)) as site, site.page() as page:
-        os.kill(site.control.pid, signal.SIGKILL)
+        os.kill(site.control._process.pid, signal.SIGKILL)
         page.wait(lambda state: (state["note"] or {}).get("code") == "arm_process_ended")
         assert page.state["phase"] == "disengaged"
         # Told again and again: a page that hears nothing would take the server for dead.
@@ -157,7 +157,7 @@ def test_a_control_process_that_dies_is_told_to_every_page(trained, tmp_path):
 
 def test_a_server_that_ends_in_good_order_takes_the_control_process_along(trained, tmp_path):
     with served(Spec(trained, out=tmp_path)) as site:
-        pid = site.control.pid
+        pid = site.control._process.pid
         with site.page() as page:
             page.wait(lambda state: state["tick"] > 10)
     assert gone(pid)

@@ -27,7 +27,7 @@ def test_health_says_why_and_metrics_can_be_read_by_prometheus(serve, tmp_path):
         assert 0.0 <= samples["latentarm_reading_age_seconds", ()] < 5.0
         assert 0.0 <= samples["latentarm_late_ticks_ratio", ()] <= 1.0
         assert "Ada" not in answer.text
-        os.kill(site.control.pid, signal.SIGKILL)
+        os.kill(site.control._process.pid, signal.SIGKILL)
         down = wait_for(lambda: (said := httpx.get(f"{site.origin}/health")).status_code == 503 and said)
         assert down.json()["reason"] in ("arm_process_silent", "arm_process_ended")
         assert parsed(httpx.get(f"{site.origin}/metrics").text)["latentarm_up", ()] == 0.0

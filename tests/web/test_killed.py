@@ -157,7 +157,7 @@ def test_a_drive_is_kept_even_if_the_server_is_killed_as_it_begins(tmp_path):
 def test_a_drive_whose_arm_process_is_killed_is_in_the_history_at_once(serve, tmp_path):
     with serve(Spec(out=tmp_path)) as site, site.page() as page:
         page.drive(1.0, 0.0)
-        os.kill(site.control.pid, signal.SIGKILL)
+        os.kill(site.control._process.pid, signal.SIGKILL)
         drives = wait_for(lambda: httpx.get(f"{site.origin}/records/drives").json()["drives"])
     assert [drive["ended"] for drive in drives] == ["broken_off"]
     assert [drive.ended for drive in drives_in(tmp_path)] == ["broken_off"]

@@ -40,7 +40,7 @@ def fall_silent(site, page, server):
 
 
 def kill(site, page, server):
-    os.kill(site.control.pid, signal.SIGKILL)
+    os.kill(site.control._process.pid, signal.SIGKILL)
 
 
 KINDS = {

@@ -204,7 +204,8 @@ class Drive:
                 if self._disengaged.records(order):
                     self._episodes.begin(order)
             case orders.Record():
-                self._episodes.end_at_rest()
+                # Once the arm is at rest: its last motion belongs to it.
+                self._steering.ending_episode = True
             case orders.Guide(on=True, stops=stops):
                 if stops == self._stop_version:
                     self._note_until_s = -math.inf
@@ -342,7 +343,7 @@ class Drive:
         move = self._run.move_goals(self._goals, self._readings.q, self._things.believed())
         if move is not None:
             self._step.move_goals(move.goals)
-            self._ghosts.move_goals(move.goals)
+            self._ghosts.goals = move.goals
             if move.anew:
                 self._step.forget()
 

@@ -64,7 +64,8 @@ class GhostPaths:
         planes = [one for one in limits.obstacles if isinstance(one, HalfSpace)]
         self._normals = np.array([plane.normal for plane in planes]).reshape(-1, 3)
         self._offsets = np.array([plane.normal @ plane.point for plane in planes])
-        self._goals = np.array([goal.configuration for goal in task.goals])
+        # (G, n), the goals to which the help leads from the next stretch on, rad
+        self.goals = np.array([goal.configuration for goal in task.goals])
         self._pushes = full_pushes(controller.input_dim)[:DIRECTIONS]
         self._way: _Way | None = None
         self._whole: tuple[_Meaning, Ghosts] | None = None
@@ -74,10 +75,6 @@ class GhostPaths:
         if self._whole is None or self._whole[0] != (mode, self._help.level):
             return NO_GHOSTS
         return self._whole[1]
-
-    def move_goals(self, goals: FloatArray) -> None:
-        """From the next stretch on, the help leads to goals (G, n), rad."""
-        self._goals = goals
 
     def look(self, context: Context, mode: int) -> None:
         """Predict the next stretch; the last one renews `newest`. The first stretch's ``context`` is kept."""
@@ -115,7 +112,7 @@ class GhostPaths:
         if not help_.on:
             return action
         alpha = help_.alpha(self._pushes, context.belief)
-        return blend(action, assistive_action(context.state, context.belief, self._goals), alpha)
+        return blend(action, assistive_action(context.state, context.belief, self.goals), alpha)
 
     def _moved(self, q: FloatArray, at: FloatArray, wanted: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Joints, (K, n), and links, (K, n, 4, 4), after one stretch from ``q``, where the tool is ``at``."""

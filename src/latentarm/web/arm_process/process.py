@@ -108,11 +108,6 @@ class ControlProcess:
         reading.close()
 
     @property
-    def pid(self) -> int:
-        """Its process id."""
-        return self._process.pid or 0
-
-    @property
     def alive(self) -> bool:
         """Whether it still runs."""
         return self._process.is_alive()

@@ -142,7 +142,7 @@ def serve(
         )
 
         def open_it() -> None:
-            first = f"{base}/" if invitations is None else invitations.first()
+            first = f"{base}/" if invitations is None else invitations.make()
             say(f"The page is at {first} (end with Ctrl-C).")
             if invitations is not None:
                 invitations.draw(first)

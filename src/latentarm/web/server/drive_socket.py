@@ -174,7 +174,7 @@ class DriveSocket:
             case page_messages.Press(type="ask_to_drive"):
                 self._sessions.ask(page)
             case page_messages.Press(type="trail_clear"):
-                self._states.clear_trail()
+                self._states.trail += 1
             case page_messages.ConfirmChecklist(arm_start=arm_start):
                 self._confirmed[page.id] = arm_start
             case CopilotPace() | PressCopilot() if not self._sessions.drives(page):
@@ -304,7 +304,7 @@ class DriveSocket:
         self._control.stop(Notice(code=why, parameters={"name": copilot.name}))
 
     def _give(self, message: page_messages.DriverInput) -> None:
-        self._history.given(message.u, message.source, gripper=message.gripper is not None)
+        self._history.log.given(message.u, message.source, gripper=message.gripper is not None)
         padded = message.u + (0.0,) * (self._states.loaded.input_dim - len(message.u))
         if message.gripper is not None:
             self._asked = orders.AskedGripper(ask=message.gripper, seq=message.seq, nonce=message.nonce)

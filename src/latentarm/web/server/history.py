@@ -26,7 +26,7 @@ class History:
         self._states = states
         self._sessions = sessions
         self._records = records
-        self._log = DriveLog()
+        self.log = DriveLog()  # of the drive under way
         self._keeping: set[asyncio.Task[None]] = set()
         self._written_s = 0.0
         self.problem: Notice | None = None  # why the last drive was not kept; None if it was
@@ -44,16 +44,12 @@ class History:
     @property
     def person(self) -> str | None:
         """Id of the person whose drive is under way."""
-        about = self._log.under_way
+        about = self.log.under_way
         return None if about is None else about.person
-
-    def given(self, u: tuple[float, ...], source: str, *, gripper: bool) -> None:
-        """Note an input of the driver; see `DriveLog.given`."""
-        self._log.given(u, source, gripper=gripper)
 
     def end(self, why: Ending) -> None:
         """End the drive under way, if any."""
-        logged = self._log.end(why)
+        logged = self.log.end(why)
         if logged is None:
             return
         self._do(partial(self._write, logged))
@@ -75,16 +71,16 @@ class History:
         loaded = self._states.loaded
         if loaded.spec.shadow:
             return  # nobody has driven an arm
-        about = self._log.under_way
+        about = self.log.under_way
         if about is not None and about.scene is not loaded.scene:
             self.end("run_changed")
-        if not self._log.begins(report):
-            self._log.take(report)
+        if not self.log.begins(report):
+            self.log.take(report)
             if report.time_s - self._written_s > SO_FAR_S:
                 self._keep_so_far(report)
             return
         driver = self._sessions.driver
-        self._log.begin(
+        self.log.begin(
             report,
             About(
                 person=None if driver is None or self._gone(driver.person) else driver.person,
@@ -97,7 +93,7 @@ class History:
 
     def _keep_so_far(self, report: Report) -> None:
         self._written_s = report.time_s
-        drive = self._log.so_far()
+        drive = self.log.so_far()
         if drive is not None and not (drive.person and self._gone(drive.person)):
             self._do(partial(self._records.drives.keep_so_far, drive))
 

@@ -4,8 +4,7 @@ import asyncio
 import time
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from dataclasses import KW_ONLY, dataclass
-from types import MappingProxyType
+from dataclasses import KW_ONLY, dataclass, field
 from typing import Final, final
 
 from starlette.datastructures import Headers, MutableHeaders
@@ -66,7 +65,7 @@ class Gate:
     secure: bool = False  # whether the cookie is for TLS alone
     stop: Callable[[Headers], None]  # stops the arm; gets the request's headers
     # paths that take bodies longer than `BODY_LIMIT`, with their limits, bytes
-    long_bodies: Mapping[str, int] = MappingProxyType({})
+    long_bodies: Mapping[str, int] = field(default_factory=dict)
     # makes a link for the next person; called when a link was used, and for the host's page
     invite: Callable[[], str] = lambda: ""
 

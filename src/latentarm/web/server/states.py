@@ -88,7 +88,7 @@ class States:
         self._changing: asyncio.Task[None] | None = None
         self.report: Report | None = None  # the newest about `loaded`; None before the first
         self._heard_s = time.monotonic()
-        self._trail = 0
+        self.trail = 0  # counts how often the trail was emptied on every page
         # counts how often the connection to the arm was lost: what was confirmed before counts no more
         self.arm_start = 0
         self._changed = asyncio.Event()
@@ -149,10 +149,6 @@ class States:
     def at_rest(self) -> bool:
         """True while the arm is disengaged and at rest."""
         return self.report is not None and self.report.phase in ("disengaged", "neutral_needed")
-
-    def clear_trail(self) -> None:
-        """Empty the trail on every page."""
-        self._trail += 1
 
     def journal(self) -> Path | None:
         """The journal that is or was last recorded to; None if nothing ever was."""
@@ -243,7 +239,7 @@ class States:
             asking_name=None if asking is None else asking.name,
             copilot=self._copilot(),
             copilot_asking=None if would is None else Person(id=would.id, name=would.name),
-            trail=self._trail,
+            trail=self.trail,
             arm_start=self.arm_start,
             you=False,
         )
