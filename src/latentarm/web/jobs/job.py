@@ -32,7 +32,6 @@ Said = TypeVar("Said", bound=BaseModel)
 Told = TypeVar("Told", bound=BaseModel)
 
 
-@final
 class _Failed(Message):
     failed: Notice
 

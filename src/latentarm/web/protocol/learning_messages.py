@@ -12,7 +12,6 @@ ModelName = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,39}$")]
 TrainingPhase = Literal["exporting", "training", "done", "failed", "cancelled"]
 
 
-@final
 class ChosenEpisode(Message):
     """An episode of `LearningState.recordings`."""
 
@@ -20,7 +19,6 @@ class ChosenEpisode(Message):
     episode: Annotated[int, Field(ge=1, le=2**31)]
 
 
-@final
 class Train(Message):
     """Train a model on recorded episodes; from the page that drives."""
 
@@ -31,7 +29,6 @@ class Train(Message):
     episodes: Annotated[tuple[ChosenEpisode, ...], Field(max_length=300)]
 
 
-@final
 class PickRun(Message):
     """Drive another run of `LearningState.runs`; from the page that drives, while the arm is not enabled."""
 
@@ -39,7 +36,6 @@ class PickRun(Message):
     run: RunName
 
 
-@final
 class Recorded(Message):
     """A complete episode of this or an earlier start of the server."""
 
@@ -52,7 +48,6 @@ class Recorded(Message):
     earlier: bool  # whether an earlier start of the server recorded it
 
 
-@final
 class Lesson(Message):
     """The result of a training in terms that a person notices."""
 
@@ -63,7 +58,6 @@ class Lesson(Message):
     weak: tuple[int, ...]  # axes that do little, 0 for left and right, 1 for up and down
 
 
-@final
 class Training(Message):
     """A training under way, or the last one."""
 
@@ -77,7 +71,6 @@ class Training(Message):
     lesson: Lesson | None = None  # null before it is done
 
 
-@final
 class LearningState(Message):
     """Recordings, training and runs; sent after `Welcome` and whenever it changes."""
 

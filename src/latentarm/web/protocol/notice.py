@@ -1,7 +1,7 @@
 """Notices to people: a code and parameters, which each language puts into words."""
 
 from contextlib import suppress
-from typing import Literal, Self, final
+from typing import Any, ClassVar, Literal, Self, final
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
@@ -37,9 +37,16 @@ NoticeCode = Literal[
 
 
 class Message(BaseModel):
-    """Base of all messages between processes and pages."""
+    """Base of all messages between processes and pages. Those that are not ``extensible`` are final."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+    extensible: ClassVar[bool] = True
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **kwargs: Any) -> None:
+        """Raise TypeError for a subclass of a final message."""
+        if not all("extensible" in vars(base) for base in cls.__bases__):
+            raise TypeError(f"{cls.__name__} extends a message, which is final")
 
     @classmethod
     def parse(cls, content: bytes) -> Self | None:
@@ -48,7 +55,6 @@ class Message(BaseModel):
             return cls.model_validate_json(content)
 
 
-@final
 class Notice(Message):
     """A notice to a person."""
 

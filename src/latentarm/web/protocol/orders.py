@@ -3,7 +3,7 @@
 The server passes the `DriverOrder` of a page on as they are, and makes the others.
 """
 
-from typing import Annotated, Final, Literal, final
+from typing import Annotated, ClassVar, Final, Literal
 
 from pydantic import Field, TypeAdapter, ValidationError
 
@@ -22,7 +22,6 @@ BuiltInPose = Literal["home", "tuck"]  # poses that a robot's model states
 Deflection = Annotated[float, Field(ge=-1.0, le=1.0)]
 
 
-@final
 class AskedGripper(Message):
     """The driver's last request to the gripper, with the stamps of its input.
 
@@ -35,7 +34,6 @@ class AskedGripper(Message):
     nonce: str
 
 
-@final
 class Paced(Message):
     """The share of the driver's speed that a co-pilot allows."""
 
@@ -46,6 +44,8 @@ class Paced(Message):
 
 class PersonInput(Message):
     """The part of a person's input that a `DriverInput` and a `Given` have in common."""
+
+    extensible: ClassVar[bool] = True
 
     seq: Annotated[int, Field(ge=0, le=2**53)]  # grows with every input of a driver
     nonce: Annotated[str, Field(max_length=64)]  # of the newest `State` that the page has seen
@@ -58,7 +58,6 @@ class PersonInput(Message):
     opens: bool = False
 
 
-@final
 class Given(PersonInput):
     """The driver's input."""
 
@@ -68,7 +67,6 @@ class Given(PersonInput):
     paced: Paced | None = None  # the co-pilot's newest pace; None without a co-pilot
 
 
-@final
 class Enable(Message):
     """Let the arm move, if the driver's input is neutral."""
 
@@ -77,7 +75,6 @@ class Enable(Message):
     stops: int  # version of the stop slot as the driver knew it: a later Stop wins
 
 
-@final
 class ChooseMode(Message):
     """Steer in another way; ``axes`` is a pair of the end-effector's, None for the one before."""
 
@@ -86,7 +83,6 @@ class ChooseMode(Message):
     axes: Annotated[int, Field(ge=0, le=8)] | None = None
 
 
-@final
 class ChooseHelp(Message):
     """Set the level of help with learned motions, at any time; ``off`` is the mode ``latent``."""
 
@@ -94,7 +90,6 @@ class ChooseHelp(Message):
     level: HelpLevel
 
 
-@final
 class ChooseProfile(Message):
     """Use a person's alignment, or None for none; only while the arm is disengaged.
 
@@ -107,7 +102,6 @@ class ChooseProfile(Message):
     seat: Seat | None = None
 
 
-@final
 class ChooseRun(Message):
     """Drive another run from its start, without an alignment; only while the arm is disengaged."""
 
@@ -116,7 +110,6 @@ class ChooseRun(Message):
     own_task: bool  # see `Spec`
 
 
-@final
 class PoseToGoTo(Message):
     """A saved or built-in pose; ``q``: (n,), joint positions, rad."""
 
@@ -124,7 +117,6 @@ class PoseToGoTo(Message):
     q: tuple[float, ...]
 
 
-@final
 class Return(Message):
     """Move the arm slowly to a pose (None for its start), while the stick is let go; or end that."""
 
@@ -133,7 +125,6 @@ class Return(Message):
     pose: PoseToGoTo | None = None
 
 
-@final
 class Record(Message):
     """Begin an episode, or end it once the arm is at rest."""
 
@@ -144,7 +135,6 @@ class Record(Message):
     by_hand: bool = False  # whether the arm is guided by hand, rather than driven; ignored if it cannot be
 
 
-@final
 class Guide(Message):
     """Let the arm be guided by hand, or end that; only while it is disengaged."""
 
@@ -153,7 +143,6 @@ class Guide(Message):
     stops: int  # version of the stop slot as the driver knew it: a later Stop wins
 
 
-@final
 class KeepGuiding(Message):
     """Sent five times a second by the page from which the arm is guided; without it guiding ends.
 
@@ -164,14 +153,12 @@ class KeepGuiding(Message):
     gripper: GripperAsk | None = None
 
 
-@final
 class Reconnect(Message):
     """Make a lost connection to the arm again; it stays disabled, and does not move."""
 
     type: Literal["reconnect"] = "reconnect"
 
 
-@final
 class TouchThing(Message):
     """A person's word about a thing, with the tool where it stands now."""
 
@@ -180,14 +167,12 @@ class TouchThing(Message):
     kind: TouchKind
 
 
-@final
 class Reset(Message):
     """Put the simulated arm back to its start; only while it is disengaged."""
 
     type: Literal["reset"] = "reset"
 
 
-@final
 class BeginTask(Message):
     """Begin a run of the task from its start; only while the arm is disengaged."""
 

@@ -4,7 +4,7 @@ The first message is `Hello`. Anything outside this schema ends the connection a
 are in `latentarm.web.protocol.server_messages`.
 """
 
-from typing import Annotated, Final, Literal, final
+from typing import Annotated, Final, Literal
 
 from pydantic import Field, TypeAdapter
 
@@ -21,7 +21,6 @@ Id = Annotated[str, Field(max_length=32)]
 PoseName = Annotated[str, Field(max_length=80)]
 
 
-@final
 class Hello(Message):
     """A page introduces itself. The first page drives; the others watch until they ask."""
 
@@ -31,7 +30,6 @@ class Hello(Message):
     person: Id | None = None  # id of their record
 
 
-@final
 class DriverInput(PersonInput):
     """The person's input, 50 times a second while the arm is enabled, including neutral.
 
@@ -45,7 +43,6 @@ class DriverInput(PersonInput):
     gripper: GripperAsk | None = None  # a request; only in the one input that makes it
 
 
-@final
 class ConfirmChecklist(Message):
     """A person confirms all points about a real arm. Without this, no ``enable`` of this page counts."""
 
@@ -56,7 +53,6 @@ class ConfirmChecklist(Message):
     payload: Literal[True]
 
 
-@final
 class PressStop(Message):
     """Stop the arm, from any page."""
 
@@ -66,7 +62,6 @@ class PressStop(Message):
     why: Literal["pressed", "page"] = "pressed"
 
 
-@final
 class Press(Message):
     """A press of a button.
 
@@ -79,7 +74,6 @@ class Press(Message):
     type: Literal["enable", "ask_to_drive", "release", "trail_clear", "cancel_training"]
 
 
-@final
 class HandOver(Message):
     """Hand over to the page that has asked to drive, or accept the one that has asked to be the co-pilot.
 
@@ -90,7 +84,6 @@ class HandOver(Message):
     to: Id
 
 
-@final
 class RecordEpisode(Message):
     """Begin an episode, or end it once the arm is at rest; a change of the driver ends it too.
 
@@ -103,7 +96,6 @@ class RecordEpisode(Message):
     by_hand: bool = False
 
 
-@final
 class MotionWithoutStick(Message):
     """Begin or end a motion without the stick.
 
@@ -115,7 +107,6 @@ class MotionWithoutStick(Message):
     on: bool
 
 
-@final
 class GoToPose(Message):
     """Move the arm slowly to a pose, as ``return`` does to its start."""
 
@@ -124,7 +115,6 @@ class GoToPose(Message):
     built_in: BuiltInPose | None = None  # one of the robot's own; null for a saved one
 
 
-@final
 class EditPoses(Message):
     """Save where the arm is, while it stands still, in place of a pose of the same name; or delete a pose."""
 
@@ -132,7 +122,6 @@ class EditPoses(Message):
     name: PoseName
 
 
-@final
 class PressCopilot(Message):
     """A watcher asks to be the driver's co-pilot, who may slow or stop the arm, or one of the two ends that.
 
@@ -142,7 +131,6 @@ class PressCopilot(Message):
     type: Literal["ask_to_copilot", "end_copilot"]
 
 
-@final
 class CopilotPace(Message):
     """The share of the driver's speed that the co-pilot allows, 10 times a second, or the arm stops."""
 

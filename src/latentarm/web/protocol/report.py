@@ -1,6 +1,6 @@
 """The control process's report to the page's server, in every tick."""
 
-from typing import Final, Literal, final
+from typing import ClassVar, Final, Literal
 
 from latentarm.surroundings.tracker import Seen
 from latentarm.tasks.mishap import MishapKind
@@ -16,7 +16,6 @@ Point = tuple[float, float, float]
 PoseRow = tuple[float, float, float, float, float, float, float]  # x, y, z (m) and a quaternion w, x, y, z
 
 
-@final
 class Ghosts(Message):
     """Where each full deflection would take the tool over the next second: all of it, or nothing at all."""
 
@@ -32,7 +31,6 @@ class Ghosts(Message):
 NO_GHOSTS: Final = Ghosts(up=(), down=(), left=(), right=(), ring=())
 
 
-@final
 class Recording(Message):
     """A recording under way or done."""
 
@@ -42,7 +40,6 @@ class Recording(Message):
     problem: Notice | None  # why the last episode was broken off, or None
 
 
-@final
 class GripperState(Message):
     """The gripper; ``closing``: whether the last command was to close, None before the first."""
 
@@ -51,7 +48,6 @@ class GripperState(Message):
     closing: bool | None
 
 
-@final
 class SeenThing(Message):
     """Tracking state of a thing, see `latentarm.surroundings.tracker.Whereabouts`."""
 
@@ -61,7 +57,6 @@ class SeenThing(Message):
     source: str  # of that sighting, as ``--objects`` names it; "" before the first
 
 
-@final
 class Things(Message):
     """Where things and grains are, in the order of ``/scene.json``."""
 
@@ -70,7 +65,6 @@ class Things(Message):
     seen: tuple[SeenThing, ...] = ()  # of the things whose places are not the simulation's truth
 
 
-@final
 class Why(Message):
     """Why a run of a task has failed; ``thing`` names the thing or the grains concerned."""
 
@@ -78,7 +72,6 @@ class Why(Message):
     thing: str
 
 
-@final
 class ToGo(Message):
     """The remaining way to where the tool is to be next."""
 
@@ -87,7 +80,6 @@ class ToGo(Message):
     gripper: Literal["open", "close"] | None  # the action to request now; null for none
 
 
-@final
 class Lost(Message):
     """A thing that a step needs, no longer held; ``step`` is the index of the step that takes it again."""
 
@@ -95,7 +87,6 @@ class Lost(Message):
     step: int
 
 
-@final
 class Fill(Message):
     """How full a cup or a bowl is."""
 
@@ -104,7 +95,6 @@ class Fill(Message):
     enough: float | None  # share that must be in it; null for the vessel poured from
 
 
-@final
 class TaskState(Message):
     """Progress of a run of the task."""
 
@@ -122,6 +112,8 @@ class TaskState(Message):
 
 class ArmState(Message):
     """The part of the arm's state that a `Report` and a `State` have in common."""
+
+    extensible: ClassVar[bool] = True
 
     nonce: str  # for the driver to echo in the next input
     tick: int
@@ -154,7 +146,6 @@ class ArmState(Message):
     recording: Recording | None  # None before the first
 
 
-@final
 class Report(ArmState):
     """Report of the control process in every tick."""
 

@@ -4,7 +4,7 @@ It answers `Hello` with `Welcome`, again whenever the setup has changed, then `S
 to the driver and 30 to watchers, and `Refused` before it closes the connection.
 """
 
-from typing import Literal, final
+from typing import Literal
 
 from latentarm.tasks.steps import StepKind
 from latentarm.web.protocol.notice import Message, Notice, PersonName
@@ -12,7 +12,6 @@ from latentarm.web.protocol.orders import BuiltInPose, ModeName
 from latentarm.web.protocol.report import ArmState, Point
 
 
-@final
 class NamedPlace(Message):
     """A goal with the tool's position there, or a thing with its position at the start, m."""
 
@@ -20,7 +19,6 @@ class NamedPlace(Message):
     position: Point
 
 
-@final
 class NamedZone(Message):
     """A zone in which the arm is slow: its name, and the largest speed there, m/s."""
 
@@ -28,7 +26,6 @@ class NamedZone(Message):
     speed: float
 
 
-@final
 class RealArm(Message):
     """A real arm."""
 
@@ -36,7 +33,6 @@ class RealArm(Message):
     shadow: bool  # whether it is only read, and nothing is sent to it
 
 
-@final
 class StepToDo(Message):
     """A step of the task; texts have the key ``task.step.<kind>``."""
 
@@ -44,7 +40,6 @@ class StepToDo(Message):
     thing: str
 
 
-@final
 class TaskToDo(Message):
     """The task."""
 
@@ -55,7 +50,6 @@ class TaskToDo(Message):
     steps: tuple[StepToDo, ...]  # in order; empty where nothing counts as done
 
 
-@final
 class Welcome(Message):
     """The setup that is driven."""
 
@@ -81,7 +75,6 @@ class Welcome(Message):
     poses: tuple[BuiltInPose, ...]  # of the robot's model
 
 
-@final
 class Person(Message):
     """The person at a page; ``id`` is the page's."""
 
@@ -89,7 +82,6 @@ class Person(Message):
     name: PersonName
 
 
-@final
 class CopilotState(Message):
     """The co-pilot; ``id`` is the page's."""
 
@@ -98,7 +90,6 @@ class CopilotState(Message):
     pace: float  # share of the driver's speed that they allow, in [0, 1]
 
 
-@final
 class State(ArmState):
     """The arm's state, and who drives it."""
 
@@ -117,7 +108,6 @@ class State(ArmState):
     you: bool  # whether this page drives
 
 
-@final
 class Poses(Message):
     """The saved poses of a page's person for the robot that is driven."""
 
@@ -126,7 +116,6 @@ class Poses(Message):
     problem: Notice | None  # why the last one could not be kept, or null
 
 
-@final
 class Refused(Message):
     """Why the server closes the connection."""
 

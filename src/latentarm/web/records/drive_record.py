@@ -1,7 +1,7 @@
 """The record of a drive: its figures, and a thin trace to replay it."""
 
 import zlib
-from typing import Annotated, Final, Literal, final
+from typing import Annotated, Final, Literal
 
 from pydantic import Field, ValidationError, model_validator
 
@@ -40,7 +40,6 @@ _BY_PAGE: Final[frozenset[NoticeCode]] = frozenset(
 """Codes of stops; the arm, its program or its safety limits cause all others."""
 
 
-@final
 class DriveRecord(Message):
     """One drive: a run of a task, from when the arm is first enabled until the person ends it or leaves.
 
@@ -94,7 +93,6 @@ class DriveRecord(Message):
         return counts
 
 
-@final
 class TracedThings(Message):
     """Where things are from time ``t`` on, s since the drive began; ``grains`` is None if unchanged."""
 
@@ -103,7 +101,6 @@ class TracedThings(Message):
     grains: tuple[tuple[float, ...], ...] | None
 
 
-@final
 class Mark(Message):
     """An event at a time, s since the drive began: a code."""
 
@@ -111,7 +108,6 @@ class Mark(Message):
     code: Annotated[str, Field(max_length=60)]
 
 
-@final
 class Trace(Message):
     """A drive to be replayed: N moments, ten a second or fewer, none where nothing changed."""
 

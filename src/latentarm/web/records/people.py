@@ -39,7 +39,6 @@ Settings = Annotated[
 """The page defines and checks them; the server only bounds them."""
 
 
-@final
 class KeptProfile(Message):
     """A profile of a person, and the name of its run."""
 
@@ -47,7 +46,6 @@ class KeptProfile(Message):
     name: Annotated[str, Field(min_length=1, max_length=64)]
 
 
-@final
 class PersonRecord(Message):
     """A person."""
 

@@ -14,7 +14,6 @@ MOST_POSES: Final = 30  # of a person, on all robots
 POSES_NAME: Final = "poses.json"
 
 
-@final
 class SavedPose(Message):
     """A pose; ``q``: (n,), joint positions, rad."""
 
@@ -23,7 +22,6 @@ class SavedPose(Message):
     q: Annotated[tuple[float, ...], Field(min_length=1, max_length=64)]
 
 
-@final
 class PosesRecord(Message):
     """All poses of a person, in the order in which they were saved."""
 

@@ -30,7 +30,6 @@ FileName = Annotated[str, Field(max_length=255)]
 Title = Annotated[str, Field(max_length=80)]
 
 
-@final
 class RecordedEpisode(Message):
     """An episode of a recording: task, length in s, driver, start, and whether it is complete."""
 
@@ -42,7 +41,6 @@ class RecordedEpisode(Message):
     complete: bool
 
 
-@final
 class RecordingFile(Message):
     """A recording."""
 
@@ -54,7 +52,6 @@ class RecordingFile(Message):
     problem: Notice | None  # why it cannot be read; None if it can
 
 
-@final
 class _Titles(Message):
     version: Literal[1] = 1
     titles: Annotated[dict[FileName, Title], Field(max_length=_MOST)] = Field(default_factory=dict)

@@ -20,7 +20,6 @@ CAMERAS: Final = "/cameras"
 _LOOK_S: Final = 0.25
 
 
-@final
 class _Offer(Message):
     page: Annotated[str, Field(max_length=40)]
     sdp: Annotated[str, Field(max_length=BODY_LIMIT)]

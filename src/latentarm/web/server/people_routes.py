@@ -34,12 +34,10 @@ IMPORT: Final = "/records/import"
 """Takes longer bodies than other addresses: see `latentarm.web.records.person_zip.IMPORT_LIMIT`."""
 
 
-@final
 class _Named(Message):
     name: Annotated[str, Field(max_length=2000)]
 
 
-@final
 class _Pinned(Message):
     pin: Annotated[str, Field(pattern=PIN)] | None
 

@@ -28,7 +28,6 @@ _COLUMNS: Final = (
 )  # fmt: skip
 
 
-@final
 class _Titled(Message):
     title: Annotated[str, Field(max_length=80)]
 

@@ -94,16 +94,16 @@ export interface DriveRecord {
 }
 
 export interface DriverInput {
-  type: "input";
   seq: number;
   nonce: string;
-  u: number[];
   source: "pointer" | "keyboard" | "dpad" | "gamepad" | "switch";
   latched: boolean;
   device?: number;
   raw?: [number, number] | null;
-  gripper?: "open" | "close" | "toggle" | null;
   opens?: boolean;
+  type: "input";
+  u: number[];
+  gripper?: "open" | "close" | "toggle" | null;
 }
 
 export interface EditPoses {
