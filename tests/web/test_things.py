@@ -33,8 +33,7 @@ from latentarm.web.arm_process.thing_poses import ThingPoses
 from latentarm.web.protocol.channel import new_channel
 from latentarm.web.protocol.orders import AskedGripper, Enable, Given, Record
 from latentarm.web.protocol.report import Report, Things
-from latentarm.web.protocol.scene import drawable
-from latentarm.web.protocol.things import described, things_at
+from latentarm.web.protocol.scene import described, drawable, things_at
 from latentarm.web.server.states import PageMemory
 
 UPRIGHT = np.eye(3)

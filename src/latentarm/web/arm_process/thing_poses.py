@@ -17,7 +17,7 @@ from latentarm.surroundings.touch import TouchKind
 from latentarm.surroundings.tracker import Whereabouts, within
 from latentarm.web.protocol.notice import Notice
 from latentarm.web.protocol.report import SeenThing, Things
-from latentarm.web.protocol.things import things_at
+from latentarm.web.protocol.scene import things_at
 
 if TYPE_CHECKING:
     from latentarm.web.arm_process.drive_setup import DriveSetup

@@ -1,7 +1,7 @@
 """The scene for pages: the shapes of the robot's MuJoCo model, and of its surroundings."""
 
 import struct
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final, final
 
@@ -9,13 +9,15 @@ import mujoco
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from latentarm.core.types import FloatArray
+from latentarm.core.types import FloatArray, Pose
 from latentarm.robots.kinematics.obstacles import Box, Capsule, HalfSpace, Obstacle, Sphere
+from latentarm.robots.kinematics.pose_rows import thing_rows
 from latentarm.robots.kinematics.reader import ModelChain, read, reference_positions
 from latentarm.robots.scene.scene import Scene
+from latentarm.robots.scene.thing import Part
 from latentarm.safety.zones import Zone
 from latentarm.tasks.place import Place
-from latentarm.web.protocol.things import described
+from latentarm.web.protocol.report import PoseRow, SeenThing, Things
 
 _TYPES: Final = {
     int(mujoco.mjtGeom.mjGEOM_SPHERE): "sphere",
@@ -32,6 +34,9 @@ _VISIBLE_GROUPS: Final = 3  # MuJoCo's own viewer shows the groups below this on
 _MESH_HEADER: Final = struct.Struct("<II")
 
 _UNMOVED: Final = np.zeros(3)
+_SIZES: Final = 3  # numbers in the size of a geom, as in MuJoCo
+_DIGITS: Final = 4
+"""Things' positions are sent to a tenth of a millimetre, so that things at rest need not be sent again."""
 
 
 @final
@@ -44,7 +49,7 @@ class Drawable:
     # is MuJoCo's. ``fingers`` are those of a gripper, closed, each with its ``geoms``, the index of the
     # ``body`` that it slides on, the direction in which it ``opens`` there, and how far it is open ``at``
     # first, m. ``zones`` are obstacles that the arm may go into, at a ``speed``, m/s, and no faster. For
-    # ``things`` and ``grains`` see `latentarm.web.protocol.things.described`.
+    # ``things`` and ``grains`` see `described`.
     description: dict[str, object]
     # ``/mesh/ID``: uint32 vertices, uint32 faces, float32 vertices, uint32 faces, little-endian
     meshes: dict[int, bytes]
@@ -194,5 +199,63 @@ def _frame(position: FloatArray, rotation: FloatArray) -> FloatArray:
     return frame
 
 
-def _rounded(values: FloatArray) -> list[float]:
-    return [round(float(value), 5) for value in values]
+def _rounded(values: FloatArray, digits: int = 5) -> list[float]:
+    return np.round(np.asarray(values, dtype=float), digits).tolist()
+
+
+def described(scene: Scene) -> dict[str, object]:
+    """The part of ``/scene.json`` about things.
+
+    ``things``, each with its name, its ``pose`` at first, whether it is ``fixed`` there, ``geoms`` like those
+    of the robot's bodies, and ``soft`` ones, which give way to everything; and ``grains``, each kind with its
+    name, ``radius`` (m), ``rgba`` and first ``positions`` (m).
+    """
+    first = _rows({thing.name: thing.pose for thing in scene.things}, scene.names)
+    return {
+        "things": [
+            {
+                "name": thing.name,
+                "pose": pose,
+                "fixed": thing.fixed,
+                "geoms": [_part(part) for part in thing.parts],
+                "soft": [_part(part) for part in thing.soft],
+            }
+            for thing, pose in zip(scene.things, first, strict=True)
+        ],
+        "grains": [
+            {
+                "name": grains.name,
+                "radius": grains.radius_m,
+                "rgba": list(grains.colour),
+                "positions": _rounded(grains.positions.ravel(), _DIGITS),
+            }
+            for grains in scene.grains
+        ],
+    }
+
+
+def things_at(
+    scene: Scene, poses: Mapping[str, Pose], grains: Mapping[str, FloatArray], seen: Sequence[SeenThing]
+) -> Things:
+    """Where everything is, in the order of the scene; ``grains`` (K, 3) by the grains' name, m."""
+    return Things(
+        poses=tuple(_rows(poses, scene.names)),
+        grains=tuple(tuple(_rounded(grains[one.name].ravel(), _DIGITS)) for one in scene.grains),
+        seen=tuple(seen),
+    )
+
+
+def _part(part: Part) -> dict[str, object]:
+    return {
+        "type": part.shape,
+        "size": [*part.size, *([0.0] * (_SIZES - len(part.size)))],
+        "pos": list(part.position),
+        "quat": list(part.quaternion),
+        "rgba": list(part.colour),
+        "mesh": None,
+    }
+
+
+def _rows(poses: Mapping[str, Pose], names: Sequence[str]) -> list[PoseRow]:
+    rows = np.round(thing_rows(poses, names), _DIGITS).tolist()
+    return [(x, y, z, w, i, j, k) for x, y, z, w, i, j, k in rows]

@@ -33,7 +33,6 @@ export class CameraLink {
     this._timer = 0;
   }
 
-  /** Whether pictures may come. */
   get connected() {
     return this._peer?.connectionState === "connected";
   }

@@ -43,12 +43,10 @@ export class Connection extends EventTarget {
     return this.open && this.state !== null && performance.now() - this._heardAt < STALE_MS;
   }
 
-  /** Milliseconds since anything was heard. */
   get silenceMs() {
     return performance.now() - this._heardAt;
   }
 
-  /** Whether this page drives. */
   get driving() {
     return this.open && this.state !== null && this.state.you;
   }

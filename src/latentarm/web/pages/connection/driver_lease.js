@@ -34,7 +34,6 @@ export class DriverLease {
     this._connection.send({ type: "ask_to_drive" });
   }
 
-  /** Drop requests that wait. */
   forget() {
     this._until = -Infinity;
   }

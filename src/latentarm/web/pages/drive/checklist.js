@@ -53,7 +53,6 @@ export function attachChecklist(connection) {
 
   return {
     done,
-    /** Leads to what is missing. */
     refuse() {
       boxes.find((box) => !box.checked)?.focus();
     },

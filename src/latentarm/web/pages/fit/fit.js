@@ -100,7 +100,6 @@ function begin() {
   tell();
 }
 
-/** Nothing is measured any more. */
 function end(step = "choose") {
   exercises = [];
   input.end();

@@ -53,7 +53,6 @@ export function attachReplay(settings) {
   settings.addEventListener("change", draw);
 
   return {
-    /** Draw what is shown in other colours. */
     repaint: () => drawing?.repaint(),
     /** Show a drive from its start. @param {Drive} drive @param {string} title */
     async open(drive, title) {

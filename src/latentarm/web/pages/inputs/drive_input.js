@@ -46,7 +46,6 @@ export class DriveInput extends Deflection {
     });
   }
 
-  /** Whether inputs are going out. */
   get flowing() {
     return this._timer !== 0;
   }

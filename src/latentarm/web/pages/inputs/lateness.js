@@ -26,7 +26,6 @@ export class Lateness {
     this.frameGapMs = 0;
   }
 
-  /** An input goes out. */
   beat() {
     const now = performance.now();
     const apart = now - this._beatAt;
@@ -35,7 +34,6 @@ export class Lateness {
     this._beatAt = now;
   }
 
-  /** Inputs go out no more. */
   rest() {
     this._judgeLast();
     this._beatAt = -Infinity;

@@ -77,7 +77,6 @@ export class Scanner extends EventTarget {
     window.addEventListener("blur", () => this._forget());
   }
 
-  /** Whether the person steers with switches. */
   get on() {
     return this._settings.values.panel === "switch";
   }
@@ -94,7 +93,6 @@ export class Scanner extends EventTarget {
     this._show(this._opened());
   }
 
-  /** Light the next choice. */
   next() {
     if (!this.choices.length) return;
     this.lit = (this.lit + 1) % this.choices.length;

@@ -21,7 +21,6 @@ export function useWords(newLanguage, entries) {
   catalogue = entries;
 }
 
-/** Take the catalogue that this page carries. */
 export function readWords() {
   const element = document.getElementById("words");
   useWords(document.documentElement.lang, JSON.parse(element?.textContent ?? "{}"));

@@ -22,7 +22,6 @@ const pin = attachPinDialog();
 
 /** The person whom the open dialog is about. @type {Person | null} */
 let about = null;
-/** Whether the host wants PINs. */
 let pins = false;
 /** The person whom another page led here to choose, until they were looked for. */
 let asked = location.hash.slice(1);

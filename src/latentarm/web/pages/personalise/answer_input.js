@@ -41,7 +41,6 @@ export class AnswerInput extends Deflection {
     this._mean(null);
   }
 
-  /** Nothing is asked. */
   end() {
     this.live = false;
     this._mean(null);

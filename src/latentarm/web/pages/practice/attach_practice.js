@@ -73,7 +73,6 @@ export function attachPractice(connection, input, settings) {
     get step() {
       return practice?.step ?? null;
     },
-    /** The person has pressed Stop on this page. */
     stopped() {
       if (connection.driving && connection.engaged && practice?.stopped()) show();
     },

@@ -28,7 +28,6 @@ const FAR_M = 0.15;
 
 export class Practice {
   constructor() {
-    /** How many steps are done. */
     this.done = 0;
     /** @type {Point | null} Where the tool was when the step began. */
     this._from = null;

@@ -28,9 +28,7 @@ export function guidingOf(state, { waiting, confirmed }) {
 /** @param {Connection} connection @param {DriverLease} lease */
 export function attachGuiding(connection, lease) {
   const [button, recorder, confirmed] = [byId("guiding-begin"), byId("guiding-record"), byId("guiding-loaded", HTMLInputElement)];
-  /** Whether this page has asked for it. */
   let asked = false;
-  /** Whether it has begun since. */
   let begun = false;
   let askedAt = -Infinity;
   const now = () => guidingOf(connection.state, { waiting: asked && !begun, confirmed: confirmed.checked });

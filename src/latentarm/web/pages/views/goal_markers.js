@@ -42,7 +42,6 @@ export class GoalMarkers {
     return this._placeOf(goal) ?? new THREE.Vector3(...goal.position);
   }
 
-  /** Go where the things have gone. */
   follow() {
     this._rings.forEach((one, index) => one.position.copy(this.placeOf(index)));
   }
