@@ -16,20 +16,17 @@ const PRESSED_SHARE = 0.4;
 
 /** Events: "turned" when a deflection begins or ends, with its source; "change"; "dropped" when all must let go. */
 export class Deflection extends EventTarget {
-  constructor() {
-    super();
-    /** To the right, in [-1, 1]. */
-    this.x = 0;
-    /** Up, in [-1, 1]. */
-    this.y = 0;
-    this.latched = false;
-    /** @type {Source | null} */
-    this.source = null;
-    /** Which one of several of that kind. */
-    this.device = 0;
-    /** Devices that count for nothing until they were let go. @type {Set<string>} */
-    this._waiting = new Set();
-  }
+  /** To the right, in [-1, 1]. */
+  x = 0;
+  /** Up, in [-1, 1]. */
+  y = 0;
+  latched = false;
+  /** @type {Source | null} */
+  source = null;
+  /** Which one of several of that kind. */
+  device = 0;
+  /** Devices that count for nothing until they were let go. @type {Set<string>} */
+  _waiting = new Set();
 
   /** The directions that are pressed now. @returns {Direction[]} */
   get pressed() {

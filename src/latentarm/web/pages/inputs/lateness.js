@@ -17,14 +17,12 @@ const EASE_AFTER_MS = 1000;
 const EASE = 0.85;
 
 export class Lateness {
-  constructor() {
-    this._beatAt = -Infinity;
-    this._lateAt = -Infinity;
-    this._easedAt = -Infinity;
-    this._tooLateAt = -Infinity;
-    /** The least time between two frames, ms; 0 where the page keeps up. */
-    this.frameGapMs = 0;
-  }
+  _beatAt = -Infinity;
+  _lateAt = -Infinity;
+  _easedAt = -Infinity;
+  _tooLateAt = -Infinity;
+  /** The least time between two frames, ms; 0 where the page keeps up. */
+  frameGapMs = 0;
 
   beat() {
     const now = performance.now();

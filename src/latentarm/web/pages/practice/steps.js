@@ -27,11 +27,9 @@ const REACH_M = 0.1;
 const FAR_M = 0.15;
 
 export class Practice {
-  constructor() {
-    this.done = 0;
-    /** @type {Point | null} Where the tool was when the step began. */
-    this._from = null;
-  }
+  done = 0;
+  /** @type {Point | null} Where the tool was when the step began. */
+  _from = null;
 
   /** The step to do, or null when all are done. @returns {Step | null} */
   get step() {

@@ -74,12 +74,9 @@ export const UNSENT_KEY = "latentarm.unsent.";
 
 /** Events: "change" after every change, "edited" after those made here, "person" when somebody else sits down. */
 export class Settings extends EventTarget {
-  constructor() {
-    super();
-    /** Who sits here; null for a guest. @type {Person | null} */
-    this.person = personIn(storage.read(PERSON_KEY));
-    this.values = valid(storage.read(this._key));
-  }
+  /** Who sits here; null for a guest. @type {Person | null} */
+  person = personIn(storage.read(PERSON_KEY));
+  values = valid(storage.read(this._key));
 
   get name() {
     return this.person?.name ?? "";
