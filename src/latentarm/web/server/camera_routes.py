@@ -1,7 +1,7 @@
 """The address at which a page asks for the cameras."""
 
 import asyncio
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Annotated, Final, final
 
 from pydantic import Field
@@ -32,9 +32,7 @@ class CameraRoutes:
 
     _cameras: CameraProcess
     _sessions: Sessions
-
-    def __post_init__(self) -> None:
-        self._looking: set[str] = set()
+    _looking: set[str] = field(default_factory=set[str], init=False)
 
     def routes(self) -> list[Route]:
         """The routes."""

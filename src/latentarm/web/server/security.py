@@ -68,9 +68,7 @@ class Gate:
     long_bodies: Mapping[str, int] = field(default_factory=dict)
     # makes a link for the next person; called when a link was used, and for the host's page
     invite: Callable[[], str] = lambda: ""
-
-    def __post_init__(self) -> None:
-        self._requests = 0
+    _requests: int = field(default=0, init=False)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass permitted requests on and answer the others."""
