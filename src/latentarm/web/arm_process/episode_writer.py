@@ -57,12 +57,7 @@ class EpisodeWriter:
         """The recording; None if nothing was ever recorded."""
         if self._thread is None:
             return None
-        return Recording(
-            on=self.on,
-            samples=self._samples,
-            episodes=self._episodes,
-            problem=self._problem,
-        )
+        return Recording(on=self.on, samples=self._samples, episodes=self._episodes, problem=self._problem)
 
     @property
     def journal(self) -> str | None:

@@ -106,10 +106,7 @@ class People:
             if len(self._people) >= MOST_PEOPLE:
                 raise NoticeError("too_many_people", count=MOST_PEOPLE)
             person = PersonRecord(
-                id=new_id(),
-                name=self._free_name(name, None),
-                added=stamp(),
-                settings=settings or {},
+                id=new_id(), name=self._free_name(name, None), added=stamp(), settings=settings or {}
             )
             return self._keep(person)
 

@@ -34,10 +34,7 @@ class Records:
     """
 
     def __init__(
-        self,
-        out: Path,
-        runs: Callable[[], Mapping[str, Path]],
-        in_use: Callable[[], Path | None],
+        self, out: Path, runs: Callable[[], Mapping[str, Path]], in_use: Callable[[], Path | None]
     ) -> None:
         folder = out / FOLDER
         self.people = People(folder / "people")

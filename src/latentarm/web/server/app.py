@@ -244,10 +244,7 @@ async def tell_end(control: ControlProcess, history: History) -> None:
 
 
 def build_app(
-    setup: DriveSetup,
-    control: ControlProcess,
-    config: TeleopConfig,
-    cameras: CameraProcess | None = None,
+    setup: DriveSetup, control: ControlProcess, config: TeleopConfig, cameras: CameraProcess | None = None
 ) -> Starlette:
     """The application: pages, their assets, the scene, and the socket that drives."""
     sessions = Sessions()

@@ -17,13 +17,7 @@ from latentarm.web.protocol.notice import Notice, notice_of
 from latentarm.web.protocol.report import ArmState, Ghosts, Report, Things
 from latentarm.web.protocol.scene import pose_of
 from latentarm.web.protocol.server_messages import CopilotState, Person, State
-from latentarm.web.server.loaded_run import (
-    Beginning,
-    LoadedRun,
-    RunList,
-    beginning_of,
-    load_reported_run,
-)
+from latentarm.web.server.loaded_run import Beginning, LoadedRun, RunList, beginning_of, load_reported_run
 from latentarm.web.server.sessions import Page, Sessions
 
 if TYPE_CHECKING:
