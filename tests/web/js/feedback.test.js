@@ -53,7 +53,7 @@ beforeEach(() => {
 const feedback = (values) => attachFeedback(connection, { values: { sounds: "success", vibration: false, ...values } });
 
 test("by default only success is heard, and nothing is felt", () => {
-  const { tell } = feedback({});
+  const tell = feedback({});
   connection.becomes(true);
   connection.becomes(false);
   assert.deepEqual(tones, []);
@@ -74,7 +74,7 @@ test("Enable and Stop are heard once each where the person wants that, and Stop 
 });
 
 test("silence is silence", () => {
-  const { tell } = feedback({ sounds: "none" });
+  const tell = feedback({ sounds: "none" });
   tell("success");
   connection.becomes(true);
   assert.deepEqual(tones, []);

@@ -28,7 +28,7 @@ beforeEach(() => {
   parts.confirmed.checked = true;
   parts.task.value = " wave ";
   guiding = attachGuiding(connection, { ask: (act) => act() });
-  attachStop(connection, () => guiding.stopped());
+  attachStop(connection, () => guiding());
   socket.says(welcomeOf({ gripper_width_m: 0.08 }));
   says({});
   socket.taken();

@@ -83,5 +83,5 @@ test("the robot's own poses come before saved ones, and cannot be deleted", () =
     { type: "to_pose", name: "Tuck", built_in: "tuck" },
     { type: "to_pose", name: "Drink", built_in: null },
   ]);
-  assert.equal(poses.choices().length, 3);
+  assert.equal(poses().length, 3);
 });

@@ -60,7 +60,7 @@ test("without steps there is no panel, and nothing to choose", () => {
   welcomes({ steps: [] });
   hears();
   assert.ok(parts.panel.hidden);
-  assert.deepEqual(task.choices(), []);
+  assert.deepEqual(task(), []);
 });
 
 test("steps tick off, and each is said with the next", () => {
@@ -128,7 +128,7 @@ test("what slipped is said, its step is to be done again, and then the steps go 
   assert.equal(marks(), "▸✓");
   assert.equal(parts.panel.dataset.outcome, "stuck");
   assert.deepEqual(parts.steps.children.map((item) => item.children[2].textContent), ["20 cm to go", ""]);
-  assert.deepEqual(task.choices().map(({ id }) => id), ["next", "again"]);
+  assert.deepEqual(task().map(({ id }) => id), ["next", "again"]);
   assert.deepEqual(heard, []);
   hears({ done: 1 });
   assert.equal(marks(), "✓▸");
@@ -139,7 +139,7 @@ test("too little to pour is said", () => {
   welcomes();
   hears({ done: 1, short: true });
   assert.equal(parts.said.textContent, "Too little is left to pour.");
-  assert.deepEqual(task.choices().map(({ id }) => id), ["next", "again"]);
+  assert.deepEqual(task().map(({ id }) => id), ["next", "again"]);
 });
 
 test("how full things are is told where something is poured, in every language", () => {
@@ -172,7 +172,7 @@ for (const [fields, why] of [
     assert.deepEqual(sent, []);
     assert.equal(parts.why.textContent, why);
     assert.equal(parts.next.getAttribute("aria-disabled"), "true");
-    assert.deepEqual(task.choices(), []);
+    assert.deepEqual(task(), []);
     assert.equal(blockedWords(fields), why);
   });
 }
@@ -203,10 +203,10 @@ test("another thing can be chosen", () => {
 test("one switch reaches Next, and Again once it is over", () => {
   welcomes();
   hears();
-  assert.deepEqual(task.choices().map(({ id }) => id), ["next"]);
+  assert.deepEqual(task().map(({ id }) => id), ["next"]);
   hears({ done: 2, outcome: "success" });
-  assert.deepEqual(task.choices().map(({ id }) => id), ["next", "again"]);
-  task.choices()[0].act();
+  assert.deepEqual(task().map(({ id }) => id), ["next", "again"]);
+  task()[0].act();
   assert.deepEqual(sent, [{ type: "begin_run", choice: 1, anew: true }]);
 });
 

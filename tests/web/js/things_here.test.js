@@ -24,7 +24,7 @@ test("who drives can show things; nobody can turn what has not been seen", () =>
   const things = { poses: [], grains: [], seen: [thing({}), thing({ name: "bowl", seen: "unseen" })] };
   const connection = Object.assign(new EventTarget(), { driving: true, state: stateOf({ things }), send: (message) => sent.push(message) });
   const { section } = elementsOf({ section: "things-here", list: "things-list" });
-  const { choices } = attachThingsHere(connection);
+  const choices = attachThingsHere(connection);
   assert.deepEqual(choices().map(({ label }) => label), ["Here is the cup", "Turn the cup towards the tool", "Take back: the cup", "Here is the bowl"]);
   choices()[3].act();
   assert.deepEqual(sent, [{ type: "touch", thing: "bowl", kind: "place" }]);

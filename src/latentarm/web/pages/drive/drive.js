@@ -79,7 +79,7 @@ const checklist = attachChecklist(connection);
 const enable = () => {
   // Behind a dialog nothing moves. A press that enables asks nobody for anything.
   if (dialogIsOpen()) return;
-  if (connection.state?.lost) lostArm.again();
+  if (connection.state?.lost) connectAgain();
   else if (!checklist.done()) {
     checklist.refuse();
     status.refused();
@@ -87,10 +87,10 @@ const enable = () => {
   else if (!connection.engaged) lease.ask(() => input.enable());
 };
 attachEnableButton(byId("enable"), connection, enable);
-const lostArm = attachLostArm(connection, lease);
+const connectAgain = attachLostArm(connection, lease);
 attachWayBack(connection);
-const poses = attachPoses(connection);
-const thingsHere = attachThingsHere(connection);
+const poseChoices = attachPoses(connection);
+const thingChoices = attachThingsHere(connection);
 const modes = attachModes(connection, settings);
 const inPair = (/** @type {number} */ axes, /** @type {number} */ x, /** @type {number} */ y) =>
   connection.state ? modeInput(values(), { ...connection.state, mode: "end_effector", axes }, connection.welcome, x, y) : [0, 0];
@@ -109,7 +109,7 @@ attachTrialBanner(connection, settings, lease);
 attachProfileChoice(connection, settings);
 attachRecording(connection);
 
-const task = attachTask(connection, feedback.tell);
+const taskChoices = attachTask(connection, feedback);
 const gripper = attachGripper(connection, input, status.refused);
 attachStick(input, settings);
 const rim = attachRim();
@@ -123,13 +123,13 @@ const scanner = attachScanning(input, settings, stop, (stopIt, group) => {
   // On the way back any press ends it.
   if (connection.state?.returning || !(connection.driving || does)) return [stopIt];
   const more = moreChoices(radioChoices(byId("help"), group), [
-    ...(fixed ? [] : [...radioChoices(byId("speed"), group), ...buttonChoice("way-back"), ...poses.choices(), ...thingsHere.choices()]), ...practice.choices(),
+    ...(fixed ? [] : [...radioChoices(byId("speed"), group), ...buttonChoice("way-back"), ...poseChoices(), ...thingChoices()]), ...practice.choices(),
   ], group);
   if (connection.state?.lost) return [...buttonChoice("lost-again"), stopIt, more];
   const unconfirmed = checklist.choices();
   if (unconfirmed.length) return [...unconfirmed, stopIt, more];
   return input.live ? [...directionChoices(settings.values.bestFirst ? nextWords(paths)?.direction : undefined), ...gripper.choices(), mode, stopIt, more]
-    : [{ id: "enable", label: say("layout.enable"), act: enable }, mode, ...(fixed ? [] : task.choices()), more];
+    : [{ id: "enable", label: say("layout.enable"), act: enable }, mode, ...(fixed ? [] : taskChoices()), more];
 });
 attachKeyboard(input, settings, { enable, nextMode: modes.next, axes: modes.axes, gripper: () => gripper.toggle("keyboard") });
 attachGamepad(input, settings, scanner, { enable, stop, gripper: () => gripper.toggle("gamepad"), nextMode: modes.next });

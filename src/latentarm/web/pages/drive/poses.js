@@ -19,7 +19,7 @@ export function savesOf({ driving, state }) {
   return driving && state !== null && state.phase !== "moving" && state.phase !== "stopping";
 }
 
-/** @param {Connection} connection */
+/** @param {Connection} connection @returns {() => Choice[]} all of them among the choices of a switch, where the arm can go to them */
 export function attachPoses(connection) {
   const [poses, field] = [byId("poses"), byId("pose-name", HTMLInputElement)];
   const go = (/** @type {string} */ name, /** @type {BuiltInPose | null} */ built_in) => {
@@ -63,11 +63,8 @@ export function attachPoses(connection) {
   whenever(connection, ["poses", "welcome"], list);
   whenever(connection, ["state", "open"], show);
 
-  return {
-    /** All of them among the choices of a switch, where the arm can go to them. @returns {Choice[]} */
-    choices() {
-      if (goingOf(connection) !== "help") return [];
-      return all().map(([name, own]) => ({ id: `pose-${own ?? "saved"}-${name}`, label: say("poses.go", { pose: name }), act: () => go(name, own) }));
-    },
+  return () => {
+    if (goingOf(connection) !== "help") return [];
+    return all().map(([name, own]) => ({ id: `pose-${own ?? "saved"}-${name}`, label: say("poses.go", { pose: name }), act: () => go(name, own) }));
   };
 }

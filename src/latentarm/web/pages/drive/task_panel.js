@@ -10,7 +10,7 @@ import { awayWords, blockedWords, fillWords, outcomeWords, stepNow, stepWords, s
 /** Words that change all the time change no more often than this, ms. */
 const WORDS_MS = 250;
 
-/** @param {Connection} connection @param {(outcome: "success" | "failure") => void} ended when a run ends while this page looks on */
+/** @param {Connection} connection @param {(outcome: "success" | "failure") => void} ended when a run ends while this page looks on @returns {() => Choice[]} choices for people who press one switch */
 export function attachTask(connection, ended) {
   const [panel, steps, levels, said] = ["task", "task-steps", "task-fills", "task-said"].map((id) => byId(id));
   const [nextRun, sameRun, choice] = [byId("task-next"), byId("task-again"), byId("task-choice", HTMLSelectElement)];
@@ -108,13 +108,10 @@ export function attachTask(connection, ended) {
     showFills(task.fills);
   });
 
-  return {
-    /** Choices for people who press one switch. @returns {Choice[]} */
-    choices() {
-      const { state, welcome } = connection;
-      if (!state || !welcome?.task.steps.length || blocked()) return [];
-      const go = { id: "next", label: say("task.next"), act: next };
-      return state.task.outcome === null && !stuck(state.task) ? [go] : [go, { id: "again", label: say("task.again"), act: again }];
-    },
+  return () => {
+    const { state, welcome } = connection;
+    if (!state || !welcome?.task.steps.length || blocked()) return [];
+    const go = { id: "next", label: say("task.next"), act: next };
+    return state.task.outcome === null && !stuck(state.task) ? [go] : [go, { id: "again", label: say("task.again"), act: again }];
   };
 }

@@ -16,7 +16,7 @@ export function seenWords({ name, seen, age_s, source }) {
   return capital(say(`things.${seen}`, { thing: thingWords(name), seconds: age_s }));
 }
 
-/** @param {Connection} connection */
+/** @param {Connection} connection @returns {() => Choice[]} the buttons among the choices of a switch */
 export function attachThingsHere(connection) {
   const list = byId("things-list");
   const seen = () => connection.state?.things?.seen ?? [];
@@ -36,8 +36,5 @@ export function attachThingsHere(connection) {
     }
     seen().forEach((thing, index) => setText(list.children[index].children[0], seenWords(thing) || say("things.now", { thing: capital(thingWords(thing.name)) })));
   });
-  return {
-    /** Among the choices of a switch. @returns {Choice[]} */
-    choices,
-  };
+  return choices;
 }

@@ -15,7 +15,7 @@ const TONES = { enabled: [523], stopped: [392, 262], success: [523, 659, 784], f
 /** Lengths of what is felt and of the pauses between, ms. @type {Partial<Record<Occasion, number[]>>} */
 const SHAKES = { stopped: [250], success: [90, 70, 90] };
 
-/** @param {Connection} connection @param {Settings} settings @returns {{tell: (occasion: Occasion) => void}} */
+/** @param {Connection} connection @param {Settings} settings @returns {(occasion: Occasion) => void} */
 export function attachFeedback(connection, settings) {
   const tell = (/** @type {Occasion} */ occasion) => {
     const { sounds, vibration } = settings.values;
@@ -31,7 +31,7 @@ export function attachFeedback(connection, settings) {
     tell(engaged ? "enabled" : "stopped");
   };
   whenever(connection, ["state", "open"], look);
-  return { tell };
+  return tell;
 }
 
 /** @type {AudioContext | null} */

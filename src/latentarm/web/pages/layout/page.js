@@ -36,7 +36,7 @@ export function attachPage({ drop = () => {}, repaint = () => {}, runChanged = (
   attachPersonSync(settings);
   const showKeys = () => byId("stop").setAttribute("aria-keyshortcuts", spaceStops() ? "Space Escape" : "Escape");
   whenever(settings, ["change"], showKeys);
-  const dialog = attachSettingsDialog(settings);
+  const offerProfiles = attachSettingsDialog(settings);
   attachTheme(settings, repaint);
   const feedback = attachFeedback(connection, settings);
   attachWakeLock(connection);
@@ -56,7 +56,7 @@ export function attachPage({ drop = () => {}, repaint = () => {}, runChanged = (
     const robot = robotWords(connection.welcome.robot);
     setText(byId("about"), run ? say("layout.about_run", { robot, run }) : say("layout.about_no_run", { robot }));
     /** @type {HTMLInputElement | null} */ (document.querySelector("input[name=latchS]"))?.setAttribute("max", String(latch_max_s));
-    dialog.offer(profiles);
+    offerProfiles(profiles);
   });
   connection.addEventListener("run_changed", runChanged);
   // It may be another arm, with other limits: nothing that was drawn, confirmed or chosen before counts.
@@ -69,7 +69,7 @@ export function attachPage({ drop = () => {}, repaint = () => {}, runChanged = (
     const { welcome, learning } = connection;
     if (!welcome || !learning || learning.profiles.join() === welcome.profiles.join()) return;
     welcome.profiles = learning.profiles;
-    dialog.offer(learning.profiles);
+    offerProfiles(learning.profiles);
   });
   return { settings, connection, status, lease, stop, feedback };
 }

@@ -16,7 +16,7 @@ function sliderWords(name, value) {
   return say("unit.seconds", { value: sayNumber(value, name === "acceptS" || name === "releaseS" ? 2 : 1) });
 }
 
-/** @param {Settings} settings */
+/** @param {Settings} settings @returns {(names: string[]) => void} takes the people whose alignment can be chosen */
 export function attachSettingsDialog(settings) {
   const [dialog, form] = [byId("settings", HTMLDialogElement), byId("settings-form", HTMLFormElement)];
   const fields = /** @type {HTMLInputElement[]} */ ([...form.querySelectorAll("input[name], select[name]")]);
@@ -35,11 +35,11 @@ export function attachSettingsDialog(settings) {
     }
   };
 
-  const chooser = attachPersonChoice(byId("settings-person", HTMLSelectElement), settings);
+  const offerPeople = attachPersonChoice(byId("settings-person", HTMLSelectElement), settings);
   byId("settings-open").addEventListener("click", (event) => {
     // The browser gives the focus back at once when the dialog closes: to the opener only where keys had opened it.
     unfocus(event);
-    chooser.offer();
+    offerPeople();
     show();
     dialog.showModal();
   });
@@ -73,15 +73,10 @@ export function attachSettingsDialog(settings) {
   byId("settings-reset").addEventListener("click", () => settings.reset());
   settings.addEventListener("change", show);
 
-  return {
-    /** @param {string[]} names people whose alignment can be chosen */
-    offer(names) {
-      const choices = [["", say("settings.profile_standard")], [NO_PROFILE, say("settings.profile_none")]];
-      choices.push(...names.map((name) => [name, name]));
-      fields.find(({ name }) => name === "profile")?.replaceChildren(
-        ...choices.map(([value, textContent]) => create("option", { value, textContent })),
-      );
-      show();
-    },
+  return (names) => {
+    const choices = [["", say("settings.profile_standard")], [NO_PROFILE, say("settings.profile_none")], ...names.map((name) => [name, name])];
+    const options = choices.map(([value, textContent]) => create("option", { value, textContent }));
+    fields.find(({ name }) => name === "profile")?.replaceChildren(...options);
+    show();
   };
 }

@@ -25,7 +25,7 @@ export function guidingOf(state, { waiting, confirmed }) {
   return { does: confirmed ? "begin" : null, why: own ? "guiding.own" : "guiding.off", records: own };
 }
 
-/** @param {Connection} connection @param {DriverLease} lease */
+/** Returns what a Stop does here: the page asks for nothing any more, and the server ends guiding. @param {Connection} connection @param {DriverLease} lease */
 export function attachGuiding(connection, lease) {
   const [button, recorder, confirmed] = [byId("guiding-begin"), byId("guiding-record"), byId("guiding-loaded", HTMLInputElement)];
   let asked = false;
@@ -109,10 +109,7 @@ export function attachGuiding(connection, lease) {
   }, PERIOD_MS);
   show();
 
-  return {
-    /** At a Stop the page asks for nothing any more; the server ends guiding. */
-    stopped() {
-      asked = begun = false;
-    },
+  return () => {
+    asked = begun = false;
   };
 }

@@ -20,10 +20,10 @@ const FEWEST = 3;
 /** The run that this page goes to drive once it is loaded, and until when. */
 let going = { run: "", until: -Infinity };
 
-const { connection, settings, lease, stop } = attachPage({ runChanged: () => {}, drop: () => guiding.stopped() });
+const { connection, settings, lease, stop } = attachPage({ runChanged: () => {}, drop: () => stopGuiding() });
 attachWholePage(settings, stop);
 attachLostArm(connection, lease);
-const guiding = attachGuiding(connection, lease);
+const stopGuiding = attachGuiding(connection, lease);
 
 /** Whether somebody else drives, who alone may train and choose. */
 let watching = false;
