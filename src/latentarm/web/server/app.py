@@ -43,17 +43,11 @@ from latentarm.web.records.people import PersonRecord
 from latentarm.web.records.person_zip import IMPORT_LIMIT
 from latentarm.web.records.record_files import SYSTEM_CALENDAR, Calendar
 from latentarm.web.records.records import FOLDER, Records
+from latentarm.web.server import connections
 from latentarm.web.server.answers import refused
 from latentarm.web.server.assets import Assets
 from latentarm.web.server.camera_routes import CameraRoutes
 from latentarm.web.server.config import TeleopConfig, check_certificate, listen
-from latentarm.web.server.connections import (
-    HEAD_LIMIT,
-    ConnectionLimits,
-    Connections,
-    SlicedProtocol,
-    limits_here,
-)
 from latentarm.web.server.drive_socket import DriveSocket
 from latentarm.web.server.health import Health
 from latentarm.web.server.history import History
@@ -172,7 +166,7 @@ def serve_gate(gate: Gate, config: TeleopConfig, listening: socket.socket, ready
         ready()
         # Every input passes through here.
         with short_collections():
-            asyncio.run(serve_on(listening, server, limits_here()))
+            asyncio.run(serve_on(listening, server, connections.limits_here()))
 
 
 @final
@@ -356,7 +350,7 @@ def server_config(app: ASGIApp, config: TeleopConfig) -> uvicorn.Config:
         server_header=False,
         proxy_headers=False,
         http="h11",
-        h11_max_incomplete_event_size=HEAD_LIMIT,
+        h11_max_incomplete_event_size=connections.HEAD_LIMIT,
         ws=MeteredSocket,
         ws_max_size=FRAME_LIMIT,
         ws_ping_interval=5.0,
@@ -368,17 +362,19 @@ def server_config(app: ASGIApp, config: TeleopConfig) -> uvicorn.Config:
     )
 
 
-async def serve_on(listening: socket.socket, server: uvicorn.Server, limits: ConnectionLimits) -> None:
+async def serve_on(
+    listening: socket.socket, server: uvicorn.Server, limits: connections.ConnectionLimits
+) -> None:
     """Serve until the server is asked to exit. Raises OSError if no connections can be accepted any more."""
 
     async def accept() -> None:
         while not server.started:
             await asyncio.sleep(_STARTED_S)
 
-        def protocol() -> SlicedProtocol:
-            return SlicedProtocol(server.config, server.server_state, server.lifespan.state)
+        def protocol() -> connections.SlicedProtocol:
+            return connections.SlicedProtocol(server.config, server.server_state, server.lifespan.state)
 
-        await Connections(listening, protocol, server.config.ssl, limits).accept()
+        await connections.Connections(listening, protocol, server.config.ssl, limits).accept()
 
     def exit_too(_: asyncio.Task[None]) -> None:
         server.should_exit = True

@@ -5,15 +5,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, final
 
-from latentarm.alignment.profile import (
-    MOST_CHARACTERS,
-    NAMED,
-    TRIAL,
-    discard_trial,
-    keep_trial,
-    profile_folder,
-    trial_folder,
-)
+from latentarm.alignment import profile as profiles
 from latentarm.core.errors import UserError
 from latentarm.core.untrusted.names import clean_name
 from latentarm.web.jobs.personalise import PersonaliseJob, PersonalisePlan
@@ -110,8 +102,8 @@ class Personalising:
         profile = self._before if self._tried else self._profile
         try:
             run = self._alignable()
-            name = name if NAMED.fullmatch(name) else clean_name(name, MOST_CHARACTERS)
-            if profile_folder(run, name).exists():
+            name = name if profiles.NAMED.fullmatch(name) else clean_name(name, profiles.MOST_CHARACTERS)
+            if profiles.profile_folder(run, name).exists():
                 raise NoticeError("profile_exists", name=name)
             self._give_back()
         except UserError as error:
@@ -124,7 +116,7 @@ class Personalising:
         self._run = run
         seat = self._states.loaded.spec.seated(wish.seat)
         self._job = PersonaliseJob(
-            PersonalisePlan(run, name, wish.questions, profile, seat, trial_folder(run))
+            PersonalisePlan(run, name, wish.questions, profile, seat, profiles.trial_folder(run))
         )
         self._state = self._job.look()
 
@@ -132,7 +124,7 @@ class Personalising:
         self._check_at_rest()
         if not self._tried:
             self._before = self._profile
-        self._tried = self._control.order(ChooseProfile(name=TRIAL)) or self._tried
+        self._tried = self._control.order(ChooseProfile(name=profiles.TRIAL)) or self._tried
         self._why(None)
 
     def _keep(self) -> None:
@@ -140,7 +132,7 @@ class Personalising:
             return
         if self._tried:
             self._check_at_rest()
-        keep_trial(self._run, self._state.name)
+        profiles.keep_trial(self._run, self._state.name)
         if self._tried:
             self._control.order(ChooseProfile(name=self._state.name))
         self._tried = False
@@ -158,7 +150,7 @@ class Personalising:
             self._control.order(ChooseProfile(name=self._before))
             self._tried = False
         if (run := self._states.loaded.spec.run) is not None:
-            discard_trial(run)
+            profiles.discard_trial(run)
 
     def _forget(self) -> None:
         job, run = self._job, self._run
@@ -189,4 +181,4 @@ def _clean(job: PersonaliseJob | None, run: Path) -> None:
     if job is not None:
         job.end()
     with suppress(UserError):  # what cannot be deleted is replaced by the next
-        discard_trial(run)
+        profiles.discard_trial(run)
