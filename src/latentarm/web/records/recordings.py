@@ -69,7 +69,6 @@ class Recordings:
     _out: Path  # folder of the journals
     _folder: Path  # that of the titles
     _in_use: Callable[[], Path | None]  # path of the journal that is being written
-    now_s: Callable[[], float] = time.monotonic
 
     def __post_init__(self) -> None:
         self._titles_path = self._folder / _TITLES
@@ -101,7 +100,7 @@ class Recordings:
             if self._used(path):
                 raise NoticeError("recording_in_use")
             _move(path, path.with_name(_HIDDEN + name))
-            self._deleted[name] = self.now_s() + UNDO_S
+            self._deleted[name] = time.monotonic() + UNDO_S
 
     def restore(self, name: str) -> None:
         """Bring back a deleted recording."""
@@ -114,7 +113,7 @@ class Recordings:
     def purge(self) -> None:
         """Remove recordings that can no longer be restored."""
         with self._lock:
-            for name in [name for name, until_s in self._deleted.items() if until_s <= self.now_s()]:
+            for name in [name for name, until_s in self._deleted.items() if until_s <= time.monotonic()]:
                 _unlink(self._out / (_HIDDEN + name))
                 del self._deleted[name]
 
