@@ -80,28 +80,16 @@ class Health:
     async def _metrics(self, _: Request) -> Response:
         pictures = {} if self._cameras is None else await self._cameras.ages_s()
         report, quiet_s = self._states.report, self._states.quiet_s
+        late = {} if report is None else {(): report.late_share}
         readings = {} if report is None else {(): report.reading_age_s + quiet_s}
+        ages = {(("camera", name),): age_s for name, age_s in pictures.items()}
+        stops = {(("code", code),): float(count) for code, count in self._stops.items()}
         families = (
             _family("up", "gauge", "1 if /health says ok", {(): float(self.trouble is None)}),
-            _family(
-                "late_ticks_ratio",
-                "gauge",
-                "share of the control loop's ticks that were late",
-                {} if report is None else {(): report.late_share},
-            ),
+            _family("late_ticks_ratio", "gauge", "share of the control loop's ticks that were late", late),
             _family("reading_age_seconds", "gauge", "age of the arm's newest usable reading", readings),
-            _family(
-                "picture_age_seconds",
-                "gauge",
-                "age of a camera's newest picture, while somebody watches it",
-                {(("camera", name),): age_s for name, age_s in pictures.items()},
-            ),
-            _family(
-                "stops_total",
-                "counter",
-                "stops of an enabled arm, by code",
-                {(("code", code),): float(count) for code, count in self._stops.items()},
-            ),
+            _family("picture_age_seconds", "gauge", "age of a watched camera's newest picture", ages),
+            _family("stops_total", "counter", "stops of an enabled arm, by code", stops),
             _family("pages", "gauge", "connected pages", {(): float(self._sessions.count)}),
             _family("drive_seconds_total", "counter", "time that the arm was enabled", {(): self._drive_s}),
         )

@@ -25,11 +25,6 @@ class Page:
     name: str  # of its folder in ``pages/``, of the template, script and style sheet there, and of its words
 
     @property
-    def template(self) -> str:
-        """The template's path."""
-        return f"{self.name}/{self.name}.html"
-
-    @property
     def script(self) -> str:
         """The module's path."""
         return f"{self.name}/{self.name}.js"
@@ -85,7 +80,7 @@ class Pages:
             loader=FileSystemLoader(FOLDER), autoescape=True, undefined=StrictUndefined, trim_blocks=True
         )
         self._html = {
-            (page.path, words.language): templates.get_template(page.template)
+            (page.path, words.language): templates.get_template(f"{page.name}/{page.name}.html")
             .render(
                 page=page,
                 pages=self.all,

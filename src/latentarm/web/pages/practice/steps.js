@@ -5,16 +5,7 @@ import { distance } from "../drive/task_words.js";
 /** @typedef {"enable" | "press" | "watch" | "let_go" | "stop" | "reach"} Step */
 /** @typedef {[number, number, number]} Point */
 
-/**
- * The person's input and the arm at one moment.
- *
- * @typedef {object} Seen
- * @property {boolean} engaged whether this page drives an enabled arm
- * @property {boolean} moving whether the arm moves
- * @property {boolean} pressed whether a direction is pressed
- * @property {Point} tool m
- * @property {Point[]} goals m
- */
+/** The arm, as this page drives it, and whether a direction is pressed; m. @typedef {{engaged: boolean, moving: boolean, pressed: boolean, tool: Point, goals: Point[]}} Seen */
 
 /** @type {Step[]} */
 export const STEPS = ["enable", "press", "watch", "let_go", "stop", "reach"];
