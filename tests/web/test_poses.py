@@ -9,7 +9,6 @@ from latentarm.web.arm_process.pose_motion import ARRIVED_RAD, STUCK_S
 from latentarm.web.protocol.orders import Enable, PoseToGoTo, Return
 from latentarm.web.records.people import People
 from latentarm.web.records.poses import MOST_POSES, POSES_NAME
-from latentarm.web.records.record_files import SYSTEM_CALENDAR
 from latentarm.web.server.pose_book import PoseBook
 
 ASKED_S = 0.5

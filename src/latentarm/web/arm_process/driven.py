@@ -7,8 +7,6 @@ from typing import final
 
 from latentarm.arms.contract import Arm
 from latentarm.control.clock import Clock
-from latentarm.core.errors import UserError
-from latentarm.core.untrusted.terminal import one_line
 from latentarm.runs.folder import read_run
 from latentarm.web.arm_process.arm_lifecycle import next_arm
 from latentarm.web.arm_process.drive_setup import SEEDS, DriveSetup, Spec, load_setup, with_profile

@@ -1,6 +1,6 @@
 """Messages between pages and the server about runs: training and choosing them."""
 
-from typing import Annotated, Literal, final
+from typing import Annotated, Literal
 
 from pydantic import Field
 

@@ -11,7 +11,7 @@ from pydantic import Field, TypeAdapter
 from latentarm.core.types import GripperAsk
 from latentarm.web.protocol.learning_messages import PickRun, Train
 from latentarm.web.protocol.notice import Message
-from latentarm.web.protocol.orders import BuiltInPose, DriverOrder
+from latentarm.web.protocol.orders import BuiltInPose, Deflection, DriverOrder, PersonInput
 from latentarm.web.protocol.personalise_messages import PersonaliseMessage
 
 FRAME_LIMIT: Final = 4096  # the longest frame from a page, bytes

@@ -1,7 +1,7 @@
 """Saved poses, such as "Drink"; per robot and person, a file each."""
 
 from pathlib import Path
-from typing import Annotated, Final, Literal, final
+from typing import Annotated, Final, Literal
 
 from pydantic import Field
 

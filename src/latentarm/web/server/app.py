@@ -41,7 +41,6 @@ from latentarm.web.protocol.orders import ChooseProfile
 from latentarm.web.protocol.page_messages import FRAME_LIMIT
 from latentarm.web.records.people import PersonRecord
 from latentarm.web.records.person_zip import IMPORT_LIMIT
-from latentarm.web.records.record_files import SYSTEM_CALENDAR, Calendar
 from latentarm.web.records.records import FOLDER, Records
 from latentarm.web.server import connections
 from latentarm.web.server.answers import refused
@@ -136,7 +135,7 @@ def serve(
         )
 
         def open_it() -> None:
-            first = f"{base}/" if invitations is None else invitations.make()
+            first = f"{base}/" if invitations is None else invitations.first()
             say(f"The page is at {first} (end with Ctrl-C).")
             if invitations is not None:
                 invitations.draw(first)

@@ -17,5 +17,5 @@ export function attachLostArm(connection, lease) {
   };
   button.addEventListener("click", again);
   whenever(connection, ["state", "open"], show);
-  return { again };
+  return again;
 }

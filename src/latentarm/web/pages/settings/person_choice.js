@@ -20,12 +20,9 @@ export function attachPersonChoice(select, settings) {
     if (pinned.has(chosen.value)) location.assign(`/people#${chosen.value}`);
     else settings.become(chosen.value ? { id: chosen.value, name: chosen.text } : null);
   });
-  return {
-    /** Show who there is now. */
-    async offer() {
-      fill(settings.person ? [settings.person] : []);
-      const found = await ask("GET", "/records/people").catch(() => null);
-      if (found) fill(found.people);
-    },
+  return async () => {
+    fill(settings.person ? [settings.person] : []);
+    const found = await ask("GET", "/records/people").catch(() => null);
+    if (found) fill(found.people);
   };
 }
