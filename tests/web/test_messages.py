@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from latentarm.web.protocol.notice import Notice
 from latentarm.web.protocol.page_messages import parse_message
 
 INPUT = {
@@ -99,3 +100,8 @@ anything = st.recursive(
 def test_nothing_gets_past_it(frame):
     with pytest.raises(ValueError):
         parse_message(frame)
+
+
+def test_a_message_that_is_final_cannot_be_extended():
+    with pytest.raises(TypeError, match="final"):
+        type(Notice)("Longer", (Notice,), {"__module__": __name__})
