@@ -59,6 +59,9 @@ COMMANDS: Final = CommandSet(
             "Take real people through a study on the page: consent, practice, trials, questions, completion"
             " code.",
         ),
+        "study delete": _ours(
+            "study_data:delete_people", "Delete people from a served study with all that is kept of them."
+        ),
         "study analyse": _ours(
             "study_answers:analyse_study",
             "Analyse recorded trials, with the answers of real people, and write the report.",

@@ -13,7 +13,7 @@ from latentarm.core.errors import UserError
 from latentarm.core.untrusted.opening import read_bytes
 from latentarm.demonstrations.bounds import MAX_TEXT_BYTES
 from latentarm.runs.options import Json, Seed
-from latentarm_research.commands.study_options import StudyName
+from latentarm_research.commands.study_options import Database, StudyName
 from latentarm_research.user_studies.own.definition_file import find_definition
 
 
@@ -54,6 +54,7 @@ def analyse_study(
     answers: Annotated[
         Path | None, arg(metavar="FILE.csv", help="Answers of real people: person, condition, item, answer.")
     ] = None,
+    database: Database = None,
     out: Annotated[
         Path | None, arg(metavar="DIR", help="Folder for report and figures; studies/NAME-analysis.")
     ] = None,
@@ -71,7 +72,7 @@ def analyse_study(
     from latentarm_research.user_studies.report.figures import figure_names
     from latentarm_research.user_studies.report.page import ANALYSIS, RATINGS, report_of
 
-    recorded = read_recorded(folder)
+    recorded = read_recorded(folder, database)
     definition = recorded.definition
     ratings, digest = None, None
     if recorded.answers:

@@ -36,6 +36,15 @@ StudyName = Annotated[
     ),
 ]
 
+Database = Annotated[
+    str | None,
+    arg(
+        metavar="URL",
+        help="postgresql://USER@HOST/NAME of the study's database; without it, a file in its folder. The"
+        " password belongs in ~/.pgpass.",
+    ),
+]
+
 
 @dataclass(frozen=True)
 class StudyOptions:

@@ -11,7 +11,7 @@ from tyro.conf import Positional, arg
 from latentarm.commands.output import say
 from latentarm.core.errors import UserError
 from latentarm.runs.options import Json, Seed
-from latentarm_research.commands.study_options import StudyName
+from latentarm_research.commands.study_options import Database, StudyName
 from latentarm_research.user_studies.own.definition_file import find_definition
 from latentarm_research.user_studies.sizes import PRESETS
 
@@ -51,6 +51,7 @@ def serve_study(
     away_hours: Annotated[
         float, arg(metavar="H", help="Who is away for longer loses the place to the next.")
     ] = 2.0,
+    database: Database = None,
     preset: Annotated[
         str, arg(metavar="{" + ",".join(PRESETS) + "}", help="smoke: trials of a second, to try it out.")
     ] = "paper",
@@ -91,6 +92,7 @@ def serve_study(
         prolific,
         completion_code,
         3600.0 * away_hours,
+        database,
     )
 
     def ready(address: str) -> None:

@@ -74,7 +74,10 @@ class Recorded:
         return self.sizes.people(len(self.met), self.people_are)
 
 
-def read_recorded(folder: Path) -> Recorded:
+def read_recorded(
+    folder: Path,
+    database: str | None = None,  # URL of a served study's database; None where it is in the folder
+) -> Recorded:
     """Read a folder of `latentarm study run` or `serve`, or trials of real people with the same documents.
 
     Of real people it holds ``config.json`` (``study``, ``definition``, ``people_are``), ``trials.json``,
@@ -85,8 +88,8 @@ def read_recorded(folder: Path) -> Recorded:
     people_are: Any = config.get("people_are")
     if people_are not in PEOPLE_ARE:
         raise UserError(f"{folder / CONFIG}: people_are must be one of {', '.join(PEOPLE_ARE)}.")
-    if (folder / DATABASE).exists():
-        return _served(definition, folder, _sizes(folder / CONFIG, config))
+    if database is not None or (folder / DATABASE).exists():
+        return _served(definition, folder, database, _sizes(folder / CONFIG, config))
     document = _document(folder / TRIALS, definition)
     if document.get("people_are") != people_are:
         raise UserError(f"{folder / TRIALS}: people_are must be {people_are!r}, as in {CONFIG}.")
@@ -103,12 +106,12 @@ def read_recorded(folder: Path) -> Recorded:
     )
 
 
-def _served(definition: Definition, folder: Path, sizes: Sizes) -> Recorded:
+def _served(definition: Definition, folder: Path, database: str | None, sizes: Sizes) -> Recorded:
     """Everybody who has finished a served study."""
     from latentarm_research.user_studies.drive_record import trial_of
-    from latentarm_research.user_studies.serving.store import Store  # SQLAlchemy, which help does not need
+    from latentarm_research.user_studies.serving.store import Store, database_of  # SQLAlchemy
 
-    store = Store(folder / DATABASE)
+    store = Store(database_of(folder, database))
     finished = store.finished()
     store.close()
     if not finished:

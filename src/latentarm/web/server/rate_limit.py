@@ -23,17 +23,20 @@ _BAD_REQUEST: Final = b"HTTP/1.1 400 Bad Request\r\nConnection: close\r\nContent
 
 @final
 class Allowance:
-    """A token bucket with `BURST` tokens that gains `RATE` per second."""
+    """A token bucket: ``burst`` tokens, and ``rate`` more per second up to as many."""
 
-    def __init__(self, now_s: Callable[[], float] = time.monotonic) -> None:
+    def __init__(
+        self, now_s: Callable[[], float] = time.monotonic, rate: float = RATE, burst: float = BURST
+    ) -> None:
         self._now_s = now_s
-        self._left = BURST
+        self._rate, self._burst = rate, burst
+        self._left = burst
         self._at_s = now_s()
 
     def spend(self) -> bool:
         """Take one token. Returns False if none is left."""
         now_s = self._now_s()
-        self._left = min(self._left + (now_s - self._at_s) * RATE, BURST)
+        self._left = min(self._left + (now_s - self._at_s) * self._rate, self._burst)
         self._at_s = now_s
         if self._left < 1.0:
             return False

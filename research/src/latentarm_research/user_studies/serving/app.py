@@ -22,9 +22,11 @@ from latentarm.web.protocol.notice import Message, Notice
 from latentarm.web.server.answers import NO_STORE, body_of, json_answer
 from latentarm.web.server.assets import Assets
 from latentarm_research.user_studies.answers.items import items_of
+from latentarm_research.user_studies.serving.links import renew_links
 from latentarm_research.user_studies.serving.models import Models
 from latentarm_research.user_studies.serving.options import Serving
 from latentarm_research.user_studies.serving.participant_pages import HOME, ParticipantPages, answer_file
+from latentarm_research.user_studies.serving.request_limit import RequestLimit
 from latentarm_research.user_studies.serving.running import DRIVES, RunningDrive, recovered, refuse_socket
 from latentarm_research.user_studies.serving.store import Standing, Store
 from latentarm_research.user_studies.serving.way import Next, ToAnswer, ToDrive, Way
@@ -58,6 +60,8 @@ class StudyServer:
         assets = Assets()
         self._pages = ParticipantPages(serving, self._way, assets)
         self._drives: dict[str, RunningDrive] = {}  # by the person's key
+        self._met: set[str] = set()  # keys that are somebody's
+        self._limit = RequestLimit()
         self._following: set[asyncio.Task[None]] = set()
         self._changing = asyncio.Lock()
         posts = (self.consent, self.begin, self.ready, self.answers, self.withdraw)
@@ -65,6 +69,7 @@ class StudyServer:
             routes=[
                 Route(HOME, self._home),
                 *(Route(f"{HOME}/{do.__name__}", self._known(do), methods=["POST"]) for do in posts),
+                Route(f"{HOME}/data", self._known(self.data)),
                 *(Route(f"{HOME}/{name}", answer_file) for name in ("study.js", "study.css")),
                 Route("/static/{version}/{name:path}", assets.answer),
             ],
@@ -79,10 +84,18 @@ class StudyServer:
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Serve the participants' pages, and those of a drive to the participant who drives."""
-        if scope["type"] == "lifespan" or scope["path"].startswith((HOME, "/static/")):
+        if scope["type"] == "lifespan":
             await self._app(scope, receive, send)
             return
-        drive = self._drives.get(HTTPConnection(scope).cookies.get(COOKIE, ""))
+        connection = HTTPConnection(scope)
+        key = connection.cookies.get(COOKIE, "")
+        if scope["type"] == "http" and not self._limit.allows(connection, key if key in self._met else ""):
+            await _refused("Too many requests: wait a minute, and try again.", 429)(scope, receive, send)
+            return
+        if scope["path"].startswith((HOME, "/static/")):
+            await self._app(scope, receive, send)
+            return
+        drive = self._drives.get(key)
         if scope["type"] == "websocket":
             await (refuse_socket(receive, send) if drive is None else drive(scope, receive, send))
         elif drive is not None and scope["method"] in _READING:
@@ -112,6 +125,7 @@ class StudyServer:
             key = request.cookies.get(COOKIE, "")
             if self._store.standing(key) is None:
                 return _refused("Open the link that you were given.", 403)
+            self._met.add(key)
             try:
                 return await do(request, key)
             except UserError as error:
@@ -128,6 +142,7 @@ class StudyServer:
         standing = self._store.standing(request.cookies.get(COOKIE, ""))
         if standing is None:
             return self._pages.page("unknown", status=404)
+        self._met.add(standing.key)
         return await self._next_page(standing)
 
     def _link(self, given: QueryParams) -> tuple[str, str]:
@@ -142,6 +157,7 @@ class StudyServer:
         key = self._store.arrive(link, visit, time.time())
         if key is None:
             return self._pages.page("unknown", status=404)
+        self._met.add(key)
         answer = RedirectResponse(HOME, 303, headers=NO_STORE)
         secure = self._serving.config.encrypted
         # Lax: people come from the page of another site.
@@ -225,11 +241,18 @@ class StudyServer:
         await asyncio.to_thread(self._store.keep_answers, key, due.order, due.condition.name, given.points)
         return _onward(HOME)
 
+    async def data(self, _: Request, key: str) -> Response:
+        """Everything that is kept of them."""
+        answer = json_answer(await asyncio.to_thread(self._store.everything, key))
+        answer.headers["content-disposition"] = 'attachment; filename="my-data.json"'
+        return answer
+
     async def withdraw(self, _: Request, key: str) -> Response:
         """Delete everything about them."""
         async with self._changing:
             await self._end_drive(key)
-            await asyncio.to_thread(self._store.withdraw, key)
+            renewed = await asyncio.to_thread(self._store.withdraw, key)
+            await asyncio.to_thread(renew_links, self._serving.out, renewed)
         answer = _onward(f"{HOME}?left")
         answer.delete_cookie(COOKIE)
         return answer

@@ -28,6 +28,7 @@ class Serving:
     prolific: str | None  # the study at the recruiting site whose links count; None for none
     completion: str | None  # the code that everybody gets; None for one of their own
     away_s: float  # a person who opens no page for so long loses their place, s
+    database: str | None  # URL of PostgreSQL; None for a file in the folder
 
     @property
     def out(self) -> Path:

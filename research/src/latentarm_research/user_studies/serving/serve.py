@@ -13,13 +13,13 @@ from latentarm.web.server.security import Gate
 from latentarm_research.studies.results_folder import ResultsFolder
 from latentarm_research.user_studies.recorded import DATABASE, DEFINITION
 from latentarm_research.user_studies.serving.app import SITE_IDS, StudyServer
+from latentarm_research.user_studies.serving.links import LINKS, write_links
 from latentarm_research.user_studies.serving.models import MODELS, Models
 from latentarm_research.user_studies.serving.options import Serving
 from latentarm_research.user_studies.serving.page_drive import check_served
 from latentarm_research.user_studies.serving.participant_pages import HOME
-from latentarm_research.user_studies.serving.store import Store
+from latentarm_research.user_studies.serving.store import Store, database_of
 
-LINKS: Final = "links.csv"
 _LOCK: Final = ".serve.lock"
 
 
@@ -53,20 +53,19 @@ def serve(serving: Serving, say: Callable[[str], None], ready: Callable[[str], N
             say(f"Models for {task.label} are being trained; this takes minutes, once.")
             models.train(task, serving.sizes, serving.seed)
         listening = at_end.enter_context(listen(config))
-        store = Store(out / DATABASE, serving.away_s)
+        store = Store(database_of(out, serving.database), serving.away_s)
         at_end.callback(store.close)
-        codes = store.open_places(definition.people)
         write_text(out / f"information-{serving.digest[:12]}.md", serving.information)
-        app = StudyServer(serving, store, models)
         origins = config.origins(int(listening.getsockname()[1]))
+        app = StudyServer(serving, store, models)
         hosts = frozenset(origin.split("//")[1] for origin in origins)
         gate = Gate(app, hosts, frozenset(origins), secure=config.encrypted, stop=app.stop)
 
         def open_it() -> None:
-            links = [f"{origins[0]}{HOME}?code={code}" for code in codes]
-            write_text(out / LINKS, "\n".join(["link", *links, ""]))
+            links = [f"{origins[0]}{HOME}?code={code}" for code in store.open_places(definition.people)]
+            write_links(out, links)
             say(f"A participant's link: {links[0]}")
-            say(f"All {len(codes)} are in {out / LINKS}; each is for one person.")
+            say(f"All {len(links)} are in {out / LINKS}; each is for one person.")
             if serving.prolific is not None:
                 ids = "&".join(f"{name}={{{{%{name}%}}}}" for name in SITE_IDS)
                 say(f"For Prolific: {origins[0]}{HOME}?{ids}")

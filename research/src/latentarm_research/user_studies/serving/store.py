@@ -1,24 +1,31 @@
-"""The study's database: places, people, drives and answers. Every change is one transaction."""
+"""The study's database, in a file or on a server: people and what is kept of them.
+
+Every change is one transaction.
+"""
 
 import secrets
 from collections.abc import Generator, Mapping
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final, final
 
-from sqlalchemy import Connection, create_engine, delete, event, func, select
-from sqlalchemy.exc import DatabaseError
+from sqlalchemy import URL, Connection, Engine, create_engine, delete, event, func, make_url, or_, select
+from sqlalchemy.exc import ArgumentError, DatabaseError
 from sqlalchemy.orm import Session
+from sqlalchemy.sql import ColumnElement
 
 from latentarm.core.errors import UserError
 from latentarm.core.untrusted.opening import check_file, is_missing
 from latentarm_research.user_studies.answers.items import Answer
 from latentarm_research.user_studies.drive_record import DriveRecord
+from latentarm_research.user_studies.recorded import DATABASE
 from latentarm_research.user_studies.serving.tables import Answers, Drive, Person, Place, Table
 
 MOST_BYTES: Final = 1 << 32  # of a database
 KEY_BYTES: Final = 16  # of random keys
+
+_LOCK: Final = 43  # number of the lock that transactions in PostgreSQL wait for
 
 
 @final
@@ -45,33 +52,42 @@ class Finished:
     answers: tuple[Answer, ...]
 
 
+def database_of(folder: Path, url: str | None) -> Path | URL:
+    """The database of the study in a folder: a file there, or the one at a URL of PostgreSQL."""
+    if url is None:
+        return folder / DATABASE
+    try:
+        given = make_url(url)
+    except ArgumentError as error:
+        raise UserError(f"--database must be postgresql://USER@HOST/NAME, not {url!r}.") from error
+    if given.get_backend_name() != "postgresql":
+        raise UserError(f"--database must begin with postgresql://, not {given.drivername}://.")
+    return given.set(drivername="postgresql+psycopg")
+
+
 @final
 class Store:
-    """The database of a study, a file of its own. Raises a `UserError` where the file is something else."""
+    """The database of a study. Raises a `UserError` where it is something else, or cannot be reached."""
 
     def __init__(
         self,
-        path: Path,
+        database: Path | URL,
         away_s: float = float("inf"),  # a person who does nothing for so long loses their place, s
     ) -> None:
-        if not is_missing(path):
-            check_file(path, MOST_BYTES)
         self._away_s = away_s
-        self._engine = create_engine(f"sqlite:///{path}")
-        event.listen(self._engine, "connect", _connected)
-        event.listen(self._engine, "begin", _begins)
+        self._engine = _at_url(database) if isinstance(database, URL) else _in_file(database)
         try:
             Table.metadata.create_all(self._engine)
         except DatabaseError as error:
-            raise UserError(f"{path} is not the database of a study, or cannot be written.") from error
+            raise UserError(f"{database} is not the database of a study, or cannot be written.") from error
 
     def open_places(self, count: int) -> list[str]:
         """Have so many places, with the numbers from 0, and codes for links to them, which it returns."""
         with self._change() as session:
-            places = list(session.scalars(select(Place).order_by(Place.number)))
-            new = [Place(number=one, code=_random()) for one in range(len(places), count)]
-            session.add_all(new)
-            return [one.code for one in (*places, *new)]
+            there = session.scalar(select(func.count()).select_from(Place)) or 0
+            session.add_all(Place(number=one, code=_random()) for one in range(there, count))
+            session.flush()
+            return list(session.scalars(select(Place.code).order_by(Place.number)))
 
     def close(self) -> None:
         """Close the file."""
@@ -160,10 +176,33 @@ class Store:
             person.completion = code = person.completion or code
             return code
 
-    def withdraw(self, key: str) -> None:
-        """Delete a person with everything about them; their place is free again."""
+    def withdraw(self, key: str) -> dict[str, str]:
+        """Delete a person with everything about them; their place is free again. See `_delete`."""
+        return self._delete(Person.key == key)
+
+    def withdraw_by_code(self, code: str) -> dict[str, str]:
+        """Delete the person with this code in their link or at the end, or id at a recruiting site."""
+        return self._delete(or_(Person.link == code, Person.completion == code))
+
+    def withdraw_unseen_since(self, when_s: float) -> dict[str, str]:
+        """Delete everybody who was last there before a time, s since 1970."""
+        return self._delete(Person.seen_s < when_s)
+
+    def _delete(self, who: ColumnElement[bool]) -> dict[str, str]:
+        """Delete people, so that no byte of theirs stays in the file.
+
+        Returns a new code for each of them by the old one, which no link has any more.
+        """
         with self._change() as session:
-            session.execute(delete(Person).where(Person.key == key))
+            renewed = {link: _random() for link in session.scalars(select(Person.link).where(who))}
+            for place in session.scalars(select(Place).where(Place.code.in_(renewed))):
+                place.code = renewed[place.code]
+            session.execute(delete(Person).where(who))
+        if renewed and self._engine.dialect.name == "sqlite":
+            # What was deleted may still stand in unused parts of pages; in the new file it does not.
+            with closing(self._engine.raw_connection()) as connection:
+                connection.cursor().execute("VACUUM")
+        return renewed
 
     def standing(self, key: str) -> Standing | None:
         """How far a person has come; None for nobody who is known."""
@@ -183,6 +222,18 @@ class Store:
                 frozenset(answered),
                 person.completion,
             )
+
+    def everything(self, key: str) -> dict[str, list[dict[str, Any]]]:
+        """All rows about a person, as JSON, by table."""
+        with self._change() as session:
+            of = {Person: Person.key, Place: Place.person, Drive: Drive.person, Answers: Answers.person}
+            return {
+                table.__tablename__: [
+                    {column.name: getattr(row, column.name) for column in table.__table__.columns}
+                    for row in session.scalars(select(table).where(whose == key))
+                ]
+                for table, whose in of.items()
+            }
 
     def finished(self) -> list[Finished]:
         """Everybody who has finished, by number."""
@@ -219,6 +270,31 @@ def _drives(session: Session, key: str) -> tuple[DriveRecord, ...]:
         return tuple(DriveRecord.model_validate_json(one) for one in kept)
     except ValueError as error:
         raise UserError("The study's database holds a drive that is not one.") from error
+
+
+def _in_file(path: Path) -> Engine:
+    """SQLite."""
+    if not is_missing(path):
+        check_file(path, MOST_BYTES)
+    engine = create_engine(f"sqlite:///{path}")
+    event.listen(engine, "connect", _connected)
+    event.listen(engine, "begin", _begins)
+    return engine
+
+
+def _at_url(url: URL) -> Engine:
+    """PostgreSQL."""
+    try:
+        engine = create_engine(url)
+    except ModuleNotFoundError as error:
+        raise UserError('PostgreSQL needs psycopg: pip install "latentarm-research[postgresql]".') from error
+    event.listen(engine, "begin", _waits_its_turn)
+    return engine
+
+
+def _waits_its_turn(connection: Connection) -> None:
+    """Let one transaction run after the other, as SQLite does."""
+    connection.exec_driver_sql(f"SELECT pg_advisory_xact_lock({_LOCK})")
 
 
 def _begins(connection: Connection) -> None:

@@ -1,0 +1,60 @@
+"""`latentarm study delete`: the data of people who have asked for it, or whose time is over."""
+
+import json as json_format
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Annotated
+
+from tyro.conf import Positional, arg
+
+from latentarm.commands.output import say
+from latentarm.core.errors import UserError
+from latentarm.runs.options import Json
+from latentarm_research.commands.study_options import Database
+
+ServedFolder = Annotated[Path, arg(metavar="DIR", help="Folder of a served study.")]
+
+
+def delete_people(
+    folder: Positional[ServedFolder],
+    code: Annotated[
+        str | None,
+        arg(help="Delete the person with this code: of the link, of the end, or of the recruiting site."),
+    ] = None,
+    before: Annotated[
+        str | None, arg(metavar="YYYY-MM-DD", help="Delete everybody who was last there before this day.")
+    ] = None,
+    database: Database = None,
+    json: Json = False,
+) -> int:
+    """Delete people from a served study with all that is kept of them.
+
+    For example: latentarm study delete studies/eating-people --before 2026-01-31
+    """
+    from latentarm_research.user_studies.recorded import DATABASE
+    from latentarm_research.user_studies.serving.links import renew_links
+    from latentarm_research.user_studies.serving.store import Store, database_of
+
+    if (code is None) == (before is None):
+        raise UserError("Name either --code or --before.")
+    if database is None and not (folder / DATABASE).exists():
+        raise UserError(f"{folder} holds no study that was served.")
+    try:
+        day = None if before is None else datetime.fromisoformat(before).replace(tzinfo=UTC)
+    except ValueError as error:
+        raise UserError(f"--before must be a day, such as 2026-01-31, not {before!r}.") from error
+    store = Store(database_of(folder, database))
+    try:
+        if day is None:
+            renewed = store.withdraw_by_code(code or "")
+        else:
+            renewed = store.withdraw_unseen_since(day.timestamp())
+    finally:
+        store.close()
+    if code is not None and not renewed:
+        raise UserError(f"Nobody in {folder} has the code {code}.")
+    renew_links(folder, renewed)
+    say(f"People who were deleted: {len(renewed)}. Exports and copies made before still hold them.", json)
+    if json:
+        print(json_format.dumps({"deleted": len(renewed)}))
+    return 0
