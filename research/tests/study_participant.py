@@ -122,8 +122,8 @@ class Participant:
             does[part]()
 
     @contextmanager
-    def connected(self) -> Generator[ClientConnection]:
-        """The socket of the Drive page."""
+    def connected(self, **options: Any) -> Generator[ClientConnection]:
+        """The socket of the Drive page; ``options`` are those of its connection."""
         cookie = "; ".join(f"{name}={value}" for name, value in self.client.cookies.items())
         self.state: dict[str, Any] = {}
         self.told: list[str] = []
@@ -132,6 +132,7 @@ class Participant:
             origin=self.origin,  # type: ignore[arg-type]
             compression=None,
             additional_headers={"cookie": cookie},
+            **options,
         ) as socket:
             listener = threading.Thread(target=self._listen, args=[socket], daemon=True)
             listener.start()

@@ -2,22 +2,15 @@
 
 import json
 import os
-import sqlite3
-import threading
 import time
-from contextlib import closing, suppress
+from contextlib import suppress
 from pathlib import Path
 
-import httpx
-import numpy as np
 import pytest
 
 from latentarm.cli import main
 from latentarm_research.user_studies.recorded import read_recorded
-from study_participant import LATENT, MODES, TWIST, definition, next_link, participant, serving
-
-KILLS = int(os.environ.get("LATENTARM_STUDY_KILLS", "2"))
-"""How often the server is killed."""
+from study_participant import LATENT, MODES, definition, next_link, participant, serving
 
 
 @pytest.mark.slow
@@ -65,45 +58,6 @@ def test_a_participant_goes_through_a_study_with_a_learned_model_and_is_reported
     page = (tmp_path / "report" / "report.html").read_text()
     assert "1 real person (preset smoke)" in page
     assert "simulated" not in page
-
-
-@pytest.mark.slow
-def test_no_finished_drive_is_lost_or_doubled_when_the_server_is_killed(tmp_path: Path) -> None:
-    study, out, rng = tmp_path / "two_ways.json", tmp_path / "people", np.random.default_rng(KILLS)
-    study.write_text(json.dumps({**definition(MODES, TWIST), "people": KILLS + 1}))
-    command = (str(study), "--out", str(out))
-    number = 0
-    for _ in range(KILLS):
-        with serving(*command) as (link, server), participant(link, next_link(out, number)) as person:
-            before = drives(out)
-            if person.part == "consent":
-                person.consent()
-                person.ready()
-            killing = threading.Timer(rng.uniform(0.0, 5.0), server.kill)
-            killing.start()
-            over = 0
-            with suppress(httpx.TransportError, OSError, AssertionError):
-                person.drive()
-                over = 1
-            killing.join()
-        with serving(*command) as (link, _), participant(link, next_link(out, number)) as person:
-            after = drives(out)
-            # A drive whose end they saw is there, and none is there twice.
-            assert before + over <= after <= before + 1
-            assert (person.part == "trial") == (after == before)
-            if person.part == "questions":
-                person.answer()
-            number += person.part == "finished"
-
-
-def drives(out: Path) -> int:
-    """How many drives are kept; each is of another trial, and nobody shares a place."""
-    with closing(sqlite3.connect(out / "study.sqlite")) as database:
-        kept = database.execute('SELECT person, "order", task, trial, choice, attempt FROM drives').fetchall()
-        places = database.execute("SELECT number FROM places WHERE person IS NOT NULL").fetchall()
-    assert len(set(kept)) == len(kept)
-    assert sorted(places) == [(number,) for number in range(len(places))]
-    return len(kept)
 
 
 def test_a_condition_that_the_page_lacks_is_refused(capsys: pytest.CaptureFixture[str]) -> None:

@@ -49,6 +49,10 @@ COMMANDS: Final = CommandSet(
             "Find how many people a study needs: studies drawn from simulated people,"
             " through its own analysis.",
         ),
+        "study preregister": _ours(
+            "study:preregister_study",
+            "Write a study's plan with its hypotheses, analysis and power into one document with a hash.",
+        ),
         "study questions": _ours(
             "study_answers:questions",
             "Write a study's questionnaire: after each condition all items, in a random order"
@@ -58,6 +62,10 @@ COMMANDS: Final = CommandSet(
             "study_serve:serve_study",
             "Take real people through a study on the page: consent, practice, trials, questions, completion"
             " code.",
+        ),
+        "study export": _ours(
+            "study_data:export_study",
+            "Write a study as a Psych-DS dataset, with scripts in Python and R for the tables of its report.",
         ),
         "study delete": _ours(
             "study_data:delete_people", "Delete people from a served study with all that is kept of them."

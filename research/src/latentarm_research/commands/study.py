@@ -157,6 +157,34 @@ def power_of_study(
     return 0
 
 
+def preregister_study(
+    name: Positional[StudyName],
+    power: Annotated[
+        Path | None, arg(metavar="DIR", help="Folder that latentarm study power has written.")
+    ] = None,
+    out: Annotated[Path | None, arg(metavar="FILE", help="By default NAME-preregistration.json.")] = None,
+    json: Json = False,
+) -> int:
+    """Write a study's plan with its hypotheses, analysis and power into one document with a hash.
+
+    For example: latentarm study preregister eating --power studies/eating-power
+    """
+    from latentarm.core.untrusted.documents import read_object
+    from latentarm.runs.results_folder import write_json
+    from latentarm_research.user_studies.preregistration import preregistration
+
+    definition = find_definition(name)
+    path = Path(f"{definition.name}-preregistration.json") if out is None else out
+    if path.exists():
+        raise UserError(f"{path} already exists: name another file with --out.")
+    document = preregistration(definition, None if power is None else read_object(power / "power.json"))
+    write_json(path, document)
+    say(f"The preregistration is in {path}, with the digest {document['digest']}.", json)
+    if json:
+        print(json_format.dumps({"file": str(path), "digest": document["digest"]}))
+    return 0
+
+
 def _request(
     definition: Definition, options: StudyOptions, simulated: int | None, preset: str, out: Path
 ) -> "Request[Sizes]":

@@ -16,6 +16,10 @@ from latentarm.runs.options import Json, Seed
 from latentarm_research.commands.study_options import Database, StudyName
 from latentarm_research.user_studies.own.definition_file import find_definition
 
+AnswersFile = Annotated[
+    Path | None, arg(metavar="FILE.csv", help="Answers of real people: person, condition, item, answer.")
+]
+
 
 def questions(
     name: Positional[StudyName],
@@ -51,10 +55,12 @@ def analyse_study(
     folder: Positional[
         Annotated[Path, arg(metavar="DIR", help="Folder of a run, or of trials of real people.")]
     ],
-    answers: Annotated[
-        Path | None, arg(metavar="FILE.csv", help="Answers of real people: person, condition, item, answer.")
-    ] = None,
+    answers: AnswersFile = None,
     database: Database = None,
+    preregistered: Annotated[
+        Path | None,
+        arg(metavar="FILE", help="What latentarm study preregister wrote: the report says what differs."),
+    ] = None,
     out: Annotated[
         Path | None, arg(metavar="DIR", help="Folder for report and figures; studies/NAME-analysis.")
     ] = None,
@@ -66,25 +72,16 @@ def analyse_study(
     """
     from latentarm_research.studies.results_folder import ResultsFolder
     from latentarm_research.studies.study import REPORTED, write_report
-    from latentarm_research.user_studies.answers.items import read_answers
     from latentarm_research.user_studies.answers.scales import rate
+    from latentarm_research.user_studies.preregistration import differences
     from latentarm_research.user_studies.recorded import read_recorded
     from latentarm_research.user_studies.report.figures import figure_names
     from latentarm_research.user_studies.report.page import ANALYSIS, RATINGS, report_of
 
-    recorded = read_recorded(folder, database)
+    recorded = read_recorded(folder, database, answers)
     definition = recorded.definition
-    ratings, digest = None, None
-    if recorded.answers:
-        ratings = rate(definition, recorded.answers, recorded.trials)
-    if answers is not None:
-        if recorded.people_are == "simulated":
-            raise UserError(
-                f"{folder} holds simulated people, who have no opinions: give --answers of real people only."
-            )
-        given = read_answers(answers, definition, recorded.met)
-        ratings = rate(definition, given, recorded.trials)
-        digest = hashlib.sha256(read_bytes(answers, MAX_TEXT_BYTES)).hexdigest()
+    ratings = rate(definition, recorded.answers, recorded.trials) if recorded.answers else None
+    digest = None if answers is None else hashlib.sha256(read_bytes(answers, MAX_TEXT_BYTES)).hexdigest()
     figures = (f"{figure}.png" for figure in figure_names(definition))
     claimed = ResultsFolder(f"analysis of {definition.study}", (*REPORTED, ANALYSIS, RATINGS, *figures))
     about: dict[str, object] = {
@@ -98,7 +95,11 @@ def analyse_study(
     path = Path("studies", f"{definition.name}-analysis") if out is None else out
     claimed.claim(path, about)
     asked = "" if answers is None else f" --answers {answers}"
-    report = report_of(recorded, f"latentarm study analyse {folder}{asked}", ratings)
+    departures = None
+    if preregistered is not None:
+        departures = differences(preregistered, definition)
+        asked += f" --preregistered {preregistered}"
+    report = report_of(recorded, f"latentarm study analyse {folder}{asked}", ratings, departures)
     if why := write_report(path, report, about):
         note([why])
     write_options(path, "study analyse")

@@ -1,4 +1,4 @@
-"""`latentarm study delete`: the data of people who have asked for it, or whose time is over."""
+"""`latentarm study delete` and `latentarm study export`: what is kept of people."""
 
 import json as json_format
 from datetime import UTC, datetime
@@ -10,6 +10,7 @@ from tyro.conf import Positional, arg
 from latentarm.commands.output import say
 from latentarm.core.errors import UserError
 from latentarm.runs.options import Json
+from latentarm_research.commands.study_answers import AnswersFile
 from latentarm_research.commands.study_options import Database
 
 ServedFolder = Annotated[Path, arg(metavar="DIR", help="Folder of a served study.")]
@@ -57,4 +58,35 @@ def delete_people(
     say(f"People who were deleted: {len(renewed)}. Exports and copies made before still hold them.", json)
     if json:
         print(json_format.dumps({"deleted": len(renewed)}))
+    return 0
+
+
+def export_study(
+    folder: Positional[
+        Annotated[Path, arg(metavar="DIR", help="Folder of a run, of a served study, or of trials.")]
+    ],
+    answers: AnswersFile = None,
+    database: Database = None,
+    out: Annotated[
+        Path | None, arg(metavar="DIR", help="Folder of the dataset; by default studies/NAME-dataset.")
+    ] = None,
+    json: Json = False,
+) -> int:
+    """Write a study as a Psych-DS dataset, with scripts in Python and R for the tables of its report.
+
+    For example: latentarm study export studies/eating-people
+    """
+    from latentarm.demonstrations.folders import staged_folder
+    from latentarm_research.user_studies.export.dataset import write_dataset
+    from latentarm_research.user_studies.recorded import read_recorded
+
+    recorded = read_recorded(folder, database, answers)
+    path = Path("studies", f"{recorded.definition.name}-dataset") if out is None else out
+    with staged_folder(path) as part:
+        write_dataset(part, recorded)
+    say(
+        f"The dataset is in {path}/; analysis/tables.py and analysis/tables.R make the report's tables.", json
+    )
+    if json:
+        print(json_format.dumps({"dataset": str(path)}))
     return 0

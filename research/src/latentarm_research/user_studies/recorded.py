@@ -1,7 +1,7 @@
 """The trials of a study, of simulated or of real people, and the folder that holds them."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Final, cast, final
 
@@ -10,7 +10,7 @@ from latentarm.core.untrusted.documents import read_object
 from latentarm_research.people.population import draw_people
 from latentarm_research.people.traits import Traits
 from latentarm_research.studies.results_folder import CONFIG
-from latentarm_research.user_studies.answers.items import Answer
+from latentarm_research.user_studies.answers.items import Answer, read_answers
 from latentarm_research.user_studies.catalogue import NAMES, load_definition
 from latentarm_research.user_studies.definition import PREFIX, Definition
 from latentarm_research.user_studies.own.definition_file import read_definition
@@ -39,7 +39,7 @@ class Recorded:
     traces: tuple[Trace, ...]  # of their drives; empty where none were kept
     simulated: tuple[Traits, ...]  # what the simulated people are like; empty for real people
     sizes: Sizes  # of the run
-    answers: tuple[Answer, ...] = ()  # on the page of a served study
+    answers: tuple[Answer, ...] = ()  # on the page of a served study, or from a file
 
     @property
     def documents(self) -> dict[str, object]:
@@ -77,12 +77,24 @@ class Recorded:
 def read_recorded(
     folder: Path,
     database: str | None = None,  # URL of a served study's database; None where it is in the folder
+    answers: Path | None = None,  # a file with those of real people, in place of the study's own
 ) -> Recorded:
     """Read a folder of `latentarm study run` or `serve`, or trials of real people with the same documents.
 
     Of real people it holds ``config.json`` (``study``, ``definition``, ``people_are``), ``trials.json``,
     ``definition.json`` where the study is not one of the paper's, and ``traces.json`` where ways were kept.
     """
+    recorded = _read_recorded(folder, database)
+    if answers is None:
+        return recorded
+    if recorded.people_are == "simulated":
+        raise UserError(
+            f"{folder} holds simulated people, who have no opinions: give --answers of real people only."
+        )
+    return replace(recorded, answers=tuple(read_answers(answers, recorded.definition, recorded.met)))
+
+
+def _read_recorded(folder: Path, database: str | None) -> Recorded:
     config = read_object(folder / CONFIG)
     definition = _definition(folder, config)
     people_are: Any = config.get("people_are")

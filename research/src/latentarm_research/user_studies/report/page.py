@@ -50,6 +50,7 @@ class Content:
     figures: Sequence[Drawn]  # to show
     command: str  # that repeats the run
     ratings: Ratings | None = None  # of people's answers, if there are any
+    departures: Sequence[str] | None = None  # from the preregistration; None without one
 
     @property
     def definition(self) -> Definition:
@@ -93,6 +94,7 @@ def report_page(content: Content) -> str:
         rated_head=RATED_HEAD,
         rated_lines=_rated_lines(content),
         item_lines=_item_lines(definition),
+        departures=content.departures,
     )
 
 
@@ -198,7 +200,12 @@ ANALYSIS: Final = "analysis.json"
 RATINGS: Final = "ratings.json"
 
 
-def report_of(recorded: Recorded, command: str, ratings: Ratings | None = None) -> Report:
+def report_of(
+    recorded: Recorded,
+    command: str,
+    ratings: Ratings | None = None,
+    departures: Sequence[str] | None = None,  # from the preregistration; None without one
+) -> Report:
     """Analyse trials, and report them."""
     definition = recorded.definition
     scores = () if ratings is None else ratings.scores
@@ -207,7 +214,7 @@ def report_of(recorded: Recorded, command: str, ratings: Ratings | None = None) 
     figures = draw(definition, analysis.trials, recorded.traces, recorded.who, ratings)
     return Report(
         rows=rows,
-        page=report_page(Content(recorded, analysis, rows, figures, command, ratings)),
+        page=report_page(Content(recorded, analysis, rows, figures, command, ratings, departures)),
         figures={one.name: one.figure for one in figures},
         tests=analysis.claims,
         documents={

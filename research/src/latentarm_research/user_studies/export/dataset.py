@@ -1,0 +1,158 @@
+"""Writes a study as a Psych-DS dataset: CSV files, their codebook as JSON-LD, and scripts for the tables."""
+
+import csv
+import shutil
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from io import StringIO
+from pathlib import Path
+from typing import Final, final
+
+from latentarm.core.files import write_text
+from latentarm.evaluation.measures import MEASURES
+from latentarm.runs.results_folder import write_json
+from latentarm_research.user_studies.answers.items import Answer, items_of
+from latentarm_research.user_studies.definition import Definition
+from latentarm_research.user_studies.exclusion import counted
+from latentarm_research.user_studies.record import Trial
+from latentarm_research.user_studies.recorded import Recorded
+
+SCRIPTS: Final = ("tables.py", "tables.R")
+
+Cell = str | float | None
+
+
+@final
+@dataclass(frozen=True)
+class Variable:
+    """A column of the dataset."""
+
+    name: str
+    meaning: str
+    unit: str = ""  # "" for a name or a number of something
+
+
+VARIABLES: Final = (
+    Variable("person", "number of the person, from 0"),
+    Variable("condition", "name of the condition"),
+    Variable("task", "name of the task"),
+    Variable("order", "place of the condition in the person's order, from 0"),
+    Variable("trial", "number of the trial in this condition, from 0"),
+    Variable("excluded", "why the trial does not count; empty where it counts"),
+    Variable("scale", "name of the questionnaire's scale"),
+    Variable("item", "name of the questionnaire's item"),
+    Variable("reversed", "1 where agreement means less of what the scale measures, else 0"),
+    Variable("points", "points of the answer's scale, from 1, strongly disagree, on"),
+    Variable("answer", "the answer, from 1 to points"),
+    Variable("claim", "number of the claim, from 0"),
+    Variable("hypothesis", "name of the hypothesis that the claim belongs to"),
+    Variable("measure", "measure or scale that the claim is about"),
+    Variable("direction", "what the claim says of the subject: less, greater or equal"),
+    Variable("margin", "for equal, the largest difference that does not matter, in the measure's unit"),
+    Variable("design", "within: each person meets all conditions; between: each meets one"),
+    Variable("kind", "what is named: a condition that the claim is about (subject), one that it is compared"
+             " with (against), or a task; without a task, all tasks with the measure"),
+    Variable("name", "name of the condition or task"),
+    Variable("factor", "factor of a 2 x 2 design"),
+    Variable("level", "level of the factor, 1 or 2"),
+)  # fmt: skip
+
+
+def write_dataset(folder: Path, recorded: Recorded) -> None:
+    """Write the dataset into an empty folder."""
+    definition = recorded.definition
+    tables = {
+        "trials": (
+            ("person", "condition", "task", "order", "trial", "excluded", *definition.measures),
+            _trials(definition, recorded.trials),
+        ),
+        "answers": (
+            ("person", "condition", "scale", "item", "reversed", "points", "answer"),
+            _answers(definition, recorded.answers),
+        ),
+        "claims": (
+            ("claim", "hypothesis", "measure", "direction", "margin", "design"),
+            _claims(definition),
+        ),
+        "sides": (("claim", "kind", "name"), _sides(definition)),
+        "factors": (("factor", "level", "condition"), _factors(definition)),
+    }
+    named = "".join(letter for letter in definition.name.title() if letter.isascii() and letter.isalnum())
+    for name, (head, rows) in tables.items():
+        path = folder / "data" / f"study-{named or 'own'}_description-{name}_data.csv"
+        write_text(path, _csv(head, rows))
+    measures = [_measure(name) for name in definition.measures]
+    variables = (*VARIABLES, *measures)
+    write_text(
+        folder / "documentation" / "codebook.csv",
+        _csv(("name", "meaning", "unit"), ((one.name, one.meaning, one.unit) for one in variables)),
+    )
+    described = {
+        "@context": "https://schema.org",
+        "@type": "Dataset",
+        "schemaVersion": "Psych-DS 1.0.0",
+        "name": definition.title,
+        "description": f"{definition.about} Trials of {recorded.who}.",
+        "identifier": definition.digest,
+        "variableMeasured": [
+            {
+                "@type": "PropertyValue",
+                "name": one.name,
+                "description": one.meaning,
+                **({"unitText": one.unit} if one.unit else {}),
+            }
+            for one in variables
+        ],
+    }
+    write_json(folder / "dataset_description.json", described)
+    (folder / "analysis").mkdir()
+    for name in SCRIPTS:
+        shutil.copyfile(Path(__file__).with_name(name), folder / "analysis" / name)
+
+
+def _measure(name: str) -> Variable:
+    known = MEASURES[name]
+    return Variable(name, f"{known.label}: {known.definition}", known.unit)
+
+
+def _trials(definition: Definition, trials: Sequence[Trial]) -> Iterable[Sequence[Cell]]:
+    _, out = counted(definition.exclusions, trials)
+    why = dict(out.trials)
+    for index, one in enumerate(trials):
+        of_person = "too many trials of the person do not count" if one.person in out.people else None
+        measures = [one.measures.get(name) for name in definition.measures]
+        yield one.person, one.condition, one.task, one.order, one.trial, why.get(index, of_person), *measures
+
+
+def _answers(definition: Definition, answers: Sequence[Answer]) -> Iterable[Sequence[Cell]]:
+    items = items_of(definition)
+    for one in answers:
+        scale, item = items[one.item]
+        turned = int(item.reversed)
+        yield one.person, one.condition, scale.name, one.item, turned, scale.points, one.points
+
+
+def _claims(definition: Definition) -> Iterable[Sequence[Cell]]:
+    owners = [hypothesis.name for hypothesis in definition.hypotheses for _ in hypothesis.claims]
+    for number, (owner, one) in enumerate(zip(owners, definition.claims, strict=True)):
+        yield number, owner, one.measure, one.direction, one.margin, definition.design
+
+
+def _sides(definition: Definition) -> Iterable[Sequence[Cell]]:
+    for number, one in enumerate(definition.claims):
+        for kind, names in (("subject", one.subject), ("against", one.against), ("task", one.tasks)):
+            yield from ((number, kind, name) for name in names)
+
+
+def _factors(definition: Definition) -> Iterable[Sequence[Cell]]:
+    for factor in definition.factors:
+        for level, (_, conditions) in enumerate((factor.low, factor.high), start=1):
+            yield from ((factor.name, level, condition) for condition in conditions)
+
+
+def _csv(head: Sequence[str], rows: Iterable[Sequence[Cell]]) -> str:
+    stream = StringIO()
+    lines = csv.writer(stream, lineterminator="\n")
+    lines.writerow(head)
+    lines.writerows(rows)
+    return stream.getvalue()

@@ -1,0 +1,62 @@
+"""What is settled before the first person comes, as one document with its hash; and what differs later."""
+
+import hashlib
+import json
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any, Final
+
+from latentarm.core.errors import UserError
+from latentarm.core.untrusted.documents import read_object
+from latentarm_research.studies import claims, statistics
+from latentarm_research.user_studies import designs, drive_record, exclusion
+from latentarm_research.user_studies.analysis import analysis, anova, means, randomisation
+from latentarm_research.user_studies.answers import scales
+from latentarm_research.user_studies.definition import Definition
+from latentarm_research.user_studies.report.words import DESIGN_WORDS
+
+_CODE: Final = (
+    *(analysis, anova, means, randomisation, claims, statistics, designs, drive_record, exclusion, scales),
+)
+_SHOWN: Final = 80  # letters of a value that a difference shows
+
+
+def preregistration(definition: Definition, power: Mapping[str, Any] | None) -> dict[str, Any]:
+    """The document: definition with hypotheses and exclusions, analysis, and power where it was computed."""
+    code = hashlib.sha256(b"".join(Path(one.__file__ or "").read_bytes() for one in _CODE)).hexdigest()
+    plan: dict[str, Any] = {
+        "definition": definition.as_json(),
+        "analysis": {"words": DESIGN_WORDS[definition.design].tests, "code": code},
+        "power": power,
+    }
+    return {"digest": _digest(plan), **plan}
+
+
+def differences(path: Path, definition: Definition) -> list[str]:
+    """What differs between a preregistration and a study as it is analysed now, each in a sentence.
+
+    Raises a `UserError` where the document was changed since it was written.
+    """
+    document = read_object(path)
+    digest = document.pop("digest", None)
+    if digest != _digest(document):
+        raise UserError(f"{path} is not as it was written: its digest is that of another document.")
+    now = preregistration(definition, document.get("power"))
+    del now["digest"]
+    return list(_differ("", document, now))
+
+
+def _differ(where: str, registered: object, now: object) -> Iterator[str]:
+    if isinstance(registered, dict) and isinstance(now, dict):
+        one: dict[str, object] = registered
+        other: dict[str, object] = now
+        for name in dict.fromkeys((*one, *other)):
+            yield from _differ(f"{where}.{name}".removeprefix("."), one.get(name), other.get(name))
+    elif registered != now:
+        was, is_now = (json.dumps(value, ensure_ascii=False) for value in (registered, now))
+        yield f"{where} was {was[:_SHOWN]}, and is {is_now[:_SHOWN]}."
+
+
+def _digest(plan: Mapping[str, Any]) -> str:
+    canonical = json.dumps(plan, sort_keys=True, separators=(",", ":"), ensure_ascii=False)
+    return hashlib.sha256(canonical.encode()).hexdigest()
