@@ -1,9 +1,8 @@
-"""Nothing of a person stays when they leave, or when the experimenter deletes them; they get a copy before."""
+"""No byte of a person stays when they leave, or when the experimenter deletes them."""
 
 import json
 import shutil
 import sqlite3
-from collections.abc import Iterator
 from contextlib import closing
 from pathlib import Path
 from typing import Any
@@ -39,7 +38,7 @@ def a_drive(person: int, trial: int) -> DriveRecord:
 
 
 @pytest.fixture
-def folder(tmp_path: Path) -> Iterator[Path]:
+def folder(tmp_path: Path) -> Path:
     """A study of three people with drives and answers, who were last there on three days."""
     store = Store(tmp_path / "study.sqlite")
     codes = store.open_places(3)
@@ -53,7 +52,7 @@ def folder(tmp_path: Path) -> Iterator[Path]:
         store.keep_answers(key, 0, "A", {"ease_1": 5})
         store.finish(key, f"COMPLETION{number}")
     store.close()
-    yield tmp_path
+    return tmp_path
 
 
 def kept_of(folder: Path, link: str) -> tuple[dict[str, list[dict[str, Any]]], list[bytes]]:

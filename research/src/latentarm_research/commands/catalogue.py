@@ -67,6 +67,10 @@ COMMANDS: Final = CommandSet(
             "study_data:export_study",
             "Write a study as a Psych-DS dataset, with scripts in Python and R for the tables of its report.",
         ),
+        "study replay": _ours(
+            "study_data:replay_study",
+            "Measure all drives of a served study again, from the steps that were kept of them.",
+        ),
         "study delete": _ours(
             "study_data:delete_people", "Delete people from a served study with all that is kept of them."
         ),

@@ -32,14 +32,12 @@ def delete_people(
 
     For example: latentarm study delete studies/eating-people --before 2026-01-31
     """
-    from latentarm_research.user_studies.recorded import DATABASE
-    from latentarm_research.user_studies.serving.links import renew_links
     from latentarm_research.user_studies.serving.store import Store, database_of
+    from latentarm_research.user_studies.serving.study_files import forget
 
     if (code is None) == (before is None):
         raise UserError("Name either --code or --before.")
-    if database is None and not (folder / DATABASE).exists():
-        raise UserError(f"{folder} holds no study that was served.")
+    check_served_folder(folder, database)
     try:
         day = None if before is None else datetime.fromisoformat(before).replace(tzinfo=UTC)
     except ValueError as error:
@@ -47,18 +45,55 @@ def delete_people(
     store = Store(database_of(folder, database))
     try:
         if day is None:
-            renewed = store.withdraw_by_code(code or "")
+            gone = store.withdraw_by_code(code or "")
         else:
-            renewed = store.withdraw_unseen_since(day.timestamp())
+            gone = store.withdraw_unseen_since(day.timestamp())
     finally:
         store.close()
-    if code is not None and not renewed:
+    if code is not None and not gone:
         raise UserError(f"Nobody in {folder} has the code {code}.")
-    renew_links(folder, renewed)
-    say(f"People who were deleted: {len(renewed)}. Exports and copies made before still hold them.", json)
+    forget(folder, gone)
+    say(f"People who were deleted: {len(gone)}. Exports and copies made before still hold them.", json)
     if json:
-        print(json_format.dumps({"deleted": len(renewed)}))
+        print(json_format.dumps({"deleted": len(gone)}))
     return 0
+
+
+def replay_study(folder: Positional[ServedFolder], database: Database = None, json: Json = False) -> int:
+    """Measure all drives of a served study again, from the steps that were kept of them.
+
+    Exit code 1 where one comes out differently. For example: latentarm study replay studies/eating-people
+    """
+    from latentarm_research.user_studies.drive_steps import measured_again
+    from latentarm_research.user_studies.recorded import read_definition_of
+    from latentarm_research.user_studies.serving.store import Store, database_of
+    from latentarm_research.user_studies.serving.study_files import steps_path
+
+    check_served_folder(folder, database)
+    tasks = {task.name: task for task in read_definition_of(folder).tasks}
+    store = Store(database_of(folder, database))
+    try:
+        drives = [(key, drive) for key, theirs in store.drives().items() for drive in theirs]
+    finally:
+        store.close()
+    differ = 0
+    for key, drive in drives:
+        again = measured_again(steps_path(folder, key, drive), drive, tasks[drive.task])
+        if again != drive:
+            differ += 1
+            say(f"It differs: person {drive.person}, {drive.condition}, {drive.task} {drive.trial}.", json)
+    say(f"Drives that come out the same: {len(drives) - differ} of {len(drives)}.", json)
+    if json:
+        print(json_format.dumps({"drives": len(drives), "differ": differ}))
+    return 1 if differ else 0
+
+
+def check_served_folder(folder: Path, database: str | None) -> None:
+    """Raise a `UserError` where no study was served from this folder."""
+    from latentarm_research.user_studies.recorded import DATABASE
+
+    if database is None and not (folder / DATABASE).exists():
+        raise UserError(f"{folder} holds no study that was served.")
 
 
 def export_study(

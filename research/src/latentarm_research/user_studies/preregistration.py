@@ -3,6 +3,7 @@
 import hashlib
 import json
 from collections.abc import Iterator, Mapping
+from inspect import getsource
 from pathlib import Path
 from typing import Any, Final
 
@@ -23,7 +24,7 @@ _SHOWN: Final = 80  # letters of a value that a difference shows
 
 def preregistration(definition: Definition, power: Mapping[str, Any] | None) -> dict[str, Any]:
     """The document: definition with hypotheses and exclusions, analysis, and power where it was computed."""
-    code = hashlib.sha256(b"".join(Path(one.__file__ or "").read_bytes() for one in _CODE)).hexdigest()
+    code = hashlib.sha256("".join(map(getsource, _CODE)).encode()).hexdigest()
     plan: dict[str, Any] = {
         "definition": definition.as_json(),
         "analysis": {"words": DESIGN_WORDS[definition.design].tests, "code": code},

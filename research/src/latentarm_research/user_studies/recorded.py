@@ -139,6 +139,11 @@ def _served(definition: Definition, folder: Path, database: str | None, sizes: S
     return Recorded(definition, "real", tuple(trials), traces, (), sizes, answers)
 
 
+def read_definition_of(folder: Path) -> Definition:
+    """The definition of the study in a folder."""
+    return _definition(folder, read_object(folder / CONFIG))
+
+
 def _definition(folder: Path, config: Mapping[str, Any]) -> Definition:
     study = str(config.get("study", ""))
     name = study.removeprefix(PREFIX)

@@ -7,6 +7,7 @@ import time
 from collections.abc import AsyncGenerator, Awaitable, Callable
 from contextlib import asynccontextmanager
 from datetime import UTC, datetime
+from pathlib import Path
 from typing import Annotated, Final, final
 
 from pydantic import Field
@@ -22,13 +23,14 @@ from latentarm.web.protocol.notice import Message, Notice
 from latentarm.web.server.answers import NO_STORE, body_of, json_answer
 from latentarm.web.server.assets import Assets
 from latentarm_research.user_studies.answers.items import items_of
-from latentarm_research.user_studies.serving.links import renew_links
+from latentarm_research.user_studies.drive_record import DriveRecord
 from latentarm_research.user_studies.serving.models import Models
 from latentarm_research.user_studies.serving.options import Serving
 from latentarm_research.user_studies.serving.participant_pages import HOME, ParticipantPages, answer_file
 from latentarm_research.user_studies.serving.request_limit import RequestLimit
 from latentarm_research.user_studies.serving.running import DRIVES, RunningDrive, recovered, refuse_socket
 from latentarm_research.user_studies.serving.store import Standing, Store
+from latentarm_research.user_studies.serving.study_files import STEPS, forget, keep_steps
 from latentarm_research.user_studies.serving.way import Next, ToAnswer, ToDrive, Way
 
 COOKIE: Final = "latentarm_study"
@@ -108,9 +110,13 @@ class StudyServer:
     @asynccontextmanager
     async def _life(self, _: Starlette) -> AsyncGenerator[None]:
         # Drives that had ended when the server was killed are kept; those under way are driven again.
-        for key, record in recovered(self._serving.out):
-            self._store.keep_drive(key, record)
-        shutil.rmtree(self._serving.out / DRIVES, ignore_errors=True)
+        out = self._serving.out
+        for key, record, steps in recovered(out):
+            self._keep(key, record, steps)
+        shutil.rmtree(out / DRIVES, ignore_errors=True)
+        for folder in (out / STEPS).glob("*"):
+            if self._store.standing(folder.name) is None:
+                shutil.rmtree(folder, ignore_errors=True)
         try:
             yield
         finally:
@@ -212,8 +218,13 @@ class StudyServer:
             if self._drives.get(key) is not drive:
                 return
             if record is not None and drive.due.kind == "trial":
-                await asyncio.to_thread(self._store.keep_drive, key, record)
+                await asyncio.to_thread(self._keep, key, record, drive.steps)
             await self._end_drive(key)
+
+    def _keep(self, key: str, record: DriveRecord, steps: Path) -> None:
+        """Keep a drive and the file of its steps."""
+        if self._store.keep_drive(key, record):
+            keep_steps(self._serving.out, key, record, steps)
 
     async def _end_drive(self, key: str) -> None:
         """Close a person's drive, if one is under way."""
@@ -251,8 +262,8 @@ class StudyServer:
         """Delete everything about them."""
         async with self._changing:
             await self._end_drive(key)
-            renewed = await asyncio.to_thread(self._store.withdraw, key)
-            await asyncio.to_thread(renew_links, self._serving.out, renewed)
+            gone = await asyncio.to_thread(self._store.withdraw, key)
+            await asyncio.to_thread(forget, self._serving.out, gone)
         answer = _onward(f"{HOME}?left")
         answer.delete_cookie(COOKIE)
         return answer

@@ -5,8 +5,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final, final
 
-import numpy as np
-
 from latentarm.arms.contract import SceneArm
 from latentarm.assistance.assistance import AssistanceRule
 from latentarm.assistance.belief import Rule
@@ -17,15 +15,16 @@ from latentarm.core.types import StepRecord
 from latentarm.models.saving import read_model
 from latentarm.tasks.scene_task import Beginning, SceneTask
 from latentarm.web.arm_process.fixed_drive import FixedDrive
-from latentarm_research.drives.following import Following
 from latentarm_research.user_studies.conditions import assistance_of, belief_of, controller_of
 from latentarm_research.user_studies.definition import Definition
 from latentarm_research.user_studies.drive_record import record_of
+from latentarm_research.user_studies.drive_steps import Measuring, StepLog, begin
 from latentarm_research.user_studies.scenes import scene_of
 from latentarm_research.user_studies.serving.way import ToDrive
 from latentarm_research.user_studies.training import Trained
 
 RECORD: Final = "drive.json"  # appears whole in the folder of a drive once it has ended
+STEPS: Final = "drive.safetensors"  # there before it
 
 
 def check_served(definition: Definition) -> None:
@@ -58,12 +57,8 @@ class PageDrive(FixedDrive):
         return scene_of(self.due.task.scene)
 
     def begin(self) -> Beginning:
-        """The same scene and start for a person, a trial and an attempt in every condition.
-
-        A simulated person who comes no nearer is stuck; a real one may think.
-        """
-        begun = self.task.begin(self.due.choice, np.random.default_rng(self.due.seed))
-        return replace(begun, patient=True)
+        """The same scene and start for a person, a trial and an attempt in every condition."""
+        return begin(self.task, self.due.choice, self.due.seed)
 
     @property
     def latent(self) -> bool:
@@ -98,34 +93,26 @@ class _Watch:
     """Follows a drive from when the arm is first enabled until it has ended or its time is over."""
 
     def __init__(self, drive: PageDrive, arm: SceneArm) -> None:
+        due = drive.due
         self._drive = drive
         self._arm = arm
-        self._chain = drive.task.robot.chain
-        self._limit_s = min(drive.due.limit_s, drive.task.time_limit_s)
-        self._follow = Following(drive.begin())
-        self._stops = 0
-        self._enabled = False
+        limit_s = min(due.limit_s, drive.task.time_limit_s)
+        self._measuring = Measuring(drive.task, due.choice, due.seed, limit_s)
+        self._log = StepLog()
         self._over = False
 
     def __call__(self, record: StepRecord) -> None:
-        enabled = record.command.stop is None
-        records = self._follow.records
-        if self._over or not (records or enabled):
+        if self._over or not (self._log.rows or record.command.stop is None):
             return
-        self._stops += self._enabled and not enabled
-        self._enabled = enabled
-        self._follow.sees(replace(self._arm.scene_state(), time_s=record.time_s))
-        if self._follow.ending is None:
-            records.append(record)
-        if records and (
-            self._follow.ending is not None or record.time_s - records[0].time_s >= self._limit_s
-        ):
-            self._over = True
+        state = replace(self._arm.scene_state(), time_s=record.time_s)
+        self._log.add(state, record)
+        self._over = self._measuring.sees(state, record)
+        if self._over:
             self._write()
 
     def _write(self) -> None:
-        due, person = self._drive.due, self._drive.person
-        driven = self._follow.trace(due.choice, self._chain, self._stops)
+        due, person, folder = self._drive.due, self._drive.person, self._drive.folder
         where = (due.condition.name, due.order, due.task, due.trial, due.attempt)
-        found = record_of("real", person, *where, driven)
-        write_text(self._drive.folder / RECORD, found.model_dump_json())
+        found = record_of("real", person, *where, self._measuring.driven())
+        self._log.write(folder / STEPS, due.seed)
+        write_text(folder / RECORD, found.model_dump_json())

@@ -20,7 +20,7 @@ from latentarm.web.protocol.server_messages import Refused
 from latentarm.web.server.app import build_app
 from latentarm.web.server.config import TeleopConfig
 from latentarm_research.user_studies.drive_record import DriveRecord
-from latentarm_research.user_studies.serving.page_drive import RECORD, PageDrive
+from latentarm_research.user_studies.serving.page_drive import RECORD, STEPS, PageDrive
 from latentarm_research.user_studies.serving.way import ToDrive
 
 DRIVES: Final = "drives"  # of the drives under way; in it a folder for each person, and there one by kind
@@ -88,6 +88,11 @@ class RunningDrive:
             await asyncio.sleep(_LOOK_S)
         return None
 
+    @property
+    def steps(self) -> Path:
+        """The file of its steps, once it has ended."""
+        return self._folder / STEPS
+
     def stop(self, why: Notice) -> None:
         """Stop the arm."""
         self._control.stop(why)
@@ -143,10 +148,13 @@ async def say_over(send: Send) -> None:
         return  # the page has gone
 
 
-def recovered(out: Path) -> list[tuple[str, DriveRecord]]:
-    """The records of trials that a killed server has left in the study's folder, with the keys of people."""
-    found = [(folder.name, kept_record(folder / "trial")) for folder in (out / DRIVES).glob("*")]
-    return [(key, record) for key, record in found if record is not None]
+def recovered(out: Path) -> list[tuple[str, DriveRecord, Path]]:
+    """Trials that a killed server has left in the study's folder: person's key, record, file of the steps."""
+    found = [
+        (folder.name, kept_record(folder / "trial"), folder / "trial" / STEPS)
+        for folder in (out / DRIVES).glob("*")
+    ]
+    return [(key, record, steps) for key, record, steps in found if record is not None]
 
 
 def kept_record(folder: Path) -> DriveRecord | None:

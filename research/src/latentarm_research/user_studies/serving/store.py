@@ -10,7 +10,19 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final, final
 
-from sqlalchemy import URL, Connection, Engine, create_engine, delete, event, func, make_url, or_, select
+from sqlalchemy import (
+    URL,
+    Connection,
+    Engine,
+    create_engine,
+    delete,
+    event,
+    func,
+    make_url,
+    or_,
+    select,
+    update,
+)
 from sqlalchemy.exc import ArgumentError, DatabaseError
 from sqlalchemy.orm import Session
 from sqlalchemy.sql import ColumnElement
@@ -41,6 +53,16 @@ class Standing:
     drives: tuple[DriveRecord, ...]  # in their order
     answered: frozenset[int]  # places in the order of the conditions after which they have answered
     completion: str | None  # their code, once everything is saved
+
+
+@final
+@dataclass(frozen=True)
+class Deleted:
+    """A person who was deleted."""
+
+    key: str
+    link: str  # code of their link, or their id at a recruiting site
+    next_code: str  # of the link in place of theirs, where it was one of ours
 
 
 @final
@@ -150,16 +172,18 @@ class Store:
             if (person := session.get(Person, key)) is not None:
                 person.practised = max(person.practised, conditions)
 
-    def keep_drive(self, key: str, record: DriveRecord) -> None:
-        """Keep a drive, unless it is there already, or the person has withdrawn."""
+    def keep_drive(self, key: str, record: DriveRecord) -> bool:
+        """Keep a drive, unless it is there already. False if the person has withdrawn."""
         where = (key, record.order, record.task, record.trial, record.choice, record.attempt)
         with self._change() as session:
-            if session.get(Person, key) is None or session.get(Drive, where) is not None:
-                return
-            number = session.scalar(select(func.coalesce(func.max(Drive.number), 0))) or 0
-            names = ("person", "order", "task", "trial", "choice", "attempt")
-            given: dict[str, Any] = dict(zip(names, where, strict=True))
-            session.add(Drive(**given, number=number + 1, record=record.model_dump_json()))
+            if session.get(Person, key) is None:
+                return False
+            if session.get(Drive, where) is None:
+                number = session.scalar(select(func.coalesce(func.max(Drive.number), 0))) or 0
+                names = ("person", "order", "task", "trial", "choice", "attempt")
+                given: dict[str, Any] = dict(zip(names, where, strict=True))
+                session.add(Drive(**given, number=number + 1, record=record.model_dump_json()))
+            return True
 
     def keep_answers(self, key: str, order: int, condition: str, points: Mapping[str, int]) -> None:
         """Keep the answers after a condition; the first ones count."""
@@ -176,33 +200,31 @@ class Store:
             person.completion = code = person.completion or code
             return code
 
-    def withdraw(self, key: str) -> dict[str, str]:
+    def withdraw(self, key: str) -> list[Deleted]:
         """Delete a person with everything about them; their place is free again. See `_delete`."""
         return self._delete(Person.key == key)
 
-    def withdraw_by_code(self, code: str) -> dict[str, str]:
+    def withdraw_by_code(self, code: str) -> list[Deleted]:
         """Delete the person with this code in their link or at the end, or id at a recruiting site."""
         return self._delete(or_(Person.link == code, Person.completion == code))
 
-    def withdraw_unseen_since(self, when_s: float) -> dict[str, str]:
+    def withdraw_unseen_since(self, when_s: float) -> list[Deleted]:
         """Delete everybody who was last there before a time, s since 1970."""
         return self._delete(Person.seen_s < when_s)
 
-    def _delete(self, who: ColumnElement[bool]) -> dict[str, str]:
-        """Delete people, so that no byte of theirs stays in the file.
-
-        Returns a new code for each of them by the old one, which no link has any more.
-        """
+    def _delete(self, who: ColumnElement[bool]) -> list[Deleted]:
+        """Delete people, so that no byte of theirs stays in the file; their links open nothing any more."""
         with self._change() as session:
-            renewed = {link: _random() for link in session.scalars(select(Person.link).where(who))}
-            for place in session.scalars(select(Place).where(Place.code.in_(renewed))):
-                place.code = renewed[place.code]
+            people = session.execute(select(Person.key, Person.link).where(who)).all()
+            gone = [Deleted(key, link, _random()) for key, link in people]
+            for one in gone:
+                session.execute(update(Place).where(Place.code == one.link).values(code=one.next_code))
             session.execute(delete(Person).where(who))
-        if renewed and self._engine.dialect.name == "sqlite":
+        if gone and self._engine.dialect.name == "sqlite":
             # What was deleted may still stand in unused parts of pages; in the new file it does not.
             with closing(self._engine.raw_connection()) as connection:
                 connection.cursor().execute("VACUUM")
-        return renewed
+        return gone
 
     def standing(self, key: str) -> Standing | None:
         """How far a person has come; None for nobody who is known."""
@@ -234,6 +256,11 @@ class Store:
                 ]
                 for table, whose in of.items()
             }
+
+    def drives(self) -> dict[str, tuple[DriveRecord, ...]]:
+        """All drives in their order, by the person's key."""
+        with self._change() as session:
+            return {key: _drives(session, key) for key in session.scalars(select(Person.key))}
 
     def finished(self) -> list[Finished]:
         """Everybody who has finished, by number."""

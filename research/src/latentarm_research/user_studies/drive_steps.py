@@ -1,0 +1,191 @@
+"""All steps of a drive, in a file: measured again, they give the same record.
+
+A file holds a row of figures for each step, one after the other in one array, and in its metadata what they
+are: names, and what changes seldom, such as contacts and the mode, at each step at which it has changed.
+"""
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any, Final, final
+
+import numpy as np
+from safetensors import SafetensorError, safe_open
+from safetensors.numpy import save
+
+from latentarm.core.errors import UserError
+from latentarm.core.files import written_whole
+from latentarm.core.types import Command, FloatArray, Pose, StepRecord, Stop
+from latentarm.core.untrusted.documents import parse_object
+from latentarm.core.untrusted.opening import check_file
+from latentarm.robots.scene.scene import SceneState
+from latentarm.tasks.scene_task import Beginning, SceneTask
+from latentarm_research.drives.following import Following
+from latentarm_research.drives.trace import Trace
+from latentarm_research.user_studies.definition import StudyTask
+from latentarm_research.user_studies.drive_record import DriveRecord, record_of
+from latentarm_research.user_studies.scenes import scene_of
+
+MOST_BYTES: Final = 1 << 29  # of a file
+_VALUES: Final = "values"
+_ARRAYS: Final = ("state", "input", "latent", "action_human", "action_assist", "belief")  # of a `StepRecord`
+
+
+@final
+@dataclass
+class StepLog:
+    """The steps so far."""
+
+    rows: list[FloatArray] = field(default_factory=list)
+    labels: list[tuple[int, dict[str, Any]]] = field(default_factory=list)  # from which step on they hold
+
+    def add(self, state: SceneState, record: StepRecord) -> None:
+        """Add a step: how things stood, and what was decided."""
+        labels = _labels(state, record)
+        if not self.labels or self.labels[-1][1] != labels:
+            self.labels.append((len(self.rows), labels))
+        self.rows.append(np.concatenate([np.ravel(part) for part in _parts(state, record)]))
+
+    def write(self, path: Path, seed: int) -> None:
+        """Write the file; ``seed`` is that of the scene and the start."""
+        about = {"seed": seed, "steps": len(self.rows), "labels": self.labels}
+        content = save({_VALUES: np.concatenate(self.rows)}, {"about": json.dumps(about)})
+        with written_whole(path) as part:
+            part.write_bytes(content)
+
+
+@final
+class Measuring:
+    """Measures a drive as its steps come, or again from their file."""
+
+    def __init__(self, scene: SceneTask, choice: int, seed: int, limit_s: float) -> None:
+        begun = begin(scene, choice, seed)
+        self._chain = scene.robot.chain
+        self._choice = choice
+        self._limit_s = limit_s
+        self._follow = Following(begun)
+        self._stops = 0
+        self._enabled = False
+
+    def sees(self, state: SceneState, record: StepRecord) -> bool:
+        """Take a step. True if the drive has ended with it."""
+        enabled = record.command.stop is None
+        self._stops += self._enabled and not enabled
+        self._enabled = enabled
+        records = self._follow.records
+        self._follow.sees(state)
+        if self._follow.ending is None:
+            records.append(record)
+        over = self._follow.ending is not None or record.time_s - records[0].time_s >= self._limit_s
+        return bool(records) and over
+
+    def driven(self) -> Trace:
+        """The drive so far."""
+        return self._follow.trace(self._choice, self._chain, self._stops)
+
+
+def begin(scene: SceneTask, choice: int, seed: int) -> Beginning:
+    """The start of a drive. A simulated person who comes no nearer is stuck; a real one may think."""
+    return replace(scene.begin(choice, np.random.default_rng(seed)), patient=True)
+
+
+def measured_again(path: Path, kept: DriveRecord, task: StudyTask) -> DriveRecord:
+    """The record of a drive from the file of its steps. Raises a `UserError` where this is none."""
+    seed, steps = read_steps(path)
+    measuring = Measuring(scene_of(task.scene), kept.choice, seed, float("inf"))
+    for state, record in steps:
+        measuring.sees(state, record)
+    where = (kept.condition, kept.order, task, kept.trial, kept.attempt)
+    return record_of(kept.people_are, kept.person, *where, measuring.driven())
+
+
+def read_steps(path: Path) -> tuple[int, Iterator[tuple[SceneState, StepRecord]]]:
+    """The seed of a drive's start, and its steps."""
+    check_file(path, MOST_BYTES)
+    try:
+        with safe_open(path, framework="numpy") as file:
+            values: FloatArray = file.get_tensor(_VALUES)
+            about = parse_object((file.metadata() or {}).get("about", ""), str(path))
+        return int(about["seed"]), _steps(values, about["labels"], int(about["steps"]))
+    except (SafetensorError, ValueError, KeyError, TypeError) as error:
+        raise UserError(f"{path} does not hold the steps of a drive.") from error
+
+
+def _labels(state: SceneState, record: StepRecord) -> dict[str, Any]:
+    stop = record.command.stop
+    return {
+        "things": sorted(state.poses),
+        "grains": {name: len(middles) for name, middles in sorted(state.grains.items())},
+        "stabbed": sorted(state.stabbed),
+        "gripped": sorted(state.gripped),
+        "bonds": sorted(map(list, state.bonds)),
+        "touching": sorted(map(list, state.force_n)),
+        "mode": int(record.mode),
+        "stop": None if stop is None else stop.reason,
+        "limited_by": list(record.command.limited_by),
+        "sizes": [len(getattr(record, name)) for name in _ARRAYS],
+    }
+
+
+def _parts(state: SceneState, record: StepRecord) -> Iterator[Any]:
+    """The figures of a step, in the order in which `_step` takes them."""
+    yield state.time_s
+    for pose in (state.tool, *(state.poses[name] for name in sorted(state.poses))):
+        yield pose.position
+        yield pose.rotation
+    yield [state.speed_m_s[name] for name in sorted(state.poses)]
+    yield from (state.grains[name] for name in sorted(state.grains))
+    yield [state.force_n[one, other] for one, other in sorted(state.force_n)]
+    yield record.time_s, record.alpha, record.added
+    yield record.command.velocity
+    yield from (getattr(record, name) for name in _ARRAYS)
+
+
+def _steps(
+    values: FloatArray, labels: Sequence[tuple[int, Mapping[str, Any]]], count: int
+) -> Iterator[tuple[SceneState, StepRecord]]:
+    at, changes = 0, iter(labels)
+    following = next(changes, None)
+    now: Mapping[str, Any] = {}
+    for index in range(count):
+        if following is not None and following[0] == index:
+            now, following = following[1], next(changes, None)
+        step, used = _step(values[at:], now)
+        at += used
+        yield step
+
+
+def _step(values: FloatArray, labels: Mapping[str, Any]) -> tuple[tuple[SceneState, StepRecord], int]:
+    at = 0
+
+    def take(*shape: int) -> FloatArray:
+        nonlocal at
+        at += (size := int(np.prod(shape)))
+        return values[at - size : at].reshape(shape)
+
+    things = labels["things"]
+    time_s = float(take(1)[0])
+    tool, *poses = (Pose(take(3), take(3, 3)) for _ in range(1 + len(things)))
+    state = SceneState(
+        time_s=time_s,
+        tool=tool,
+        poses=dict(zip(things, poses, strict=True)),
+        speed_m_s=dict(zip(things, take(len(things)).tolist(), strict=True)),
+        stabbed=frozenset(labels["stabbed"]),
+        gripped=frozenset(labels["gripped"]),
+        bonds=frozenset((one, other) for one, other in labels["bonds"]),
+        grains={name: take(size, 3) for name, size in labels["grains"].items()},
+        force_n={
+            (one, other): float(force_n)
+            for (one, other), force_n in zip(labels["touching"], take(len(labels["touching"])), strict=True)
+        },
+    )
+    step_s, alpha, added = take(3).tolist()
+    stop = None if labels["stop"] is None else Stop(labels["stop"])
+    command = Command(take(labels["sizes"][0]), 0.0, stop, tuple(labels["limited_by"]))
+    arrays = {name: take(size) for name, size in zip(_ARRAYS, labels["sizes"], strict=True)}
+    record = StepRecord(
+        time_s=step_s, alpha=alpha, added=added, mode=labels["mode"], command=command, **arrays
+    )
+    return (state, record), at
