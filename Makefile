@@ -35,7 +35,7 @@ $(VENV)/installed: pyproject.toml hatch_build.py package-lock.json research/pypr
 	@touch $@
 
 $(VENV)/installed-dev: $(VENV)/installed
-	$(INSTALL) --editable '.[dev]' --editable 'research[cluster]'
+	$(INSTALL) --editable '.[dev]' --editable 'research[cluster,postgresql]'
 	@touch $@
 
 # Node comes with the dev extra, TypeScript from npm: both check the page's JavaScript, and neither reaches the browser.

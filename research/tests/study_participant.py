@@ -17,6 +17,7 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 
 from latentarm_research.user_studies.catalogue import load_definition
+from study_line import Line
 
 SCALE = {
     "name": "ease",
@@ -80,7 +81,8 @@ def serving(study: str, *options: str) -> Generator[tuple[str, "subprocess.Popen
 class Participant:
     """A browser without a screen: pages by HTTP, drives by the socket."""
 
-    def __init__(self, address: str) -> None:
+    def __init__(self, address: str, delay_s: float = 0.0) -> None:
+        self.delay_s = delay_s  # of the way to the server, and of that back, s
         self.origin = re.match(r"http://[^/]+", address)[0]  # type: ignore[index]
         self.client = httpx.Client(base_url=self.origin, headers={"origin": self.origin}, timeout=90.0)
 
@@ -145,18 +147,20 @@ class Participant:
                 listener.join()
 
     @contextmanager
-    def driving(self) -> Generator[None]:
+    def driving(self, **options: Any) -> Generator[None]:
         """Begin the next drive, and enable the arm; then push until the study says that it is over."""
-        assert self.post("begin").json()["to"] == "/"
+        while (answer := self.post("begin")).status_code == 503:
+            time.sleep(1.0)
+        assert answer.json()["to"] == "/"
         assert 'id="stick"' in self.client.get("/").text
-        with self.connected() as socket:
+        with self.connected(**options) as socket:
             self.push(socket, lambda: self.state.get("phase") in ("ready", "moving"), [0.0, 0.0])
             yield
             self.push(socket, lambda: bool(self.told), [0.0, 1.0])
 
     def drive(self) -> None:
-        """Drive until the study says that the drive is over."""
-        with self.driving():
+        """Drive until the study says that the drive is over, over a line with this person's delay."""
+        with Line(self.origin, self.delay_s) as line, self.driving(sock=line.end):
             pass
         assert self.told == ["drive_over"]
 
@@ -186,9 +190,9 @@ class Participant:
 
 
 @contextmanager
-def participant(address: str, link: str = "") -> Generator[Participant]:
-    """Somebody with this link, at the server with this address."""
-    person = Participant(address)
+def participant(address: str, link: str = "", delay_s: float = 0.0) -> Generator[Participant]:
+    """Somebody with this link, at the server with this address; each way to it takes so long, s."""
+    person = Participant(address, delay_s)
     with person.client:
         if link:
             person.client.get(link, follow_redirects=True)

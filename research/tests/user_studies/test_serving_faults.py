@@ -2,13 +2,11 @@
 
 import json
 import os
-import socket
 import threading
 import time
 from collections.abc import Generator, Iterator
 from contextlib import ExitStack, contextmanager, nullcontext, suppress
 from pathlib import Path
-from select import select as select_ready
 from typing import Any, final
 
 import httpx
@@ -19,6 +17,7 @@ from sqlalchemy import create_engine, select
 from latentarm_research.user_studies.serving.store import database_of
 from latentarm_research.user_studies.serving.tables import Drive, Place
 from postgres import postgres
+from study_line import Line
 from study_participant import MODES, TWIST, Participant, definition, next_link, participant, serving
 
 FAULTS = int(os.environ.get("LATENTARM_STUDY_FAULTS", "2"))
@@ -101,32 +100,6 @@ def test_nothing_is_lost_or_doubled_when_the_server_is_killed(tmp_path: Path, da
             person.take_part()
 
 
-@contextmanager
-def line_to(address: str) -> Generator[tuple[socket.socket, threading.Event]]:
-    """A connection to a server that carries nothing any more, and does not say so, once the event is set."""
-    host, port = address.removeprefix("http://").split(":")
-    ours, theirs = socket.socketpair()
-    server, cut, closed = socket.create_connection((host, int(port))), threading.Event(), threading.Event()
-
-    def carry() -> None:
-        while not closed.is_set() and not cut.is_set():
-            for source in select_ready([theirs, server], [], [], 0.05)[0]:
-                content = source.recv(65536)
-                if not content:
-                    return
-                (server if source is theirs else theirs).sendall(content)
-
-    carrier = threading.Thread(target=carry, daemon=True)
-    carrier.start()
-    try:
-        yield ours, cut
-    finally:
-        closed.set()
-        carrier.join()
-        for end in (ours, theirs, server):
-            end.close()
-
-
 @pytest.mark.parametrize("fault", ["tab closed", "network cut"])
 def test_nothing_is_lost_or_doubled_when_a_page_goes(
     tmp_path: Path, database: str | None, fault: str
@@ -139,13 +112,12 @@ def test_nothing_is_lost_or_doubled_when_a_page_goes(
                     before, way = study.kept(), {}
                     assert person.post("begin").json()["to"] == "/"
                     end_s = time.monotonic() + rng.uniform(0.0, 3.0)
-                    cut = threading.Event()
+                    line = until_back.enter_context(Line(person.origin))
                     if fault == "network cut":
-                        ours, cut = until_back.enter_context(line_to(person.origin))
-                        way = {"sock": ours, "close_timeout": 0.1}
+                        way = {"sock": line.end, "close_timeout": 0.1}
                     with person.connected(**way) as page:
                         person.push(page, lambda end_s=end_s: time.monotonic() > end_s, [0.0, 1.0])
-                        cut.set()
+                        line.cut.set()
                 with participant(link, next_link(study.out, study.person)) as person:
                     while person.part == "trial":
                         person.drive()

@@ -40,12 +40,16 @@ _READING: Final = ("GET", "HEAD")
 
 
 @final
-class _Consented(Message):
+class Consented(Message):
+    """Somebody consents."""
+
     digest: str  # of the text that the page has shown
 
 
 @final
-class _Answered(Message):
+class Answered(Message):
+    """Somebody has answered the questions after a condition."""
+
     order: Annotated[int, Field(ge=0)]
     points: dict[str, int]  # by item; one that is absent was left out
 
@@ -186,7 +190,7 @@ class StudyServer:
 
     async def consent(self, request: Request, key: str) -> Response:
         """Note that they consent."""
-        given = await body_of(request, _Consented)
+        given = await body_of(request, Consented)
         if given.digest == self._serving.digest:
             when = datetime.now(UTC).isoformat(timespec="seconds")
             await asyncio.to_thread(self._store.consent, key, given.digest, when)
@@ -242,7 +246,7 @@ class StudyServer:
 
     async def answers(self, request: Request, key: str) -> Response:
         """Keep answers."""
-        given = await body_of(request, _Answered)
+        given = await body_of(request, Answered)
         due, _ = self._due(key)
         if not isinstance(due, ToAnswer) or given.order != due.order:
             return _refused("These questions are not asked now: your answers may be saved already.", 409)

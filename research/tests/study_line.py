@@ -1,0 +1,58 @@
+"""A line between a participant and a study's server that delays what it carries, and can be cut."""
+
+import select
+import socket
+import threading
+import time
+from collections import deque
+from typing import Self, final
+
+
+@final
+class Line:
+    """Carries bytes both ways; once it is cut it carries nothing more, and neither end hears of it.
+
+    Args:
+        origin: of the server, ``http://HOST:PORT``.
+        delay_s: how long each way takes, s.
+    """
+
+    def __init__(self, origin: str, delay_s: float = 0.0) -> None:
+        host, port = origin.removeprefix("http://").split(":")
+        self.end, self._theirs = socket.socketpair()
+        self._server = socket.create_connection((host, int(port)))
+        self._server.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        self._delay_s = delay_s
+        self._closed = threading.Event()
+        self.cut = threading.Event()
+        self._carrier = threading.Thread(target=self._carry, daemon=True)
+
+    def __enter__(self) -> Self:
+        self._carrier.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._closed.set()
+        self._carrier.join()
+        for one in (self.end, self._theirs, self._server):
+            one.close()
+
+    def _carry(self) -> None:
+        under_way: deque[tuple[float, socket.socket, bytes]] = deque()
+        ends = [self._theirs, self._server]
+        while not self._closed.is_set() and not self.cut.is_set():
+            waits_s = 0.05 if not under_way else min(max(under_way[0][0] - time.monotonic(), 0.0), 0.05)
+            for source in select.select(ends, [], [], waits_s)[0]:
+                content = source.recv(1 << 16)
+                target = self._server if source is self._theirs else self._theirs
+                under_way.append((time.monotonic() + self._delay_s, target, content))
+                if not content:
+                    ends.remove(source)
+            while under_way and under_way[0][0] <= time.monotonic():
+                _, target, content = under_way.popleft()
+                try:
+                    if not content:
+                        target.shutdown(socket.SHUT_WR)
+                    target.sendall(content)
+                except OSError:
+                    return

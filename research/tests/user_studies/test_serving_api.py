@@ -1,0 +1,185 @@
+"""The study's requests as OpenAPI describes them: whatever is sent, nothing breaks and nothing leaks."""
+
+import json
+import os
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, ClassVar, final
+
+import pytest
+import schemathesis
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from hypothesis.errors import Unsatisfiable
+from schemathesis import GenerationMode
+from starlette.testclient import TestClient
+
+from latentarm.web.arm_process.drive_setup import Spec
+from latentarm.web.server.config import TeleopConfig
+from latentarm.web.server.security import Gate
+from latentarm_research.user_studies.drive_record import DriveRecord
+from latentarm_research.user_studies.own.definition_file import read_definition
+from latentarm_research.user_studies.serving import request_limit
+from latentarm_research.user_studies.serving.app import COOKIE, Answered, Consented, StudyServer
+from latentarm_research.user_studies.serving.models import Models
+from latentarm_research.user_studies.serving.options import Serving
+from latentarm_research.user_studies.serving.store import Store
+from latentarm_research.user_studies.serving.way import ToAnswer, ToDrive, Way
+from latentarm_research.user_studies.sizes import PRESETS
+from latentarm_research.user_studies.trace import Trace
+from study_participant import MODES, TWIST, definition
+
+CASES = int(os.environ.get("LATENTARM_STUDY_CASES", "20"))
+"""For each request."""
+
+ORIGIN = "http://study.example"
+PROLIFIC = "5" * 24
+
+HTML = {"description": "a page", "content": {"text/html": {}}}
+SENTENCE = {
+    "description": "why it is refused",
+    "content": {"application/json": {"schema": {"type": "object", "required": ["problem"]}}},
+}
+ONWARD = {
+    "description": "the page that follows",
+    "content": {"application/json": {"schema": {"type": "object", "required": ["to"]}}},
+}
+
+
+def described() -> dict[str, Any]:
+    """The study's requests; their bodies are those of the server's own models."""
+    links = [
+        {"name": name, "in": "query", "schema": {"type": "string"}}
+        for name in ("code", "PROLIFIC_PID", "STUDY_ID", "SESSION_ID", "left")
+    ]
+    refused = {str(status): SENTENCE for status in (400, 403, 409, 413)}
+    posts = {"begin": None, "ready": None, "withdraw": None, "consent": Consented, "answers": Answered}
+    pages = {"200": HTML, "303": {"description": "onward"}, "404": HTML}
+    paths: dict[str, Any] = {
+        "/study": {"get": {"parameters": links, "responses": pages}},
+        "/study/data": {"get": {"responses": {"200": {"description": "their data"}, **refused}}},
+        "/static/{version}/{name}": {
+            "get": {
+                "parameters": [
+                    {"name": name, "in": "path", "required": True, "schema": {"type": "string"}}
+                    for name in ("version", "name")
+                ],
+                "responses": {"200": {"description": "a file"}, "404": HTML},
+            }
+        },
+    }
+    for name, model in posts.items():
+        body = {} if model is None else model.model_json_schema()
+        content = {"application/json": {"schema": body}}
+        request = {} if model is None else {"requestBody": {"required": True, "content": content}}
+        paths[f"/study/{name}"] = {"post": {**request, "responses": {"200": ONWARD, **refused}}}
+    return {"openapi": "3.1.0", "info": {"title": "A study", "version": "1"}, "paths": paths}
+
+
+@final
+class Study:
+    """A study in this process, with somebody at each part of it but the drives."""
+
+    def __init__(self, folder: Path) -> None:
+        (folder / "two_ways.json").write_text(
+            json.dumps({**definition(MODES, TWIST), "people": 5, "papers_people": ""})
+        )
+        serving = Serving(
+            read_definition(folder / "two_ways.json"), PRESETS["smoke"], 0, TeleopConfig(Spec(out=folder)),
+            "All that you need to know.", 1, PROLIFIC, None, 7200.0, None,
+        )  # fmt: skip
+        self.way = Way(serving.definition, serving.sizes, serving.seed)
+        self.store = Store(folder / "study.sqlite", 7200.0)
+        server = StudyServer(serving, self.store, Models(serving.definition, folder))
+        gate = Gate(server, frozenset({"study.example"}), frozenset({ORIGIN}), stop=server.stop)
+        self.client = TestClient(gate, ORIGIN, headers={"origin": ORIGIN}, follow_redirects=False)
+        self.keys: dict[str, str] = {}
+
+    def key(self, part: str) -> str:
+        """The cookie of somebody at a part of the study; of somebody new where they have left."""
+        if part not in ("consent", "questions", "finished"):
+            return part
+        if self.store.standing(self.keys.get(part, "")) is None:
+            self.keys[part] = self._comes(part)
+        return self.keys[part]
+
+    def _comes(self, part: str) -> str:
+        free = [code for code in self.store.open_places(5) if code not in self._used]
+        self._used.add(free[0])
+        key = str(self.store.arrive(free[0], "", time.time()))
+        if part == "consent":
+            return key
+        self.store.consent(key, "0" * 64, "2026-01-01T00:00:00+00:00")
+        self.store.place(key, time.time())
+        self.store.practised(key, 2)
+        while isinstance(due := self._due(key), ToDrive) or part == "finished":
+            if isinstance(due, ToAnswer):
+                self.store.keep_answers(key, due.order, due.condition.name, dict.fromkeys(due.items, 4))
+            elif isinstance(due, ToDrive):
+                self.store.keep_drive(key, driven(due))
+            else:
+                self.store.finish(key, "SECRET")
+                break
+        return key
+
+    _used: ClassVar[set[str]] = set()
+
+    def _due(self, key: str) -> object:
+        standing = self.store.standing(key)
+        assert standing is not None
+        return self.way.after(standing)
+
+
+def driven(due: ToDrive) -> DriveRecord:
+    trace = Trace(0, due.condition.name, due.task.name, due.trial, due.choice, True, (), (), (), ())
+    return DriveRecord(
+        people_are="real", person=0, condition=due.condition.name, order=due.order, task=due.task.name,
+        trial=due.trial, choice=due.choice, attempt=due.attempt, ending="done", measures={"time_s": 1.0},
+        trace=trace,
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Study]:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(request_limit, "BURST", float("inf"))
+        study = Study(tmp_path_factory.mktemp("study"))
+        yield study
+        study.client.close()
+        study.store.close()
+
+
+PARTS = ("", "guess", "' OR 1=1 --", "consent", "questions", "finished")
+OPERATIONS = [one.ok() for one in schemathesis.openapi.from_dict(described()).get_all_operations()]
+
+
+@pytest.mark.parametrize("operation", OPERATIONS, ids=lambda one: one.label)
+@pytest.mark.parametrize("mode", list(GenerationMode), ids=lambda mode: mode.value)
+def test_whatever_is_sent_is_answered_as_described(
+    study: Study, operation: Any, mode: GenerationMode
+) -> None:
+    try:
+        cases = operation.as_strategy(generation_mode=mode)
+        cases.validate()
+    except Unsatisfiable:
+        pytest.skip("nothing can be wrong in a request without parameters")
+
+    @settings(max_examples=CASES, deadline=None, suppress_health_check=list(HealthCheck), database=None)
+    @given(case=cases, part=st.sampled_from(PARTS))
+    def sent(case: Any, part: str) -> None:
+        request = case.as_transport_kwargs(base_url=ORIGIN)
+        request["headers"] = {
+            **request.get("headers", {}),
+            "origin": ORIGIN,
+            "cookie": f"{COOKIE}={study.key(part)}",
+        }
+        answer = study.client.request(
+            **{name: request[name] for name in request if request[name] is not None}
+        )
+        assert answer.status_code < 500
+        assert str(answer.status_code) in {*operation.definition.raw["responses"], "404", "405", "307"}
+        if part not in ("finished",):
+            assert "SECRET" not in answer.text
+
+    sent()

@@ -1,0 +1,42 @@
+"""Many simulated participants go through a study at once, far away; each drive measures the same again."""
+
+import json
+import os
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import pytest
+
+from latentarm.cli import main
+from latentarm_research.user_studies.recorded import read_recorded
+from latentarm_research.user_studies.serving.study_files import STEPS
+from study_participant import next_link, participant, serving
+
+PEOPLE = int(os.environ.get("LATENTARM_STUDY_PEOPLE", "2"))
+"""How many there are."""
+
+EACH_WAY_S = 0.075  # a round trip of 150 ms
+
+
+@pytest.mark.slow
+def test_participants_far_away_take_part_at_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "people"
+    with serving("eating", "--out", str(out), "--at-once", str(PEOPLE)) as (link, _):
+
+        def takes_part(number: int) -> None:
+            with participant(link, next_link(out, number), EACH_WAY_S) as person:
+                person.take_part()
+
+        with ThreadPoolExecutor(PEOPLE) as people:
+            list(people.map(takes_part, range(PEOPLE)))
+    recorded = read_recorded(out)
+    assert sorted(recorded.met) == list(range(PEOPLE))
+    assert len(recorded.trials) == 8 * PEOPLE
+    driven = [one for one in recorded.trials if one.measures["input_magnitude"] > 0.0]
+    print(f"trials {len(recorded.trials)}, with an input that arrived {len(driven)}")
+    assert len(list((out / STEPS).rglob("*.safetensors"))) == 8 * PEOPLE
+    capsys.readouterr()
+    assert main(["study", "replay", str(out), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out) == {"drives": 8 * PEOPLE, "differ": 0}
+    assert main(["study", "analyse", str(out), "--out", str(tmp_path / "report")]) == 0
+    assert f"{PEOPLE} real people (preset smoke)" in (tmp_path / "report" / "report.html").read_text()
