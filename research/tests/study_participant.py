@@ -85,6 +85,7 @@ class Participant:
         self.delay_s = delay_s  # of the way to the server, and of that back, s
         self.origin = re.match(r"http://[^/]+", address)[0]  # type: ignore[index]
         self.client = httpx.Client(base_url=self.origin, headers={"origin": self.origin}, timeout=90.0)
+        self.client.event_hooks = {"request": [lambda _: time.sleep(2.0 * delay_s)]}
 
     @property
     def page(self) -> str:

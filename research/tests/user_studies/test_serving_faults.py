@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from sqlalchemy import create_engine, select
 
+from latentarm_research.user_studies.recorded import DATABASE
 from latentarm_research.user_studies.serving.store import database_of
 from latentarm_research.user_studies.serving.tables import Drive, Place
 from postgres import postgres
@@ -42,7 +43,7 @@ class Served:
         study.write_text(json.dumps({**definition(MODES, TWIST), "people": FAULTS + 1}))
         options = [] if database is None else ["--database", database]
         self.command = (str(study), "--out", str(self.out), *options)
-        self.database = database_of(self.out, database)
+        self.database = database_of(self.out / DATABASE, database)
         self.person = 0
 
     @contextmanager

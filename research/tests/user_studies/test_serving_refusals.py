@@ -9,10 +9,13 @@ from typing import Any
 import httpx
 import pytest
 
+from latentarm_research.user_studies.serving.request_limit import BURST, RATE
 from latentarm_research.user_studies.serving.store import Standing, Store
 from study_participant import MODES, TWIST, Participant, definition, next_link, participant, serving
 
 pytestmark = pytest.mark.slow
+
+FLOOD = 10_000  # requests of the flood
 
 PID = {"PROLIFIC_PID": "a" * 24, "STUDY_ID": "5" * 24, "SESSION_ID": "c" * 24}
 
@@ -26,7 +29,7 @@ def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def address(out: Path) -> Iterator[str]:
     """A study for Prolific too, with a place for everybody who comes in these tests."""
     study = out.parent / "two_ways.json"
-    study.write_text(json.dumps({**definition(MODES, TWIST), "people": 6}))
+    study.write_text(json.dumps({**definition(MODES, TWIST), "people": 12}))
     with serving(str(study), "--out", str(out), "--prolific", PID["STUDY_ID"], "--at-once", "1") as (
         address,
         _,
@@ -37,7 +40,7 @@ def address(out: Path) -> Iterator[str]:
 @pytest.fixture
 def person(address: str, out: Path) -> Iterator[Participant]:
     """Somebody who practises, and leaves in the end."""
-    with participant(address, address) as person:
+    with participant(address, next_link(out, 0)) as person:
         person.consent()
         yield person
         person.post("withdraw")
@@ -164,6 +167,59 @@ def test_a_drive_begins_only_while_an_arm_is_free(address: str, out: Path, perso
 def test_long_bodies_are_refused(address: str, person: Participant) -> None:
     assert is_refused(person.client.post("/study/answers", content=b" " * 70_000), 413)
     assert person.part == "practice"
+
+
+SQL = [
+    "' OR 1=1 --",
+    '"; DROP TABLE people; --',
+    "1); DELETE FROM drives; --",
+    "%' UNION SELECT key FROM people",
+]
+
+
+@pytest.mark.parametrize("sql", SQL)
+def test_sql_in_any_field_is_text(address: str, out: Path, person: Participant, sql: str) -> None:
+    before = known(out, person)
+    with participant(address) as guesser:
+        for name in ("code", *PID):
+            for link in ({name: sql}, {**PID, name: sql}):
+                guesser.client.get("/study", params=link)
+                assert guesser.part == "unknown"
+        for path in (f"/study/{sql}", f"/static/{sql}/{sql}", f"/{sql}"):
+            assert guesser.client.get(path).status_code == 404
+        guesser.client.headers["cookie"] = f"latentarm_study={sql}"
+        assert is_refused(guesser.post("withdraw"), 403)
+    contents: list[tuple[str, dict[str, Any]]] = [
+        ("consent", {"digest": sql}),
+        ("answers", {"order": sql, "points": {}}),
+        ("answers", {"order": 0, "points": {sql: 1}}),
+        ("answers", {"order": 0, "points": {"ease_1": sql}}),
+    ]
+    for to, content in contents:
+        assert person.post(to, **content).status_code in (200, 400, 409)
+    assert known(out, person) == before
+
+
+def test_a_flood_of_requests_is_refused_and_logged(
+    out: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    study = out.parent / "two_ways.json"
+    begun_s = time.monotonic()
+    with serving(str(study), "--out", str(tmp_path / "people")) as (address, _):
+        with participant(address, address) as person:
+            assert person.part == "consent"
+            with participant(address) as stranger:
+                said = [stranger.client.get("/study").status_code for _ in range(FLOOD)]
+            # Who takes part is not kept out by strangers.
+            assert person.part == "consent"
+            own = [person.client.get("/study").status_code for _ in range(FLOOD // 10)]
+        spent_s = time.monotonic() - begun_s
+    assert set(said) == set(own) | {404} == {200, 404, 429}
+    assert said.count(404) <= BURST + RATE * spent_s
+    assert own.count(200) <= BURST + RATE * spent_s
+    assert "Too many requests came at once; refused so far: 1000." in capfd.readouterr().err
+    content = b"".join(path.read_bytes() for path in (tmp_path / "people").rglob("*") if path.is_file())
+    assert b"127.0.0.1" not in content.replace(address.split("/study")[0].encode(), b"")
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,7 @@
 import json as json_format
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from tyro.conf import Positional, arg
 
@@ -12,6 +12,9 @@ from latentarm.core.errors import UserError
 from latentarm.runs.options import Json
 from latentarm_research.commands.study_answers import AnswersFile
 from latentarm_research.commands.study_options import Database
+
+if TYPE_CHECKING:
+    from sqlalchemy import URL
 
 ServedFolder = Annotated[Path, arg(metavar="DIR", help="Folder of a served study.")]
 
@@ -32,17 +35,16 @@ def delete_people(
 
     For example: latentarm study delete studies/eating-people --before 2026-01-31
     """
-    from latentarm_research.user_studies.serving.store import Store, database_of
+    from latentarm_research.user_studies.serving.store import Store
     from latentarm_research.user_studies.serving.study_files import forget
 
     if (code is None) == (before is None):
         raise UserError("Name either --code or --before.")
-    check_served_folder(folder, database)
     try:
         day = None if before is None else datetime.fromisoformat(before).replace(tzinfo=UTC)
     except ValueError as error:
         raise UserError(f"--before must be a day, such as 2026-01-31, not {before!r}.") from error
-    store = Store(database_of(folder, database))
+    store = Store(served_database(folder, database))
     try:
         if day is None:
             gone = store.withdraw_by_code(code or "")
@@ -66,12 +68,11 @@ def replay_study(folder: Positional[ServedFolder], database: Database = None, js
     """
     from latentarm_research.user_studies.drive_steps import measured_again
     from latentarm_research.user_studies.recorded import read_definition_of
-    from latentarm_research.user_studies.serving.store import Store, database_of
+    from latentarm_research.user_studies.serving.store import Store
     from latentarm_research.user_studies.serving.study_files import steps_path
 
-    check_served_folder(folder, database)
     tasks = {task.name: task for task in read_definition_of(folder).tasks}
-    store = Store(database_of(folder, database))
+    store = Store(served_database(folder, database))
     try:
         drives = [(key, drive) for key, theirs in store.drives().items() for drive in theirs]
     finally:
@@ -88,12 +89,14 @@ def replay_study(folder: Positional[ServedFolder], database: Database = None, js
     return 1 if differ else 0
 
 
-def check_served_folder(folder: Path, database: str | None) -> None:
-    """Raise a `UserError` where no study was served from this folder."""
+def served_database(folder: Path, database: str | None) -> "Path | URL":
+    """The database of a served study. Raises a `UserError` where none was served from this folder."""
     from latentarm_research.user_studies.recorded import DATABASE
+    from latentarm_research.user_studies.serving.store import database_of
 
     if database is None and not (folder / DATABASE).exists():
         raise UserError(f"{folder} holds no study that was served.")
+    return database_of(folder / DATABASE, database)
 
 
 def export_study(

@@ -123,7 +123,7 @@ def _served(definition: Definition, folder: Path, database: str | None, sizes: S
     from latentarm_research.user_studies.drive_record import trial_of
     from latentarm_research.user_studies.serving.store import Store, database_of  # SQLAlchemy
 
-    store = Store(database_of(folder, database))
+    store = Store(database_of(folder / DATABASE, database))
     finished = store.finished()
     store.close()
     if not finished:

@@ -11,7 +11,7 @@ from starlette.requests import HTTPConnection
 from latentarm.web.server.rate_limit import Allowance
 
 RATE: Final = 10.0  # requests per second
-BURST: Final = 300.0  # requests that may come at once, such as everything that a Drive page loads
+BURST: Final = 600.0  # requests that may come at once, such as everything that a Drive page loads
 MOST: Final = 1000  # participants and addresses that are remembered
 
 _LOG: Final = logging.getLogger(__name__)

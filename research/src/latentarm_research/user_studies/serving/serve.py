@@ -53,7 +53,7 @@ def serve(serving: Serving, say: Callable[[str], None], ready: Callable[[str], N
             say(f"Models for {task.label} are being trained; this takes minutes, once.")
             models.train(task, serving.sizes, serving.seed)
         listening = at_end.enter_context(listen(config))
-        store = Store(database_of(out, serving.database), serving.away_s)
+        store = Store(database_of(out / DATABASE, serving.database), serving.away_s)
         at_end.callback(store.close)
         write_text(out / f"information-{serving.digest[:12]}.md", serving.information)
         origins = config.origins(int(listening.getsockname()[1]))

@@ -31,7 +31,6 @@ from latentarm.core.errors import UserError
 from latentarm.core.untrusted.opening import check_file, is_missing
 from latentarm_research.user_studies.answers.items import Answer
 from latentarm_research.user_studies.drive_record import DriveRecord
-from latentarm_research.user_studies.recorded import DATABASE
 from latentarm_research.user_studies.serving.tables import Answers, Drive, Person, Place, Table
 
 MOST_BYTES: Final = 1 << 32  # of a database
@@ -74,10 +73,10 @@ class Finished:
     answers: tuple[Answer, ...]
 
 
-def database_of(folder: Path, url: str | None) -> Path | URL:
-    """The database of the study in a folder: a file there, or the one at a URL of PostgreSQL."""
+def database_of(path: Path, url: str | None) -> Path | URL:
+    """The database of a study: its file, or the one at a URL of PostgreSQL."""
     if url is None:
-        return folder / DATABASE
+        return path
     try:
         given = make_url(url)
     except ArgumentError as error:
