@@ -7,6 +7,7 @@ from typing import Any, Final, final
 
 import numpy as np
 
+from latentarm.core.types import FloatArray, IntArray
 from latentarm_research.studies.claims import Claim, Tested, Verdict, corrected, verdict_on
 from latentarm_research.studies.statistics import Statistic, spreads
 from latentarm_research.user_studies.analysis.anova import Effect
@@ -19,6 +20,7 @@ from latentarm_research.user_studies.record import Trial
 
 NOT_MEASURED: Final = "nobody has a figure for it"
 NO_SPREAD: Final = "all people differ alike"
+GTOL: Final = 1e-9  # of a mixed model's fit, so that six digits of it hold
 
 
 def sides_of(definition: Definition, trials: Sequence[Trial]) -> list[Sides]:
@@ -104,8 +106,9 @@ def mixed_model(table: LongTable) -> Mixed | None:
         # A variance at its boundary, which is common with few people, is told by the estimates themselves.
         warnings.simplefilter("ignore")
         try:
-            fitted: Any = MixedLM(table.value / scale, design, groups=table.person).fit(reml=True)
-            se = float(fitted.bse_fe[1])
+            fitted: Any = MixedLM(table.value / scale, design, groups=table.person).fit(reml=True, gtol=GTOL)
+            person_variance = max(float(np.asarray(fitted.cov_re).ravel()[0]), 0.0)
+            se = _standard_error(design, table.person, person_variance, float(fitted.scale))
         except np.linalg.LinAlgError:
             return None
     if not np.isfinite(se):
@@ -113,10 +116,23 @@ def mixed_model(table: LongTable) -> Mixed | None:
     return Mixed(
         estimate=scale * float(fitted.fe_params[1]),
         se=scale * se,
-        person_sd=scale * float(np.sqrt(max(float(np.asarray(fitted.cov_re).ravel()[0]), 0.0))),
+        person_sd=scale * float(np.sqrt(person_variance)),
         residual_sd=scale * float(np.sqrt(fitted.scale)),
         converged=bool(fitted.converged),
     )
+
+
+def _standard_error(design: FloatArray, person: IntArray, person_variance: float, variance: float) -> float:
+    """That of the second coefficient, by generalised least squares at the fitted variances.
+
+    It is that of R's nlme and lme4; statsmodels inverts the information on all parameters together, which
+    differs where figures are missing.
+    """
+    own = (person[:, None] == np.arange(person.max() + 1)).astype(float)
+    shrink = person_variance / (variance + own.sum(axis=0) * person_variance)
+    sums = own.T @ design
+    information = design.T @ design - sums.T @ (shrink[:, None] * sums)
+    return float(np.sqrt(variance * np.linalg.inv(information)[1, 1]))
 
 
 @final

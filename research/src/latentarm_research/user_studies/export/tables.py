@@ -30,7 +30,7 @@ NAN = float("nan")
 def read(name: str) -> Any:
     """A table of the dataset."""
     (path,) = (DATASET / "data").glob(f"*_description-{name}_data.csv")
-    return pd.read_csv(path, keep_default_na=False, na_values=[""], float_precision="round_trip")
+    return pd.read_csv(path, keep_default_na=False, na_values=[""])
 
 
 def spreads(values: Any) -> bool:
@@ -157,8 +157,15 @@ def mixed(value: Any, label: Any, person: Any, fixed: Any) -> dict[str, float]:
     scale = value.std(ddof=1)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        fitted: Any = MixedLM(value / scale, design, groups=person).fit(reml=True)
-    return {"estimate": scale * fitted.fe_params[1], "se": scale * fitted.bse_fe[1]}
+        fitted: Any = MixedLM(value / scale, design, groups=person).fit(reml=True, gtol=1e-9)
+    # Not the standard error of statsmodels, which inverts the information on all parameters together.
+    own = (person[:, None] == np.arange(people)).astype(float)
+    person_variance = max(float(np.asarray(fitted.cov_re).ravel()[0]), 0)
+    shrink = person_variance / (fitted.scale + own.sum(axis=0) * person_variance)
+    sums = own.T @ design
+    information = design.T @ design - sums.T @ (shrink[:, None] * sums)
+    se = np.sqrt(fitted.scale * np.linalg.inv(information)[1, 1])
+    return {"estimate": scale * fitted.fe_params[1], "se": scale * se}
 
 
 def swapped_p(value: Any, label: Any, person: Any, fixed: Any) -> float:
