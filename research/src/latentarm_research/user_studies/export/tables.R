@@ -164,9 +164,7 @@ mixed <- function(table) {
   scale <- sd(table$value)
   data <- data.frame(value = table$value / scale, person = table$person)
   data$design <- design
-  control <- lmeControl(
-    msTol = 1e-14, tolerance = 1e-12, maxIter = 500, msMaxIter = 500, opt = "nlminb", returnObject = TRUE
-  )
+  control <- lmeControl(niterEM = 5000, returnObject = TRUE) # so that six digits hold
   fitted <- suppressWarnings(
     lme(value ~ design - 1, data, random = ~ 1 | person, method = "REML", control = control)
   )
@@ -313,7 +311,10 @@ tables$anova <- anova_table(trials, claims, sides, read("factors"))
 dir.create(out, showWarnings = FALSE, recursive = TRUE)
 for (name in names(tables)) {
   table <- tables[[name]]
+  if (!ncol(table)) next
   numeric <- sapply(table, is.double)
-  table[numeric] <- lapply(table[numeric], function(column) sprintf("%.17g", column))
+  table[numeric] <- lapply(
+    table[numeric], function(column) ifelse(is.na(column), NA, sprintf("%.17g", column))
+  )
   write.csv(table, file.path(out, paste0(name, ".csv")), row.names = FALSE, na = "")
 }

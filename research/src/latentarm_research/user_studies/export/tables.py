@@ -301,6 +301,8 @@ def anova_table(trials: Any, claims: Any, sides: Any, factors: Any) -> Any:
             rows += [
                 [measure, name, t**2, 1, dof] for name, t in zip(contrasts, fitted.tvalues[1:], strict=True)
             ]
+    if not rows:
+        return pd.DataFrame()
     table = pd.DataFrame(rows, columns=["measure", "effect", "f", "dof", "dof_error"]).dropna()
     return table.assign(
         p=f_distribution.sf(table.f, table.dof, table.dof_error), eta=table.f / (table.f + table.dof_error)
@@ -324,6 +326,8 @@ def main(out: Path) -> None:
     tables["anova"] = anova_table(trials, claims, sides, factors)
     out.mkdir(parents=True, exist_ok=True)
     for name, table in tables.items():
+        if not len(table.columns):
+            continue
         table.to_csv(out / f"{name}.csv", index=False)
 
 
