@@ -20,7 +20,8 @@ from latentarm_research.user_studies.record import Trial
 
 NOT_MEASURED: Final = "nobody has a figure for it"
 NO_SPREAD: Final = "all people differ alike"
-GTOL: Final = 1e-9  # of a mixed model's fit, so that six digits of it hold
+# Six digits of a fit hold with this tolerance; Powell's method goes on where a variance is at its boundary.
+_FIT: Final[dict[str, Any]] = {"method": ["bfgs", "powell"], "gtol": 1e-9}
 
 
 def sides_of(definition: Definition, trials: Sequence[Trial]) -> list[Sides]:
@@ -106,7 +107,7 @@ def mixed_model(table: LongTable) -> Mixed | None:
         # A variance at its boundary, which is common with few people, is told by the estimates themselves.
         warnings.simplefilter("ignore")
         try:
-            fitted: Any = MixedLM(table.value / scale, design, groups=table.person).fit(reml=True, gtol=GTOL)
+            fitted: Any = MixedLM(table.value / scale, design, groups=table.person).fit(reml=True, **_FIT)
             person_variance = max(float(np.asarray(fitted.cov_re).ravel()[0]), 0.0)
             se = _standard_error(design, table.person, person_variance, float(fitted.scale))
         except np.linalg.LinAlgError:

@@ -164,7 +164,7 @@ mixed <- function(table) {
   scale <- sd(table$value)
   data <- data.frame(value = table$value / scale, person = table$person)
   data$design <- design
-  control <- lmeControl(niterEM = 5000, returnObject = TRUE) # so that six digits hold
+  control <- lmeControl(opt = "optim", msTol = 1e-15, niterEM = 500, returnObject = TRUE) # six digits hold
   fitted <- suppressWarnings(
     lme(value ~ design - 1, data, random = ~ 1 | person, method = "REML", control = control)
   )

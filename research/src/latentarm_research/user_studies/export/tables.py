@@ -157,7 +157,9 @@ def mixed(value: Any, label: Any, person: Any, fixed: Any) -> dict[str, float]:
     scale = value.std(ddof=1)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        fitted: Any = MixedLM(value / scale, design, groups=person).fit(reml=True, gtol=1e-9)
+        fitted: Any = MixedLM(value / scale, design, groups=person).fit(
+            reml=True, method=["bfgs", "powell"], gtol=1e-9
+        )
     # Not the standard error of statsmodels, which inverts the information on all parameters together.
     own = (person[:, None] == np.arange(people)).astype(float)
     person_variance = max(float(np.asarray(fitted.cov_re).ravel()[0]), 0)
