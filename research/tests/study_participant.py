@@ -148,20 +148,23 @@ class Participant:
                 listener.join()
 
     @contextmanager
-    def driving(self, **options: Any) -> Generator[None]:
-        """Begin the next drive, and enable the arm; then push until the study says that it is over."""
+    def driving(self) -> Generator[None]:
+        """Begin the next drive, and enable the arm; then push until the study says that it is over.
+
+        All of it goes over a line with this person's delay.
+        """
         while (answer := self.post("begin")).status_code == 503:
             time.sleep(1.0)
         assert answer.json()["to"] == "/"
         assert 'id="stick"' in self.client.get("/").text
-        with self.connected(**options) as socket:
+        with Line(self.origin, self.delay_s) as line, self.connected(sock=line.end) as socket:
             self.push(socket, lambda: self.state.get("phase") in ("ready", "moving"), [0.0, 0.0])
             yield
             self.push(socket, lambda: bool(self.told), [0.0, 1.0])
 
     def drive(self) -> None:
-        """Drive until the study says that the drive is over, over a line with this person's delay."""
-        with Line(self.origin, self.delay_s) as line, self.driving(sock=line.end):
+        """Drive until the study says that the drive is over."""
+        with self.driving():
             pass
         assert self.told == ["drive_over"]
 

@@ -184,7 +184,7 @@ def _step(values: FloatArray, labels: Mapping[str, Any]) -> tuple[tuple[SceneSta
     step_s, alpha, added = take(3).tolist()
     stop = None if labels["stop"] is None else Stop(labels["stop"])
     command = Command(take(labels["sizes"][0]), 0.0, stop, tuple(labels["limited_by"]))
-    arrays = {name: take(size) for name, size in zip(_ARRAYS, labels["sizes"], strict=True)}
+    arrays: dict[str, Any] = {name: take(size) for name, size in zip(_ARRAYS, labels["sizes"], strict=True)}
     record = StepRecord(
         time_s=step_s, alpha=alpha, added=added, mode=labels["mode"], command=command, **arrays
     )

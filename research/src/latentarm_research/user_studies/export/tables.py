@@ -97,7 +97,7 @@ def two_sides(trials: Any, claim: Any, subject: list[str], against: list[str], t
     return tuple(means["mean"][means.condition.isin(side)].to_numpy() for side in (subject, against))
 
 
-def tested(claim: Any, one: Any, other: Any) -> dict[str, float]:
+def tested(claim: Any, one: Any, other: Any) -> dict[str, Any]:
     """The t-test of a claim, and its effect size."""
     if claim.design == "within":
         if len(one) < 2 or not spreads(one - other):
