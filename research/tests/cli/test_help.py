@@ -45,7 +45,7 @@ COMMANDS = [
     "bench",
 ]
 STUDIES = ["properties", "shared-autonomy", "alignment", "tasks"]
-VERBS = ["list", "show", "run", "power"]
+VERBS = ["list", "show", "run", "power", "preregister", "export", "replay", "delete"]
 HEAVY = {
     "torch", "mujoco", "matplotlib", "scipy", "statsmodels", "pyarrow", "sklearn", "joblib", "pandas",
     "ruckig", "mink", "h5py", "pydantic", "starlette", "uvicorn",
