@@ -15,7 +15,7 @@ import pytest
 from sqlalchemy import create_engine, select
 
 from latentarm_research.user_studies.recorded import DATABASE
-from latentarm_research.user_studies.serving.store import database_of
+from latentarm_research.user_studies.serving.database import database_of
 from latentarm_research.user_studies.serving.tables import Drive, Place
 from postgres import postgres
 from study_line import Line

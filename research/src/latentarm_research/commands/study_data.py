@@ -92,7 +92,7 @@ def replay_study(folder: Positional[ServedFolder], database: Database = None, js
 def served_database(folder: Path, database: str | None) -> "Path | URL":
     """The database of a served study. Raises a `UserError` where none was served from this folder."""
     from latentarm_research.user_studies.recorded import DATABASE
-    from latentarm_research.user_studies.serving.store import database_of
+    from latentarm_research.user_studies.serving.database import database_of
 
     if database is None and not (folder / DATABASE).exists():
         raise UserError(f"{folder} holds no study that was served.")

@@ -121,7 +121,8 @@ def _read_recorded(folder: Path, database: str | None) -> Recorded:
 def _served(definition: Definition, folder: Path, database: str | None, sizes: Sizes) -> Recorded:
     """Everybody who has finished a served study."""
     from latentarm_research.user_studies.drive_record import trial_of
-    from latentarm_research.user_studies.serving.store import Store, database_of  # SQLAlchemy
+    from latentarm_research.user_studies.serving.database import database_of  # SQLAlchemy
+    from latentarm_research.user_studies.serving.store import Store
 
     store = Store(database_of(folder / DATABASE, database))
     finished = store.finished()

@@ -13,11 +13,12 @@ from latentarm.web.server.security import Gate
 from latentarm_research.studies.results_folder import ResultsFolder
 from latentarm_research.user_studies.recorded import DATABASE, DEFINITION
 from latentarm_research.user_studies.serving.app import SITE_IDS, StudyServer
+from latentarm_research.user_studies.serving.database import database_of
 from latentarm_research.user_studies.serving.models import MODELS, Models
 from latentarm_research.user_studies.serving.options import Serving
 from latentarm_research.user_studies.serving.page_drive import check_served
 from latentarm_research.user_studies.serving.participant_pages import HOME
-from latentarm_research.user_studies.serving.store import Store, database_of
+from latentarm_research.user_studies.serving.store import Store
 from latentarm_research.user_studies.serving.study_files import LINKS, write_links
 
 _LOCK: Final = ".serve.lock"

@@ -10,33 +10,17 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final, final
 
-from sqlalchemy import (
-    URL,
-    Connection,
-    Engine,
-    create_engine,
-    delete,
-    event,
-    func,
-    make_url,
-    or_,
-    select,
-    update,
-)
-from sqlalchemy.exc import ArgumentError, DatabaseError
+from sqlalchemy import URL, delete, func, or_, select, update
 from sqlalchemy.orm import Session
 from sqlalchemy.sql import ColumnElement
 
 from latentarm.core.errors import UserError
-from latentarm.core.untrusted.opening import check_file, is_missing
 from latentarm_research.user_studies.answers.items import Answer
 from latentarm_research.user_studies.drive_record import DriveRecord
-from latentarm_research.user_studies.serving.tables import Answers, Drive, Person, Place, Table
+from latentarm_research.user_studies.serving.database import open_database
+from latentarm_research.user_studies.serving.tables import Answers, Drive, Person, Place
 
-MOST_BYTES: Final = 1 << 32  # of a database
 KEY_BYTES: Final = 16  # of random keys
-
-_LOCK: Final = 43  # number of the lock that transactions in PostgreSQL wait for
 
 
 @final
@@ -73,19 +57,6 @@ class Finished:
     answers: tuple[Answer, ...]
 
 
-def database_of(path: Path, url: str | None) -> Path | URL:
-    """The database of a study: its file, or the one at a URL of PostgreSQL."""
-    if url is None:
-        return path
-    try:
-        given = make_url(url)
-    except ArgumentError as error:
-        raise UserError(f"--database must be postgresql://USER@HOST/NAME, not {url!r}.") from error
-    if given.get_backend_name() != "postgresql":
-        raise UserError(f"--database must begin with postgresql://, not {given.drivername}://.")
-    return given.set(drivername="postgresql+psycopg")
-
-
 @final
 class Store:
     """The database of a study. Raises a `UserError` where it is something else, or cannot be reached."""
@@ -96,11 +67,7 @@ class Store:
         away_s: float = float("inf"),  # a person who does nothing for so long loses their place, s
     ) -> None:
         self._away_s = away_s
-        self._engine = _at_url(database) if isinstance(database, URL) else _in_file(database)
-        try:
-            Table.metadata.create_all(self._engine)
-        except DatabaseError as error:
-            raise UserError(f"{database} is not the database of a study, or cannot be written.") from error
+        self._engine = open_database(database)
 
     def open_places(self, count: int) -> list[str]:
         """Have so many places, with the numbers from 0, and codes for links to them, which it returns."""
@@ -296,39 +263,3 @@ def _drives(session: Session, key: str) -> tuple[DriveRecord, ...]:
         return tuple(DriveRecord.model_validate_json(one) for one in kept)
     except ValueError as error:
         raise UserError("The study's database holds a drive that is not one.") from error
-
-
-def _in_file(path: Path) -> Engine:
-    """SQLite."""
-    if not is_missing(path):
-        check_file(path, MOST_BYTES)
-    engine = create_engine(f"sqlite:///{path}")
-    event.listen(engine, "connect", _connected)
-    event.listen(engine, "begin", _begins)
-    return engine
-
-
-def _at_url(url: URL) -> Engine:
-    """PostgreSQL."""
-    try:
-        engine = create_engine(url)
-    except ModuleNotFoundError as error:
-        raise UserError('PostgreSQL needs psycopg: pip install "latentarm-research[postgresql]".') from error
-    event.listen(engine, "begin", _waits_its_turn)
-    return engine
-
-
-def _waits_its_turn(connection: Connection) -> None:
-    """Let one transaction run after the other, as SQLite does."""
-    connection.exec_driver_sql(f"SELECT pg_advisory_xact_lock({_LOCK})")
-
-
-def _begins(connection: Connection) -> None:
-    connection.exec_driver_sql("BEGIN IMMEDIATE")
-
-
-def _connected(connection: Any, _: object) -> None:
-    """SQLAlchemy begins the transactions; what is deleted is overwritten on disk."""
-    connection.isolation_level = None
-    for pragma in ("foreign_keys=ON", "secure_delete=ON", "synchronous=FULL", "busy_timeout=10000"):
-        connection.execute(f"PRAGMA {pragma}")

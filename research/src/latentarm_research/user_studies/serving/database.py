@@ -1,0 +1,74 @@
+"""Where a study's database is, and how it is opened: SQLite in a file, or PostgreSQL on a server."""
+
+from pathlib import Path
+from typing import Any, Final
+
+from sqlalchemy import URL, Connection, Engine, create_engine, event, make_url
+from sqlalchemy.exc import ArgumentError, DatabaseError
+
+from latentarm.core.errors import UserError
+from latentarm.core.untrusted.opening import check_file, is_missing
+from latentarm_research.user_studies.serving.tables import Table
+
+MOST_BYTES: Final = 1 << 32  # of a file
+
+_LOCK: Final = 43  # number of the lock that transactions in PostgreSQL wait for
+
+
+def database_of(path: Path, url: str | None) -> Path | URL:
+    """The database of a study: its file, or the one at a URL of PostgreSQL."""
+    if url is None:
+        return path
+    try:
+        given = make_url(url)
+    except ArgumentError as error:
+        raise UserError(f"--database must be postgresql://USER@HOST/NAME, not {url!r}.") from error
+    if given.get_backend_name() != "postgresql":
+        raise UserError(f"--database must begin with postgresql://, not {given.drivername}://.")
+    return given.set(drivername="postgresql+psycopg")
+
+
+def open_database(database: Path | URL) -> Engine:
+    """Open a database, with all tables. Every transaction waits for the one before it."""
+    engine = _at_url(database) if isinstance(database, URL) else _in_file(database)
+    try:
+        Table.metadata.create_all(engine)
+    except DatabaseError as error:
+        raise UserError(f"{database} is not the database of a study, or cannot be written.") from error
+    return engine
+
+
+def _in_file(path: Path) -> Engine:
+    """SQLite."""
+    if not is_missing(path):
+        check_file(path, MOST_BYTES)
+    engine = create_engine(f"sqlite:///{path}")
+    event.listen(engine, "connect", _connected)
+    event.listen(engine, "begin", _begins)
+    return engine
+
+
+def _at_url(url: URL) -> Engine:
+    """PostgreSQL."""
+    try:
+        engine = create_engine(url)
+    except ModuleNotFoundError as error:
+        raise UserError('PostgreSQL needs psycopg: pip install "latentarm-research[postgresql]".') from error
+    event.listen(engine, "begin", _waits_its_turn)
+    return engine
+
+
+def _waits_its_turn(connection: Connection) -> None:
+    """Let one transaction run after the other, as SQLite does."""
+    connection.exec_driver_sql(f"SELECT pg_advisory_xact_lock({_LOCK})")
+
+
+def _begins(connection: Connection) -> None:
+    connection.exec_driver_sql("BEGIN IMMEDIATE")
+
+
+def _connected(connection: Any, _: object) -> None:
+    """SQLAlchemy begins the transactions; what is deleted is overwritten on disk."""
+    connection.isolation_level = None
+    for pragma in ("foreign_keys=ON", "secure_delete=ON", "synchronous=FULL", "busy_timeout=10000"):
+        connection.execute(f"PRAGMA {pragma}")
