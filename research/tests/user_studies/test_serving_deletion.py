@@ -12,6 +12,7 @@ import pytest
 from latentarm.cli import main
 from latentarm_research.user_studies.drive_record import DriveRecord
 from latentarm_research.user_studies.serving.store import Store
+from latentarm_research.user_studies.serving.study_files import steps_of
 from latentarm_research.user_studies.trace import Trace
 from study_participant import MODES, TWIST, definition, next_link, participant, serving
 
@@ -108,22 +109,30 @@ def test_no_byte_stays_of_a_person_who_leaves(tmp_path: Path) -> None:
             copy = other.client.get("/study/data").json()
             (own,) = copy["people"]
             assert other.page.count(own["completion"]) == 1
-            looked_for = [one["record"].encode() for one in copy["drives"]]
+            steps = [other.client.get(path).content for path in copy["steps"]]
+            assert len(steps) == len(copy["drives"]) == 2
+            assert all(len(one) > 10_000 for one in steps)
+            # Nobody else gets them.
+            with participant(link, link) as another:
+                assert another.client.get(copy["steps"][0]).content != steps[0]
+            looked_for = [*steps, *(one["record"].encode() for one in copy["drives"])]
             looked_for += [text.encode() for text in (own["key"], own["completion"], left.split("=")[1])]
-            assert len(traces_of(looked_for, records_in(out), content_of(out))) > 10
+            assert len(traces_of(looked_for, kept_in(out), content_of(out))) > 100
             other.post("withdraw")
             assert other.client.get("/study/data").status_code == 403
         # Also while the server runs.
-        assert traces_of(looked_for, records_in(out), content_of(out)) == []
+        assert traces_of(looked_for, kept_in(out), content_of(out)) == []
     assert main(["study", "export", str(out), "--out", str(tmp_path / "dataset")]) == 0
     assert main(["study", "analyse", str(out), "--out", str(tmp_path / "report")]) == 0
     shutil.copytree(out, tmp_path / "copy")
-    assert traces_of(looked_for, records_in(out), content_of(tmp_path)) == []
+    assert traces_of(looked_for, kept_in(out), content_of(tmp_path)) == []
 
 
-def records_in(out: Path) -> list[bytes]:
-    """Drives of everybody who has finished and has not left, of which some slices are alike."""
+def kept_in(out: Path) -> list[bytes]:
+    """Drives of the person who has not left, of which some slices are alike."""
     store = Store(out / "study.sqlite")
-    finished = store.finished()[:1]
+    drives = store.drives()
     store.close()
-    return [drive.model_dump_json().encode() for one in finished for drive in one.drives]
+    key = next(key for key, theirs in drives.items() if theirs[0].person == 0)
+    records = [drive.model_dump_json().encode() for drive in drives[key]]
+    return [*records, *(path.read_bytes() for path in steps_of(out, key))]

@@ -14,7 +14,7 @@ from pydantic import Field
 from starlette.applications import Starlette
 from starlette.datastructures import Headers, QueryParams
 from starlette.requests import HTTPConnection, Request
-from starlette.responses import PlainTextResponse, RedirectResponse, Response
+from starlette.responses import FileResponse, PlainTextResponse, RedirectResponse, Response
 from starlette.routing import Route
 from starlette.types import Receive, Scope, Send
 
@@ -30,7 +30,7 @@ from latentarm_research.user_studies.serving.participant_pages import HOME, Part
 from latentarm_research.user_studies.serving.request_limit import RequestLimit
 from latentarm_research.user_studies.serving.running import DRIVES, RunningDrive, recovered, refuse_socket
 from latentarm_research.user_studies.serving.store import Standing, Store
-from latentarm_research.user_studies.serving.study_files import STEPS, forget, keep_steps
+from latentarm_research.user_studies.serving.study_files import STEPS, forget, keep_steps, steps_of
 from latentarm_research.user_studies.serving.way import Next, ToAnswer, ToDrive, Way
 
 COOKIE: Final = "latentarm_study"
@@ -76,6 +76,7 @@ class StudyServer:
                 Route(HOME, self._home),
                 *(Route(f"{HOME}/{do.__name__}", self._known(do), methods=["POST"]) for do in posts),
                 Route(f"{HOME}/data", self._known(self.data)),
+                Route(f"{HOME}/steps/{{name}}", self._known(self.steps)),
                 *(Route(f"{HOME}/{name}", answer_file) for name in ("study.js", "study.css")),
                 Route("/static/{version}/{name:path}", assets.answer),
             ],
@@ -257,10 +258,18 @@ class StudyServer:
         return _onward(HOME)
 
     async def data(self, _: Request, key: str) -> Response:
-        """Everything that is kept of them."""
-        answer = json_answer(await asyncio.to_thread(self._store.everything, key))
+        """Everything that is kept of them, with the addresses of the steps of their drives."""
+        kept = await asyncio.to_thread(self._store.everything, key)
+        steps = [f"{HOME}/steps/{path.name}" for path in steps_of(self._serving.out, key)]
+        answer = json_answer({**kept, "steps": steps})
         answer.headers["content-disposition"] = 'attachment; filename="my-data.json"'
         return answer
+
+    async def steps(self, request: Request, key: str) -> Response:
+        """The steps of one of their drives."""
+        named = {path.name: path for path in steps_of(self._serving.out, key)}
+        path = named.get(request.path_params["name"])
+        return _refused("There is no such drive.", 404) if path is None else FileResponse(path)
 
     async def withdraw(self, _: Request, key: str) -> Response:
         """Delete everything about them."""

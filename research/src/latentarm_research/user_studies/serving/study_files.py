@@ -26,6 +26,11 @@ def steps_path(out: Path, key: str, drive: DriveRecord) -> Path:
     return out / STEPS / key / f"{'-'.join(map(str, named))}.safetensors"
 
 
+def steps_of(out: Path, key: str) -> list[Path]:
+    """The files with the steps of a person's drives."""
+    return sorted((out / STEPS / key).glob("*.safetensors"))
+
+
 def keep_steps(out: Path, key: str, drive: DriveRecord, written: Path) -> None:
     """Move the file that a drive has written to where it stays."""
     if written.exists():
