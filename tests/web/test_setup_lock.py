@@ -63,6 +63,6 @@ def test_what_a_person_has_kept_counts_and_stays(locked, ada):
 def test_the_page_says_that_it_is_locked_and_leads_nowhere_else(locked):
     with httpx.Client(base_url=locked.origin) as client:
         html = client.get("/", headers={"accept-language": "en"}).text
-        assert "Set up is locked" in html
+        assert "Settings are locked" in html
         assert '<a href="/teach"' not in html
         assert client.get("/teach").status_code == 404

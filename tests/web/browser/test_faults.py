@@ -52,7 +52,7 @@ def test_letting_go_outside_the_window_stops_the_arm(enabled, arm, push):
 @pytest.mark.parametrize(
     ("fault", "said"),
     [
-        ("window.dispatchEvent(new Event('blur'))", "lost the focus"),
+        ("window.dispatchEvent(new Event('blur'))", "no longer in front"),
         ("document.getElementById('stick').releasePointerCapture(1)", "pointer was lost"),
         (
             "Object.defineProperty(document, 'hidden', { value: true, configurable: true });"

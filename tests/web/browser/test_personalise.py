@@ -185,7 +185,7 @@ def test_a_person_is_asked_and_the_arm_does_what_they_mean(
     begin.click()
     expect(page.get_by_role("alert")).to_contain_text("type a name")
     page.get_by_label("Your name").fill("ada")
-    page.get_by_label("Most motions to answer for").select_option(str(QUESTIONS))
+    page.get_by_label("Number of motions, at most").select_option(str(QUESTIONS))
     begin.click()
     page.get_by_role("heading", name="Getting ready").wait_for()
     assert found(page) == []

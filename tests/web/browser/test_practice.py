@@ -65,7 +65,7 @@ def test_keys_alone_tick_every_step_off(practising, arm, press_enable):
     assert ticks(page, 5)
     assert arm.comes_to(lambda: not arm.enabled, 1.5)
     press_enable(page, arm)
-    page.locator("#status-text", has_text="close to a food").wait_for()
+    page.locator("#status-text", has_text="close to some food").wait_for()
     towards_food(page, arm, press_enable, end_s)
     assert ticks(page, 6)
     assert page.locator("#practice-title").inner_text() == "Well done! You can drive the arm."

@@ -104,7 +104,7 @@ def test_stop_names_oneself_and_the_others(page, open_page, stop_for):
 def test_a_page_that_is_left_is_not_said_to_have_pressed_stop(page, open_page, stop_for):
     watcher = open_page()
     stop_for(page, "page_stopped", lambda: page.evaluate("window.dispatchEvent(new Event('blur'))"))
-    reads(page, "this window lost the focus")
+    reads(page, "this window is no longer in front")
     reads(watcher, r"^Guest \d+'s page stopped the arm: the page was left, or a control was lost")
 
 

@@ -74,7 +74,7 @@ def test_a_participant_takes_a_study_on_the_page(
             assert page.get_by_text(f"Way of driving {way} of 2").is_visible()
             press(page, "Begin")
             page.locator("#status[data-phase=disengaged]").wait_for(timeout=WITHIN_MS)
-            assert page.get_by_role("button", name="Set up is locked").is_disabled()
+            assert page.get_by_role("button", name="Settings are locked").is_disabled()
             drive(page)
             looked_at(page, "How was this way of driving?")
             for item in page.locator("fieldset").all():

@@ -89,7 +89,7 @@ test("a watcher of a silent server is not told that the arm stops", () => {
 
 test("why this page stopped the arm is said until the arm is enabled again", () => {
   status.halted("focus_lost");
-  assert.equal(settled({ phase: "disengaged", you: true })[1], "Stopped: this window lost the focus. Press Enable to move the arm.");
+  assert.equal(settled({ phase: "disengaged", you: true })[1], "Stopped: this window is no longer in front. Press Enable to move the arm.");
   assert.equal(settled({ phase: "ready", you: true })[0], "ready");
   // Another drives in between: what this page did is over.
   status.halted("focus_lost");
