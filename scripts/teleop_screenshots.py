@@ -1,24 +1,25 @@
 """Pictures of every page and state: for desks and phones, light, dark and forced colours, in each language.
 
-The run is driven by a script for them: a simulated person. A contact sheet shows all pictures of the folder,
-a row for each state and a column for each look. For example:
+The run is driven by a script for them: a simulated person; some states are made by changing what the server
+says. A contact sheet shows all pictures of the folder, a row for each state and a column for each look:
 
     python scripts/teleop_screenshots.py RUN --out pictures --only drive --looks laptop-light-en phone-dark-de
 """
 
 import argparse
+import itertools
 import json
 import re
 import shutil
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from PIL import Image, ImageDraw, ImageFont
-from playwright.sync_api import Browser, Locator, Page
+from playwright.sync_api import Browser, Locator, Page, WebSocketRoute
 from playwright.sync_api import Error as PlaywrightError
 
 from latentarm.web.words.catalogue import COOKIE, Words, languages
@@ -33,8 +34,8 @@ SIZES = {
 }
 """Of the page, CSS pixels; ``zoomed`` is a laptop at 200 %, ``side`` a phone on its side."""
 SCHEMES: dict[str, dict[str, Any]] = {
-    "light": {"color_scheme": "light"},
-    "dark": {"color_scheme": "dark"},
+    "light": {"color_scheme": "light", "forced_colors": "none"},
+    "dark": {"color_scheme": "dark", "forced_colors": "none"},
     "forced": {"color_scheme": "dark", "forced_colors": "active"},
 }
 CROSS = (
@@ -57,6 +58,8 @@ SETTLE_MS = 800
 EPISODES = 3
 MOST_STARTS = 5
 LEARNING_MS = 120_000
+PASSING = ("drive", "drive-practice")
+"""States that end by themselves, or when the page is sized anew: reached for each picture."""
 BEGUN = "#answer-cancel, #working-cancel, #discard, #trial-discard"
 
 
@@ -87,6 +90,115 @@ class Visit:
 
 def fresh(visit: Visit) -> None:
     """The Drive page as a new person finds it."""
+
+
+def told(visit: Visit, path: str = "", **changes: Any) -> None:
+    """Open a page that hears another state of the arm than the server says."""
+
+    def hear(socket: WebSocketRoute) -> None:
+        def changed(text: str | bytes) -> None:
+            said = json.loads(text)
+            if said["type"] == "state":
+                merge(said, changes)
+            socket.send(json.dumps(said))
+
+        socket.connect_to_server().on_message(changed)
+
+    visit.page.route_web_socket("**/drive", hear)
+    visit.page.goto(f"{visit.page.url}{path}")
+    visit.page.locator(".label").first.wait_for(state="attached")
+
+
+def merge(into: dict[str, Any], changes: dict[str, Any]) -> None:
+    """Replace parts of a message, at any depth."""
+    for key, value in changes.items():
+        if isinstance(value, dict) and isinstance(into.get(key), dict):
+            merge(into[key], value)
+        else:
+            into[key] = value
+
+
+def ready(visit: Visit) -> None:
+    """Enabled, and nothing pressed."""
+    visit.button("practice.skip").click()
+    enable(visit.page)
+
+
+def held_back(visit: Visit) -> None:
+    """Slower than asked, and why."""
+    told(visit, phase="moving", held_back="joint_position")
+
+
+def done(visit: Visit) -> None:
+    """The task is done."""
+    told(visit, task={"outcome": "success", "time_s": 41.0})
+
+
+def failed(visit: Visit) -> None:
+    """Something was spilled."""
+    told(visit, task={"outcome": "failure", "why": {"code": "spilled", "thing": "cup"}})
+
+
+def copilot_asks(visit: Visit) -> None:
+    """Somebody asks to be co-pilot, and somebody else to drive."""
+    told(visit, copilot_asking={"id": "b", "name": PERSON}, asking="c", asking_name=2)
+
+
+def unconnected(visit: Visit) -> None:
+    """A real arm that has lost its connection."""
+    told(visit, lost=True, phase="disengaged", reason={"code": "arm_off", "parameters": {}})
+
+
+def disconnected(visit: Visit) -> None:
+    """The page of who drove has lost the server."""
+    sockets: list[WebSocketRoute] = []
+
+    def hear(socket: WebSocketRoute) -> None:
+        sockets.append(socket)
+        if len(sockets) == 1:
+            socket.connect_to_server()
+        else:
+            socket.close()
+
+    visit.page.route_web_socket("**/drive", hear)
+    visit.page.goto(visit.page.url)
+    ready(visit)
+    sockets[0].close()
+    visit.page.locator("#status[data-phase=lost]").wait_for()
+
+
+def things_to_tell(visit: Visit) -> None:
+    """Where things are, to be shown with the tool, and saved poses."""
+    seen = [("cup", "seen", 7.0), ("plate", "unseen", 0.0), ("bowl", "doubted", 1.0)]
+    things = [{"name": name, "seen": how, "age_s": age, "source": "tag"} for name, how, age in seen]
+    told(visit, things={"poses": [], "grains": [], "seen": things})
+    visit.page.locator("#poses-open").click()
+
+
+def fit(visit: Visit) -> None:
+    """Check the fit, as a person finds it."""
+    visit.page.goto(f"{visit.page.url}fit")
+
+
+def fit_exercise(visit: Visit) -> None:
+    """An exercise of a hand."""
+    fit(visit)
+    visit.page.locator("#fit-begin").click()
+
+
+def fit_result(visit: Visit) -> None:
+    """What was measured of a hand that did every exercise."""
+    fit_exercise(visit)
+    for to in ((0.0, 0.0), (0.9, 0.0), (0.0, 0.8), (-0.7, 0.0), (0.0, -0.6)):
+        task = visit.page.locator("#fit-task").inner_text()
+        push(visit.page, *to)
+        while (
+            visit.page.locator("#fit-task").inner_text() == task
+            and not visit.page.locator("#result").is_visible()
+        ):
+            visit.page.wait_for_timeout(100)
+        visit.page.mouse.up()
+    visit.page.locator("#result").wait_for()
 
 
 def driving(visit: Visit) -> None:
@@ -285,6 +397,12 @@ def person_erased(visit: Visit) -> None:
     visit.page.locator("#erase").wait_for()
 
 
+def history_of_nobody(visit: Visit) -> None:
+    """No drives."""
+    visit.page.goto(f"{visit.page.url}history")
+    visit.page.locator("#filters input[name=until]").fill("2001-01-02")
+
+
 def history(visit: Visit) -> None:
     """The drives."""
     visit.page.goto(f"{visit.page.url}history")
@@ -337,7 +455,15 @@ def push(page: Page, right: float, up: float) -> None:
 
 SHOTS: dict[str, Callable[[Visit], None]] = {
     "drive-new": fresh,
+    "drive-ready": ready,
     "drive": driving,
+    "drive-held-back": held_back,
+    "drive-done": done,
+    "drive-failed": failed,
+    "drive-asked": copilot_asks,
+    "drive-not-connected": unconnected,
+    "drive-lost": disconnected,
+    "drive-things": things_to_tell,
     "drive-stopped": stopped,
     "drive-watching": watching,
     "drive-practice": practising,
@@ -353,9 +479,13 @@ SHOTS: dict[str, Callable[[Visit], None]] = {
     "personalise-trial": tried,
     "teach": recorded,
     "teach-trained": trained,
+    "fit": fit,
+    "fit-exercise": fit_exercise,
+    "fit-result": fit_result,
     "people": people,
     "people-switch": people_scanned,
     "people-delete": person_erased,
+    "history-empty": history_of_nobody,
     "history": history,
     "history-replay": replayed,
     "history-report": reported,
@@ -388,25 +518,22 @@ def drive_once(browser: Browser, address: str) -> None:
     context.close()
 
 
-def take(browser: Browser, address: str, name: str, look: str, out: Path) -> None:
-    """Take a picture of a state, with a size, a scheme and a language."""
-    size, scheme, language = look.split("-")
-    width, height = SIZES[size]
+def take(browser: Browser, address: str, name: str, language: str, looks: Sequence[str], out: Path) -> None:
+    """Take pictures of a state in one language, with each size and scheme."""
     # Twice as fine: the software renderer spares pixels.
-    with browser.new_context(
-        viewport={"width": width, "height": height},
-        device_scale_factor=2,
-        reduced_motion="reduce",
-        **SCHEMES[scheme],
-    ) as context:
+    with browser.new_context(device_scale_factor=2, reduced_motion="reduce") as context:
         page = context.new_page()
         visit = begin(page, address, language)
         drive_back(page)
-        page.evaluate("scrollTo(0, 0)")
-        page.wait_for_timeout(SETTLE_MS)
-        SHOTS[name](visit)
-        page.wait_for_timeout(600)
-        page.screenshot(path=out / f"{name}-{look}.png")
+        for number, look in enumerate(looks):
+            size, scheme = look.split("-")
+            width, height = SIZES[size]
+            page.set_viewport_size({"width": width, "height": height})
+            page.emulate_media(**SCHEMES[scheme])
+            if number == 0 or name in PASSING:
+                SHOTS[name](visit)
+            page.wait_for_timeout(SETTLE_MS)
+            page.screenshot(path=out / f"{name}-{look}-{language}.png")
         tidy(page)
     # So that the next page finds nobody who drives.
     time.sleep(0.3)
@@ -450,15 +577,17 @@ def main() -> None:
         run = Path(shutil.copytree(given.run, Path(folder) / given.run.name))
         with served(run) as site, chromium() as browser:
             drive_once(browser, site.address)
-            for look in given.looks:
-                for name in given.only:
-                    try:
-                        take(browser, site.address, name, look, given.out)
-                    except PlaywrightError as error:
-                        # The other pictures are taken all the same.
-                        missing.append(f"{name}-{look}: {error.message.splitlines()[0]}")
-                    else:
-                        print(f"{name}-{look}", flush=True)
+            for name, language in itertools.product(given.only, languages()):
+                looks = [look.removesuffix(f"-{language}") for look in given.looks if look.endswith(language)]
+                if not looks:
+                    continue
+                try:
+                    take(browser, site.address, name, language, looks, given.out)
+                except PlaywrightError as error:
+                    # The other pictures are taken all the same.
+                    missing.append(f"{name}-{language}: {error.message.splitlines()[0]}")
+                else:
+                    print(f"{name}-{language}", flush=True)
     contact_sheet(given.out)
     if missing:
         raise SystemExit("Not taken:\n" + "\n".join(missing))

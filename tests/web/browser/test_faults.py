@@ -53,7 +53,7 @@ def test_letting_go_outside_the_window_stops_the_arm(enabled, arm, push):
     ("fault", "said"),
     [
         ("window.dispatchEvent(new Event('blur'))", "no longer in front"),
-        ("document.getElementById('stick').releasePointerCapture(1)", "pointer was lost"),
+        ("document.getElementById('stick').releasePointerCapture(1)", "lost track of the finger"),
         (
             "Object.defineProperty(document, 'hidden', { value: true, configurable: true });"
             "document.dispatchEvent(new Event('visibilitychange'));"

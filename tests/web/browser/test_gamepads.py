@@ -1,6 +1,8 @@
-"""Gamepads of every kind: what is wrong with one stops the arm or is said; its uses are given by pressing."""
+"""Gamepads and switch adapters of every kind: what is wrong stops the arm or is said; buttons get their uses."""
 
 import pytest
+
+from .conftest import set_up
 
 PADS = """
 window.plug = (index, more) => {
@@ -72,6 +74,35 @@ def test_what_goes_wrong_with_a_gamepad_stops_the_arm_at_once(
         page.get_by_role("status").get_by_text("gamepad was disconnected").wait_for()
 
 
+ADAPTER = """
+let down = false;
+const beats = setInterval(() => {
+  down = !down;
+  window.dispatchEvent(new KeyboardEvent(down ? "keydown" : "keyup", { code: "Enter" }));
+}, 25);
+setTimeout(() => clearInterval(beats), 800);
+"""
+"""A switch adapter that repeats at 20 Hz while it is held."""
+
+
+def test_a_switch_adapter_that_repeats_while_it_is_held_stops_the_arm_and_is_said(page, arm, press_enable):
+    with set_up(page) as dialog:
+        dialog.get_by_label("Two switches").check()
+        dialog.get_by_role("radio", name="Switch", exact=True).check()
+    times = []
+    for _ in range(TRIES):
+        press_enable(page, arm)
+        page.locator("#scan li[aria-current=true][data-choice=up]").wait_for()
+        page.wait_for_timeout(500)
+        times.append(page.evaluate(f"fails(() => {{ {ADAPTER} }})"))
+        arm.comes_to_rest()
+        if times[-1] is not None and times[-1] <= WITHIN_MS:
+            break
+    assert times[-1] is not None, times
+    assert times[-1] <= WITHIN_MS, times
+    page.get_by_role("status").get_by_text("two presses came faster").wait_for()
+
+
 def test_a_stick_that_is_held_while_its_time_never_moved_keeps_driving(
     page, arm, press_enable, press_until_moving
 ):
@@ -84,7 +115,9 @@ def test_a_stick_that_is_held_while_its_time_never_moved_keeps_driving(
     ("pad", "said"),
     [
         ("{ mapping: '' }", "Every button of “pad 0” stops the arm"),
+        # A trigger that rests at -1 where a stick is looked for, and a stick that rests off its middle.
         ("{ axes: [0, -1, 0] }", "The gamepad “pad 0” moves nothing: its stick is not at rest"),
+        ("{ axes: [0.4, 0, 0] }", "The gamepad “pad 0” moves nothing: its stick is not at rest"),
     ],
 )
 def test_a_gamepad_that_the_person_must_do_something_about_is_named_at_once(

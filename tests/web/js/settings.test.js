@@ -24,6 +24,7 @@ test("settings are those of the person who was here last", () => {
 
 test("each person has their own, and somebody new has the defaults", () => {
   const settings = new Settings();
+  settings.byHand = true;
   settings.become(ADA);
   settings.change({ panel: "dpad" });
   settings.become(ZOE);
@@ -32,6 +33,33 @@ test("each person has their own, and somebody new has the defaults", () => {
   settings.change({ panel: "switch" });
   settings.become(ADA);
   assert.equal(settings.values.panel, "dpad");
+});
+
+test("a switch that chooses somebody else stays, with its times and key, until they choose a control", () => {
+  keep(ADA.id, { dwellS: 2, seat: "behind" });
+  const settings = new Settings();
+  settings.change({ panel: "switch", switchKey: "F8", dwellS: 3 });
+  settings.become(ADA);
+  const used = ({ panel, switchKey, dwellS, seat }) => [panel, switchKey, dwellS, seat];
+  assert.deepEqual(used(settings.values), ["switch", "F8", 3, "behind"]);
+  // So it is on the next page, and after a change of something else; the record stays Ada's own.
+  settings.change({ tremor: "light" });
+  settings.take({ dwellS: 2, seat: "behind" });
+  const next = new Settings();
+  assert.deepEqual(used(next.values), ["switch", "F8", 3, "behind"]);
+  next.change({ dwellS: 4 });
+  assert.equal(next.values.dwellS, 4);
+  assert.deepEqual(used(next.own), ["stick", "Enter", 4, "behind"]);
+  next.change({ panel: "stick" });
+  assert.deepEqual(used(new Settings().values), ["stick", "Enter", 4, "behind"]);
+});
+
+test("a person whom a hand chooses has their own control at once", () => {
+  const settings = new Settings();
+  settings.change({ panel: "switch" });
+  settings.byHand = true;
+  settings.become(ADA);
+  assert.equal(settings.values.panel, "stick");
 });
 
 test("somebody new drives slowly, the first of the speeds that the page has, and a speed that was chosen stays", () => {
@@ -84,20 +112,7 @@ test("the defaults can be had back", () => {
   assert.deepEqual(settings.values, DEFAULTS);
 });
 
-test("settings from before people had records are found by the name, once", () => {
-  keep("Ada", { panel: "dpad" });
-  const settings = new Settings();
-  settings.become(ADA);
-  assert.equal(settings.values.panel, "dpad");
-  settings.change({ panel: "switch" });
-  settings.become(null);
-  assert.equal(settings.values.panel, DEFAULTS.panel);
-  settings.become(ADA);
-  assert.equal(settings.values.panel, "switch");
-});
-
 test("nothing of a person who is deleted stays in the browser", () => {
-  keep("Zoë Müller", { panel: "dpad" });
   const settings = new Settings();
   settings.become(ZOE);
   settings.change({ dwellS: 2 });

@@ -29,8 +29,9 @@ const INPUTS = {
 const PRESSES = 8;
 /** Nobody waits longer for a picture, such as one of a hidden page, ms. */
 const LONGEST_MS = 2000;
-/** Of a finding: its name, what was measured, the setting, and why. */
-const PARTS = /** @type {const} */ (["strong", "span", "span", "p"]);
+/** Where there is room for every reason; elsewhere a question mark opens it. */
+const ROOM = "(min-width: 40.01rem) and (min-height: 30.01rem)";
+const WARNINGS = /** @type {const} */ (["fit.drift_much", "fit.slow", "fit.too_few"]);
 
 /** @type {import("../views/drawing.js").Drawing | null} */
 let drawing = null;
@@ -137,9 +138,11 @@ async function finish() {
   const findings = findingsOf(exercises, delays, values);
   proposed = proposals(findings, values);
   byId("findings").replaceChildren(...findings.map((finding) => {
-    const item = create("li");
-    item.append(...textsOf(finding, values).map((textContent, index) => create(PARTS[index], { textContent })));
-    return item;
+    const [name, measured, change, why] = textsOf(finding, values);
+    const open = matchMedia(ROOM).matches || WARNINGS.some((key) => why === say(key));
+    const mark = create("summary", { ariaLabel: say("explain.what", { topic: name }) }, create("span", { ariaHidden: "true", textContent: "?" }));
+    const reason = create("details", { className: "explain", open }, mark, create("p", { textContent: why }));
+    return create("li", {}, create("strong", { textContent: name }), create("span", { textContent: measured }), create("span", { textContent: change }), reason);
   }));
   byId("changes").replaceChildren(...changes(findings, values.fit[chosen]).map((textContent) => create("li", { textContent })));
   const isNew = Object.keys(proposed).length > 0;

@@ -126,6 +126,7 @@ export class Scanner extends EventTarget {
    */
   press(number, down) {
     if (!this.on || number >= Number(this._settings.values.switches)) return false;
+    this._settings.byHand = false;
     this.dispatchEvent(new CustomEvent("switch", { detail: { number, down } }));
     const one = this._switches[number];
     if (!down) one.up();

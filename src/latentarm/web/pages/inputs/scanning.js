@@ -125,6 +125,7 @@ export function attachScanning(input, settings, stop, offered) {
   button(next, 1);
 
   attachSwitchKeys(scanner, input, settings);
+  window.addEventListener("pointerdown", () => (settings.byHand = true), { capture: true });
   scanner.addEventListener("change", () => {
     paint();
     light();

@@ -24,7 +24,7 @@ export function attachPersonSync(settings) {
   const edited = () => {
     if (!settings.person) return;
     if (waiting && waiting.id !== settings.person.id) send();
-    waiting = { id: settings.person.id, values: JSON.stringify(settings.values) };
+    waiting = { id: settings.person.id, values: JSON.stringify(settings.own) };
     storage.write(UNSENT_KEY + waiting.id, waiting.values);
     clearTimeout(timer);
     timer = setTimeout(send, WAIT_MS);

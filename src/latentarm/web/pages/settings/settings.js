@@ -1,6 +1,6 @@
 /** Each person's settings, kept in this browser under their id; `person_sync.js` keeps it on the server as well. */
 
-import { EVERY_STOP, validMappings } from "./pads.js";
+import { validMappings } from "./pads.js";
 import * as storage from "./storage.js";
 
 /** @template T @typedef {{usual: T, valid: (value: any) => T}} Setting its default, and what is made of a value of its type */
@@ -67,6 +67,10 @@ export const NO_PROFILE = "-";
 
 const PERSON_KEY = "latentarm.person";
 const SETTINGS_KEY = "latentarm.settings.";
+/** The switch that chose the person who sits here: who cannot use a hand must be able to go on, and back. */
+const SWITCH_KEY = "latentarm.switch";
+const NAMES = Object.keys(SETTINGS);
+const OF_SWITCH = NAMES.slice(NAMES.indexOf("panel"), NAMES.indexOf("pads"));
 /** Changes of a person's settings that the server may not have yet. */
 export const UNSENT_KEY = "latentarm.unsent.";
 
@@ -74,9 +78,14 @@ export const UNSENT_KEY = "latentarm.unsent.";
 
 /** Events: "change" after every change, "edited" after those made here, "person" when somebody else sits down. */
 export class Settings extends EventTarget {
-  /** Who sits here; null for a guest. @type {Person | null} */
-  person = personIn(storage.read(PERSON_KEY));
-  values = valid(storage.read(this._key));
+  constructor() {
+    super();
+    /** Who sits here; null for a guest. @type {Person | null} */
+    this.person = personIn(storage.read(PERSON_KEY));
+    /** True after a hand was used, false after a switch. */
+    this.byHand = false;
+    this._use(valid(storage.read(this._key)));
+  }
 
   get name() {
     return this.person?.name ?? "";
@@ -84,11 +93,12 @@ export class Settings extends EventTarget {
 
   /** Somebody sits down, or a guest: their settings as this browser knows them, or the defaults. @param {Person | null} person */
   become(person) {
+    if (this.values.panel !== "switch" || this.byHand) storage.remove(SWITCH_KEY);
+    else storage.write(SWITCH_KEY, JSON.stringify(this.values, OF_SWITCH));
     this.person = person;
     if (person) storage.write(PERSON_KEY, JSON.stringify(person));
     else storage.remove(PERSON_KEY);
-    // Before people had records, settings were kept under their names.
-    this.values = valid(storage.read(this._key) ?? (person && storage.read(SETTINGS_KEY + person.name)));
+    this._use(valid(storage.read(this._key)));
     this.dispatchEvent(new Event("person"));
     this.dispatchEvent(new Event("change"));
   }
@@ -103,21 +113,29 @@ export class Settings extends EventTarget {
 
   /** Take the server's settings. @param {unknown} values */
   take(values) {
-    this.values = valid(JSON.stringify(values));
-    storage.write(this._key, JSON.stringify(this.values));
+    this._use(valid(JSON.stringify(values)));
+    storage.write(this._key, JSON.stringify(this.own));
     this.dispatchEvent(new Event("change"));
+  }
+
+  /** @param {Values} own the person's own settings, under those of the switch that chose them until they choose a control */
+  _use(own) {
+    this.own = own;
+    this.values = own.panel === "switch" ? own : valid(JSON.stringify({ ...own, ...storage.parsed(storage.read(SWITCH_KEY)) }));
   }
 
   /** Nothing of a person stays in this browser. @param {Person} person */
   forget(person) {
-    for (const key of [SETTINGS_KEY + person.id, SETTINGS_KEY + person.name, UNSENT_KEY + person.id]) storage.remove(key);
+    for (const key of [SETTINGS_KEY, UNSENT_KEY]) storage.remove(key + person.id);
     if (this.person?.id === person.id) this.become(null);
   }
 
   /** @param {Partial<Values>} changes */
   change(changes) {
-    this.values = { ...this.values, ...changes };
-    storage.write(this._key, JSON.stringify(this.values));
+    if ("panel" in changes) storage.remove(SWITCH_KEY);
+    else if (storage.read(SWITCH_KEY)) storage.write(SWITCH_KEY, JSON.stringify({ ...this.values, ...changes }, OF_SWITCH));
+    this._use({ ...this.own, ...changes });
+    storage.write(this._key, JSON.stringify(this.own));
     this.dispatchEvent(new Event("edited"));
     this.dispatchEvent(new Event("change"));
   }

@@ -1,39 +1,24 @@
-/** The browser's storage for this site. It may refuse to keep anything; settings then last as long as the page. */
+/** The browser's storage for this site. It may refuse to keep anything, or be full; settings then last as long as the page. */
 
 /** @typedef {"localStorage" | "sessionStorage"} Area */
 
-/** @param {string} key @param {Area} [area] @returns {string | null} */
-export function read(key, area = "localStorage") {
+/** Do it; null if the browser throws. @template T @param {() => T} act */
+function tried(act) {
   try {
-    return globalThis[area].getItem(key);
+    return act();
   } catch {
     return null;
   }
 }
+
+/** @param {string} key @param {Area} [area] */
+export const read = (key, area = "localStorage") => tried(() => globalThis[area].getItem(key));
 
 /** Parse stored JSON; null if it is not valid. @param {string | null} text @returns {any} */
-export function parsed(text) {
-  try {
-    return JSON.parse(text ?? "null");
-  } catch {
-    return null;
-  }
-}
+export const parsed = (text) => tried(() => JSON.parse(text ?? "null"));
 
 /** @param {string} key @param {string} value @param {Area} [area] */
-export function write(key, value, area = "localStorage") {
-  try {
-    globalThis[area].setItem(key, value);
-  } catch {
-    // Refused, or full: see above.
-  }
-}
+export const write = (key, value, area = "localStorage") => tried(() => globalThis[area].setItem(key, value));
 
 /** @param {string} key */
-export function remove(key) {
-  try {
-    localStorage.removeItem(key);
-  } catch {
-    // Refused: then nothing was kept either.
-  }
-}
+export const remove = (key) => tried(() => localStorage.removeItem(key));

@@ -11,7 +11,6 @@ export function attachTheme(settings, repaint) {
     const dark = theme === "auto" ? system.matches : theme === "dark";
     if (button.getAttribute("aria-pressed") === String(dark) && document.documentElement.dataset.theme) return;
     document.documentElement.dataset.theme = dark ? "dark" : "light";
-    document.body.classList.toggle("body--dark", dark);
     button.setAttribute("aria-pressed", String(dark));
     repaint();
   };
