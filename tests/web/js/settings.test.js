@@ -112,6 +112,13 @@ test("the defaults can be had back", () => {
   assert.deepEqual(settings.values, DEFAULTS);
 });
 
+test("the defaults leave a switch user the switch, with its key and times", () => {
+  const settings = new Settings();
+  settings.change({ panel: "switch", switchKey: "F8", dwellS: 3, swapAxes: true });
+  settings.reset();
+  assert.deepEqual(settings.values, { ...DEFAULTS, panel: "switch", switchKey: "F8", dwellS: 3 });
+});
+
 test("nothing of a person who is deleted stays in the browser", () => {
   const settings = new Settings();
   settings.become(ZOE);

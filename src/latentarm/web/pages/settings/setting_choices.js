@@ -2,6 +2,8 @@
 
 import { say } from "../layout/words.js";
 
+/** Fields that need no typing, and that a switch can set without losing itself. */
+const FIELDS = ":is(select, input[type=radio], input[type=checkbox], input[type=range]):not([data-not-scanned] *)";
 /** How many steps a slider has for a switch, at most. */
 const STEPS = 10;
 
@@ -14,7 +16,7 @@ export function settingChoices(form, group) {
   return [...form.querySelectorAll("fieldset")].flatMap((section, number) => {
     const id = `settings-${number}`;
     /** @type {NodeListOf<HTMLInputElement | HTMLSelectElement>} */
-    const fields = section.querySelectorAll("select, input[type=radio], input[type=checkbox], input[type=range]");
+    const fields = section.querySelectorAll(FIELDS);
     const inner = () => [...fields].map((field, at) => fieldChoice(field, `${id}-${at}`, group));
     return fields.length ? [group(id, wordsOf(section.querySelector("legend")), inner)] : [];
   });

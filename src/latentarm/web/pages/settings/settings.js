@@ -140,9 +140,10 @@ export class Settings extends EventTarget {
     this.dispatchEvent(new Event("change"));
   }
 
-  /** The defaults again; what was measured stays. */
+  /** The defaults again; what was measured stays, and a switch as it is used. */
   reset() {
-    this.change({ ...DEFAULTS, fit: this.values.fit });
+    const used = this.values.panel === "switch" ? storage.parsed(JSON.stringify(this.values, OF_SWITCH)) : {};
+    this.change({ ...DEFAULTS, ...used, fit: this.values.fit });
   }
 
   get _key() {
