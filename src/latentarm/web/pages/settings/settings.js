@@ -84,7 +84,8 @@ export class Settings extends EventTarget {
     this.person = personIn(storage.read(PERSON_KEY));
     /** True after a hand was used, false after a switch. */
     this.byHand = false;
-    this._use(valid(storage.read(this._key)));
+    this.own = this.values = valid(storage.read(this._key));
+    this._use(this.own);
   }
 
   get name() {
