@@ -63,6 +63,7 @@ SETTLE_MS = 800
 EPISODES = 3
 MOST_STARTS = 5
 LEARNING_MS = 120_000
+EXERCISE_S = 25.0
 TREES = {
     "Drive": ("drive-ready", "body"),
     "Drive, with a switch": ("drive-switch", "#controls"),
@@ -74,7 +75,7 @@ TREES = {
     "History": ("history", "main"),
 }
 """Pages as a screen reader has them: of which state, and which part: what surrounds it is the same on all."""
-PASSING = ("drive", "drive-practice")
+PASSING = ("drive", "drive-ready", "drive-practice")
 """States that end by themselves, or when the page is sized anew: reached for each picture."""
 BEGUN = "#answer-cancel, #working-cancel, #discard, #trial-discard"
 
@@ -134,9 +135,15 @@ def merge(into: dict[str, Any], changes: dict[str, Any]) -> None:
             into[key] = value
 
 
+def skip_practice(visit: Visit) -> None:
+    """Skip it, where it is still offered."""
+    if visit.button("practice.skip").is_visible():
+        visit.button("practice.skip").click()
+
+
 def ready(visit: Visit) -> None:
     """Enabled, and nothing pressed."""
-    visit.button("practice.skip").click()
+    skip_practice(visit)
     enable(visit.page)
 
 
@@ -204,23 +211,30 @@ def fit_exercise(visit: Visit) -> None:
 
 def fit_result(visit: Visit) -> None:
     """What was measured of a hand that did every exercise."""
+    page = visit.page
+    size = page.viewport_size
+    # A small picture is drawn without a pause: after one an exercise begins anew.
+    page.set_viewport_size({"width": 360, "height": 480})
     fit_exercise(visit)
     for to in ((0.0, 0.0), (0.9, 0.0), (0.0, 0.8), (-0.7, 0.0), (0.0, -0.6)):
-        task = visit.page.locator("#fit-task").inner_text()
-        push(visit.page, *to)
-        while (
-            visit.page.locator("#fit-task").inner_text() == task
-            and not visit.page.locator("#result").is_visible()
-        ):
-            visit.page.wait_for_timeout(100)
-        visit.page.mouse.up()
-    visit.page.locator("#result").wait_for()
+        task = page.locator("#fit-task")
+        before = task.inner_text()
+        push(page, *to)
+        end_s = time.monotonic() + EXERCISE_S
+        while task.is_visible() and task.inner_text() == before and time.monotonic() < end_s:
+            page.wait_for_timeout(100)
+        page.mouse.up()
+        if task.is_visible() and task.inner_text() == before:
+            page.locator("#fit-skip").click()
+    page.locator("#result").wait_for()
+    if size:
+        page.set_viewport_size(size)
 
 
 def driving(visit: Visit) -> None:
     """With help, under way to a goal; the stick stays pushed."""
     page = visit.page
-    visit.button("practice.skip").click()
+    skip_practice(visit)
     enable(page)
     page.evaluate("scrollTo(0, 0)")
     box = page.locator("#stick").bounding_box()
@@ -392,7 +406,7 @@ def stopped(visit: Visit) -> None:
 
 def watching(visit: Visit) -> None:
     """A page that watches while another one drives."""
-    visit.button("practice.skip").click()
+    skip_practice(visit)
     visit.page.locator("#release").dispatch_event("click")
     other = visit.page.context.new_page()
     other.goto(visit.page.url)

@@ -19,5 +19,6 @@ export function attachTheme(settings, repaint) {
     settings.change({ theme: dark ? "light" : "dark" });
   });
   system.addEventListener("change", show);
+  matchMedia("(forced-colors: active)").addEventListener("change", repaint);
   whenever(settings, ["change"], show);
 }
