@@ -127,11 +127,11 @@ def told(visit: Visit, path: str = "", **changes: Any) -> None:
 
 
 def merge(into: dict[str, Any], changes: dict[str, Any]) -> None:
-    """Replace parts of a message, at any depth."""
+    """Replace parts of a message, at any depth; things are left out of it while they stand still."""
     for key, value in changes.items():
         if isinstance(value, dict) and isinstance(into.get(key), dict):
             merge(into[key], value)
-        else:
+        elif key != "things":
             into[key] = value
 
 
@@ -191,10 +191,10 @@ def disconnected(visit: Visit) -> None:
 
 
 def things_to_tell(visit: Visit) -> None:
-    """Where things are, to be shown with the tool, and saved poses."""
+    """Where things are, to be shown with the tool, and saved poses: at a task with things."""
     seen = [("cup", "seen", 7.0), ("plate", "unseen", 0.0), ("bowl", "doubted", 1.0)]
     things = [{"name": name, "seen": how, "age_s": age, "source": "tag"} for name, how, age in seen]
-    told(visit, things={"poses": [], "grains": [], "seen": things})
+    told(visit, things={"seen": things})
     visit.page.locator("#poses-open").click()
 
 
