@@ -75,7 +75,7 @@ TREES = {
     "History": ("history", "main"),
 }
 """Pages as a screen reader has them: of which state, and which part: what surrounds it is the same on all."""
-PASSING = ("drive", "drive-ready", "drive-practice")
+PASSING = ("drive", "drive-ready")
 """States that end by themselves, or when the page is sized anew: reached for each picture."""
 BEGUN = "#answer-cancel, #working-cancel, #discard, #trial-discard"
 
