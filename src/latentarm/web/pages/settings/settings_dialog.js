@@ -32,6 +32,7 @@ export function attachSettingsDialog(settings) {
     for (const text of /** @type {NodeListOf<HTMLElement>} */ (form.querySelectorAll("[data-shows]"))) {
       const name = text.dataset.shows ?? "";
       text.textContent = sliderWords(name, Number(settings.values[/** @type {keyof Values} */ (name)]));
+      /** @type {HTMLInputElement} */ (form.elements.namedItem(name)).ariaValueText = text.textContent;
     }
   };
 
