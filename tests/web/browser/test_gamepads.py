@@ -82,7 +82,7 @@ const beats = setInterval(() => {
 }, 16);
 setTimeout(() => clearInterval(beats), 800);
 """
-"""A switch adapter that repeats at 30 Hz while it is held: its third press counts, its fourth ends that motion."""
+"""A switch adapter that repeats at 30 Hz while held: its third press counts, its fourth ends that motion."""
 
 
 def test_a_switch_adapter_that_repeats_while_it_is_held_stops_the_arm_and_is_said(page, arm, press_enable):
