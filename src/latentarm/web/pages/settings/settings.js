@@ -1,6 +1,6 @@
 /** Each person's settings, kept in this browser under their id; `person_sync.js` keeps it on the server as well. */
 
-import { validMappings } from "./pads.js";
+import { EVERY_STOP, validMappings } from "./pads.js";
 import * as storage from "./storage.js";
 
 /** @template T @typedef {{usual: T, valid: (value: any) => T}} Setting its default, and what is made of a value of its type */
