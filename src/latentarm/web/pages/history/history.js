@@ -129,8 +129,7 @@ async function showRecordings() {
     if (one.in_use) tools[1].disabled = true;
     return rowOf(one.title || one.name, [one.title ? one.name : "", by].filter(Boolean).join(" · "), [figures], tools);
   });
-  byId("recordings").replaceChildren(...rows);
-  if (!rows.length) byId("recordings").append(create("li", { className: "muted", textContent: say("history.no_recordings") }));
+  byId("recordings").replaceChildren(...(rows.length ? rows : [create("li", { className: "muted", textContent: say("history.no_recordings") })]));
 }
 
 /** Buttons that rename and delete. @param {string} label @param {string} path @param {string} title as it is now */
