@@ -158,7 +158,8 @@ class Participant:
         assert answer.json()["to"] == "/"
         assert 'id="stick"' in self.client.get("/").text
         with Line(self.origin, self.delay_s) as line, self.connected(sock=line.end) as socket:
-            self.push(socket, lambda: self.state.get("phase") in ("ready", "moving"), [0.0, 0.0])
+            enabled = ("ready", "moving")
+            self.push(socket, lambda: bool(self.told) or self.state.get("phase") in enabled, [0.0, 0.0])
             yield
             self.push(socket, lambda: bool(self.told), [0.0, 1.0])
 
