@@ -118,7 +118,7 @@ class Participant:
         does = {
             "consent": self.consent,
             "practice": self.ready,
-            "trial": self.drive,
+            "trial": self.try_drive,
             "questions": self.answer,
         }
         while (part := self.part) != "finished":
@@ -137,15 +137,15 @@ class Participant:
             additional_headers={"cookie": cookie},
             **options,
         ) as socket:
-            listener = threading.Thread(target=self._listen, args=[socket], daemon=True)
-            listener.start()
+            self.listener = threading.Thread(target=self._listen, args=[socket], daemon=True)
+            self.listener.start()
             try:
                 with suppress(ConnectionClosed):
                     socket.send(json.dumps({"type": "hello", "version": 1}))
                 yield socket
             finally:
                 socket.close()
-                listener.join()
+                self.listener.join()
 
     @contextmanager
     def driving(self) -> Generator[None]:
@@ -163,10 +163,14 @@ class Participant:
             yield
             self.push(socket, lambda: bool(self.told), [0.0, 1.0])
 
-    def drive(self) -> None:
-        """Drive until the study says that the drive is over."""
+    def try_drive(self) -> None:
+        """Drive until the study says that the drive is over, or the connection has ended."""
         with self.driving():
             pass
+
+    def drive(self) -> None:
+        """Drive until the study says that the drive is over."""
+        self.try_drive()
         assert self.told == ["drive_over"]
 
     def _listen(self, socket: ClientConnection) -> None:
@@ -182,7 +186,7 @@ class Participant:
         """Send this input until something is so; also enable the arm."""
         end_s, sent = time.monotonic() + 60.0, int(time.monotonic() * 1000)
         with suppress(ConnectionClosed):
-            while not until():
+            while not until() and self.listener.is_alive():
                 assert time.monotonic() < end_s, f"it never came to that: {self.state}"
                 enabled = self.state.get("phase") in ("ready", "moving")
                 if self.state:
