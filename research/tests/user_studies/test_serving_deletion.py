@@ -95,6 +95,13 @@ def test_a_code_that_nobody_has_is_refused(folder: Path, capsys: pytest.CaptureF
     assert main(["study", "delete", str(folder)]) == 2
     assert main(["study", "delete", str(folder), "--before", "tomorrow"]) == 2
     assert "Nobody" in capsys.readouterr().err
+    store = Store(folder / "study.sqlite")
+    for link in store.open_places(5)[3:]:
+        store.finish(str(store.arrive(link, "", 0.0)), "SAME")
+    assert main(["study", "delete", str(folder), "--code", "SAME"]) == 2
+    assert "2 people have the code SAME" in capsys.readouterr().err
+    assert len(store.drives()) == 5
+    store.close()
 
 
 @pytest.mark.slow

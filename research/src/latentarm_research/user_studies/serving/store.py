@@ -171,8 +171,16 @@ class Store:
         return self._delete(Person.key == key)
 
     def withdraw_by_code(self, code: str) -> list[Deleted]:
-        """Delete the person with this code in their link or at the end, or id at a recruiting site."""
-        return self._delete(or_(Person.link == code, Person.completion == code))
+        """Delete the person with this code in their link or at the end, or id at a recruiting site.
+
+        Raises a `UserError` where several have it, as everybody may get the same code at the end.
+        """
+        with self._change() as session:
+            theirs = or_(Person.link == code, Person.completion == code)
+            keys = list(session.scalars(select(Person.key).where(theirs)))
+        if len(keys) > 1:
+            raise UserError(f"{len(keys)} people have the code {code}: name that of a person's own link.")
+        return self._delete(Person.key.in_(keys))
 
     def withdraw_unseen_since(self, when_s: float) -> list[Deleted]:
         """Delete everybody who was last there before a time, s since 1970."""
