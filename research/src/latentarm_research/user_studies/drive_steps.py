@@ -38,13 +38,15 @@ class StepLog:
     """The steps so far."""
 
     rows: list[FloatArray] = field(default_factory=list)
-    labels: list[tuple[int, dict[str, Any]]] = field(default_factory=list)  # from which step on they hold
+    # by name: from which step on, and what
+    labels: dict[str, list[tuple[int, Any]]] = field(default_factory=dict)
 
     def add(self, state: SceneState, record: StepRecord) -> None:
         """Add a step: how things stood, and what was decided."""
-        labels = _labels(state, record)
-        if not self.labels or self.labels[-1][1] != labels:
-            self.labels.append((len(self.rows), labels))
+        for name, value in _labels(state, record).items():
+            changes = self.labels.setdefault(name, [])
+            if not changes or changes[-1][1] != value:
+                changes.append((len(self.rows), value))
         self.rows.append(np.concatenate([np.ravel(part) for part in _parts(state, record)]))
 
     def write(self, path: Path, seed: int) -> None:
@@ -143,14 +145,16 @@ def _parts(state: SceneState, record: StepRecord) -> Iterator[Any]:
 
 
 def _steps(
-    values: FloatArray, labels: Sequence[tuple[int, Mapping[str, Any]]], count: int
+    values: FloatArray, labels: Mapping[str, Sequence[tuple[int, Any]]], count: int
 ) -> Iterator[tuple[SceneState, StepRecord]]:
-    at, changes = 0, iter(labels)
-    following = next(changes, None)
-    now: Mapping[str, Any] = {}
+    at = 0
+    now: dict[str, Any] = {}
+    changes: dict[int, dict[str, Any]] = {}
+    for name, theirs in labels.items():
+        for index, value in theirs:
+            changes.setdefault(index, {})[name] = value
     for index in range(count):
-        if following is not None and following[0] == index:
-            now, following = following[1], next(changes, None)
+        now.update(changes.get(index, {}))
         step, used = _step(values[at:], now)
         at += used
         yield step

@@ -1,0 +1,53 @@
+"""The steps of a drive are read as they were written."""
+
+from dataclasses import fields
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from latentarm.core.types import Command, Pose, StepRecord, Stop
+from latentarm.robots.scene.scene import SceneState
+from latentarm_research.user_studies.drive_steps import StepLog, read_steps
+
+
+def a_step(rng: np.random.Generator, number: int) -> tuple[SceneState, StepRecord]:
+    def pose() -> Pose:
+        return Pose(rng.normal(size=3), rng.normal(size=(3, 3)))
+
+    touched = [("plate", "tool"), ("bite", "plate")][: number % 3]
+    state = SceneState(
+        0.01 * number, pose(), {"plate": pose(), "bite": pose()}, {"plate": 0.0, "bite": float(rng.normal())},
+        frozenset(["bite"] if number > 3 else []), frozenset(), frozenset([("bite", "plate")][: number % 2]),
+        {"rice": rng.normal(size=(4, 3))}, {pair: float(rng.uniform()) for pair in touched},
+    )  # fmt: skip
+    arrays = {name: rng.normal(size=2) for name in ("input", "latent")}
+    joints = {name: rng.normal(size=7) for name in ("state", "action_human", "action_assist")}
+    stop = Stop("The arm stops.") if number == 2 else None
+    command = Command(rng.normal(size=7), 0.0, stop, ("speed",) if number % 2 else ())
+    record = StepRecord(
+        time_s=0.01 * number, alpha=0.3, belief=rng.uniform(size=3), mode=number % 2, command=command,
+        **arrays, **joints,
+    )  # fmt: skip
+    return state, record
+
+
+def plain(value: Any) -> Any:
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    if isinstance(value, dict):
+        return {name: plain(one) for name, one in value.items()}
+    if isinstance(value, Pose | SceneState | StepRecord | Command):
+        return {one.name: plain(getattr(value, one.name)) for one in fields(value)}
+    return None if value != value else value
+
+
+def test_steps_are_read_as_they_were_written(tmp_path: Path) -> None:
+    rng, log = np.random.default_rng(43), StepLog()
+    steps = [a_step(rng, number) for number in range(8)]
+    for state, record in steps:
+        log.add(state, record)
+    log.write(tmp_path / "drive.safetensors", 5)
+    seed, found = read_steps(tmp_path / "drive.safetensors")
+    assert seed == 5
+    assert plain([list(map(plain, step)) for step in found]) == [list(map(plain, step)) for step in steps]
