@@ -119,7 +119,21 @@ test("the defaults leave a switch user the switch, with its key and times", () =
   assert.deepEqual(settings.values, { ...DEFAULTS, panel: "switch", switchKey: "F8", dwellS: 3 });
 });
 
+test("settings of version 0.1.0 are found by the name, once", () => {
+  keep("Ada", { panel: "dpad" });
+  const settings = new Settings();
+  settings.byHand = true;
+  settings.become(ADA);
+  assert.equal(settings.values.panel, "dpad");
+  settings.change({ panel: "switch" });
+  settings.become(null);
+  assert.equal(settings.values.panel, DEFAULTS.panel);
+  settings.become(ADA);
+  assert.equal(settings.values.panel, "switch");
+});
+
 test("nothing of a person who is deleted stays in the browser", () => {
+  keep("Zoë Müller", { panel: "dpad" });
   const settings = new Settings();
   settings.become(ZOE);
   settings.change({ dwellS: 2 });

@@ -99,7 +99,8 @@ export class Settings extends EventTarget {
     this.person = person;
     if (person) storage.write(PERSON_KEY, JSON.stringify(person));
     else storage.remove(PERSON_KEY);
-    this._use(valid(storage.read(this._key)));
+    // Version 0.1.0 kept settings under people's names.
+    this._use(valid(storage.read(this._key) ?? (person && storage.read(SETTINGS_KEY + person.name))));
     this.dispatchEvent(new Event("person"));
     this.dispatchEvent(new Event("change"));
   }
@@ -127,7 +128,7 @@ export class Settings extends EventTarget {
 
   /** Nothing of a person stays in this browser. @param {Person} person */
   forget(person) {
-    for (const key of [SETTINGS_KEY, UNSENT_KEY]) storage.remove(key + person.id);
+    for (const key of [SETTINGS_KEY + person.id, SETTINGS_KEY + person.name, UNSENT_KEY + person.id]) storage.remove(key);
     if (this.person?.id === person.id) this.become(null);
   }
 
