@@ -55,6 +55,8 @@ def test_a_participant_goes_through_a_study_with_a_learned_model_and_is_reported
     assert b"127.0.0.1" not in (out / "study.sqlite").read_bytes()
     os.chdir(tmp_path)
     assert main(["study", "analyse", str(out), "--out", str(tmp_path / "report")]) == 0
+    assert main(["study", "replay", str(out)]) == 0
+    assert "Drives that come out the same: 2 of 2." in capsys.readouterr().out
     page = (tmp_path / "report" / "report.html").read_text()
     assert "1 real person (preset smoke)" in page
     assert "simulated" not in page
