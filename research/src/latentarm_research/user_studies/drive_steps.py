@@ -96,8 +96,11 @@ def measured_again(path: Path, kept: DriveRecord, task: StudyTask) -> DriveRecor
     """The record of a drive from the file of its steps. Raises a `UserError` where this is none."""
     seed, steps = read_steps(path)
     measuring = Measuring(scene_of(task.scene), kept.choice, seed, float("inf"))
-    for state, record in steps:
-        measuring.sees(state, record)
+    try:
+        for state, record in steps:
+            measuring.sees(state, record)
+    except (ValueError, LookupError, TypeError, AttributeError) as error:
+        raise UserError(f"{path} does not hold the steps of a drive.") from error
     where = (kept.condition, kept.order, task, kept.trial, kept.attempt)
     return record_of(kept.people_are, kept.person, *where, measuring.driven())
 
