@@ -108,8 +108,8 @@ def fresh(visit: Visit) -> None:
     """The Drive page as a new person finds it."""
 
 
-def told(visit: Visit, path: str = "", **changes: Any) -> None:
-    """Open a page that hears another state of the arm than the server says."""
+def open_with_state(visit: Visit, path: str = "", **changes: Any) -> None:
+    """Open a page, with some fields of the server's states replaced."""
 
     def hear(socket: WebSocketRoute) -> None:
         def changed(text: str | bytes) -> None:
@@ -148,27 +148,27 @@ def ready(visit: Visit) -> None:
 
 def held_back(visit: Visit) -> None:
     """Slower than asked, and why."""
-    told(visit, phase="moving", held_back="joint_position")
+    open_with_state(visit, phase="moving", held_back="joint_position")
 
 
 def done(visit: Visit) -> None:
     """The task is done."""
-    told(visit, task={"outcome": "success", "time_s": 41.0})
+    open_with_state(visit, task={"outcome": "success", "time_s": 41.0})
 
 
 def failed(visit: Visit) -> None:
     """Something was spilled."""
-    told(visit, task={"outcome": "failure", "why": {"code": "spilled", "thing": "cup"}})
+    open_with_state(visit, task={"outcome": "failure", "why": {"code": "spilled", "thing": "cup"}})
 
 
 def copilot_asks(visit: Visit) -> None:
     """Somebody asks to be co-pilot, and somebody else to drive."""
-    told(visit, copilot_asking={"id": "b", "name": PERSON}, asking="c", asking_name=2)
+    open_with_state(visit, copilot_asking={"id": "b", "name": PERSON}, asking="c", asking_name=2)
 
 
 def unconnected(visit: Visit) -> None:
     """A real arm that has lost its connection."""
-    told(visit, lost=True, phase="disengaged", reason={"code": "arm_off", "parameters": {}})
+    open_with_state(visit, lost=True, phase="disengaged", reason={"code": "arm_off", "parameters": {}})
 
 
 def disconnected(visit: Visit) -> None:
@@ -190,10 +190,10 @@ def disconnected(visit: Visit) -> None:
 
 
 def things_to_tell(visit: Visit) -> None:
-    """Where things are, to be shown with the tool, and saved poses: at a task with things."""
+    """Drive at a task with things: touch-to-locate buttons and saved poses."""
     seen = [("cup", "seen", 7.0), ("plate", "unseen", 0.0), ("bowl", "doubted", 1.0)]
     things = [{"name": name, "seen": how, "age_s": age, "source": "tag"} for name, how, age in seen]
-    told(visit, things={"seen": things})
+    open_with_state(visit, things={"seen": things})
     visit.page.locator("#poses-open").click()
 
 
@@ -209,7 +209,7 @@ def fit_exercise(visit: Visit) -> None:
 
 
 def fit_result(visit: Visit) -> None:
-    """What was measured of a hand that did every exercise."""
+    """The result page after a hand has done every exercise."""
     page = visit.page
     size = page.viewport_size
     # A small picture is drawn without a pause: after one an exercise begins anew.

@@ -60,7 +60,7 @@ def recorded(definition: Definition) -> Recorded:
 
 
 def tables_of(command: Sequence[str], dataset: Path, out: Path) -> dict[str, list[dict[str, str]]]:
-    """What a script makes of a dataset, by table."""
+    """Run an analysis script on a dataset; return its output by table."""
     *start, script = command
     subprocess.run([*start, str(dataset / "analysis" / script), str(out)], check=True, cwd=out.parent)
     return {path.stem: list(csv.DictReader(path.read_text().splitlines())) for path in out.glob("*.csv")}

@@ -58,7 +58,7 @@ def folder(tmp_path: Path) -> Path:
 
 
 def kept_of(folder: Path, link: str) -> tuple[dict[str, list[dict[str, Any]]], list[bytes]]:
-    """What is kept of the person with a link: as they get it, and as bytes to look for."""
+    """All data of the person with this link: as they download it, and as bytes to search for."""
     store = Store(folder / "study.sqlite")
     kept = store.everything(str(store.arrive(link, "", 0.0)))
     store.close()

@@ -22,7 +22,7 @@ from study_line import Line
 from study_participant import MODES, TWIST, Participant, definition, next_link, participant, serving
 
 FAULTS = int(os.environ.get("LATENTARM_STUDY_FAULTS", "2"))
-"""How often each thing breaks."""
+"""Number of faults of each kind."""
 
 pytestmark = pytest.mark.slow
 

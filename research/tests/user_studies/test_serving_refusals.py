@@ -209,7 +209,7 @@ def test_a_flood_of_requests_is_refused_and_logged(
             assert person.part == "consent"
             with participant(address) as stranger:
                 said = [stranger.client.get("/study").status_code for _ in range(FLOOD)]
-            # Who takes part is not kept out by strangers.
+            # Strangers do not use up the allowance of participants.
             assert person.part == "consent"
             own = [person.client.get("/study").status_code for _ in range(FLOOD // 10)]
         spent_s = time.monotonic() - begun_s

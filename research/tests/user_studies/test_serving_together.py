@@ -13,7 +13,7 @@ from latentarm_research.user_studies.serving.study_files import STEPS
 from study_participant import next_link, participant, serving
 
 PEOPLE = int(os.environ.get("LATENTARM_STUDY_PEOPLE", "2"))
-"""How many there are."""
+"""Number of participants."""
 
 EACH_WAY_S = 0.075  # a round trip of 150 ms
 

@@ -115,7 +115,7 @@ def test_a_stick_that_is_held_while_its_time_never_moved_keeps_driving(
     ("pad", "said"),
     [
         ("{ mapping: '' }", "Every button of “pad 0” stops the arm"),
-        # A trigger that rests at -1 where a stick is looked for, and a stick that rests off its middle.
+        # A trigger at rest (-1) on an axis taken for the stick, and a stick that rests off centre.
         ("{ axes: [0, -1, 0] }", "The gamepad “pad 0” moves nothing: its stick is not at rest"),
         ("{ axes: [0.4, 0, 0] }", "The gamepad “pad 0” moves nothing: its stick is not at rest"),
     ],

@@ -93,7 +93,7 @@ def begin(scene: SceneTask, choice: int, seed: int) -> Beginning:
 
 
 def measured_again(path: Path, kept: DriveRecord, task: StudyTask) -> DriveRecord:
-    """The record of a drive from the file of its steps. Raises a `UserError` where this is none."""
+    """Compute a drive's record from its steps file; UserError if the file is not valid."""
     seed, steps = read_steps(path)
     measuring = Measuring(scene_of(task.scene), kept.choice, seed, float("inf"))
     try:

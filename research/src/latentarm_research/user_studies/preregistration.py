@@ -1,4 +1,4 @@
-"""What is settled before the first person comes, as one document with its hash; and what differs later."""
+"""Preregistration of a study: one hashed document, and a list of later departures from it."""
 
 import hashlib
 import json
@@ -34,7 +34,7 @@ def preregistration(definition: Definition, power: Mapping[str, Any] | None) -> 
 
 
 def differences(path: Path, definition: Definition) -> list[str]:
-    """What differs between a preregistration and a study as it is analysed now, each in a sentence.
+    """List each difference between a preregistration and the study as analysed now, as a sentence.
 
     Raises a `UserError` where the document was changed since it was written.
     """

@@ -1,4 +1,4 @@
-"""Where a study's database is, and how it is opened: SQLite in a file, or PostgreSQL on a server."""
+"""Locate and open a study's database: SQLite in a file, or PostgreSQL on a server."""
 
 from pathlib import Path
 from typing import Any, Final

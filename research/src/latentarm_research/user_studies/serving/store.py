@@ -195,7 +195,7 @@ class Store:
                 session.execute(update(Place).where(Place.code == one.link).values(code=one.next_code))
             session.execute(delete(Person).where(who))
         if gone and self._engine.dialect.name == "sqlite":
-            # What was deleted may still stand in unused parts of pages; in the new file it does not.
+            # VACUUM rewrites the file: deleted rows can remain in the slack of the old pages.
             with closing(self._engine.raw_connection()) as connection:
                 connection.cursor().execute("VACUUM")
         return gone
