@@ -146,6 +146,20 @@ def test_a_request_to_drive_and_a_recording_leave_the_stick_and_stop_on_the_scre
     arm.wait(lambda: not arm.state["recording"]["on"] and arm.state["watchers"] == 2)
 
 
+@pytest.mark.parametrize("name", SIZES)
+def test_a_request_of_a_copilot_leaves_the_whole_sentence_on_the_screen(opened, open_page, name):
+    page = opened(SIZES[name])
+    ask_to_drive(page)
+    with set_up(open_page()) as dialog:
+        dialog.get_by_role("button", name="Ask to be co-pilot").click()
+    page.get_by_role("button", name="Say yes to").wait_for()
+    assert page.evaluate(CUT_OFF, ["#stop", "#enable", "#status", "#copilot-accept", "#copilot-end"]) == []
+    assert page.locator("#status").evaluate("({ scrollHeight, clientHeight }) => scrollHeight <= clientHeight")
+    page.get_by_role("button", name="Say no").click()
+    page.locator("#copilot-accept").wait_for(state="hidden")
+    assert page.evaluate(CUT_OFF, ALWAYS) == []
+
+
 @pytest.mark.parametrize("path", ["", "personalise", "teach"])
 @pytest.mark.parametrize("name", SIZES)
 def test_a_script_from_right_to_left_breaks_nothing(opened, address, name, path):
