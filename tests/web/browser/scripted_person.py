@@ -40,7 +40,9 @@ GIVES_UP_S: Final = 300.0
 GRIPS_S: Final = 2.0
 """The gripper takes no longer than this to do what it was asked."""
 ACROSS: Final = 0
-"""The pair of directions that is parallel to the table."""
+"""The pair of directions that is parallel to the table: Down is back, towards the person."""
+DOWN: Final = 5
+"""Down towards the table comes after all other ways."""
 
 
 @dataclass(frozen=True)
@@ -61,12 +63,12 @@ class Left:
 
     @property
     def order(self) -> int:
-        """Up is driven first, then across, then turns, and down last."""
+        """Up first, then back, aside, and forward, so that things are passed; then turns, and down last."""
         if self.unit == "°":
-            return 2
+            return 4
         if self.pair == ACROSS:
-            return 1
-        return 0 if self.direction == "Up" else 3
+            return {"Down": 1, "Up": 3}.get(self.direction, 2)
+        return 0 if self.direction == "Up" else DOWN
 
 
 class Person:
@@ -133,6 +135,6 @@ def choose(left: list[Left], pair: int) -> Left | None:
         if not wanted:
             continue
         first = min(wanted, key=lambda one: (one.order, one.pair != pair, -one.amount))
-        aside = [one for one in left if one.unit == "cm" and one.order < 3 and one.amount >= 0.5]
-        return max(aside, key=lambda one: one.amount) if first.order == 3 and aside else first
+        aside = [one for one in left if one.unit == "cm" and one.order < DOWN and one.amount >= 0.5]
+        return max(aside, key=lambda one: one.amount) if first.order == DOWN and aside else first
     return None
