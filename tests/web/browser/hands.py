@@ -126,6 +126,11 @@ class Finger(Pointer):
 
     touch = True
 
+    def __init__(self, page: Page) -> None:
+        super().__init__(page)
+        # A touch ends with the session in which it began.
+        self._screen = page.context.new_cdp_session(page)
+
     def push(self, direction: str) -> None:
         self.presses += 1
         middle, end = _way(self.page, direction)
@@ -136,10 +141,8 @@ class Finger(Pointer):
         self._touch("touchEnd")
 
     def _touch(self, kind: str, *points: tuple[float, float]) -> None:
-        screen = self.page.context.new_cdp_session(self.page)
         places = [{"x": x, "y": y} for x, y in points]
-        screen.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": places})
-        screen.detach()
+        self._screen.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": places})
 
     def _click(self, where: str) -> None:
         self.presses += 1
