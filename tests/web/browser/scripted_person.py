@@ -40,7 +40,7 @@ GIVES_UP_S: Final = 300.0
 GRIPS_S: Final = 2.0
 """The gripper takes no longer than this to do what it was asked."""
 ACROSS: Final = 0
-"""The pair of directions that is parallel to the table: Down is back, towards the person."""
+"""The pair of directions that is parallel to the table. The person faces the arm: Up is back to its base."""
 DOWN: Final = 5
 """Down towards the table comes after all other ways."""
 
@@ -67,7 +67,7 @@ class Left:
         if self.unit == "°":
             return 4
         if self.pair == ACROSS:
-            return {"Down": 1, "Up": 3}.get(self.direction, 2)
+            return {"Up": 1, "Down": 3}.get(self.direction, 2)
         return 0 if self.direction == "Up" else DOWN
 
 
