@@ -20,6 +20,8 @@ const PAIRS = {
 const LEAST = { shift_m: 0.003, turn_rad: 0.05 };
 /** From here on, tenths of a centimetre say nothing. */
 const WHOLE_CM = 10;
+/** Smaller ways come after all others, in multiples of what need not be driven. */
+const LARGE = 4;
 const WORDS_MS = 250;
 
 /** A prediction that brings the tool nearer by less is not worth a push, m. */
@@ -37,7 +39,8 @@ export function movedPart(pair, sent) {
  * @param {ToGo} toGo
  * @param {string} pair its name
  * @param {(x: number, y: number) => number[]} shaped from stick to what is sent in it
- * @returns {{direction: Direction, text: string, size: number}[]} `size`: in multiples of what need not be driven
+ * @returns {{direction: Direction, text: string, size: number, turn: number}[]} `size`: in multiples of what need not be
+ *   driven; `turn`: 0 for what comes first, up and back to the arm's base, to 2 for what comes last, down and forward
  */
 export function leftToGo(toGo, pair, shaped) {
   return DIRECTION_NAMES.flatMap((direction) => {
@@ -46,9 +49,10 @@ export function leftToGo(toGo, pair, shaped) {
     if (far < LEAST[part.of]) return [];
     const name = say(`directions.${direction}`);
     const size = far / LEAST[part.of];
-    if (part.of === "turn_rad") return [{ direction, size, text: say("to_go.turn", { direction: name, degrees: Math.round((180 * far) / Math.PI) }) }];
+    if (part.of === "turn_rad") return [{ direction, size, turn: 1, text: say("to_go.turn", { direction: name, degrees: Math.round((180 * far) / Math.PI) }) }];
     const centimetres = sayNumber(100 * far, 100 * far < WHOLE_CM ? 1 : 0);
-    return [{ direction, size, text: say("to_go.length", { direction: name, centimetres }) }];
+    const turn = 1 + [way, 0, -way][part.axis];
+    return [{ direction, size, turn, text: say("to_go.length", { direction: name, centimetres }) }];
   });
 }
 
@@ -66,8 +70,9 @@ function push(direction, way, switches) {
  * @param {boolean} switches
  */
 export function straightOn(ways, axes, pairs, switches) {
-  const [furthest] = [...ways[axes]].sort((one, other) => other.size - one.size);
-  if (furthest) return push(furthest.direction, furthest.text, switches);
+  const rank = (/** @type {(typeof ways)[0][0]} */ { size, turn }) => turn + (size < LARGE ? 3 : 0);
+  const [first] = [...ways[axes]].sort((one, other) => rank(one) - rank(other) || other.size - one.size);
+  if (first) return push(first.direction, first.text, switches);
   const other = ways.findIndex((left) => left.length > 0);
   return other < 0 ? null : { key: /** @type {const} */ ("status.next_pair"), parameters: { pair: say(/** @type {WordKey} */ (`axes.${pairs[other]}`)) } };
 }
