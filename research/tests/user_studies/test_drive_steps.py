@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from latentarm.core.types import Command, Pose, StepRecord, Stop
+from latentarm.core.types import Command, GripperCommand, GripperReading, Pose, StepRecord, Stop
 from latentarm.robots.scene.scene import SceneState
 from latentarm_research.user_studies.drive_steps import StepLog, read_steps
 
@@ -24,10 +24,11 @@ def a_step(rng: np.random.Generator, number: int) -> tuple[SceneState, StepRecor
     arrays = {name: rng.normal(size=2) for name in ("input", "latent")}
     joints = {name: rng.normal(size=7) for name in ("state", "action_human", "action_assist")}
     stop = Stop("The arm stops.") if number == 2 else None
-    command = Command(rng.normal(size=7), 0.0, stop, ("speed",) if number % 2 else ())
+    asked = GripperCommand(*rng.uniform(size=3).tolist()) if number > 2 else None
+    command = Command(rng.normal(size=7), 0.0, stop, ("speed",) if number % 2 else (), asked)
     record = StepRecord(
         time_s=0.01 * number, alpha=0.3, belief=rng.uniform(size=3), mode=number % 2, command=command,
-        **arrays, **joints,
+        gripper=GripperReading(float(rng.uniform()), number > 5) if number > 1 else None, **arrays, **joints,
     )  # fmt: skip
     return state, record
 
@@ -37,7 +38,7 @@ def plain(value: Any) -> Any:
         return value.tolist()
     if isinstance(value, dict):
         return {name: plain(one) for name, one in value.items()}
-    if isinstance(value, Pose | SceneState | StepRecord | Command):
+    if isinstance(value, Pose | SceneState | StepRecord | Command | GripperReading | GripperCommand):
         return {one.name: plain(getattr(value, one.name)) for one in fields(value)}
     return None if value != value else value
 

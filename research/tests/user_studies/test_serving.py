@@ -6,9 +6,11 @@ import time
 from contextlib import suppress
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from latentarm.cli import main
+from latentarm.demonstrations.dataset import read_dataset
 from latentarm_research.user_studies.recorded import read_recorded
 from study_participant import LATENT, MODES, definition, next_link, participant, serving
 
@@ -57,6 +59,12 @@ def test_a_participant_goes_through_a_study_with_a_learned_model_and_is_reported
     assert main(["study", "analyse", str(out), "--out", str(tmp_path / "report")]) == 0
     assert main(["study", "replay", str(out)]) == 0
     assert "Drives that come out the same: 2 of 2." in capsys.readouterr().out
+    assert main(["study", "export", str(out), "--out", str(tmp_path / "dataset")]) == 0
+    exported = read_dataset(next((tmp_path / "dataset" / "drives").iterdir())).episodes
+    assert {one.provenance.controller for one in exported} == {"Modes", "Latent"}
+    for episode in exported:
+        assert episode.timestamp[-1] == pytest.approx(1.0, abs=0.05)
+        assert np.ptp(episode.state, axis=0).max() > 0.01
     page = (tmp_path / "report" / "report.html").read_text()
     assert "1 real person (preset smoke)" in page
     assert "simulated" not in page

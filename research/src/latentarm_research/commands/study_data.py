@@ -16,6 +16,8 @@ from latentarm_research.commands.study_options import Database
 if TYPE_CHECKING:
     from sqlalchemy import URL
 
+    from latentarm_research.user_studies.drive_record import DriveRecord
+
 ServedFolder = Annotated[Path, arg(metavar="DIR", help="Folder of a served study.")]
 
 
@@ -68,18 +70,12 @@ def replay_study(folder: Positional[ServedFolder], database: Database = None, js
     """
     from latentarm_research.user_studies.drive_steps import measured_again
     from latentarm_research.user_studies.recorded import read_definition_of
-    from latentarm_research.user_studies.serving.store import Store
-    from latentarm_research.user_studies.serving.study_files import steps_path
 
     tasks = {task.name: task for task in read_definition_of(folder).tasks}
-    store = Store(served_database(folder, database))
-    try:
-        drives = [(key, drive) for key, theirs in store.drives().items() for drive in theirs]
-    finally:
-        store.close()
+    drives = _drives(folder, served_database(folder, database))
     differ = 0
-    for key, drive in drives:
-        again = measured_again(steps_path(folder, key, drive), drive, tasks[drive.task])
+    for drive, steps in drives:
+        again = measured_again(steps, drive, tasks[drive.task])
         if again != drive:
             differ += 1
             say(f"It differs: person {drive.person}, {drive.condition}, {drive.task} {drive.trial}.", json)
@@ -87,6 +83,19 @@ def replay_study(folder: Positional[ServedFolder], database: Database = None, js
     if json:
         print(json_format.dumps({"drives": len(drives), "differ": differ}))
     return 1 if differ else 0
+
+
+def _drives(folder: Path, database: "Path | URL") -> "list[tuple[DriveRecord, Path]]":
+    """All drives of a served study, each with the file of its steps."""
+    from latentarm_research.user_studies.serving.store import Store
+    from latentarm_research.user_studies.serving.study_files import steps_path
+
+    store = Store(database)
+    try:
+        kept = store.drives().items()
+        return [(drive, steps_path(folder, key, drive)) for key, theirs in kept for drive in theirs]
+    finally:
+        store.close()
 
 
 def served_database(folder: Path, database: str | None) -> "Path | URL":
@@ -112,16 +121,21 @@ def export_study(
 ) -> int:
     """Write a study as a Psych-DS dataset, with scripts in Python and R for the tables of its report.
 
+    Drives on the page are in it as LeRobot datasets, one for each task.
+
     For example: latentarm study export studies/eating-people
     """
     from latentarm.demonstrations.folders import staged_folder
     from latentarm_research.user_studies.export.dataset import write_dataset
-    from latentarm_research.user_studies.recorded import read_recorded
+    from latentarm_research.user_studies.recorded import DATABASE, read_recorded
 
     recorded = read_recorded(folder, database, answers)
+    served = database is not None or (folder / DATABASE).exists()
+    everyone = _drives(folder, served_database(folder, database)) if served else []
+    drives = [one for one in everyone if one[0].person in recorded.met]
     path = Path("studies", f"{recorded.definition.name}-dataset") if out is None else out
     with staged_folder(path) as part:
-        write_dataset(part, recorded)
+        write_dataset(part, recorded, drives)
     say(
         f"The dataset is in {path}/; analysis/tables.py and analysis/tables.R make the report's tables.", json
     )

@@ -6,7 +6,7 @@ are: names, and what changes seldom, such as contacts and the mode, at each step
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import astuple, dataclass, field, replace
 from pathlib import Path
 from typing import Any, Final, final
 
@@ -16,7 +16,7 @@ from safetensors.numpy import save
 
 from latentarm.core.errors import UserError
 from latentarm.core.files import written_whole
-from latentarm.core.types import Command, FloatArray, Pose, StepRecord, Stop
+from latentarm.core.types import Command, FloatArray, GripperCommand, GripperReading, Pose, StepRecord, Stop
 from latentarm.core.untrusted.documents import parse_object
 from latentarm.core.untrusted.opening import check_file
 from latentarm.robots.scene.scene import SceneState
@@ -130,6 +130,8 @@ def _labels(state: SceneState, record: StepRecord) -> dict[str, Any]:
         "stop": None if stop is None else stop.reason,
         "limited_by": list(record.command.limited_by),
         "sizes": [len(getattr(record, name)) for name in _ARRAYS],
+        "holding": None if record.gripper is None else bool(record.gripper.holding),
+        "gripper": None if record.command.gripper is None else list(astuple(record.command.gripper)),
     }
 
 
@@ -145,6 +147,8 @@ def _parts(state: SceneState, record: StepRecord) -> Iterator[Any]:
     yield record.time_s, record.alpha, record.added
     yield record.command.velocity
     yield from (getattr(record, name) for name in _ARRAYS)
+    if record.gripper is not None:
+        yield record.gripper.width_m
 
 
 def _steps(
@@ -190,9 +194,18 @@ def _step(values: FloatArray, labels: Mapping[str, Any]) -> tuple[tuple[SceneSta
     )
     step_s, alpha, added = take(3).tolist()
     stop = None if labels["stop"] is None else Stop(labels["stop"])
-    command = Command(take(labels["sizes"][0]), 0.0, stop, tuple(labels["limited_by"]))
+    asked = None if labels["gripper"] is None else GripperCommand(*labels["gripper"])
+    command = Command(take(labels["sizes"][0]), 0.0, stop, tuple(labels["limited_by"]), asked)
     arrays: dict[str, Any] = {name: take(size) for name, size in zip(_ARRAYS, labels["sizes"], strict=True)}
+    holding = labels["holding"]
+    gripper = None if holding is None else GripperReading(float(take(1)[0]), holding)
     record = StepRecord(
-        time_s=step_s, alpha=alpha, added=added, mode=labels["mode"], command=command, **arrays
+        time_s=step_s,
+        alpha=alpha,
+        added=added,
+        mode=labels["mode"],
+        command=command,
+        gripper=gripper,
+        **arrays,
     )
     return (state, record), at

@@ -1,4 +1,4 @@
-"""Writes a study as a Psych-DS dataset: CSV files, their codebook as JSON-LD, and scripts for the tables."""
+"""Writes a study as a Psych-DS dataset: CSV files, codebook, drives, and scripts for the tables."""
 
 import csv
 import shutil
@@ -13,7 +13,9 @@ from latentarm.evaluation.measures import MEASURES
 from latentarm.runs.results_folder import write_json
 from latentarm_research.user_studies.answers.items import Answer, items_of
 from latentarm_research.user_studies.definition import Definition
+from latentarm_research.user_studies.drive_record import DriveRecord
 from latentarm_research.user_studies.exclusion import counted
+from latentarm_research.user_studies.export.drives import write_drives
 from latentarm_research.user_studies.record import Trial
 from latentarm_research.user_studies.recorded import Recorded
 
@@ -53,13 +55,20 @@ VARIABLES: Final = (
     Variable("kind", "what is named: a condition that the claim is about (subject), one that it is compared"
              " with (against), or a task; without a task, all tasks with the measure"),
     Variable("name", "name of the condition or task"),
+    Variable("choice", "number of the choice that the drive was about, from 0"),
+    Variable("attempt", "number of earlier drives at this choice in this trial"),
+    Variable("ending", "why the drive ended"),
+    Variable("episode", "number of the drive's episode in the dataset drives/TASK; empty without steps"),
     Variable("factor", "factor of a 2 x 2 design"),
     Variable("level", "level of the factor, 1 or 2"),
 )  # fmt: skip
 
 
-def write_dataset(folder: Path, recorded: Recorded) -> None:
-    """Write the dataset into an empty folder."""
+def write_dataset(folder: Path, recorded: Recorded, drives: Sequence[tuple[DriveRecord, Path]] = ()) -> None:
+    """Write the dataset into an empty folder; ``drives`` of real people come with the files of their steps.
+
+    Raises a `UserError` where one of these files holds no steps of a drive.
+    """
     definition = recorded.definition
     tables = {
         "trials": (
@@ -77,6 +86,9 @@ def write_dataset(folder: Path, recorded: Recorded) -> None:
         "sides": (("claim", "kind", "name"), _sides(definition)),
         "factors": (("factor", "level", "condition"), _factors(definition)),
     }
+    if drives:
+        columns = ("person", "condition", "task", "order", "trial", "choice", "attempt", "ending")
+        tables["drives"] = ((*columns, "episode"), _drives(folder, definition, drives, columns))
     named = "".join(letter for letter in definition.name.title() if letter.isascii() and letter.isalnum())
     for name, (head, rows) in tables.items():
         path = folder / "data" / f"study-{named or 'own'}_description-{name}_data.csv"
@@ -130,6 +142,23 @@ def _answers(definition: Definition, answers: Sequence[Answer]) -> Iterable[Sequ
         scale, item = items[one.item]
         turned = int(item.reversed)
         yield one.person, one.condition, scale.name, one.item, turned, scale.points, one.points
+
+
+def _drives(
+    folder: Path,
+    definition: Definition,
+    drives: Sequence[tuple[DriveRecord, Path]],
+    columns: Sequence[str],
+) -> Iterable[Sequence[Cell]]:
+    """Write the drives with steps as episodes, and say of each drive which episode it is."""
+    for task in definition.tasks:
+        theirs = [one for one in drives if one[0].task == task.name]
+        with_steps = [one for one in theirs if one[1].exists()]
+        if with_steps:
+            write_drives(folder, task, with_steps)
+        episodes = {path: number for number, (_, path) in enumerate(with_steps)}
+        for record, path in theirs:
+            yield *(getattr(record, name) for name in columns), episodes.get(path)
 
 
 def _claims(definition: Definition) -> Iterable[Sequence[Cell]]:
