@@ -61,7 +61,7 @@ def test_a_participant_goes_through_a_study_with_a_learned_model_and_is_reported
     assert "Drives that come out the same: 2 of 2." in capsys.readouterr().out
     assert main(["study", "export", str(out), "--out", str(tmp_path / "dataset")]) == 0
     exported = read_dataset(next((tmp_path / "dataset" / "drives").iterdir())).episodes
-    assert {one.provenance.controller for one in exported} == {"Modes", "Latent"}
+    assert {one.provenance and one.provenance.controller for one in exported} == {"Modes", "Latent"}
     for episode in exported:
         assert episode.timestamp[-1] == pytest.approx(1.0, abs=0.05)
         assert np.ptp(episode.state, axis=0).max() > 0.01
