@@ -46,6 +46,31 @@ def test_the_gripper_is_asked_for_until_it_has_closed_however_long_that_takes():
     assert (left.gripper, left.shift_m) == (None, (0.0, 0.0, 0.1))
 
 
+def test_a_gripper_that_has_missed_is_asked_to_open_before_the_step_begins_again():
+    away = Waypoint(lambda state: Pose(THERE + np.array([0.0, 0.0, 0.1]), np.eye(3)), gripper="open")
+    about = Waypoint(lambda state: Pose(THERE, np.eye(3)), gripper="close", wait_s=1.0)
+    guide, step = WaypointGuide(), step_of(away, about)
+    guide.look(step, state_at(THERE + np.array([0.0, 0.0, 0.1])))
+    asked = [
+        guide.look(step, state_at(THERE, time_s=time_s), shut=time_s > 2.0)
+        for time_s in (1.0, 2.0, 2.1, 4.0, 5.2)
+    ]
+    # While it closes it is asked to; later it has closed on nothing.
+    assert [left.gripper for left in asked] == ["close"] * 4 + ["open"]
+    assert asked[-1].shift_m == (0.0, 0.0, 0.1)
+    again = guide.look(step, state_at(THERE, time_s=6.0))
+    assert (again.gripper, again.shift_m) == (None, (0.0, 0.0, 0.1))
+
+
+def test_a_gripper_that_is_shut_on_the_way_to_a_thing_is_asked_to_open():
+    about = Waypoint(lambda state: Pose(THERE, np.eye(3)), gripper="close")
+    guide, step = WaypointGuide(), step_of(about)
+    on_the_way = [guide.look(step, state_at([0.0, 0.0, 0.0], time_s=t), shut=True) for t in (0.0, 2.0, 3.5)]
+    assert [left.gripper for left in on_the_way] == [None, None, "open"]
+    held = state_at([0.0, 0.0, 0.0], time_s=4.0, gripped=frozenset({"spoon"}))
+    assert guide.look(step, held, shut=True).gripper is None
+
+
 def test_a_step_that_is_not_done_after_its_last_waypoint_begins_again():
     low, high = (Waypoint(lambda state, z=z: Pose(np.array([0.0, 0.0, z]), np.eye(3))) for z in (0.0, 0.1))
     guide, step = WaypointGuide(), step_of(low, high)

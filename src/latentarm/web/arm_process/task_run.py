@@ -105,8 +105,8 @@ class TaskRun:
         seen = replace(self._seen, poses={**self._seen.poses, **believed})
         return goals.look(self._progress.done, self._step, self._guide.waypoint, seen, q)
 
-    def see(self, time_s: float, q: FloatArray, *, enabled: bool, steered: bool) -> None:
-        """Update, in every tick; ``q``: (n,), joint positions, rad.
+    def see(self, time_s: float, q: FloatArray, *, enabled: bool, steered: bool, shut: bool = False) -> None:
+        """Update, in every tick; ``q``: (n,), joint positions, rad; ``shut`` as in `WaypointGuide.look`.
 
         A goal that the arm passes while no person steers, on its way to a saved pose, is not reached; the
         state of things counts always.
@@ -125,7 +125,7 @@ class TaskRun:
                 self._progress.update(state)
         if looks or self._over:
             self._looked_s, self._seen = time_s, state
-            self._to_go = self._guide.look(self._step, state)
+            self._to_go = self._guide.look(self._step, state, shut=shut)
             self._fills.see(state, time_s)
 
     @property

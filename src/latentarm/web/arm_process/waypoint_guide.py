@@ -1,13 +1,13 @@
 """Where a person brings the tool next: the waypoints of a task's steps, at the person's pace."""
 
-from typing import Final, Literal, final
+from typing import Final, final
 
 import numpy as np
 
-from latentarm.core.types import FloatArray
+from latentarm.core.types import FloatArray, GripperAsk
 from latentarm.robots.kinematics.rotations import rotation_vector
 from latentarm.robots.scene.scene import SceneState
-from latentarm.tasks.steps import RETRY_S, TaskStep, Waypoint
+from latentarm.tasks.steps import PATIENCE_S, RETRY_S, TaskStep, Waypoint
 from latentarm.web.protocol.report import Point, ToGo
 
 _METRES: Final = 4
@@ -26,17 +26,27 @@ class WaypointGuide:
         self._step: TaskStep | None = None
         self._index = 0
         self._arrived_s: float | None = None
+        self._shut_s: float | None = None  # since when the gripper has been shut with nothing in it, s
+        self._empty = False  # whether that is so long ago that it has missed
 
     @property
     def waypoint(self) -> Waypoint | None:
         """The tool's present target; None where nothing is left, or before the first look."""
         return None if self._step is None else self._step.waypoints[self._index]
 
-    def look(self, step: TaskStep | None, state: SceneState) -> ToGo | None:
-        """The remaining way in the step; None where nothing is left to do. ``state`` has a running clock."""
+    def look(self, step: TaskStep | None, state: SceneState, *, shut: bool = False) -> ToGo | None:
+        """The remaining way in the step; None where nothing is left to do.
+
+        ``state`` has a running clock; ``shut``: the last command to the gripper was to close.
+        """
         if step is not self._step:
             self._step = step
             self._index, self._arrived_s = 0, None
+        if not shut or state.gripped:
+            self._shut_s = None
+        elif self._shut_s is None:
+            self._shut_s = state.time_s
+        self._empty = self._shut_s is not None and state.time_s - self._shut_s >= PATIENCE_S
         if step is None:
             return None
         self._go_on(step.waypoints, state)
@@ -45,30 +55,30 @@ class WaypointGuide:
         return ToGo(
             shift_m=_point(pose.position - tool.position, _METRES),
             turn_rad=_point(rotation_vector(tool.rotation.T @ pose.rotation), _RADIANS),
-            gripper=None if self._arrived_s is None else _still_asked(waypoint, state),
+            gripper=self._asked(waypoint, state),
         )
 
     def _go_on(self, waypoints: tuple[Waypoint, ...], state: SceneState) -> None:
         waypoint = waypoints[self._index]
         if self._arrived_s is None and waypoint.reached(state):
             self._arrived_s = state.time_s
+        if waypoint.gripper == "close" and self._empty:
+            self._index, self._arrived_s = 0, None
         looked_for = waypoint.until is None or waypoint.until(state)
-        if self._arrived_s is None or _still_asked(waypoint, state) is not None or not looked_for:
+        if self._arrived_s is None or self._asked(waypoint, state) is not None or not looked_for:
             return
         last = self._index == len(waypoints) - 1
         if state.time_s - self._arrived_s >= (RETRY_S if last else waypoint.wait_s):
             self._index = 0 if last else self._index + 1
             self._arrived_s = None
 
-
-def _still_asked(waypoint: Waypoint, state: SceneState) -> Literal["open", "close"] | None:
-    match waypoint.gripper:
-        case "close" if not state.gripped:
-            return "close"
-        case "open" if state.gripped:
-            return "open"
-        case _:
-            return None
+    def _asked(self, waypoint: Waypoint, state: SceneState) -> GripperAsk | None:
+        if self._arrived_s is None:
+            # Shut fingers would push away the thing that they are to take.
+            return "open" if waypoint.gripper is not None and self._empty else None
+        if waypoint.gripper == "close":
+            return None if state.gripped else "close"
+        return waypoint.gripper if state.gripped or self._empty else None
 
 
 def _point(vector: FloatArray, digits: int) -> Point:
