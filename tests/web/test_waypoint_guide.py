@@ -71,6 +71,18 @@ def test_a_gripper_that_is_shut_on_the_way_to_a_thing_is_asked_to_open():
     assert guide.look(step, held, shut=True).gripper is None
 
 
+def test_a_waypoint_at_which_nothing_comes_true_and_nothing_is_left_to_drive_begins_the_step_again():
+    above = Waypoint(lambda state: Pose(THERE + np.array([0.0, 0.0, 0.1]), np.eye(3)))
+    cut = Waypoint(lambda state: Pose(THERE, np.eye(3)), within_m=0.01, until=lambda state: False)
+    guide, step = WaypointGuide(), step_of(above, cut)
+    guide.look(step, state_at(THERE + np.array([0.0, 0.0, 0.1])))
+    # Near it, a person may take their time to press on.
+    near = [guide.look(step, state_at(THERE + np.array([0.0, 0.0, 0.005]), time_s=t)) for t in (1.0, 60.0)]
+    assert [left.shift_m[2] for left in near] == [-0.005, -0.005]
+    there = [guide.look(step, state_at(THERE, time_s=t)).shift_m[2] for t in (61.0, 63.0, 64.5)]
+    assert there == [0.0, 0.0, 0.1]
+
+
 def test_a_step_that_is_not_done_after_its_last_waypoint_begins_again():
     low, high = (Waypoint(lambda state, z=z: Pose(np.array([0.0, 0.0, z]), np.eye(3))) for z in (0.0, 0.1))
     guide, step = WaypointGuide(), step_of(low, high)

@@ -12,6 +12,8 @@ from latentarm.web.protocol.report import Point, ToGo
 
 _METRES: Final = 4
 _RADIANS: Final = 3  # digits that pages receive
+_LEAST_M: Final = 0.003
+_LEAST_RAD: Final = 0.05  # pages list no smaller way
 
 
 @final
@@ -28,6 +30,7 @@ class WaypointGuide:
         self._arrived_s: float | None = None
         self._shut_s: float | None = None  # since when the gripper has been shut with nothing in it, s
         self._empty = False  # whether that is so long ago that it has missed
+        self._still_s: float | None = None  # since when nothing is left to be driven to the waypoint, s
 
     @property
     def waypoint(self) -> Waypoint | None:
@@ -51,10 +54,10 @@ class WaypointGuide:
             return None
         self._go_on(step.waypoints, state)
         waypoint = step.waypoints[self._index]
-        pose, tool = waypoint.pose(state), state.tool
+        shift_m, turn_rad = _left(waypoint, state)
         return ToGo(
-            shift_m=_point(pose.position - tool.position, _METRES),
-            turn_rad=_point(rotation_vector(tool.rotation.T @ pose.rotation), _RADIANS),
+            shift_m=_point(shift_m, _METRES),
+            turn_rad=_point(turn_rad, _RADIANS),
             gripper=self._asked(waypoint, state),
         )
 
@@ -62,15 +65,26 @@ class WaypointGuide:
         waypoint = waypoints[self._index]
         if self._arrived_s is None and waypoint.reached(state):
             self._arrived_s = state.time_s
-        if waypoint.gripper == "close" and self._empty:
-            self._index, self._arrived_s = 0, None
-        looked_for = waypoint.until is None or waypoint.until(state)
-        if self._arrived_s is None or self._asked(waypoint, state) is not None or not looked_for:
+        true = waypoint.until is None or waypoint.until(state)
+        if self._in_vain(waypoint, state, true=true):
+            self._index, self._arrived_s, self._still_s = 0, None, None
+        if self._arrived_s is None or self._asked(waypoint, state) is not None or not true:
             return
         last = self._index == len(waypoints) - 1
         if state.time_s - self._arrived_s >= (RETRY_S if last else waypoint.wait_s):
             self._index = 0 if last else self._index + 1
             self._arrived_s = None
+
+    def _in_vain(self, waypoint: Waypoint, state: SceneState, *, true: bool) -> bool:
+        """Whether nothing comes true there: the gripper has missed, or nothing is left to drive."""
+        if waypoint.gripper == "close":
+            return self._empty
+        shift_m, turn_rad = _left(waypoint, state)
+        if true or np.abs(shift_m).max() >= _LEAST_M or np.abs(turn_rad).max() >= _LEAST_RAD:
+            self._still_s = None
+        elif self._still_s is None:
+            self._still_s = state.time_s
+        return self._still_s is not None and state.time_s - self._still_s >= PATIENCE_S
 
     def _asked(self, waypoint: Waypoint, state: SceneState) -> GripperAsk | None:
         if self._arrived_s is None:
@@ -79,6 +93,12 @@ class WaypointGuide:
         if waypoint.gripper == "close":
             return None if state.gripped else "close"
         return waypoint.gripper if state.gripped or self._empty else None
+
+
+def _left(waypoint: Waypoint, state: SceneState) -> tuple[FloatArray, FloatArray]:
+    """The way to a waypoint: a shift in the base frame, m, and a turn about the tool's own axes, rad."""
+    pose, tool = waypoint.pose(state), state.tool
+    return pose.position - tool.position, rotation_vector(tool.rotation.T @ pose.rotation)
 
 
 def _point(vector: FloatArray, digits: int) -> Point:
