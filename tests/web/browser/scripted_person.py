@@ -85,7 +85,7 @@ class Person:
         end_s = time.monotonic() + GIVES_UP_S
         while time.monotonic() < end_s:
             seen = self._page.evaluate(LOOK)
-            if seen["said"].startswith("Done!") or "try again" in seen["said"]:
+            if seen["said"].startswith(("Done!", "Too little is left")) or "try again" in seen["said"]:
                 break
             left = ways(seen["pairs"])
             if seen["phase"] not in ("ready", "moving"):
