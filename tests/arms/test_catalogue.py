@@ -4,9 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from latentarm.arms.catalogue import ARMS, DEFAULT_ARM, make_arm, make_simulated_arm
-from latentarm.arms.contract import ArmSpec, check_arm
+from latentarm.arms.catalogue import ARMS, DEFAULT_ARM, PHYSICAL_ARM, make_arm, make_simulated_arm
+from latentarm.arms.contract import INPUT_BUDGET_S, SIMULATED_INPUT_BUDGET_S, ArmSpec, arm_refusals, check_arm
 from latentarm.arms.kinematic import KinematicArm
 from latentarm.core.errors import UserError
 from latentarm.core.types import Command
@@ -58,6 +60,24 @@ def test_time_is_simulated_for_simulated_arms_only(the_panda):
 def test_an_arm_must_say_when_it_stops_by_itself(the_panda, stops_after_s, why):
     with pytest.raises(UserError, match=f"{why}.*stops by itself"):
         check_arm(ArmSpec(the_panda.joint_names, 100.0, stops_after_s, simulated=True), the_panda)
+
+
+@given(st.floats())
+@pytest.mark.parametrize(("simulated", "most_s"), [(True, 0.6), (False, 0.2)])
+def test_no_arm_takes_older_inputs_than_its_kind_may(the_panda, simulated, most_s, budget_s):
+    assert {True: SIMULATED_INPUT_BUDGET_S, False: INPUT_BUDGET_S}[simulated] == most_s
+    spec = ArmSpec(the_panda.joint_names, 100.0, 0.02, simulated, the_panda.gripper, input_budget_s=budget_s)
+    refusals = arm_refusals(spec, the_panda)
+    assert (not refusals) == (0.0 < budget_s <= most_s)
+    assert all(f"an input_budget_s of {most_s} s at most" in one for one in refusals)
+
+
+@pytest.mark.parametrize("name", [DEFAULT_ARM, PHYSICAL_ARM])
+def test_simulated_arms_may_be_far_away_and_other_arms_as_far_as_ever(the_panda, name):
+    budget_s = make_arm(name, the_panda, the_panda.home, now_s).spec.input_budget_s
+    assert budget_s == SIMULATED_INPUT_BUDGET_S
+    unstated = ArmSpec(the_panda.joint_names, 100.0, 0.02, simulated=False)
+    assert unstated.input_budget_s == INPUT_BUDGET_S
 
 
 def test_an_arm_must_have_the_robots_joints(the_panda):

@@ -19,7 +19,7 @@ import pytest
 
 from arms.feetech_bus import ACCELERATION, CELSIUS, GOAL, MIN_POSITION, TORQUE, FeetechBus
 from latentarm.arms.address import parse_address
-from latentarm.arms.contract import check_arm
+from latentarm.arms.contract import INPUT_BUDGET_S, check_arm
 from latentarm.arms.lerobot.arm import STOPS_AFTER_S, LerobotArm
 from latentarm.arms.lerobot.keeper import now_s
 from latentarm.core.errors import UserError
@@ -155,6 +155,7 @@ def _stands_still(bus: FeetechBus) -> None:
 def test_it_says_what_it_is(arm: LerobotArm, robot: Robot) -> None:
     check_arm(arm.spec, robot)
     assert not arm.spec.simulated
+    assert arm.spec.input_budget_s <= INPUT_BUDGET_S
 
 
 @needs_lerobot

@@ -17,6 +17,7 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 
 from latentarm.arms.catalogue import make_arm
+from latentarm.arms.contract import Arm
 from latentarm.control.clock import Clock, SimulatedClock
 from latentarm.core.types import GripperAsk
 from latentarm.demonstrations.dataset import write_dataset
@@ -101,14 +102,20 @@ class Desk:
     `each_tick` is called before every tick with the time, s.
     """
 
-    def __init__(self, setup: DriveSetup, folder: Path, sightings: Connection | None = None) -> None:
+    def __init__(
+        self,
+        setup: DriveSetup,
+        folder: Path,
+        sightings: Connection | None = None,
+        make: Callable[..., Arm] = make_arm,
+    ) -> None:
         self.setup = setup
         self.clock = Watched(self._passed)
         reading, self.orders = Pipe(duplex=False)
         self.channel = new_channel(reading, sightings)
         self.orphaned = False
         self.writer = EpisodeWriter(folder)
-        plant = make_arm(setup.arm, setup.task.robot, setup.start, self.clock.now_s)
+        plant = make(setup.arm, setup.task.robot, setup.start, self.clock.now_s)
         self.arm = FaultyArm(plant, self.clock.now_s)
         self.arm.connect()
         self.drive = Drive(
@@ -177,8 +184,13 @@ class Desk:
 
 
 @contextmanager
-def a_desk(setup: DriveSetup, folder: Path, sightings: Connection | None = None) -> Iterator[Desk]:
-    desk = Desk(setup, folder, sightings)
+def a_desk(
+    setup: DriveSetup,
+    folder: Path,
+    sightings: Connection | None = None,
+    make: Callable[..., Arm] = make_arm,
+) -> Iterator[Desk]:
+    desk = Desk(setup, folder, sightings, make)
     yield desk
     desk.writer.close()
     desk.orders.close()
@@ -193,8 +205,8 @@ def desk(setup: DriveSetup, tmp_path: Path) -> Iterator[Desk]:
 
 @pytest.fixture
 def desk_of(tmp_path: Path) -> Callable[..., AbstractContextManager[Desk]]:
-    """A desk for another setup, and with sightings of things."""
-    return lambda setup, sightings=None: a_desk(setup, tmp_path / "teleop", sightings)
+    """A desk for another setup, with sightings of things, and an arm that is made in another way."""
+    return lambda setup, *given, **named: a_desk(setup, tmp_path / "teleop", *given, **named)
 
 
 @pytest.fixture

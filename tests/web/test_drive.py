@@ -55,17 +55,6 @@ def test_it_drives_and_stops_in_time_when_inputs_cease(desk):
     assert desk.reports[-1].phase == "disengaged"
 
 
-def test_inputs_that_come_back_do_not_move_an_arm_that_was_stopped(desk):
-    def tick(now_s):
-        enabled_at(desk, now_s)
-        if not 1.0 < now_s < 1.3:
-            desk.give(0.0 if now_s < 0.5 else 1.0, 0.0)
-
-    desk.each_tick = tick
-    desk.run(3.0)
-    assert not desk.speeds()[desk.times() > 1.2].any()
-
-
 @pytest.mark.parametrize("stale", ["old nonce", "no nonce", "same number"])
 def test_stale_inputs_do_not_count(desk, stale):
     def tick(now_s):

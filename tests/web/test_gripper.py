@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from latentarm.arms.contract import INPUT_BUDGET_S
 from latentarm.control.clock import SimulatedClock
-from latentarm.control.input_port import NONCE_LIFE_S
 from latentarm.web.arm_process.page_inputs import PageInputs
 from latentarm.web.protocol.orders import AskedGripper, Enable, Given
 from latentarm.web.protocol.shared_memory import LatestSlot
@@ -21,7 +21,7 @@ class Way:
     def __init__(self):
         self.clock = SimulatedClock()
         self.slot = LatestSlot(1024)
-        self.inputs = PageInputs(self.slot, self.clock, 2, 0.05, lambda notice: None)
+        self.inputs = PageInputs(self.slot, self.clock, 2, 0.05, INPUT_BUDGET_S, lambda notice: None)
         self.nonces = [self.inputs.issue_nonce()]
         self.newest = None
         self.sequence = 0
@@ -68,7 +68,7 @@ def test_an_ask_that_the_next_input_replaces_counts_once(way):
 
 def test_an_ask_that_was_late_does_not_count_later(way):
     old = way.nonces[-1]
-    way.clock.wait_until(way.clock.now_s() + NONCE_LIFE_S + TICK_S)
+    way.clock.wait_until(way.clock.now_s() + INPUT_BUDGET_S + TICK_S)
     way.nonces.append(way.inputs.issue_nonce())
     way.send("close", nonce=old)
     assert way.tick() is None
@@ -91,7 +91,7 @@ def test_however_inputs_are_lost_the_gripper_goes_where_it_was_last_asked_to_in_
     way.send()
     way.tick()
     late = way.nonces[-1]
-    way.clock.wait_until(way.clock.now_s() + NONCE_LIFE_S + TICK_S)
+    way.clock.wait_until(way.clock.now_s() + INPUT_BUDGET_S + TICK_S)
     way.nonces.append(way.inputs.issue_nonce())
     seen, expected, waiting, asks = [], [], None, 0
     for event in [*events, "tick"]:

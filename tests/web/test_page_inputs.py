@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from latentarm.arms.contract import INPUT_BUDGET_S
 from latentarm.control.clock import SimulatedClock
 from latentarm.web.arm_process.neutral_interlock import NeutralInterlock
 from latentarm.web.arm_process.page_inputs import LATCH_MAX_S, PageInputs
@@ -24,7 +25,7 @@ class Way:
         self.clock = SimulatedClock()
         self.slot = LatestSlot(1024)
         self.stops = []
-        self.inputs = PageInputs(self.slot, self.clock, 2, DEAD_ZONE, self.stops.append)
+        self.inputs = PageInputs(self.slot, self.clock, 2, DEAD_ZONE, INPUT_BUDGET_S, self.stops.append)
         self.gate = NeutralInterlock(self.inputs)
         self.sequence = 0
         self.give((0.0, 0.0))

@@ -26,6 +26,7 @@ def trace(duration_s: float = 2.0, success: bool = True, modes: int = 1) -> Trac
         time_s=time_s,
         position=position,
         input=np.sin(time_s[:, None] + np.arange(2)),
+        delay_s=np.full(steps, np.nan),
         mode=np.arange(steps) * modes // steps,
         belief=np.full((steps, 3), 1 / 3),
         aligned=(),

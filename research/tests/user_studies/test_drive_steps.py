@@ -8,6 +8,7 @@ import numpy as np
 
 from latentarm.core.types import Command, GripperCommand, GripperReading, Pose, StepRecord, Stop
 from latentarm.robots.scene.scene import SceneState
+from latentarm_research.user_studies.drive_record import together
 from latentarm_research.user_studies.drive_steps import StepLog, read_steps
 
 
@@ -28,7 +29,8 @@ def a_step(rng: np.random.Generator, number: int) -> tuple[SceneState, StepRecor
     command = Command(rng.normal(size=7), 0.0, stop, ("speed",) if number % 2 else (), asked)
     record = StepRecord(
         time_s=0.01 * number, alpha=0.3, belief=rng.uniform(size=3), mode=number % 2, command=command,
-        gripper=GripperReading(float(rng.uniform()), number > 5) if number > 1 else None, **arrays, **joints,
+        gripper=GripperReading(float(rng.uniform()), number > 5) if number > 1 else None,
+        delay_s=0.1 * number if number else np.nan, **arrays, **joints,
     )  # fmt: skip
     return state, record
 
@@ -52,3 +54,7 @@ def test_steps_are_read_as_they_were_written(tmp_path: Path) -> None:
     seed, found = read_steps(tmp_path / "drive.safetensors")
     assert seed == 5
     assert plain([list(map(plain, step)) for step in found]) == [list(map(plain, step)) for step in steps]
+
+
+def test_a_figure_that_one_drive_of_a_trial_lacks_is_left_out() -> None:
+    assert together([{"time_s": 1.0, "input_delay_s": 0.2}, {"time_s": 2.0}]) == {"time_s": 3.0}

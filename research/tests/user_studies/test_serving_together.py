@@ -7,15 +7,17 @@ from pathlib import Path
 
 import pytest
 
+from latentarm.arms.contract import SIMULATED_INPUT_BUDGET_S
 from latentarm.cli import main
-from latentarm_research.user_studies.recorded import read_recorded
+from latentarm_research.user_studies.recorded import DATABASE, read_recorded
+from latentarm_research.user_studies.serving.store import Store
 from latentarm_research.user_studies.serving.study_files import STEPS
 from study_participant import next_link, participant, serving
 
 PEOPLE = int(os.environ.get("LATENTARM_STUDY_PEOPLE", "2"))
 """Number of participants."""
 
-EACH_WAY_S = 0.075  # a round trip of 150 ms
+EACH_WAY_S = 0.1  # a round trip of 200 ms
 
 
 @pytest.mark.slow
@@ -34,6 +36,11 @@ def test_participants_far_away_take_part_at_once(tmp_path: Path, capsys: pytest.
     assert len(recorded.trials) == 8 * PEOPLE
     driven = [one for one in recorded.trials if one.measures["input_magnitude"] > 0.0]
     assert driven
+    store = Store(out / DATABASE)
+    delays_s = [one.measures["input_delay_s"] for kept in store.drives().values() for one in kept]
+    store.close()
+    assert len(delays_s) == 8 * PEOPLE
+    assert all(2.0 * EACH_WAY_S <= delay_s < SIMULATED_INPUT_BUDGET_S for delay_s in delays_s)
     assert len(list((out / STEPS).rglob("*.safetensors"))) == 8 * PEOPLE
     capsys.readouterr()
     assert main(["study", "replay", str(out), "--json"]) == 0

@@ -20,6 +20,9 @@ ArmPhase = Literal["off", "disabled", "guided", "ready", "moving", "fault", "eme
 
 STOPS_AFTER_S: Final = 0.1  # an arm that takes longer to notice the end of its commands is refused, s
 
+INPUT_BUDGET_S: Final = 0.2  # the largest `ArmSpec.input_budget_s` of a real arm, s
+SIMULATED_INPUT_BUDGET_S: Final = 0.6  # that of a simulated one, which a page may drive from far away, s
+
 
 @final
 @dataclass(frozen=True)
@@ -34,6 +37,8 @@ class ArmSpec:
     simulated: bool  # `check_arm` is stricter with real arms
     gripper: Gripper | None = None  # None where it has none
     follows: bool = True  # whether it carries out commands; a `latentarm.arms.shadow.ShadowArm` drops them
+    # Inputs from a page count if they answer a state of the arm that is no older than this, s.
+    input_budget_s: float = INPUT_BUDGET_S
 
 
 @final
@@ -183,7 +188,7 @@ def arm_refusals(spec: ArmSpec, robot: Robot) -> tuple[str, ...]:
     """Reasons why an arm cannot be driven safely, a sentence each.
 
     Its joints are not the robot's, or the robot's gripper is missing; nobody knows when it stops by itself,
-    or it is too late; or the arm is real and one of its limits is assumed.
+    or it is too late; its inputs may be too old; or the arm is real and one of its limits is assumed.
     """
     found: list[str] = []
     if spec.joint_names != robot.joint_names:
@@ -201,6 +206,12 @@ def arm_refusals(spec: ArmSpec, robot: Robot) -> tuple[str, ...]:
         )
     if robot.gripper is not None and spec.gripper is None:
         found.append(f"{robot.name} has a gripper, and the arm has none: choose the robot that the arm is.")
+    kind, most_s = ("simulated", SIMULATED_INPUT_BUDGET_S) if spec.simulated else ("real", INPUT_BUDGET_S)
+    if not 0.0 < spec.input_budget_s <= most_s:
+        found.append(
+            f"This arm takes inputs that answer a state {1000 * spec.input_budget_s:.0f} ms old: the driver"
+            f" of a {kind} arm must state an input_budget_s of {most_s:g} s at most."
+        )
     assumed = assumed_limits(robot)
     if assumed and not spec.simulated:
         found.append(

@@ -7,7 +7,15 @@ from typing import Final, final
 
 import numpy as np
 
-from latentarm.arms.contract import REASONS, Arm, ArmPhase, ArmSpec, ArmStatus, finite_velocity
+from latentarm.arms.contract import (
+    REASONS,
+    SIMULATED_INPUT_BUDGET_S,
+    Arm,
+    ArmPhase,
+    ArmSpec,
+    ArmStatus,
+    finite_velocity,
+)
 from latentarm.arms.simulated_gripper import SimulatedGripper
 from latentarm.core.errors import UserError
 from latentarm.core.types import Command, FloatArray, GripperCommand, Reading
@@ -42,7 +50,14 @@ class SimulatedArm(Arm):
     ) -> None:
         check_start(robot, state)
         fingers = None if gripper is None else gripper.gripper
-        self._spec = ArmSpec(robot.joint_names, rate_hz, stops_after_s, simulated=True, gripper=fingers)
+        self._spec = ArmSpec(
+            robot.joint_names,
+            rate_hz,
+            stops_after_s,
+            simulated=True,
+            gripper=fingers,
+            input_budget_s=SIMULATED_INPUT_BUDGET_S,
+        )
         self._gripper, self._settles_s, self._now_s = gripper, settles_s, now_s
         self._at_s = now_s()
         self._phase: ArmPhase = "off"

@@ -10,10 +10,10 @@ from typing import final
 import numpy as np
 from typing_extensions import override
 
+from latentarm.arms.contract import INPUT_BUDGET_S
 from latentarm.control.clock import Clock
 from latentarm.core.types import FloatArray, GripperAsk, Input
 
-NONCE_LIFE_S = 0.2  # an input must echo a nonce no older than this
 _KEPT_NONCES = 1024
 
 
@@ -33,10 +33,16 @@ class InputPort(InputSource):
     sequence number that grows. A message that was delayed in either direction is thus detected without
     trusting the sender's clock. At most one input is kept. A press of the mode switch, or a request to the
     gripper, is not lost when a later input replaces it before the loop has looked.
+
+    Args:
+        input_dim: d.
+        clock: of the loop.
+        budget_s: an input must echo a nonce no older than this, s; see `ArmSpec.input_budget_s`.
     """
 
-    def __init__(self, input_dim: int, clock: Clock) -> None:
+    def __init__(self, input_dim: int, clock: Clock, budget_s: float = INPUT_BUDGET_S) -> None:
         self._clock = clock
+        self._budget_s = budget_s
         self._lock = threading.Lock()
         self._issued: OrderedDict[str, float] = OrderedDict()
         self._sequence = -1
@@ -75,7 +81,7 @@ class InputPort(InputSource):
             if issued_s is None or sequence <= self._sequence:
                 return False
             # A nonce from the future was issued before the clock went back.
-            if not 0.0 <= now_s - issued_s <= NONCE_LIFE_S:
+            if not 0.0 <= now_s - issued_s <= self._budget_s:
                 return False
             self._sequence = sequence
             self._u = u
@@ -95,9 +101,10 @@ class InputPort(InputSource):
             self._pressed = False
             gripper, self._asked = self._gripper or self._asked, None
             age_s = now_s - self._received_s
-            if now_s - self._issued_s > NONCE_LIFE_S or self._received_s > self._clock.now_s():
+            if now_s - self._issued_s > self._budget_s or self._received_s > self._clock.now_s():
                 age_s = math.inf
-            return Input(self._u, switch, gripper, opens=self._opens), max(age_s, 0.0)
+            delay_s = self._received_s - self._issued_s
+            return Input(self._u, switch, gripper, opens=self._opens, delay_s=delay_s), max(age_s, 0.0)
 
 
 def _is_stamp(nonce: object, sequence: object) -> bool:

@@ -344,7 +344,7 @@ class Step:
             self._plausibility.reset()
             self.halted(lost)
         self._time_s = time_s
-        self._faltering, self._opens, self._pace = False, None, 1.0
+        self._faltering, self._opens, self._pace, self._delay_s = False, None, 1.0, math.nan
         self._stack.tick(time_s)
         self._gripper.tick()
         q = self._positions_now(reading, time_s)
@@ -362,7 +362,7 @@ class Step:
         if isinstance(u, Stop):
             self._engagement.stop(u)
             return self._record(time_s, q, self._stopping(q))
-        self._pace = float(given.pace)
+        self._pace, self._delay_s = float(given.pace), given.delay_s
         # After a jump of the clock nobody knows for how long it has been held.
         self._opens = bool(given.opens) and lost is None
         neutral = u is self._no_input
@@ -437,6 +437,7 @@ class Step:
             bound_rad=bound_rad,
             gripper=self._gripper.reading,
             pace=self._pace,
+            delay_s=self._delay_s,
             added=help_.added,
         )
 
@@ -551,6 +552,7 @@ class Step:
             command=self._command(passed),
             gripper=self._gripper.reading,
             pace=self._pace,
+            delay_s=self._delay_s,
         )
 
 

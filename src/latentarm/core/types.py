@@ -217,6 +217,7 @@ class Input:
         pace: share of the speed, in [0, 1], that a second person leaves the first. It counts after all
             limits, for everything that moves: what the robot adds, a way back, the gripper.
         opens: whether the person holds down the button that opens the gripper of a disabled arm.
+        delay_s: how old the state was that this answers when it came, s; NaN where that is not measured.
     """
 
     u: FloatArray
@@ -224,6 +225,7 @@ class Input:
     gripper: GripperAsk | None = None
     pace: float = 1.0
     opens: bool = False
+    delay_s: float = math.nan
 
 
 @dataclass(frozen=True)
@@ -343,6 +345,7 @@ class StepRecord:
     # age of the pose, s; empty where the header names no source
     sightings: FloatArray = field(default_factory=lambda: NO_SIGHTINGS)
     pace: float = 1.0  # see `Input.pace`
+    delay_s: float = math.nan  # see `Input.delay_s`; NaN also where the input was stale or refused
     # weight of the assistive action on top of the blend: the filters get ``(1 - alpha) a_h + (alpha + added)
     # a_r``. 0 where help replaces the person's action, as in equation 2.
     added: float = 0.0

@@ -7,7 +7,7 @@ from statistics import median
 import numpy as np
 import pytest
 
-from latentarm.arms.contract import check_arm
+from latentarm.arms.contract import INPUT_BUDGET_S, check_arm
 from latentarm.arms.real import RealArm
 from latentarm.control.clock import MonotonicClock
 from latentarm.core.errors import UserError
@@ -50,6 +50,7 @@ class RealArmContract(GuidingLaws):
     def test_it_says_what_it_is(self, new_arm: RealArm, robot: Robot) -> None:
         check_arm(new_arm.spec, robot)
         assert not new_arm.spec.simulated
+        assert new_arm.spec.input_budget_s <= INPUT_BUDGET_S
         assert new_arm.spec.rate_hz > 0.0
 
     def test_looking_finds_something_and_changes_nothing(self, new_arm: RealArm, stand_in: StandIn) -> None:

@@ -100,6 +100,7 @@ class Following:
             time_s=np.array([record.time_s for record in records]),
             position=tool.position,
             input=np.stack([record.input for record in records]),
+            delay_s=np.array([record.delay_s for record in records]),
             mode=np.array([record.mode for record in records]),
             belief=np.stack([record.belief for record in records]),
             aligned=alignment_by_step(

@@ -26,6 +26,7 @@ class Trace:
     time_s: FloatArray  # (T,), s
     position: FloatArray  # (T, 3), the tool, m
     input: FloatArray  # (T, d)
+    delay_s: FloatArray  # (T,), see `StepRecord.delay_s`
     mode: FloatArray  # (T,), index of the controller's mode
     belief: FloatArray  # (T, G)
     aligned: tuple[StepAlignment, ...]  # *Preference Alignment* in each step that was begun, in order

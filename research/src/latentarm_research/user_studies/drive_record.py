@@ -50,7 +50,10 @@ class DriveRecord(BaseModel):
     choice: Count = Field(description="index into the choices of the task's scene")
     attempt: Count = Field(description="number of earlier drives at this choice in this trial")
     ending: Reason = Field(description="why it ended")
-    measures: Mapping[str, float] = Field(description="figures by name; what has no value is absent")
+    measures: Mapping[str, float] = Field(
+        description="figures by name; what has no value is absent. input_delay_s, on the page: from a state"
+        " of the arm to the input that answered it, mean over the drive, s"
+    )
     trace: Trace = Field(description="the tool's path and the stick, thinned out for figures")
 
 
@@ -99,7 +102,7 @@ def together(measured: Sequence[Mapping[str, float]]) -> dict[str, float]:
     """The figures of a trial of several drives; means over time weigh by a drive's duration."""
     time_s = [one["time_s"] for one in measured]
     found: dict[str, float] = {}
-    for name in measured[0]:
+    for name in (name for name in measured[0] if all(name in one for one in measured)):
         values = np.array([one[name] for one in measured])
         if name in SUMMED:
             found[name] = float(values.sum())
@@ -117,6 +120,8 @@ def _measured(task: StudyTask, trace: drives.Trace) -> dict[str, float]:
     figures = trace.figures
     found = {name: float(getattr(figures, name)) for name in TRIAL_MEASURES}
     found["success_rate"] = float(figures.success)
+    if (measured := np.isfinite(trace.delay_s)).any():
+        found["input_delay_s"] = float(trace.delay_s[measured].mean())
     if task.plates:
         plates = np.stack([trace.states[0].poses[name].position for name in task.plates])
         found["goal_error_m_s"], found["goal_error_m"] = goal_error(trace.time_s, trace.position, plates)

@@ -144,7 +144,7 @@ def _parts(state: SceneState, record: StepRecord) -> Iterator[Any]:
     yield [state.speed_m_s[name] for name in sorted(state.poses)]
     yield from (state.grains[name] for name in sorted(state.grains))
     yield [state.force_n[one, other] for one, other in sorted(state.force_n)]
-    yield record.time_s, record.alpha, record.added
+    yield record.time_s, record.alpha, record.added, record.delay_s
     yield record.command.velocity
     yield from (getattr(record, name) for name in _ARRAYS)
     if record.gripper is not None:
@@ -192,7 +192,7 @@ def _step(values: FloatArray, labels: Mapping[str, Any]) -> tuple[tuple[SceneSta
             for (one, other), force_n in zip(labels["touching"], take(len(labels["touching"])), strict=True)
         },
     )
-    step_s, alpha, added = take(3).tolist()
+    step_s, alpha, added, delay_s = take(4).tolist()
     stop = None if labels["stop"] is None else Stop(labels["stop"])
     asked = None if labels["gripper"] is None else GripperCommand(*labels["gripper"])
     command = Command(take(labels["sizes"][0]), 0.0, stop, tuple(labels["limited_by"]), asked)
@@ -203,6 +203,7 @@ def _step(values: FloatArray, labels: Mapping[str, Any]) -> tuple[tuple[SceneSta
         time_s=step_s,
         alpha=alpha,
         added=added,
+        delay_s=delay_s,
         mode=labels["mode"],
         command=command,
         gripper=gripper,

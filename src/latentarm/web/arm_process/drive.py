@@ -7,7 +7,7 @@ from typing import Final, final
 
 import numpy as np
 
-from latentarm.arms.contract import Arm
+from latentarm.arms.contract import INPUT_BUDGET_S, Arm
 from latentarm.control.clock import Clock
 from latentarm.control.loop import ControlLoop
 from latentarm.control.stick_ring import STRETCHES
@@ -34,7 +34,11 @@ from latentarm.web.protocol.notice import Notice, notice_of_stop
 from latentarm.web.protocol.orders import Change, HelpLevel, ModeName, Order, PoseToGoTo
 from latentarm.web.protocol.report import HeldBack, Phase, Report
 
-ENABLE_WAITS_S: Final = 0.3  # how long an order to enable waits for a fresh neutral input, s
+ENABLE_WAITS_S: Final = 0.3
+"""How long an order to enable waits for a fresh neutral input, s, and longer where the arm allows more than
+`INPUT_BUDGET_S`: a new driver's first input counts for nothing, as it answers nothing that they were told.
+"""
+
 NOTE_S: Final = 6.0  # how long a refusal is shown instead of the arm's state, s
 _HELD_BACK: Final[dict[str, HeldBack]] = {
     "clearance": "clearance",
@@ -80,7 +84,12 @@ class Drive:
         self._things = ThingPoses(setup, about, steering.things, clock.now_s)
         self._step = setup.step(self._things.surroundings(setup, about), self._to_pose, self.calls)
         self._inputs = PageInputs(
-            channel.given, clock, setup.controller.input_dim, self._step.dead_zone, self._stop_if_enabled
+            channel.given,
+            clock,
+            setup.controller.input_dim,
+            self._step.dead_zone,
+            arm.spec.input_budget_s,
+            self._stop_if_enabled,
         )
         self._neutral = NeutralInterlock(self._inputs)
         straight = StraightWay(setup.task.robot, self._step.safety)
@@ -191,7 +200,8 @@ class Drive:
                 # An Enable from before the newest Stop is ignored, whichever arrives first.
                 if stops == self._stop_version:
                     self._enable_driver = driver
-                    self._enable_until_s = record.time_s + ENABLE_WAITS_S
+                    more_s = self._arm.spec.input_budget_s - INPUT_BUDGET_S
+                    self._enable_until_s = record.time_s + ENABLE_WAITS_S + more_s
             case orders.ChooseMode(mode=mode, axes=axes):
                 if mode in self._setup.modes:
                     self._choose(mode, self._steering.axes if axes is None else axes, self._steering.help)

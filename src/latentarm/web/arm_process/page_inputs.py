@@ -7,6 +7,7 @@ from typing import Final, final
 
 import numpy as np
 
+from latentarm.arms.contract import INPUT_BUDGET_S
 from latentarm.control.clock import Clock
 from latentarm.control.input_port import InputPort, InputSource
 from latentarm.core.types import Input
@@ -15,8 +16,8 @@ from latentarm.web.protocol.orders import Given, Paced
 from latentarm.web.protocol.shared_memory import LatestSlot
 
 INPUT_TIMEOUT_S: Final = 0.05
-"""How long a fresh input counts: 2.5 inputs of a page that sends 50 per second. The rest of 0.15 s is for the
-stop."""
+"""How long a fresh input moves any arm: 2.5 inputs of a page that sends 50 per second. The rest of 0.15 s is
+for the stop."""
 
 LATCH_MAX_S: Final = 10.0  # how long a deflection counts that is latched, or constant like a dead stick's, s
 COPILOT_TIMEOUT_S: Final = 0.5  # how long a co-pilot's pace counts, s: five times the period of their page
@@ -25,19 +26,24 @@ COPILOT_TIMEOUT_S: Final = 0.5  # how long a co-pilot's pace counts, s: five tim
 @final
 @dataclass(eq=False)
 class PageInputs(InputSource):
-    """The newest input in a slot, if it is the driver's and fresh."""
+    """The newest input in a slot, if it is the driver's and fresh.
+
+    An arm that allows more than `INPUT_BUDGET_S` stands still while inputs are missing, and goes on when they
+    come back within that time.
+    """
 
     _slot: LatestSlot
     _clock: Clock
     _input_dim: int
     _dead_zone: float  # a smaller deflection is neutral
+    _budget_s: float  # of the arm, see `ArmSpec.input_budget_s`
     # stops the arm: when a deflection has lasted too long without a change, another person starts to drive,
     # or the driver's co-pilot comes, goes, or is silent
     _stop: Callable[[Notice], None]
 
     def __post_init__(self) -> None:
         self._version = self._slot.version
-        self._port = InputPort(self._input_dim, self._clock)
+        self._port = InputPort(self._input_dim, self._clock, self._budget_s)
         self._same_since_s = math.inf
         self._raw: tuple[float, ...] = ()
         self._paced: Paced | None = None
@@ -58,7 +64,11 @@ class PageInputs(InputSource):
         if now_s - self._same_since_s > LATCH_MAX_S:
             self._same_since_s = math.inf
             self._stop(Notice(code="latch_ended", parameters={"seconds": round(LATCH_MAX_S)}))
-        return replace(given, pace=self._pace()), age_s
+        given = replace(given, pace=self._pace())
+        if self.fresh or self._budget_s <= INPUT_BUDGET_S or age_s == math.inf:
+            return given, age_s
+        # It brakes as for a stop, whatever the robot does by itself, and nothing is learned from an old push.
+        return replace(given, u=np.zeros_like(given.u), pace=0.0, delay_s=math.nan), INPUT_TIMEOUT_S
 
     def take_used(self) -> bool:
         """True if the stick was deflected, or the gripper asked for something, since the last call."""
@@ -88,7 +98,7 @@ class PageInputs(InputSource):
             return
         if given.driver != self.driver:
             self.driver = given.driver
-            self._port = InputPort(self._input_dim, self._clock)
+            self._port = InputPort(self._input_dim, self._clock, self._budget_s)
             self._same_since_s = math.inf
             self._stop(Notice(code="driver_changed"))
         if _copilot(given.paced) != _copilot(self._paced):
