@@ -19,3 +19,5 @@ type Settings = import("./settings/settings.js").Settings;
 type Values = import("./settings/settings.js").Values;
 type Drawing = import("./views/drawing.js").Drawing;
 type Paths = import("./views/predictions.js").Paths;
+/** From the stick, right and up, to what is sent. */
+type Shaped = (x: number, y: number) => number[];

@@ -14,11 +14,7 @@ export class ServerClock {
     this._answers = [];
   }
 
-  /**
-   * @param {number} sent when the question went out, ms of `performance.now()`
-   * @param {number} received when the answer came, ms
-   * @param {number} server what time it was there, ms
-   */
+  /** All in ms. @param {number} sent when the question went out @param {number} received when the answer came @param {number} server what time it was there */
   answered(sent, received, server) {
     if (!(received >= sent)) return;
     this._answers.push({ tookMs: received - sent, aheadMs: server - (sent + received) / 2 });
@@ -32,12 +28,7 @@ export class ServerClock {
   }
 }
 
-/**
- * When the picture with a timestamp was taken, ms on the server's clock: timestamps wrap around.
- *
- * @param {Dated} dated
- * @param {number} rtp
- */
+/** When the picture with a timestamp was taken, ms on the server's clock: timestamps wrap around. @param {Dated} dated @param {number} rtp */
 export function takenAt({ rtp: known, at }, rtp) {
   return at + ((rtp - known) | 0) / STEPS_PER_MS;
 }

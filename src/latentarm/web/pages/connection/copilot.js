@@ -6,11 +6,7 @@ import { say, sayName, sayPercent } from "../layout/words.js";
 /** How often the co-pilot's page says how fast the arm may be, ms; the arm stops where it does not. */
 const PERIOD_MS = 100;
 
-/**
- * @param {Pick<State, "you" | "driver" | "copilot" | "copilot_asking">} state
- * @param {string} me id of this page
- * @returns {string} a sentence about the co-pilot for this page's person.
- */
+/** A sentence about the co-pilot for this page's person. @param {State} state @param {string} me id of this page */
 export function copilotWords({ you, driver, copilot, copilot_asking }, me) {
   if (copilot !== null) {
     const parameters = { name: sayName(copilot.name), pace: sayPercent(copilot.pace) };

@@ -39,23 +39,13 @@ export class DriverLease {
   }
 }
 
-/**
- * Which page asks to drive: this one, another one, or none.
- *
- * @param {Pick<State, "asking">} state
- * @param {string | undefined} id of this page
- */
+/** Which page asks to drive: this one, another one, or none. @param {State} state @param {string | undefined} id of this page */
 export function whoAsks({ asking }, id) {
   if (asking === null) return null;
   return asking === id ? "you" : "another";
 }
 
-/**
- * A sentence about the driver for this page's person.
- *
- * @param {State} state
- * @param {"you" | "another" | null} asks which page asks to drive
- */
+/** A sentence about the driver for this page's person. @param {State} state @param {ReturnType<typeof whoAsks>} asks */
 export function whoDrives(state, asks) {
   const { you, driver, driver_name, asking, asking_name, watchers } = state;
   const asker = asking_name === null ? say("driver.somebody") : sayName(asking_name);

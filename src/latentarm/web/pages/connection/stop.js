@@ -4,11 +4,7 @@
  * Where a person has made Space one of their switches, Space is that while they scan.
  */
 
-/**
- * @param {Connection} connection
- * @param {() => void} [alsoHere] what this page lets go of
- * @param {() => boolean} [spaceStops] whether Space is no switch
- */
+/** @param {Connection} connection @param {() => void} [alsoHere] what this page lets go of @param {() => boolean} [spaceStops] whether Space is no switch */
 export function attachStop(connection, alsoHere = () => {}, spaceStops = () => true) {
   const stop = () => {
     alsoHere();

@@ -9,13 +9,7 @@ import { say } from "../layout/words.js";
 /** How long the server may take to change the mode, ms. */
 const ANSWER_MS = 300;
 
-/**
- * The next mode, for people who reach everything by one button: the pairs of axes too, before the next mode.
- *
- * @param {Pick<Welcome, "modes" | "end_effector_modes">} welcome
- * @param {Pick<State, "mode" | "axes">} state
- * @returns {Steering}
- */
+/** The next mode, for people with one button: the pairs of axes too, before the next mode. @param {Welcome} welcome @param {State} state @returns {Steering} */
 export function nextSteering(welcome, { mode, axes }) {
   const modes = steeringModes(welcome);
   if (mode === "end_effector" && axes + 1 < welcome.end_effector_modes.length) return { mode, axes: axes + 1 };

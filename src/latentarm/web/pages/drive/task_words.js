@@ -49,14 +49,7 @@ export function blockedWords({ you, phase }) {
   return phase === "stopping" ? say("task.blocked.stopping") : "";
 }
 
-/**
- * Where a thing is now, m, or where the tool goes for a goal that is no thing; null for neither.
- *
- * @param {string} name
- * @param {Pick<Welcome, "things" | "goals">} welcome
- * @param {Pick<State, "things">} state
- * @returns {number[] | null}
- */
+/** Where a thing is now, m, or the tool's place at a goal that is no thing; else null. @param {string} name @param {Welcome} welcome @param {State} state */
 export function placeOf(name, welcome, state) {
   const index = welcome.things.findIndex((thing) => thing.name === name);
   if (index >= 0) return state.things?.poses[index]?.slice(0, 3) ?? welcome.things[index].position;
@@ -73,12 +66,7 @@ export function distance(tool, place) {
   return Math.hypot(...tool.map((at, axis) => at - place[axis]));
 }
 
-/**
- * How far the tool has to go in the step that is to be done now, and to turn. With straight lines the list says it, for each
- * direction.
- *
- * @param {Pick<State, "mode" | "task">} state
- */
+/** How far the tool has to go in the step that is to be done now, and to turn; along straight lines the list says it. @param {State} state */
 export function awayWords({ mode, task: { outcome, to_go } }) {
   if (to_go === null || outcome !== null || to_go.gripper || mode === "end_effector") return "";
   const [centimetres, degrees] = [100 * Math.hypot(...to_go.shift_m), (180 * Math.hypot(...to_go.turn_rad)) / Math.PI].map(Math.round);

@@ -5,11 +5,7 @@ import { say } from "../layout/words.js";
 import { isLikeliest } from "../views/likeliest.js";
 import { distance, placeOf } from "./task_words.js";
 
-/**
- * @param {Pick<Welcome, "goals" | "things">} welcome
- * @param {Pick<State, "tool" | "belief" | "things">} state
- * @param {string | null} [thing] what the task is about now
- */
+/** @param {Welcome} welcome @param {State} state @param {string | null} [thing] what the task is about now */
 export function whereWords(welcome, state, thing = null) {
   const height = Math.round(100 * state.tool[2]);
   const goals = welcome.goals.map(({ name }, index) => ({

@@ -18,14 +18,7 @@ export function standing(trace) {
   });
 }
 
-/**
- * The drive at a time: between two moments, or as it stood where nothing changed for a while.
- *
- * @param {Trace} trace
- * @param {{t: number, state: Standing}[]} things from `standing`
- * @param {number} t s
- * @returns {Moment}
- */
+/** The drive at a time, s: between two moments, or unchanged for a while. @param {Trace} trace @param {ReturnType<typeof standing>} things @param {number} t */
 export function momentAt(trace, things, t) {
   const index = Math.max(lastBefore(trace.t, t), 0);
   const next = Math.min(index + 1, trace.t.length - 1);

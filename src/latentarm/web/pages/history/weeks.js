@@ -40,12 +40,7 @@ export function byWeek(drives) {
   return compared(drives, mondayOf, 7).slice(-MOST_WEEKS);
 }
 
-/**
- * @param {Drive[]} drives
- * @param {(iso: string) => string} firstDay of the period of a moment
- * @param {number} days in a period
- * @returns {Period[]}
- */
+/** @param {Drive[]} drives @param {(iso: string) => string} firstDay of the period of a moment @param {number} days in a period @returns {Period[]} */
 function compared(drives, firstDay, days) {
   const firsts = drives.map(({ started }) => firstDay(started)).sort();
   const periods = [];

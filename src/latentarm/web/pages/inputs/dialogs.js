@@ -9,11 +9,7 @@ export function dialogIsOpen() {
   return topmost()?.localName === "dialog";
 }
 
-/**
- * Watches every dialog and menu of the page, also those that are added later: whatever opens or closes one, it is noticed.
- *
- * @param {(before: HTMLElement | null) => void} changed what was topmost
- */
+/** Watches every dialog and menu of the page, also those that are added later. @param {(before: HTMLElement | null) => void} changed hears what was topmost */
 export function watchOpen(changed) {
   let was = topmost();
   const look = () => {

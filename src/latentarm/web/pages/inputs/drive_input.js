@@ -9,6 +9,7 @@ import { Deflection } from "./deflection.js";
 import { Lateness } from "./lateness.js";
 
 /** @import {Source} from "./deflection.js" */
+/** @typedef {NonNullable<import("../connection/messages.js").DriverInput["gripper"]>} GripperAsk */
 
 const PERIOD_MS = 20;
 /** Neutral inputs that go ahead of `enable`, ms: the server must have seen the stick at rest. */
@@ -18,11 +19,7 @@ const PATIENCE_MS = 1500;
 
 /** Events besides those of `Deflection`: "poll" before each input; "halted" with why this page stopped the arm, or null. */
 export class DriveInput extends Deflection {
-  /**
-   * @param {Connection} connection
-   * @param {(x: number, y: number) => number[]} shaped from stick (right, up) to what is sent
-   * @param {(x: number, y: number, source: Source | null) => [number, number]} steady before that, against a tremor
-   */
+  /** @param {Connection} connection @param {Shaped} shaped @param {ReturnType<typeof import("./tremor.js").attachTremor>} steady before that */
   constructor(connection, shaped, steady) {
     super();
     this._steady = steady;
@@ -67,11 +64,7 @@ export class DriveInput extends Deflection {
     this._enabling = setTimeout(() => this._connection.send({ type: "enable" }), NEUTRAL_FIRST_MS);
   }
 
-  /**
-   * Neutral, a stop, and then silence until the person enables again. Only a page whose inputs flow stops the arm so.
-   *
-   * @param {HaltReason} why
-   */
+  /** Neutral, a stop, and then silence until the person enables again. Only a page whose inputs flow stops the arm so. @param {HaltReason} why */
   halt(why) {
     const flowed = this.flowing;
     this.drop();
@@ -80,13 +73,7 @@ export class DriveInput extends Deflection {
     this._say(why);
   }
 
-  /**
-   * Ask the gripper for something, once, with the deflection as it is.
-   *
-   * @param {"open" | "close" | "toggle"} gripper
-   * @param {Source} source
-   * @returns {boolean} whether it was sent: not before the arm is enabled.
-   */
+  /** Ask the gripper for something, once; false before the arm is enabled. @param {GripperAsk} gripper @param {Source} source */
   ask(gripper, source) {
     if (!this.live) return false;
     return this._connection.sendInput(this._meant(), this._held(this.source ?? source), gripper);

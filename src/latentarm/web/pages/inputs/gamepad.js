@@ -9,16 +9,13 @@ import { isGuessed, mappingOf, nameOf, stickOf } from "../settings/pads.js";
 import { dialogIsOpen } from "./dialogs.js";
 import { padLives } from "./pad_life.js";
 
+/** @import {Actions} from "./keyboard.js" */
+/** @import {Scanner} from "./scanner.js" */
 /** @import {Mapping} from "../settings/pads.js" */
 
 const IDLE_MS = 100;
 
-/**
- * @param {PersonInput} input
- * @param {Settings} settings
- * @param {Pick<import("./scanner.js").Scanner, "press">} scanner takes a button as a switch where scanning is on
- * @param {{stop: () => void, enable?: () => void, gripper?: () => void, nextMode?: () => void}} actions
- */
+/** @param {PersonInput} input @param {Settings} settings @param {Pick<Scanner, "press">} scanner takes a button as a switch @param {Actions & {stop: () => void}} actions */
 export function attachGamepad(input, settings, scanner, actions) {
   /** Says what the person must do about a gamepad. */
   const line = document.getElementById("unrested");

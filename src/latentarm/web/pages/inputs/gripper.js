@@ -13,12 +13,7 @@ const SETTLE_MS = 250;
 /** The gripper of an arm that is not enabled opens after so long; the arm's own process counts it, ms. */
 const HOLD_MS = 1000;
 
-/**
- * Open, closed or holding something, and how wide.
- *
- * @param {GripperState | null} gripper
- * @param {number} widest m
- */
+/** Open, closed or holding something, and how wide. @param {GripperState | null} gripper @param {number} widest m */
 export function gripperWords(gripper, widest) {
   if (gripper === null) return say("gripper.unknown");
   const width = { millimetres: Math.round(1000 * gripper.width_m) };

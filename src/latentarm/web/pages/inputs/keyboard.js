@@ -8,11 +8,9 @@ const ARROWS = { ArrowUp: up, ArrowDown: down, ArrowLeft: left, ArrowRight: righ
 /** @type {Record<string, [number, number]>} */
 const LETTERS = { KeyW: up, KeyS: down, KeyA: left, KeyD: right };
 
-/**
- * @param {PersonInput} input
- * @param {Settings} settings
- * @param {{enable?: () => void, nextMode?: () => void, axes?: (index: number) => void, gripper?: () => void}} actions
- */
+/** @typedef {{stop?: () => void, enable?: () => void, gripper?: () => void, nextMode?: () => void, axes?: (index: number) => void}} Actions */
+
+/** @param {PersonInput} input @param {Settings} settings @param {Actions} actions */
 export function attachKeyboard(input, settings, actions) {
   /** @type {Map<string, [number, number]>} */
   const held = new Map();
@@ -62,12 +60,7 @@ export function attachKeyboard(input, settings, actions) {
   input.addEventListener("dropped", () => held.clear());
 }
 
-/**
- * A pointer leaves no focus on the button that it presses: Enter would press that again, when it is to enable. Keys that
- * press a button leave it where it is.
- *
- * @param {MouseEvent} event a click
- */
+/** A pointer leaves no focus on the button that it presses, which Enter would press again; keys that press it leave it there. @param {MouseEvent} click */
 export function unfocus({ detail, target }) {
   const button = detail > 0 && target instanceof Element ? target.closest("button") : null;
   if (button && button === document.activeElement) button.blur();

@@ -10,12 +10,7 @@ const BUTTONS = [
   "copilot-accept", "copilot-end", "trial-keep", "trial-discard", "record", "view-swap", "trail-clear", "hand-over", "ask", "release",
 ];
 
-/**
- * A button of the page as a choice, while it can be pressed.
- *
- * @param {string} id
- * @returns {Choice[]}
- */
+/** A button of the page as a choice, while it can be pressed. @param {string} id @returns {Choice[]} */
 export function buttonChoice(id) {
   const button = document.getElementById(id);
   if (!(button instanceof HTMLButtonElement) || !canPress(button) || button.closest("[hidden]") !== null) return [];
@@ -47,12 +42,7 @@ export function commonChoices(group) {
   ];
 }
 
-/**
- * @param {Choice[]} help the levels of help
- * @param {Choice[]} here what this page offers besides
- * @param {Group} group
- * @returns {Choice}
- */
+/** @param {Choice[]} help the levels of help @param {Choice[]} here what this page offers besides @param {Group} group */
 export function moreChoices(help, here, group) {
   return group("more", say("scanning.more"), () => [
     ...(help.length && !locked() ? [group("help", say("help.title"), () => help)] : []),

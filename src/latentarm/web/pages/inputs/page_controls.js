@@ -19,12 +19,7 @@ export function elementOf(choice) {
   return choice && elements.get(choice);
 }
 
-/**
- * @param {HTMLElement} root
- * @param {Group} group a choice that opens others
- * @param {string} [id] under which they are known; the same controls have the same
- * @returns {Choice[]}
- */
+/** @param {HTMLElement} root @param {Group} group @param {string} [id] under which they are known; the same controls have the same @returns {Choice[]} */
 export function pageControls(root, group, id = "page") {
   return controlsIn(root).flatMap((element, at) => choicesOf(element, `${id}-${element.id || at}`, group));
 }
@@ -40,12 +35,7 @@ function choicesOf(element, id, group) {
   return [known({ id, label: nameOf(element), act: () => element.click() }, element)];
 }
 
-/**
- * The controls and parts that stand directly in it, in the order of the page. Stop is among the choices anyway.
- *
- * @param {Element} root
- * @returns {HTMLElement[]}
- */
+/** The controls and parts that stand directly in it, in the order of the page; not Stop. @param {Element} root @returns {HTMLElement[]} */
 function controlsIn(root) {
   return /** @type {HTMLElement[]} */ ([...root.children]).flatMap((element) => {
     if (!element.checkVisibility() || element.matches("[data-not-scanned], [data-stop], [aria-hidden=true]")) return [];

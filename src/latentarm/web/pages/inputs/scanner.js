@@ -30,10 +30,7 @@ const READY_MS = 6000;
 
 /** Events: "change" when other choices are offered, or another one is lit or moves; "switch" when one is pressed or let go, counting or not. */
 export class Scanner extends EventTarget {
-  /**
-   * @param {PersonInput} input
-   * @param {Settings} settings
-   */
+  /** @param {PersonInput} input @param {Settings} settings */
   constructor(input, settings) {
     super();
     this._input = input;
@@ -117,13 +114,7 @@ export class Scanner extends EventTarget {
     this._restart();
   }
 
-  /**
-   * A switch goes down or comes up: the first chooses, the second goes on.
-   *
-   * @param {number} number 0 or 1; a gamepad's button
-   * @param {boolean} down
-   * @returns {boolean} whether it is a switch.
-   */
+  /** A switch goes down or comes up: 0 chooses, 1 goes on; false for other buttons of a gamepad. @param {number} number @param {boolean} down */
   press(number, down) {
     if (!this.on || number >= Number(this._settings.values.switches)) return false;
     this._settings.byHand = false;
@@ -159,11 +150,7 @@ export class Scanner extends EventTarget {
     else this._go();
   }
 
-  /**
-   * Take what is lit, unless nobody can have seen it by then. Stop counts all the same, also where it was lit before.
-   *
-   * @param {number} at when the person acted, ms
-   */
+  /** Take what is lit, unless nobody can have seen it by then. Stop counts all the same, also where it was lit before. @param {number} at ms */
   _take(at) {
     if (at - this._litAt >= REACTION_MS) this.choose();
     else [this._litBefore, this.choices[this.lit]].find((one) => one?.id === "stop")?.act?.();

@@ -5,14 +5,7 @@
 /** From the edge of the dead zone to a full push it is at least so far: a smaller way would be a switch. */
 const LEAST_WAY = 0.1;
 
-/**
- * From the stick to the person's own: dead zone, reach, sensitivity, swapped and mirrored axes.
- *
- * @param {StickSettings} settings
- * @param {number} x right
- * @param {number} y up
- * @returns {[number, number]} right, up
- */
+/** The person's own push, right and up. @param {StickSettings} settings @param {number} x right @param {number} y up @returns {[number, number]} */
 export function shape({ deadZone, reach, sensitivity, swapAxes, invertX, invertY }, x, y) {
   const size = Math.hypot(x, y);
   if (size <= deadZone) return [0, 0];
@@ -25,29 +18,13 @@ export function shape({ deadZone, reach, sensitivity, swapAxes, invertX, invertY
   return swapAxes ? [up, right] : [right, up];
 }
 
-/**
- * The input for learned motions: one axis or two.
- *
- * @param {Values} settings
- * @param {Pick<Welcome, "latent_dim"> | null} welcome
- * @param {number} x
- * @param {number} y
- */
+/** The input for learned motions: one axis or two. @param {Values} settings @param {Welcome | null} welcome @param {number} x @param {number} y */
 export function latentInput(settings, welcome, x, y) {
   const [right, up] = shape(settings, x, y);
   return welcome?.latent_dim === 1 ? [right] : [right, up];
 }
 
-/**
- * The input for the current mode.
- *
- * @param {Values} settings
- * @param {Pick<State, "mode" | "axes"> | null} state
- * @param {Pick<Welcome, "latent_dim"> | null} welcome
- * @param {number} x
- * @param {number} y
- * @returns {number[]}
- */
+/** The input for the mode. @param {Values} settings @param {State | null} state @param {Welcome | null} welcome @param {number} x @param {number} y */
 export function modeInput(settings, state, welcome, x, y) {
   if (state?.mode !== "end_effector") return latentInput(settings, welcome, x, y);
   const [right, up] = shape(settings, x, y);

@@ -3,12 +3,6 @@
  * switch has been left alone for a while, and holding repeats.
  */
 
-/**
- * @typedef {object} Times all in s
- * @property {number} acceptS how long a press must be held before it counts
- * @property {number} releaseS how long the switch must have been up before a press counts again
- * @property {number} repeatS how often a press that is held counts again; 0 for never
- */
 /** @typedef {{pressed: (downAt: number) => void, released: () => void, repeated: () => void}} Meanings `downAt` is when it went down, ms */
 
 /**
@@ -24,7 +18,7 @@ const REPEATED_MS = 105;
 const REPETITIONS = 2;
 
 export class SwitchTiming {
-  /** @param {() => Times} times @param {Meanings} means */
+  /** @param {() => Pick<Values, "acceptS" | "releaseS" | "repeatS">} times @param {Meanings} means */
   constructor(times, means) {
     this._times = times;
     this._means = means;

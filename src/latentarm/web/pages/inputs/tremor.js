@@ -36,13 +36,7 @@ export class TremorFilter {
     this._atS = -Infinity;
   }
 
-  /**
-   * @param {Values["tremor"]} strength
-   * @param {number} x right
-   * @param {number} y up
-   * @param {number} nowS s
-   * @returns {[number, number]} the steadied push.
-   */
+  /** The steadied push. @param {Values["tremor"]} strength @param {number} x right @param {number} y up @param {number} nowS @returns {[number, number]} */
   steady(strength, x, y, nowS) {
     if (strength === "off" || (x === 0 && y === 0)) {
       this.reset();

@@ -7,10 +7,7 @@ import { pageControls } from "./page_controls.js";
 import { commonChoices } from "./page_choices.js";
 import { attachScanning } from "./scanning.js";
 
-/**
- * @param {Settings} settings
- * @param {() => void} stop
- */
+/** @param {Settings} settings @param {() => void} stop */
 export function attachWholePage(settings, stop) {
   /** Nothing on such a page moves the arm: what is pushed is only known. @type {PersonInput} */
   const input = Object.assign(new Deflection(), { live: false, flowing: false, halt: () => input.neutral() });

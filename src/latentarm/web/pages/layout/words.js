@@ -26,14 +26,7 @@ export function readWords() {
   useWords(document.documentElement.lang, JSON.parse(element?.textContent ?? "{}"));
 }
 
-/**
- * A text of the catalogue.
- *
- * @param {WordKey} key
- * @param {Record<string, string | number>} [parameters]
- * @returns {string}
- * @throws {Error} where the catalogue has no such key.
- */
+/** A text of the catalogue, or an error. @param {WordKey} key @param {Record<string, string | number>} [parameters] @returns {string} */
 export function say(key, parameters = {}) {
   const entry = catalogue[key];
   if (entry === undefined) throw new Error(`the catalogue has no words for ${key}`);

@@ -7,11 +7,7 @@ const FRAME_MS = 33;
 /** @typedef {import("../connection/messages.js").ShownMotion} Motion */
 
 export class Replay {
-  /**
-   * @param {(bodies: number[][]) => void} show
-   * @param {(bodies: number[][] | null) => void} shadow a second arm
-   * @param {() => number} speed share of full speed with which the person drives
-   */
+  /** @param {(bodies: number[][]) => void} show @param {(bodies: number[][] | null) => void} shadow a second arm @param {() => number} speed of full speed */
   constructor(show, shadow, speed) {
     this._show = show;
     this._shadow = shadow;

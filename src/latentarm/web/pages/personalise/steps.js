@@ -14,12 +14,7 @@ const STEP_OF = {
   preparing: "working", asking: "asking", thinking: "working", learning: "working", learned: "learned", refused: "refused", kept: "kept", failed: "begin",
 };
 
-/**
- * Which step of the page is shown.
- *
- * @param {Pick<Personalise, "phase"> | null} personalise null where nobody was asked
- * @param {boolean} again whether a person who has been asked wants to be asked again
- */
+/** @param {Personalise | null} personalise null where nobody was asked @param {boolean} again whether a person who has been asked wants to be asked again */
 export function stepOf(personalise, again) {
   if (personalise === null) return "begin";
   const step = STEP_OF[personalise.phase];

@@ -7,11 +7,7 @@ const FIELDS = ":is(select, input[type=radio], input[type=checkbox], input[type=
 /** How many steps a slider has for a switch, at most. */
 const STEPS = 10;
 
-/**
- * @param {HTMLFormElement} form the dialog's
- * @param {Group} group a choice that opens others
- * @returns {Choice[]} one for each section.
- */
+/** One for each section. @param {HTMLFormElement} form the dialog's @param {Group} group @returns {Choice[]} */
 export function settingChoices(form, group) {
   return [...form.querySelectorAll("fieldset")].flatMap((section, number) => {
     const id = `settings-${number}`;
@@ -22,12 +18,7 @@ export function settingChoices(form, group) {
   });
 }
 
-/**
- * @param {HTMLInputElement | HTMLSelectElement} field
- * @param {string} id
- * @param {Group} group
- * @returns {Choice}
- */
+/** @param {HTMLInputElement | HTMLSelectElement} field @param {string} id @param {Group} group @returns {Choice} */
 export function fieldChoice(field, id, group) {
   const label = wordsOf(field.closest("label"));
   if (field instanceof HTMLSelectElement) {

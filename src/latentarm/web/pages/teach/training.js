@@ -30,12 +30,7 @@ export function progressWords({ phase, epoch, epochs, loss }) {
   return parts.join(" · ");
 }
 
-/**
- * A name that no run has: what is written, or the next number once a run has been trained under it.
- *
- * @param {string} written
- * @param {Pick<LearningState, "runs" | "training">} learning
- */
+/** A name that no run has: what is written, or the next number once a run was trained under it. @param {string} written @param {LearningState} learning */
 export function freeName(written, { runs, training }) {
   const used = training?.phase === "done" && training.run === written;
   if (written && !used) return written;

@@ -3,11 +3,7 @@
 /** @type {Direction[]} */
 const ROUND = ["right", "up", "left", "down"];
 
-/**
- * The colour of a direction of the stick, for a style sheet: between those of the two nearest arrows, by hue.
- *
- * @param {number} turn counter-clockwise from the right, as a share of a whole turn, in [0, 1)
- */
+/** A direction's colour, by hue between those of the nearest arrows. @param {number} turn counter-clockwise from the right, in [0, 1) of a whole turn */
 export function directionColour(turn) {
   const quarter = Math.floor(4 * turn);
   const [from, to] = [ROUND[quarter], ROUND[(quarter + 1) % 4]];

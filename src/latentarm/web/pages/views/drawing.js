@@ -106,12 +106,7 @@ export class Drawing {
     return moved;
   }
 
-  /**
-   * A motion's pose instead of the arm's own; without names, tool, trail and belief, which would cover it.
-   *
-   * @param {number[][]} bodies
-   * @param {Values["seat"]} seat
-   */
+  /** A motion's pose instead of the arm's own; without what would cover it. @param {number[][]} bodies @param {Values["seat"]} seat */
   showPose(bodies, seat) {
     this._pose = "";
     this._scene.scene.visible = true;
@@ -146,10 +141,7 @@ export class Drawing {
     this._views.invalidate();
   }
 
-  /**
-   * @param {() => boolean} late whether frames between two states would hold up what matters more
-   * @param {() => void} first what goes before each frame
-   */
+  /** @param {() => boolean} late whether frames between two states would hold up what matters more @param {() => void} first what goes before each frame */
   pace(late, first) {
     this._late = late;
     this._views.beforeFrame.unshift(first);

@@ -15,11 +15,7 @@ const HOVER_DASHES = 8;
 const LINE_DASHES = 32;
 
 export class GoalMarkers {
-  /**
-   * @param {Goal[]} goals
-   * @param {(goal: Goal) => THREE.Vector3 | null} placeOf where the goal's thing is now; null for a place alone
-   * @param {number} tableHeight m
-   */
+  /** @param {Goal[]} goals @param {(goal: Goal) => THREE.Vector3 | null} placeOf its thing now; null for a place alone @param {number} tableHeight m */
   constructor(goals, placeOf, tableHeight) {
     this._goals = goals;
     this._placeOf = placeOf;

@@ -13,14 +13,7 @@ export const NOTHING_PREDICTED = { paths: { up: null, down: null, left: null, ri
 /** How each is marked, in the views and in the list. @type {Record<Direction, string>} */
 export const MARKS = { up: "↑", down: "↓", left: "←", right: "→" };
 
-/**
- * The paths for the person's own directions, out of those for full inputs along each axis.
- *
- * @param {State["ghosts"]} ghosts what the server says
- * @param {number[]} tool where the paths begin, m
- * @param {(x: number, y: number) => number[]} shaped from stick to what is sent
- * @returns {Paths}
- */
+/** The paths of the person's own directions. @param {State["ghosts"]} ghosts of full inputs @param {number[]} tool now, m @param {Shaped} shaped */
 export function personalPaths(ghosts, tool, shaped) {
   const paths = { ...NOTHING_PREDICTED.paths };
   for (const direction of DIRECTION_NAMES) {
@@ -32,17 +25,11 @@ export function personalPaths(ghosts, tool, shaped) {
   return paths;
 }
 
-/**
- * The ring for the directions of the person's own stick, counter-clockwise from the right. A stick of one axis has none: its
- * two arrows say it all.
- *
- * @param {State["ghosts"]} ghosts what the server says
- * @param {number[]} tool where it is now, m
- * @param {(x: number, y: number) => number[]} shaped from stick to what is sent
- */
+/** The ring of the person's stick, counter-clockwise from the right. @param {State["ghosts"]} ghosts @param {number[]} tool now, m @param {Shaped} shaped */
 export function personalRing(ghosts, tool, shaped) {
   const ring = ghosts?.ring ?? [];
   const turn = (2 * Math.PI) / ring.length;
+  // A stick of one axis has none: its two arrows say it all.
   return shaped(1, 0).length < 2 ? [] : ring.map((_, direction) => {
     const [across, along] = shaped(Math.cos(direction * turn), Math.sin(direction * turn));
     const size = Math.min(Math.hypot(across, along), 1);

@@ -27,11 +27,7 @@ export class Ring {
     if (this._drawn) paint(this._drawn.lines, this._drawn.pins);
   }
 
-  /**
-   * @param {number[][]} ring the tool, x, y, z (m) and a quaternion w, x, y, z, for directions all round the stick
-   * @param {boolean} shown
-   * @param {number} share how much of it is to be seen, in [0, 1]
-   */
+  /** @param {number[][]} ring x, y, z (m), quaternion w, x, y, z, all round the stick @param {boolean} shown @param {number} share to be seen, in [0, 1] */
   show(ring, shown, share) {
     const visible = shown && ring.length > 0;
     if (visible) this._lay(ring);

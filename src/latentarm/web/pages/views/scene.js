@@ -99,12 +99,7 @@ export class ArmScene {
     return new GoalMarkers(goals, ({ name }) => this.things.placeOf(name), this._table.height);
   }
 
-  /**
-   * A new state: where the bodies, the things and the tool go from what is shown now. Fingers are there at once.
-   *
-   * @param {Pick<State, "bodies" | "tool"> & Partial<Pick<State, "gripper" | "things">>} state
-   * @param {boolean} gliding
-   */
+  /** From what is shown now to a new state; fingers at once. @param {Pick<State, "bodies" | "tool"> & Partial<State>} state @param {boolean} gliding */
   take(state, gliding) {
     const now = performance.now();
     const first = this._to === null;

@@ -8,24 +8,12 @@ import { merged } from "./merged.js";
 /** @import {Geom, Plane, Solid} from "./scene_description.js" */
 /** @typedef {Map<number, THREE.BufferGeometry>} Meshes geometries by number */
 
-/**
- * A body: all its geoms together, in as few calls to draw as can be.
- *
- * @param {Geom[]} geoms
- * @param {Meshes} meshes
- * @param {boolean} [food] whether it has the grain of food
- */
+/** A body: all its geoms together, in as few calls to draw as can be. @param {Geom[]} geoms @param {Meshes} meshes @param {boolean} [food] with its grain */
 export function groupOf(geoms, meshes, food = false) {
   return standing([{ geoms, pose: [0, 0, 0, 1, 0, 0, 0] }], meshes, food);
 }
 
-/**
- * Several bodies that stay where they are, as one.
- *
- * @param {{geoms: Geom[], pose: number[]}[]} bodies
- * @param {Meshes} meshes
- * @param {boolean} [food]
- */
+/** Several bodies that stay where they are, as one. @param {{geoms: Geom[], pose: number[]}[]} bodies @param {Meshes} meshes @param {boolean} [food] */
 export function standing(bodies, meshes, food = false) {
   const parts = bodies.flatMap(({ geoms, pose }) => geoms.flatMap((geom) => {
     const geometry = geometryOf(geom, meshes);
@@ -80,14 +68,7 @@ export function materialOf(rgba) {
   return new THREE.MeshLambertMaterial({ color: colourOf(rgba), transparent: rgba[3] < 1, opacity: rgba[3] });
 }
 
-/**
- * Something solid where it stands.
- *
- * @template {THREE.Material} M
- * @param {Solid} solid
- * @param {M} material
- * @returns {THREE.Mesh<THREE.BufferGeometry, M>}
- */
+/** Something solid where it stands. @template {THREE.Material} M @param {Solid} solid @param {M} material @returns {THREE.Mesh<THREE.BufferGeometry, M>} */
 export function solidOf(solid, material) {
   if (solid.type === "sphere") {
     const ball = new THREE.Mesh(ballOf(solid.radius), material);
@@ -108,15 +89,7 @@ export function solidOf(solid, material) {
   return box;
 }
 
-/**
- * A square piece of a plane.
- *
- * @template {THREE.Material} M
- * @param {Plane} plane
- * @param {number} size m
- * @param {M} material
- * @returns {THREE.Mesh<THREE.BufferGeometry, M>}
- */
+/** A square piece of a plane. @template {THREE.Material} M @param {Plane} plane @param {number} size m @param {M} material */
 export function sheetOf({ point, normal }, size, material) {
   const sheet = new THREE.Mesh(new THREE.PlaneGeometry(size, size), material);
   sheet.position.set(...point);

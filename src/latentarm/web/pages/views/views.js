@@ -18,24 +18,10 @@ const SMALL_MS = 150;
 /** @import {ArmScene} from "./scene.js" */
 /** @import {Box} from "./label_layout.js" */
 
-/**
- * @typedef {object} View
- * @property {"front" | "side"} name
- * @property {HTMLElement} element
- * @property {HTMLElement} labels
- * @property {THREE.PerspectiveCamera} camera
- * @property {number} left of its left lower corner on the canvas, px
- * @property {number} bottom
- * @property {number} width px
- * @property {number} height
- */
+/** @typedef {Views["views"][number]} View */
 
 export class Views {
-  /**
-   * @param {HTMLCanvasElement} canvas lies under both views
-   * @param {{front: HTMLElement, side: HTMLElement}} elements
-   * @param {ArmScene} scene
-   */
+  /** @param {HTMLCanvasElement} canvas lies under both views @param {{front: HTMLElement, side: HTMLElement}} elements @param {ArmScene} scene */
   constructor(canvas, elements, scene) {
     this._canvas = canvas;
     this._scene = scene;
@@ -61,12 +47,12 @@ export class Views {
     this._shown = true;
     /** @type {ReturnType<typeof setTimeout> | undefined} */
     this._soon = undefined;
-    /** @type {View[]} */
     this.views = /** @type {("front" | "side")[]} */ (["front", "side"]).map((name) => ({
       name,
       element: elements[name],
       labels: /** @type {HTMLElement} */ (elements[name].querySelector(".labels")),
       camera: new THREE.PerspectiveCamera(FOV_DEG, 1, 0.05, 20),
+      // Its left lower corner on the canvas, and its size, px.
       left: 0, bottom: 0, width: 0, height: 0,
     }));
     for (const view of this.views) view.camera.up.set(0, 0, 1);
@@ -147,12 +133,7 @@ export class Views {
     this.invalidate();
   }
 
-  /**
-   * Where a point is in a view, CSS pixels from its left upper corner, and how many of them a metre has there.
-   *
-   * @param {View} view
-   * @param {THREE.Vector3} point m
-   */
+  /** Where a point is, CSS px from its left upper corner, and how many of them a metre has there. @param {View} view @param {THREE.Vector3} point m */
   project({ camera, width, height }, point) {
     const seen = point.clone().project(camera);
     const away = -point.clone().applyMatrix4(camera.matrixWorldInverse).z;
