@@ -12,14 +12,12 @@ const ASK_MS = 1000;
 const ASK_FIRST_MS = 60;
 const FIRST_QUESTIONS = 6;
 
-/** @typedef {{state: CameraState, rtp: number | null, at: number | null}} Told */
-
 export class CameraLink {
   /**
    * @param {number} count how many cameras there are
    * @param {ServerClock} clock
-   * @param {{track: (number: number, track: MediaStreamTrack | null) => void, told: (cameras: Told[]) => void,
-   *   refused: (notice: Notice | null) => void}} heard what is done with what comes
+   * @param {{track: (number: number, track: MediaStreamTrack | null) => void, refused: (notice: Notice | null) => void,
+   *   told: (cameras: {state: CameraState, rtp: number | null, at: number | null}[]) => void}} heard what is done with what comes
    */
   constructor(count, clock, heard) {
     this._count = count;
@@ -106,7 +104,7 @@ export class CameraLink {
     };
     channel.addEventListener("open", ask);
     channel.addEventListener("close", () => {
-      if (this._peer?.connectionState === "connected") this._again();
+      if (this.connected) this._again();
     });
     channel.addEventListener("message", ({ data }) => {
       const said = JSON.parse(data);

@@ -8,7 +8,7 @@
 
 import { OwnPages } from "./own_pages.js";
 
-/** @import {ClientMessage, DriverInput, Poses, ServerMessage, LearningState} from "./messages.js" */
+/** @import {DriverInput, Poses, ServerMessage} from "./messages.js" */
 
 /** How old the newest state may be before inputs are held back, ms: the server would not take them anyway. */
 const STALE_MS = 200;

@@ -5,7 +5,6 @@ import { setText } from "../layout/dom.js";
 import { sayTo } from "./notices.js";
 import { sentenceOf, textOf } from "./sentence.js";
 
-/** @import {HaltReason} from "../inputs/deflection.js" */
 /** @import {Reader} from "./notices.js" */
 /** @import {PageState} from "./sentence.js" */
 

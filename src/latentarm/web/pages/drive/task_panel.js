@@ -40,7 +40,7 @@ export function attachTask(connection, ended) {
   });
 
   connection.addEventListener("welcome", () => {
-    const { task } = /** @type {NonNullable<Connection["welcome"]>} */ (connection.welcome);
+    const { task } = /** @type {Welcome} */ (connection.welcome);
     panel.hidden = task.steps.length === 0;
     steps.replaceChildren(...task.steps.map((step) => {
       const spoken = create("span", { className: "visually-hidden" });

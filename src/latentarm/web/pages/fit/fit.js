@@ -33,7 +33,7 @@ const LONGEST_MS = 2000;
 const ROOM = "(min-width: 40.01rem) and (min-height: 30.01rem)";
 const WARNINGS = /** @type {const} */ (["fit.drift_much", "fit.slow", "fit.too_few"]);
 
-/** @type {import("../views/drawing.js").Drawing | null} */
+/** @type {Drawing | null} */
 let drawing = null;
 let chosen = "stick";
 /** What is done one after the other; of keys only a share. @type {(Hold | Trials | {share: number})[]} */

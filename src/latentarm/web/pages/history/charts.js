@@ -13,7 +13,7 @@ const [WIDTH, HEIGHT, TOP, FOOT] = [300, 124, 20, 24];
 /** Values and days that there is room for, one next to the other. */
 const [MOST_VALUES, MOST_DATES] = [8, 4];
 
-/** @type {[import("../layout/words.js").WordKey, Counted, (value: number) => string][]} */
+/** @type {[WordKey, Counted, (value: number) => string][]} */
 const CHARTS = [
   ["history.chart_success", "success", (value) => sayNumber(100 * value)],
   ["history.chart_time", "time", (value) => sayNumber(value, value < 10 ? 1 : 0)],

@@ -3,8 +3,6 @@
 import { taskTitle, thingWords } from "../layout/thing_words.js";
 import { say, sayNumber } from "../layout/words.js";
 
-/** @import {Drive} from "./weeks.js" */
-
 /** @type {Record<string, WordKey>} */
 const INPUTS = {
   pointer: "history.input_pointer", keyboard: "history.input_keyboard", dpad: "history.input_dpad",

@@ -3,8 +3,7 @@
 import { between } from "../personalise/replay.js";
 
 /** @import {Trace} from "../connection/messages.js" */
-/** @typedef {{poses: number[][], grains: number[][]}} Standing */
-/** @typedef {{t: number, bodies: number[][], tool: number[], width_m: number | null, things: Standing | null, enabled: boolean, stopped: boolean}} Moment */
+/** @typedef {ReturnType<typeof momentAt>} Moment */
 
 const FRAME_MS = 33;
 

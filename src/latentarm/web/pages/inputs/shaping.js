@@ -1,11 +1,9 @@
 /** From the stick to what is sent: the person's own dead zone, reach, sensitivity and axes, and what the mode expects. */
 
-/** @typedef {Pick<Values, "deadZone" | "reach" | "sensitivity" | "swapAxes" | "invertX" | "invertY">} StickSettings */
-
 /** From the edge of the dead zone to a full push it is at least so far: a smaller way would be a switch. */
 const LEAST_WAY = 0.1;
 
-/** The person's own push, right and up. @param {StickSettings} settings @param {number} x right @param {number} y up @returns {[number, number]} */
+/** The person's own push, right and up. @param {Values} settings @param {number} x right @param {number} y up @returns {[number, number]} */
 export function shape({ deadZone, reach, sensitivity, swapAxes, invertX, invertY }, x, y) {
   const size = Math.hypot(x, y);
   if (size <= deadZone) return [0, 0];

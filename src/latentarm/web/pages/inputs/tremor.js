@@ -70,8 +70,7 @@ function mixed(before, now, share) {
 /**
  * Steadies what is pushed by how far it is pushed; keys, buttons and switches are pressed or not.
  *
- * @param {import("../settings/settings.js").Settings} settings
- * @returns {(x: number, y: number, source: import("./deflection.js").Source | null) => [number, number]}
+ * @param {Settings} settings @returns {(x: number, y: number, source: PersonInput["source"]) => [number, number]}
  */
 export function attachTremor(settings) {
   const filter = new TremorFilter();

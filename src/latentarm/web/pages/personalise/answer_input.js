@@ -7,8 +7,6 @@ const PERIOD_MS = 20;
 const STEADY_MS = 250;
 const STEADY = 0.1;
 
-/** @typedef {{x: number, y: number, at: number}} Sample */
-
 /** Event "answer" when the dot has moved. */
 export class AnswerInput extends Deflection {
   constructor() {
@@ -17,7 +15,7 @@ export class AnswerInput extends Deflection {
     this.live = false;
     /** @type {[number, number] | null} The push that was meant. */
     this.answer = null;
-    /** @type {Sample[]} Of this push. */
+    /** @type {{x: number, y: number, at: number}[]} Of this push. */
     this._samples = [];
     this._steady = false;
     setInterval(() => {

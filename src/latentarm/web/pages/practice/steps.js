@@ -3,9 +3,7 @@
 import { distance } from "../drive/task_words.js";
 
 /** @typedef {"enable" | "press" | "watch" | "let_go" | "stop" | "reach"} Step */
-/** @typedef {[number, number, number]} Point */
-
-/** The arm, as this page drives it, and whether a direction is pressed; m. @typedef {{engaged: boolean, moving: boolean, pressed: boolean, tool: Point, goals: Point[]}} Seen */
+/** The arm, as this page drives it, and whether a direction is pressed; m. @typedef {{engaged: boolean, moving: boolean, pressed: boolean, tool: number[], goals: number[][]}} Seen */
 
 /** @type {Step[]} */
 export const STEPS = ["enable", "press", "watch", "let_go", "stop", "reach"];
@@ -19,7 +17,7 @@ const FAR_M = 0.15;
 
 export class Practice {
   done = 0;
-  /** @type {Point | null} Where the tool was when the step began. */
+  /** @type {number[] | null} Where the tool was when the step began. */
   _from = null;
 
   /** The step to do, or null when all are done. @returns {Step | null} */

@@ -9,7 +9,7 @@ const LOOK_MS = 50;
 const [REST_LOOKS, AT_REST] = [15, 0.2];
 const STICK = ["right", "up"];
 
-/** @param {HTMLDialogElement} dialog @param {import("./settings.js").Settings} settings */
+/** @param {HTMLDialogElement} dialog @param {Settings} settings */
 export function attachPadSection(dialog, settings) {
   const [live, part] = [byId("pad-live"), byId("pad")];
   /** The button of the page that asks. @type {HTMLElement | null} */

@@ -2,7 +2,7 @@
 
 import { say, sayNumber } from "../layout/words.js";
 
-/** @import {Training, LearningState} from "../connection/messages.js" */
+/** @import {Training} from "../connection/messages.js" */
 
 /** Whether a training is under way. @param {Training | null} training */
 export function isBusy(training) {

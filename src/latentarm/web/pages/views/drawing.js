@@ -12,9 +12,6 @@ import { colourOf, symbolOf } from "./symbols.js";
 import { ToolPaths } from "./tool_paths.js";
 import { Views } from "./views.js";
 
-/** @import {State} from "../connection/messages.js" */
-/** @import {Direction} from "../inputs/deflection.js" */
-/** @import {Values} from "../settings/settings.js" */
 /** @import {Predicted} from "./predictions.js" */
 
 /** Arrows and ring fade between these distances from what is wanted, m, to this share. */

@@ -2,9 +2,7 @@
 
 import * as THREE from "../three/three.module.min.js";
 
-/** @typedef {{geometry: THREE.BufferGeometry, at: THREE.Matrix4, colour: THREE.Color}} Part an indexed geometry with normals, and where it is */
-
-/** @param {Part[]} parts */
+/** @param {{geometry: THREE.BufferGeometry, at: THREE.Matrix4, colour: THREE.Color}[]} parts indexed geometries with normals, and where they are */
 export function merged(parts) {
   const vertices = parts.reduce((sum, { geometry }) => sum + geometry.attributes.position.count, 0);
   const corners = parts.reduce((sum, { geometry }) => sum + indexOf(geometry).count, 0);
