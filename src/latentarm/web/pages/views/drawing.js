@@ -8,11 +8,12 @@ import { Labels } from "./labels.js";
 import { isLikeliest } from "./likeliest.js";
 import { Ring } from "./ring.js";
 import { ArmScene } from "./scene.js";
-import { colourOf, symbolOf } from "./symbols.js";
+import { colourOf, shapeOf } from "./symbols.js";
 import { ToolPaths } from "./tool_paths.js";
 import { Views } from "./views.js";
 
 /** @import {Predicted} from "./predictions.js" */
+/** @typedef {{canvas: HTMLCanvasElement, front: HTMLElement, side: HTMLElement}} Elements */
 
 /** Arrows and ring fade between these distances from what is wanted, m, to this share. */
 const FADE_M = [0.05, 0.14];
@@ -25,7 +26,7 @@ const NAMED_PX = 300;
 const MARKED_MS = 500;
 
 export class Drawing {
-  /** @param {{canvas: HTMLCanvasElement, front: HTMLElement, side: HTMLElement}} elements @param {ArmScene} scene */
+  /** @param {Elements} elements @param {ArmScene} scene */
   constructor(elements, scene) {
     this._scene = scene;
     this._views = new Views(elements.canvas, elements, scene);
@@ -51,12 +52,7 @@ export class Drawing {
     });
   }
 
-  /**
-   * @param {{canvas: HTMLCanvasElement, front: HTMLElement, side: HTMLElement}} elements
-   * @param {string} where address of the scene
-   * @returns {Promise<Drawing>}
-   * @throws where the browser cannot draw, or the scene cannot be loaded.
-   */
+  /** An error where the browser cannot draw, or the scene at this address cannot be loaded. @param {Elements} elements @param {string} where */
   static async load(elements, where) {
     const drawing = new Drawing(elements, await ArmScene.load(where));
     await drawing._views.prepare();
@@ -88,8 +84,8 @@ export class Drawing {
     this._scene.take(state, this._views.smooth && !this._still.matches && !this._late());
     this._scene.markers.believe(state.belief);
     const tool = new THREE.Vector3(...state.tool);
-    this._scene.showTrail(wanted.showTrail);
-    this._scene.markTool(true);
+    this._scene.trail.object.visible = wanted.showTrail;
+    this._scene.marker.object.visible = true;
     this._nameGoals(state.belief, tool, thing);
     this._nameThing(thing, tool);
     this._nameZones(zone);
@@ -107,8 +103,7 @@ export class Drawing {
   showPose(bodies, seat) {
     this._pose = "";
     this._scene.scene.visible = true;
-    this._scene.markTool(false);
-    this._scene.showTrail(false);
+    this._scene.marker.object.visible = this._scene.trail.object.visible = false;
     this._scene.take({ bodies, tool: this._scene.tool.toArray() }, false);
     this._scene.markers.believe(null);
     this._nameGoals(null, null, null);
@@ -168,15 +163,14 @@ export class Drawing {
       const place = this._scene.markers.placeOf(index);
       const told = tool !== null && (name === thing || isLikeliest(belief, index));
       const shares = [...(belief ? [sayPercent(belief[index])] : []), ...(told ? [away(tool, place)] : [])];
-      const look = { shown: tool !== null, share: shares.join(" · ") || undefined, thing: colourOf(index), mark: symbolOf(index), told };
+      const look = { shown: tool !== null, share: shares.join(" · ") || undefined, thing: colourOf(index), mark: shapeOf(index).symbol, told };
       this._labels.set(`goal-${index}`, place, thingWords(name), look);
     });
   }
 
   /** The task's current thing, unless it is a goal, which has a name of its own. @param {string | null} name @param {THREE.Vector3 | null} tool */
   _nameThing(name, tool) {
-    const known = name === null || this._scene.goals.some((goal) => goal.name === name);
-    const place = known || name === null ? null : this._scene.things.placeOf(name);
+    const place = name === null || this._scene.goals.some((goal) => goal.name === name) ? null : this._scene.things.placeOf(name);
     const share = place && tool ? away(tool, place) : undefined;
     this._labels.set("wanted", place, place && name ? thingWords(name) : "", { shown: place !== null, share });
   }

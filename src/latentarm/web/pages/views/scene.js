@@ -3,7 +3,7 @@
 import * as THREE from "../three/three.module.min.js";
 import { colour } from "./colours.js";
 import { GoalMarkers } from "./goal_markers.js";
-import { groupOf, meshGeometry, place } from "./shapes.js";
+import { glide, groupOf, meshGeometry, place, stanceOf } from "./shapes.js";
 import { Shadows } from "./shadows.js";
 import { Table } from "./table.js";
 import { Things } from "./things.js";
@@ -32,7 +32,7 @@ export class ArmScene {
     this.trail = new Trail();
     this._table = new Table(description.obstacles);
     this.zones = new Zones(description.zones ?? []);
-    this._marker = new ToolMarker();
+    this.marker = new ToolMarker();
     this._bodies = description.bodies.map(({ geoms }) => groupOf(geoms, meshes));
     this._fingers = description.fingers.map(({ body, opens, at, geoms }) => {
       const finger = { group: groupOf(geoms, meshes), opens: new THREE.Vector3(...opens) };
@@ -50,8 +50,8 @@ export class ArmScene {
     });
     /** @type {THREE.Group[] | null} */
     this._shadows = null;
-    /** @type {({position: THREE.Vector3, quaternion: THREE.Quaternion} | null)[]} */
-    this._from = this._bodies.map(() => null);
+    /** @type {ReturnType<typeof stanceOf>[]} */
+    this._from = [];
     /** @type {number[][] | null} */
     this._to = null;
     this._toolFrom = new THREE.Vector3();
@@ -62,7 +62,7 @@ export class ArmScene {
     const sun = new THREE.DirectionalLight(0xffffff, 1.7);
     sun.position.set(0.6, -0.8, 1.6);
     this.scene.add(new THREE.HemisphereLight(0xffffff, 0x8a98a0, 2.1), sun);
-    this.scene.add(...this._bodies, ...this.things.objects, ...this._table.objects, this._shades.object, ...this.zones.objects, this._marker.object, ...this.markers.objects, this.trail.object);
+    this.scene.add(...this._bodies, ...this.things.objects, ...this._table.objects, this._shades.object, ...this.zones.objects, this.marker.object, ...this.markers.objects, this.trail.object);
     this.repaint();
   }
 
@@ -103,7 +103,7 @@ export class ArmScene {
   take(state, gliding) {
     const now = performance.now();
     const first = this._to === null;
-    this._from = this._bodies.map((body) => ({ position: body.position.clone(), quaternion: body.quaternion.clone() }));
+    this._from = this._bodies.map(stanceOf);
     this._toolTo = new THREE.Vector3(...state.tool);
     this._toolFrom = (first ? this._toolTo : this.tool).clone();
     this._glideMs = gliding && !first ? Math.min(now - this._heardAt, LONGEST_GLIDE_MS) : 0;
@@ -111,7 +111,8 @@ export class ArmScene {
     // The next frame is seen a little later than it is begun: it already shows some of the motion.
     this._began = now - FRAME_MS;
     this._to = state.bodies;
-    if (state.gripper) this._spread(state.gripper.width_m);
+    // Both fingers, with this opening between them.
+    if (state.gripper) for (const { group, opens } of this._fingers) group.position.copy(opens).multiplyScalar(state.gripper.width_m / 2);
     this.things.take(state.things ?? null);
     this.trail.extend(this._toolTo);
   }
@@ -122,18 +123,13 @@ export class ArmScene {
     if (to === null) return false;
     const share = this._glideMs > 0 ? Math.min(Math.max((now - this._began) / this._glideMs, 0), 1) : 1;
     this._bodies.forEach((body, index) => {
-      if (!to[index]) return;
-      place(body, to[index]);
-      const from = this._from[index];
-      if (share === 1 || !from) return;
-      body.position.lerpVectors(from.position, body.position, share);
-      body.quaternion.slerpQuaternions(from.quaternion, body.quaternion.clone(), share);
+      if (to[index]) glide(body, this._from[index], to[index], share);
     });
     this.things.advance(share);
     this.markers.follow();
     this._shade();
     this.tool.lerpVectors(this._toolFrom, this._toolTo, share);
-    this._marker.moveTo(this.tool, this.things.heightUnder(this.tool, this._table.height));
+    this.marker.moveTo(this.tool, this.things.heightUnder(this.tool, this._table.height));
     return share < 1;
   }
 
@@ -153,11 +149,6 @@ export class ArmScene {
     )));
   }
 
-  /** Both fingers, with this opening between them. @param {number} width m */
-  _spread(width) {
-    for (const { group, opens } of this._fingers) group.position.copy(opens).multiplyScalar(width / 2);
-  }
-
   /** A second arm that can be seen through, or none. @param {number[][] | null} bodies */
   shadow(bodies) {
     this._shadows ??= this._bodies.map((body) => {
@@ -174,21 +165,11 @@ export class ArmScene {
     });
   }
 
-  /** Whether the tool is marked, and where it stands above the table. @param {boolean} shown */
-  markTool(shown) {
-    this._marker.object.visible = shown;
-  }
-
-  /** @param {boolean} shown */
-  showTrail(shown) {
-    this.trail.object.visible = shown;
-  }
-
   /** Take the colours of the page as they are now. */
   repaint() {
     this.scene.background = new THREE.Color(colour("view"));
     this._shadowMaterial.color.set(colour("way"));
-    for (const part of [this._table, this.zones, this._marker, this.trail, this.markers]) part.repaint();
+    for (const part of [this._table, this.zones, this.marker, this.trail, this.markers]) part.repaint();
   }
 
   /** Where the joints are, m. */

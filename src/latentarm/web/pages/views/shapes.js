@@ -137,6 +137,19 @@ export function place(object, [x, y, z, w, i, j, k]) {
   object.quaternion.set(i, j, k, w);
 }
 
+/** Where it stands now. @param {THREE.Object3D} object */
+export function stanceOf({ position, quaternion }) {
+  return { position: position.clone(), quaternion: quaternion.clone() };
+}
+
+/** Put it a share of the way from a stance to a pose. @param {THREE.Object3D} object @param {ReturnType<typeof stanceOf>} from @param {number[]} pose @param {number} share */
+export function glide(object, from, pose, share) {
+  place(object, pose);
+  if (share === 1) return;
+  object.position.lerpVectors(from.position, object.position, share);
+  object.quaternion.slerpQuaternions(from.quaternion, object.quaternion.clone(), share);
+}
+
 /** A mesh as the server sends it: two counts, vertices and faces, little-endian. @param {ArrayBuffer} bytes */
 export function meshGeometry(bytes) {
   const [vertices, faces] = new Uint32Array(bytes, 0, 2);

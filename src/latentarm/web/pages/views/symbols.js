@@ -8,12 +8,7 @@ const SHAPES = [
   { symbol: "⬟", corners: 5, turn: Math.PI / 2 },
 ];
 
-/** The sign in texts. @param {number} index of the goal */
-export function symbolOf(index) {
-  return SHAPES[index % SHAPES.length].symbol;
-}
-
-/** The ring in views: how many corners, and how far it is turned, rad. @param {number} index of the goal */
+/** The sign in texts; the ring in views: how many corners, and how far it is turned, rad. @param {number} index of the goal */
 export function shapeOf(index) {
   return SHAPES[index % SHAPES.length];
 }

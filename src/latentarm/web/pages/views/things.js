@@ -2,7 +2,7 @@
 
 import * as THREE from "../three/three.module.min.js";
 import { ROUND } from "./fineness.js";
-import { groupOf, materialOf, place, standing } from "./shapes.js";
+import { glide, groupOf, materialOf, place, stanceOf, standing } from "./shapes.js";
 
 /** @import {Grains, Thing} from "./scene_description.js" */
 /** @import {Meshes} from "./shapes.js" */
@@ -11,7 +11,7 @@ export class Things {
   /** @param {Thing[]} things @param {Grains[]} grains @param {Meshes} meshes @param {Set<string>} food names of what may be meant */
   constructor(things, grains, meshes, food) {
     this._things = things.map(({ name, pose, geoms }) => {
-      const group = groupOf(geoms, meshes, food.has(name));
+      const group = Object.assign(groupOf(geoms, meshes, food.has(name)), { name });
       place(group, pose);
       return group;
     });
@@ -22,7 +22,6 @@ export class Things {
       scatter(balls, positions);
       return balls;
     });
-    this._names = things.map(({ name }) => name);
     const boxes = this._things.map((thing) => new THREE.Box3().setFromObject(thing));
     /** Corners of what there is at first: a thing that falls off the table does not take the view along. */
     this.extent = boxes.flatMap(({ min, max }) => [min, max]);
@@ -37,7 +36,7 @@ export class Things {
     });
     const still = things.filter(({ fixed }) => fixed).map(({ pose, geoms, soft = [] }) => ({ pose, geoms: [...geoms, ...soft] }));
     this.objects = [...this._things, ...this._grains, standing(still, meshes)];
-    /** @type {{position: THREE.Vector3, quaternion: THREE.Quaternion}[]} */
+    /** @type {ReturnType<typeof stanceOf>[]} */
     this._from = [];
     /** @type {State["things"]} */
     this._to = null;
@@ -45,7 +44,7 @@ export class Things {
 
   /** Where a thing is shown now, m; null if nothing has that name. @param {string} name */
   placeOf(name) {
-    return this._things[this._names.indexOf(name)]?.position ?? null;
+    return this._things.find((thing) => thing.name === name)?.position ?? null;
   }
 
   /** Where things are, and how wide from their middle, m. */
@@ -63,27 +62,22 @@ export class Things {
   take(things) {
     if (things === null) return;
     for (const { name, seen } of things.seen ?? []) {
-      const group = this._things[this._names.indexOf(name)];
+      const group = this._things.find((thing) => thing.name === name);
+      if (!group) continue;
       group.visible = seen !== "unseen";
       // A lost thing is drawn as a cage.
       group.traverse((part) => {
         if (part instanceof THREE.Mesh) part.material.wireframe = seen === "lost";
       });
     }
-    this._from = this._things.map(({ position, quaternion }) => ({ position: position.clone(), quaternion: quaternion.clone() }));
+    this._from = this._things.map(stanceOf);
     if (things !== this._to) this._grains.forEach((balls, index) => scatter(balls, things.grains[index]));
     this._to = things;
   }
 
   /** Show them so far on their way. @param {number} share in [0, 1] */
   advance(share) {
-    this._to?.poses.forEach((pose, index) => {
-      const [thing, from] = [this._things[index], this._from[index]];
-      place(thing, pose);
-      if (share === 1) return;
-      thing.position.lerpVectors(from.position, thing.position, share);
-      thing.quaternion.slerpQuaternions(from.quaternion, thing.quaternion.clone(), share);
-    });
+    this._to?.poses.forEach((pose, index) => glide(this._things[index], this._from[index], pose, share));
   }
 }
 

@@ -15,7 +15,7 @@ export class Trail {
     this._material = new THREE.PointsMaterial({ size: SIZE_PX, sizeAttenuation: false, map: disc(), alphaTest: 0.5 });
     this.object = new THREE.Points(geometry, this._material);
     this.object.frustumCulled = false;
-    this._next = this._count = 0;
+    this._next = 0;
     /** @type {THREE.Vector3 | null} */
     this._end = null;
     this.clear();
@@ -28,19 +28,14 @@ export class Trail {
     this._places.setXYZ(this._next, tool.x, tool.y, tool.z);
     this._places.needsUpdate = true;
     this._next = (this._next + 1) % MOST;
-    this._show(Math.max(this._count, this._next));
+    const { drawRange } = this.object.geometry;
+    drawRange.count = Math.max(drawRange.count, this._next);
   }
 
   clear() {
     this._next = 0;
     this._end = null;
-    this._show(0);
-  }
-
-  /** @param {number} count of the dots */
-  _show(count) {
-    this._count = count;
-    this.object.geometry.setDrawRange(0, count);
+    this.object.geometry.drawRange.count = 0;
   }
 
   repaint() {

@@ -16,7 +16,8 @@ const EDGE_DEG = 1;
 export class Zones {
   /** @param {Zone[]} zones */
   constructor(zones) {
-    this._shown = zones.map((zone) => {
+    /** Names, speeds in m/s, what is drawn, and where the names are written. */
+    this.all = zones.map((zone) => {
       const material = new THREE.MeshBasicMaterial({ transparent: true, depthWrite: false, side: THREE.DoubleSide });
       const solid = zone.type === "plane" ? sheetOf(zone, SHEET_M, material) : solidOf(zone, material);
       const outline = new THREE.LineSegments(
@@ -27,15 +28,13 @@ export class Zones {
       const { min, max } = new THREE.Box3().setFromObject(solid);
       return { name: zone.name, speed: zone.speed, solid, outline, top: new THREE.Vector3((min.x + max.x) / 2, (min.y + max.y) / 2, max.z) };
     });
-    this.objects = this._shown.map(({ solid }) => solid);
-    /** Names, speeds in m/s, and where their names are written. */
-    this.all = this._shown.map(({ name, speed, top }) => ({ name, speed, top }));
+    this.objects = this.all.map(({ solid }) => solid);
     this.slow(null);
   }
 
   /** Mark the zone that slows the arm. @param {string | null} slowing its name */
   slow(slowing) {
-    for (const { name, solid, outline } of this._shown) {
+    for (const { name, solid, outline } of this.all) {
       const look = name === slowing ? SLOWING : CALM;
       solid.material.opacity = look.solid;
       outline.material.opacity = look.outline;
@@ -43,7 +42,7 @@ export class Zones {
   }
 
   repaint() {
-    for (const { solid, outline } of this._shown) {
+    for (const { solid, outline } of this.all) {
       solid.material.color.set(colour("warn"));
       outline.material.color.set(colour("warn"));
     }
