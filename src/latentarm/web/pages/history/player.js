@@ -19,26 +19,20 @@ export function standing(trace) {
 
 /** The drive at a time, s: between two moments, or unchanged for a while. @param {Trace} trace @param {ReturnType<typeof standing>} things @param {number} t */
 export function momentAt(trace, things, t) {
-  const index = Math.max(lastBefore(trace.t, t), 0);
+  const index = Math.max(trace.t.findLastIndex((time) => time <= t), 0);
   const next = Math.min(index + 1, trace.t.length - 1);
   const begins = Math.max(trace.t[index], trace.t[next] - 1.5 * trace.period_s);
   const share = next > index ? Math.min(Math.max((t - begins) / (trace.t[next] - begins), 0), 1) : 0;
-  const thing = lastBefore(things.map((one) => one.t), t);
-  const mark = trace.marks[lastBefore(trace.marks.map((one) => one.t), t)];
+  const mark = trace.marks.findLast((one) => one.t <= t);
   return {
     t,
     bodies: between([trace.bodies[index], trace.bodies[next]], share),
     tool: trace.tool[index].map((from, axis) => from + share * (trace.tool[next][axis] - from)),
     width_m: trace.width_m[index],
-    things: thing < 0 ? null : things[thing].state,
+    things: things.findLast((one) => one.t <= t)?.state ?? null,
     enabled: mark?.code === "enabled",
     stopped: mark !== undefined && mark.code !== "enabled",
   };
-}
-
-/** Index of the last time that is not later; -1 where all are. @param {number[]} times @param {number} t */
-function lastBefore(times, t) {
-  return times.findLastIndex((time) => time <= t);
 }
 
 /** Event "moment" with each moment that is to be shown, in `detail`; "playing" when it begins or ends. */

@@ -42,20 +42,17 @@ export function byWeek(drives) {
 
 /** @param {Drive[]} drives @param {(iso: string) => string} firstDay of the period of a moment @param {number} days in a period @returns {Period[]} */
 function compared(drives, firstDay, days) {
-  const firsts = drives.map(({ started }) => firstDay(started)).sort();
+  const found = Map.groupBy(drives, ({ started }) => firstDay(started));
+  const firsts = [...found.keys()].sort();
   const periods = [];
-  for (let first = firsts[0]; first <= firsts[firsts.length - 1]; first = later(first, days)) {
-    periods.push({ first, drives: drives.filter(({ started }) => firstDay(started) === first) });
-  }
+  for (let first = firsts[0]; first <= firsts[firsts.length - 1]; first = later(first, days)) periods.push({ first, drives: found.get(first) ?? [] });
   return periods;
 }
 
 /** Values with how often they are there, the most frequent first. @param {string[]} values @returns {[string, number][]} */
 export function counted(values) {
-  /** @type {Map<string, number>} */
-  const counts = new Map();
-  for (const value of values) counts.set(value, (counts.get(value) ?? 0) + 1);
-  return [...counts].sort(([, one], [, other]) => other - one);
+  const counts = [...Map.groupBy(values, (value) => value)].map(([value, alike]) => /** @type {[string, number]} */ ([value, alike.length]));
+  return counts.sort(([, one], [, other]) => other - one);
 }
 
 /** @param {string} day @param {number} days */
