@@ -6,6 +6,8 @@
  * there is nothing to steady: letting go counts at once.
  */
 
+/** @typedef {[number, number]} Pair right and up */
+
 /** Cut-off of a hand that is still, Hz, and by how much it rises with the hand's speed, Hz per 1/s. */
 const STRENGTHS = {
   light: { stillHz: 2, perSpeed: 0.5 },
@@ -19,41 +21,27 @@ const GAP_S = 0.2;
 /** The page's usual time from one push to the next, and the longest that counts, s: late ones are steadied no less. */
 const PERIOD_S = 0.02;
 
+/** A hand that has let go. @type {{at: Pair, push: Pair, speed: Pair, atS: number}} */
+const AT_REST = { at: [0, 0], push: [0, 0], speed: [0, 0], atS: -Infinity };
+
 export class TremorFilter {
-  constructor() {
-    /** @type {[number, number]} */
-    this._at = [0, 0];
-    /** @type {[number, number]} */
-    this._push = [0, 0];
-    /** @type {[number, number]} */
-    this._speed = [0, 0];
-    this._atS = -Infinity;
-  }
+  _hand = AT_REST;
 
-  /** Forget the hand: it has let go. */
-  reset() {
-    this._at = this._push = this._speed = [0, 0];
-    this._atS = -Infinity;
-  }
-
-  /** The steadied push. @param {Values["tremor"]} strength @param {number} x right @param {number} y up @param {number} nowS @returns {[number, number]} */
+  /** The steadied push. @param {Values["tremor"]} strength @param {number} x right @param {number} y up @param {number} nowS @returns {Pair} */
   steady(strength, x, y, nowS) {
     if (strength === "off" || (x === 0 && y === 0)) {
-      this.reset();
+      this._hand = AT_REST;
       return [x, y];
     }
-    if (nowS === this._atS) return this._at;
-    if (nowS - this._atS > GAP_S) this.reset();
+    if (nowS === this._hand.atS) return this._hand.at;
+    const { at, push, speed, atS } = nowS - this._hand.atS > GAP_S ? AT_REST : this._hand;
     // A push that begins comes from rest, one usual period ago.
-    const dtS = Math.min(nowS - this._atS, PERIOD_S);
+    const dtS = Math.min(nowS - atS, PERIOD_S);
     const { stillHz, perSpeed } = STRENGTHS[strength];
-    const speed = /** @type {[number, number]} */ ([(x - this._push[0]) / dtS, (y - this._push[1]) / dtS]);
-    this._speed = mixed(this._speed, speed, shareOf(SPEED_HZ, dtS));
-    const cutOffHz = stillHz + perSpeed * Math.hypot(...this._speed);
-    this._at = mixed(this._at, [x, y], shareOf(cutOffHz, dtS));
-    this._push = [x, y];
-    this._atS = nowS;
-    return this._at;
+    const faster = mixed(speed, [(x - push[0]) / dtS, (y - push[1]) / dtS], shareOf(SPEED_HZ, dtS));
+    const cutOffHz = stillHz + perSpeed * Math.hypot(...faster);
+    this._hand = { at: mixed(at, [x, y], shareOf(cutOffHz, dtS)), push: [x, y], speed: faster, atS: nowS };
+    return this._hand.at;
   }
 }
 
@@ -62,7 +50,7 @@ function shareOf(hz, dtS) {
   return 1 / (1 + 1 / (2 * Math.PI * hz * dtS));
 }
 
-/** @param {[number, number]} before @param {[number, number]} now @param {number} share @returns {[number, number]} */
+/** @param {Pair} before @param {Pair} now @param {number} share @returns {Pair} */
 function mixed(before, now, share) {
   return [before[0] + share * (now[0] - before[0]), before[1] + share * (now[1] - before[1])];
 }
@@ -70,7 +58,7 @@ function mixed(before, now, share) {
 /**
  * Steadies what is pushed by how far it is pushed; keys, buttons and switches are pressed or not.
  *
- * @param {Settings} settings @returns {(x: number, y: number, source: PersonInput["source"]) => [number, number]}
+ * @param {Settings} settings @returns {(x: number, y: number, source: PersonInput["source"]) => Pair}
  */
 export function attachTremor(settings) {
   const filter = new TremorFilter();
