@@ -64,13 +64,12 @@ export class Connection extends EventTarget {
   }
 
   /**
-   * An input, stamped with the newest nonce and a growing number.
+   * An input, stamped with the newest nonce and a growing number; whether it went out.
    *
    * @param {number[]} u in [-1, 1]
    * @param {Pick<DriverInput, "source" | "device" | "raw" | "latched">} held what it comes from
    * @param {"open" | "close" | "toggle" | null} [gripper] what is asked of the gripper
    * @param {boolean} [opens] whether what opens the gripper of an arm that is not enabled is held down
-   * @returns {boolean} whether it went out.
    */
   sendInput(u, held, gripper = null, opens = false) {
     if (!this.fresh || !this.state) return false;

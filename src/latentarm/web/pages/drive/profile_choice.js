@@ -5,10 +5,7 @@ import { NO_PROFILE } from "../settings/settings.js";
 
 /**
  * Asks for it and says where they sit once they drive and the arm is not enabled, once for each choice. Without a choice of an
- * alignment the server's stays.
- *
- * @param {Connection} connection
- * @param {Settings} settings
+ * alignment the server's stays. @param {Connection} connection @param {Settings} settings
  */
 export function attachProfileChoice(connection, settings) {
   let asked = "";

@@ -1,6 +1,6 @@
 /** Where the arm is slow, what it keeps out of, and what it holds, in words: what is written in the views is no text for a screen reader. */
 
-import { byId, setHidden, setText } from "../layout/dom.js";
+import { byId, setHidden, setText, whenever } from "../layout/dom.js";
 import { thingWords, zoneWords } from "../layout/thing_words.js";
 import { say, sayList, sayNumber } from "../layout/words.js";
 
@@ -18,6 +18,5 @@ export function attachZones(connection) {
     setHidden(text, said.length === 0);
     setText(text, said.join(" "));
   };
-  connection.addEventListener("welcome", show);
-  connection.addEventListener("state", show);
+  whenever(connection, ["welcome", "state"], show);
 }

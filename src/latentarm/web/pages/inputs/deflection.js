@@ -20,6 +20,7 @@ export class Deflection extends EventTarget {
   x = 0;
   /** Up, in [-1, 1]. */
   y = 0;
+  /** Stays without being held. */
   latched = false;
   /** @type {Source | null} */
   source = null;
@@ -39,13 +40,7 @@ export class Deflection extends EventTarget {
 
   /**
    * A device is deflected, or back at rest with (0, 0). While one is deflected the others wait, and a device that was
-   * deflected meanwhile counts only once it was let go.
-   *
-   * @param {Source} source
-   * @param {number} x to the right, in [-1, 1]
-   * @param {number} y up, in [-1, 1]
-   * @param {boolean} [latched] stays without being held
-   * @param {number} [device] which one of several of that kind
+   * deflected meanwhile counts only once it was let go. @param {Source} source @param {number} x @param {number} y
    */
   hold(source, x, y, latched = false, device = 0) {
     const rests = x === 0 && y === 0;

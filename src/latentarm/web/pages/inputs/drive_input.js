@@ -80,11 +80,8 @@ export class DriveInput extends Deflection {
   }
 
   /**
-   * Open the gripper of an arm that is not enabled, as long as this is held; next to the arm it is judged for how long.
-   *
-   * @param {Source} source
-   * @param {() => boolean} held
-   * @returns {boolean} whether it can be asked for.
+   * Open the gripper of an arm that is not enabled, as long as this is held; next to the arm it is judged for how long. False
+   * where it cannot be asked for. @param {Source} source @param {() => boolean} held
    */
   holdOpen(source, held) {
     const may = () => !this.flowing && !document.hidden && this._connection.driving && !this._connection.engaged;

@@ -8,12 +8,7 @@ const SAID_S = 3;
 /** A push that is held ends so long before the server's time, s, so that the arm stays enabled. */
 const EARLY_S = 0.25;
 
-/**
- * @param {DriveInput} input
- * @param {Connection} connection
- * @param {Settings} settings
- * @param {(ends: boolean) => void} [said] told whether a push is about to end, or has ended, and a new one is asked for
- */
+/** @param {DriveInput} input @param {Connection} connection @param {Settings} settings @param {(ends: boolean) => void} [said] hears that a push ends or has ended */
 export function attachLatchLimit(input, connection, settings, said = () => {}) {
   /** @type {ReturnType<typeof setTimeout>[]} */
   let timers = [];

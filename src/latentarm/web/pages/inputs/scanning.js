@@ -22,13 +22,8 @@ export function directionChoices(best) {
 }
 
 /**
- * A choice that opens others. Stop, where it is given, and the way back stand among them.
- *
- * @param {string} id
- * @param {string} label
- * @param {() => Choice[]} inner asked for only while it is open: some lists are long
- * @param {Choice[]} [always] what must be in reach from there too
- * @returns {Choice}
+ * A choice that opens others, which are asked for only while it is open: some lists are long. Stop, where it is given, and the
+ * way back stand among them. @param {string} id @param {string} label @param {() => Choice[]} inner @param {Choice[]} [always]
  */
 export function groupOf(id, label, inner, always = []) {
   const back = { id: `${id}-back`, label: say("scanning.back"), back: true };

@@ -7,13 +7,7 @@ import { isSwitch } from "./keys.js";
 /** Somebody types in a field for so long after the last click or other key in it, ms. */
 const TYPING_MS = 5000;
 
-/**
- * A field keeps these keys while somebody types in it, unless the arm is enabled, and while it asks which key is a switch.
- *
- * @param {Scanner} scanner
- * @param {PersonInput} input
- * @param {Settings} settings
- */
+/** @param {Scanner} scanner @param {PersonInput} input @param {Settings} settings */
 export function attachSwitchKeys(scanner, input, settings) {
   /** Keys that are down as switches. @type {Map<string, number>} */
   const held = new Map();
@@ -22,6 +16,7 @@ export function attachSwitchKeys(scanner, input, settings) {
   const types = (/** @type {Event} */ { target }) => {
     if (isText(target)) typedAt = performance.now();
   };
+  /** A field keeps these keys while somebody types in it, unless the arm is enabled, and while it asks which key is a switch. */
   const isKept = (/** @type {EventTarget | null} */ target) =>
     (target instanceof HTMLElement && target.dataset.asking !== undefined)
     || (isText(target) && !input.live && performance.now() - typedAt < TYPING_MS);

@@ -1,14 +1,6 @@
 /** Helpers for the page's elements. */
 
-/**
- * The element with this id.
- *
- * @template {HTMLElement} [T=HTMLElement]
- * @param {string} id
- * @param {abstract new () => T} [kind] the class that it must have
- * @returns {T}
- * @throws {Error} where the page has no such element.
- */
+/** The page's element, or an error. @template {HTMLElement} [T=HTMLElement] @param {string} id @param {abstract new () => T} [kind] its class @returns {T} */
 export function byId(id, kind) {
   const found = document.getElementById(id);
   if (!(found instanceof (kind ?? HTMLElement))) throw new Error(`the page has no ${kind?.name ?? "element"} #${id}`);
@@ -36,13 +28,7 @@ export function whenever(target, types, act) {
   act();
 }
 
-/**
- * @template {keyof HTMLElementTagNameMap} K
- * @param {K} tag
- * @param {Partial<HTMLElementTagNameMap[K]>} [properties]
- * @param {(Node | string)[]} children
- * @returns {HTMLElementTagNameMap[K]}
- */
+/** @template {keyof HTMLElementTagNameMap} K @param {K} tag @param {Partial<HTMLElementTagNameMap[K]>} [properties] @param {(Node | string)[]} children @returns {HTMLElementTagNameMap[K]} */
 export function create(tag, properties = {}, ...children) {
   const { dataset, ...others } = properties;
   const made = Object.assign(document.createElement(tag), others);

@@ -50,7 +50,7 @@ function rowOf(person) {
   const here = (settings.person?.id ?? null) === (person?.id ?? null);
   const called = person?.name ?? say("settings.guest");
   const name = create("span", { className: "person-name" }, create("bdi", { textContent: called }), create("small", { textContent: person ? driven(person) : say("people.guest_help") }));
-  const tools = create("div", { className: "row" }, button("people.choose", person, () => pin.opened(person, () => choose(person)), { pressed: here }));
+  const tools = create("div", { className: "row" }, button("people.choose", person, () => pin.opened(person, () => choose(person)), here));
   if (person) {
     tools.append(
       button("people.rename", person, () => pin.opened(person, () => openRename(person))),
@@ -104,13 +104,8 @@ function driven({ drives, last }) {
   return last ? say("people.drives", { count: drives, when: sayTime(last, { dateStyle: "medium" }) }) : say("people.no_drives");
 }
 
-/**
- * @param {"people.choose" | "people.rename" | "people.erase" | "people.pin_set" | "people.pin_remove"} word
- * @param {Person | null} person
- * @param {() => void} act
- * @param {{pressed?: boolean}} [state]
- */
-function button(word, person, act, { pressed } = {}) {
+/** @param {`people.${"choose" | "rename" | "erase" | "pin_set" | "pin_remove"}`} word @param {Person | null} person @param {() => void} act @param {boolean} [pressed] */
+function button(word, person, act, pressed) {
   const ariaLabel = say(`${word}_of`, { name: person?.name ?? say("settings.guest") });
   return createButton(say(pressed ? "people.chosen" : word), act, { ariaLabel, ...(pressed !== undefined && { ariaPressed: String(pressed) }) });
 }

@@ -65,7 +65,7 @@ export class AnswerInput extends Deflection {
     this._samples.push({ x: this.x, y: this.y, at: now });
     // A pointer is let go where it was; it does not spring back.
     const recent = this._samples.filter(({ at }) => now - at < STEADY_MS);
-    const steady = this._samples[0].at <= now - STEADY_MS && recent.every((one) => near(one, this));
+    const steady = this._samples[0].at <= now - STEADY_MS && recent.every(({ x, y }) => Math.hypot(x - this.x, y - this.y) < STEADY);
     if (this.source !== "pointer" && !steady) return;
     this._steady = true;
     this._mean([this.x, this.y]);
@@ -87,9 +87,4 @@ export class AnswerInput extends Deflection {
     this.answer = answer;
     this.dispatchEvent(new Event("answer"));
   }
-}
-
-/** @param {{x: number, y: number}} one @param {{x: number, y: number}} other */
-function near(one, other) {
-  return Math.hypot(one.x - other.x, one.y - other.y) < STEADY;
 }

@@ -14,14 +14,8 @@ export function stepKey(step, { panel, press, switchMotion }) {
 }
 
 /**
- * What the practice asks of the person while the arm is enabled; null where the arm's own sentence is enough.
- *
- * @param {Step | null} step
- * @param {State["phase"]} phase
- * @param {boolean} pressed whether a direction is pressed
- * @param {Pick<Values, "panel" | "press" | "switchMotion">} values
- * @param {boolean} hasGoals
- * @returns {WordKey | null}
+ * What the practice asks of the person while the arm is enabled; null where the arm's own sentence is enough. @param {Step | null} step
+ * @param {State["phase"]} phase @param {boolean} pressed @param {Parameters<typeof stepKey>[1]} values @param {boolean} hasGoals
  */
 export function practiceKey(step, phase, pressed, values, hasGoals) {
   const moving = phase === "moving";

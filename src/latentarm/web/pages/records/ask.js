@@ -4,11 +4,8 @@ import { byId, setText } from "../layout/dom.js";
 import { say, sayNotice } from "../layout/words.js";
 
 /**
- * @param {"GET" | "POST" | "PUT" | "DELETE"} method
- * @param {string} path
- * @param {unknown} [body] an object, or a file
- * @returns {Promise<any>} what the server answers; null where it says nothing.
- * @throws {Error} with a sentence for the person.
+ * The server's answer, null where it says nothing, or an error with a sentence for the person.
+ * @param {"GET" | "POST" | "PUT" | "DELETE"} method @param {string} path @param {unknown} [body] an object, or a file @returns {Promise<any>}
  */
 export async function ask(method, path, body) {
   const content = body === undefined ? undefined : body instanceof Blob ? body : JSON.stringify(body);
