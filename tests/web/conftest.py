@@ -28,7 +28,7 @@ from latentarm.web.arm_process.drive_setup import PERIOD_S, DriveSetup, Spec, lo
 from latentarm.web.arm_process.episode_writer import EpisodeWriter
 from latentarm.web.arm_process.process import ControlProcess
 from latentarm.web.arm_process.steering import Steering
-from latentarm.web.protocol.channel import new_channel
+from latentarm.web.protocol.channel import Channel
 from latentarm.web.protocol.notice import Notice
 from latentarm.web.protocol.orders import AskedGripper, Given, Order, Paced
 from latentarm.web.protocol.report import Report
@@ -112,7 +112,7 @@ class Desk:
         self.setup = setup
         self.clock = Watched(self._passed)
         reading, self.orders = Pipe(duplex=False)
-        self.channel = new_channel(reading, sightings)
+        self.channel = Channel(reading, sightings)
         self.orphaned = False
         self.writer = EpisodeWriter(folder)
         plant = make(setup.arm, setup.task.robot, setup.start, self.clock.now_s)

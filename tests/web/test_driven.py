@@ -19,7 +19,7 @@ from latentarm.web.arm_process.driven import Driven, drive_in_turn
 from latentarm.web.arm_process.episode_writer import EpisodeWriter
 from latentarm.web.arm_process.initial_state import RobotOptions
 from latentarm.web.arm_process.steering import Steering
-from latentarm.web.protocol.channel import new_channel
+from latentarm.web.protocol.channel import Channel
 from latentarm.web.protocol.orders import BeginTask, ChooseProfile, ChooseRun, Reset
 from latentarm.web.protocol.report import Report
 
@@ -93,7 +93,7 @@ def test_no_order_ends_an_arms_process(arm, trained, tmp_path):
     asked += [run_for(trained, tmp_path / "robot", robot="planar_arm"), ChooseProfile(name="nobody"), Reset()]
     clock, writer, orders = MonotonicClock(), EpisodeWriter(tmp_path), iter(asked)
     reading, _ = Pipe(duplex=False)
-    channel = new_channel(reading)
+    channel = Channel(reading)
     reports = []
 
     def drive(driven, note):

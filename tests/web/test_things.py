@@ -30,7 +30,7 @@ from latentarm.web.arm_process.drive_setup import Spec, load_setup
 from latentarm.web.arm_process.episode_writer import EpisodeWriter
 from latentarm.web.arm_process.steering import Steering
 from latentarm.web.arm_process.thing_poses import ThingPoses
-from latentarm.web.protocol.channel import new_channel
+from latentarm.web.protocol.channel import Channel
 from latentarm.web.protocol.orders import AskedGripper, Enable, Given, Record
 from latentarm.web.protocol.report import Report, Things
 from latentarm.web.protocol.scene import described, drawable, things_at
@@ -148,7 +148,7 @@ def test_a_recording_says_where_things_went_and_a_model_can_see_them(tmp_path):
         scene=Scene((cup, ball)),
     )
     reading, orders = Pipe(duplex=False)
-    clock, writer, channel = SimulatedClock(), EpisodeWriter(tmp_path / "teleop"), new_channel(reading)
+    clock, writer, channel = SimulatedClock(), EpisodeWriter(tmp_path / "teleop"), Channel(reading)
 
     def push(record):
         """The arm moves too: a recording in which it does not is not kept."""
@@ -202,7 +202,7 @@ def test_a_cup_is_picked_up_as_part_of_the_arm_and_put_down_upright_where_it_sto
         start=solve(robot, above, robot.home),
     )
     reading, orders = Pipe(duplex=False)
-    clock, writer, channel = SimulatedClock(), EpisodeWriter(tmp_path / "teleop"), new_channel(reading)
+    clock, writer, channel = SimulatedClock(), EpisodeWriter(tmp_path / "teleop"), Channel(reading)
     reports, poses = [], []
 
     def give(record):

@@ -26,7 +26,7 @@ from latentarm.web.arm_process.drive import Drive
 from latentarm.web.arm_process.drive_setup import PERIOD_S, DriveSetup
 from latentarm.web.arm_process.episode_writer import EpisodeWriter
 from latentarm.web.arm_process.steering import Steering
-from latentarm.web.protocol.channel import new_channel
+from latentarm.web.protocol.channel import Channel
 from latentarm.web.protocol.orders import AskedGripper, ChooseMode, Enable, Given, Order
 from latentarm.web.protocol.report import Report
 from latentarm_research.drives.following import Following
@@ -68,7 +68,7 @@ class SimulatedPage:
         self._arm.connect()
         reading, self._orders = Pipe(duplex=False)
         seen, self._seen = Pipe(duplex=False)
-        self._channel = new_channel(reading, seen)
+        self._channel = Channel(reading, seen)
         self._steering = Steering("end_effector")
         if source == TOUCH:
             self._steering.things = Surroundings(setup.tracked, stand=True, sightings=None)

@@ -29,7 +29,7 @@ from latentarm.web.arm_process.help import USUAL_HELP
 from latentarm.web.arm_process.incident import begin_incident
 from latentarm.web.arm_process.steering import Steering
 from latentarm.web.protocol import orders
-from latentarm.web.protocol.channel import ORDER_LIMIT, Channel, new_channel
+from latentarm.web.protocol.channel import ORDER_LIMIT, Channel
 from latentarm.web.protocol.notice import Notice
 from latentarm.web.protocol.report import Report
 
@@ -95,7 +95,7 @@ class ControlProcess:
     def __init__(self, spec: Spec, sightings: Connection | None = None) -> None:
         context = multiprocessing.get_context("spawn")
         reading, self._orders = _order_pipe()
-        self._channel = new_channel(reading, sightings)
+        self._channel = Channel(reading, sightings)
         self._seen = 0
         self._process = context.Process(
             target=run_control,

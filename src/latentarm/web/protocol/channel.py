@@ -4,7 +4,7 @@ Neither ever waits for the other. Inputs and reports are latest-wins; a stop has
 arrives however full the pipe of orders is. Nothing is unpickled: everything is JSON of a strict schema.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from multiprocessing.connection import Connection
 from typing import Final, final
 
@@ -20,14 +20,16 @@ _REASON_LIMIT: Final = 512
 @final
 @dataclass(frozen=True)
 class Channel:
-    """The control process's side."""
+    """The control process's side; the slots and the flag of a new one are empty."""
 
-    given: LatestSlot
-    report: LatestSlot
-    stop: LatestSlot  # the newest reason to stop, a `Notice`; every new one stops the arm
-    ending: Flag  # raised to make the control process bring the arm to rest and end
     orders: Connection  # bounded, so that a slow reader loses orders and never blocks the writer
     sightings: Connection | None = None  # from a `latentarm.surroundings.process.SourceProcess`
+    given: LatestSlot = field(default_factory=lambda: LatestSlot(_GIVEN_LIMIT))
+    report: LatestSlot = field(default_factory=lambda: LatestSlot(_REPORT_LIMIT))
+    # the newest reason to stop, a `Notice`; every new one stops the arm
+    stop: LatestSlot = field(default_factory=lambda: LatestSlot(_REASON_LIMIT))
+    # raised to make the control process bring the arm to rest and end
+    ending: Flag = field(default_factory=Flag)
 
     def read_orders(self, most: int) -> list[Order]:
         """New orders, oldest first; invalid ones are skipped. Raises EOFError if the other side is gone."""
@@ -40,15 +42,3 @@ class Channel:
             if order is not None:
                 found.append(order)
         return found
-
-
-def new_channel(orders: Connection, sightings: Connection | None = None) -> Channel:
-    """Slots and flags for a new control process that reads its orders from ``orders``."""
-    return Channel(
-        given=LatestSlot(_GIVEN_LIMIT),
-        report=LatestSlot(_REPORT_LIMIT),
-        stop=LatestSlot(_REASON_LIMIT),
-        ending=Flag(),
-        orders=orders,
-        sightings=sightings,
-    )
