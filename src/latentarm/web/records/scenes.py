@@ -12,12 +12,14 @@ from latentarm.core.errors import UserError
 from latentarm.core.files import written_whole
 from latentarm.core.untrusted.opening import is_missing, read_bytes
 from latentarm.models.reading import Section
+from latentarm.web.protocol.notice import NoticeError
 from latentarm.web.protocol.scene import Drawable
 from latentarm.web.records.record_files import disk_errors
 
 _SCENE_LIMIT: Final = 1 << 22
 _MESH_LIMIT: Final = 1 << 26
 _MESHES: Final = "meshes"
+_ID: Final = re.compile(r"[0-9a-f]{32}")
 _DIGEST: Final = re.compile(r"[0-9a-f]{64}")
 
 
@@ -25,8 +27,8 @@ _DIGEST: Final = re.compile(r"[0-9a-f]{64}")
 class Scenes:
     """Scenes by a digest of their content; each mesh is kept once.
 
-    Methods wait for the disk, and raise `UserError` if there is no such scene, or files are damaged or cannot
-    be written or deleted.
+    Methods wait for the disk, and raise `UserError` if there is no such scene or mesh, or files are damaged
+    or cannot be written or deleted.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -74,11 +76,11 @@ class Scenes:
         """A scene in the form of ``/scene.json``."""
         return json.dumps(self._read(key).values["scene"]).encode()
 
-    def mesh(self, key: str, number: str) -> bytes | None:
-        """A mesh in the form of ``/mesh/ID``; None if the scene has no such mesh."""
+    def mesh(self, key: str, number: str) -> bytes:
+        """A mesh in the form of ``/mesh/ID``."""
         digest = self._read(key).section("meshes").values.get(number)
         if not isinstance(digest, str) or not _DIGEST.fullmatch(digest):
-            return None
+            raise NoticeError("record_unknown")
         return read_bytes(self._folder / _MESHES / digest, _MESH_LIMIT)
 
     def _digests(self, key: str) -> list[str]:
@@ -89,6 +91,8 @@ class Scenes:
             return []
 
     def _read(self, key: str) -> Section:
+        if not _ID.fullmatch(key):
+            raise NoticeError("record_unknown")
         scene = Section.of_file(self._folder / f"{key}.json", _SCENE_LIMIT)
         scene.section("scene")
         return scene

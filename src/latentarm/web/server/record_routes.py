@@ -119,15 +119,13 @@ class RecordRoutes:
         return Response(content, media_type="application/json", headers=headers)
 
     async def _scene(self, request: Request) -> Response:
-        scene = _scene_id(request)
+        scene = request.path_params["scene"]
         content = await asyncio.to_thread(self._records.scenes.description, scene)
         return Response(content, media_type="application/json", headers=NO_STORE)
 
     async def _mesh(self, request: Request) -> Response:
-        scene, number = _scene_id(request), request.path_params["number"]
+        scene, number = request.path_params["scene"], request.path_params["number"]
         content = await asyncio.to_thread(self._records.scenes.mesh, scene, number)
-        if content is None:
-            raise NoticeError("record_unknown")
         return Response(content, media_type="application/octet-stream", headers=NO_STORE)
 
     async def _recordings(self, _: Request) -> Response:
@@ -146,13 +144,6 @@ class RecordRoutes:
     async def _restore_recording(self, request: Request) -> Response:
         await asyncio.to_thread(self._records.recordings.restore, request.path_params["name"])
         return Response(status_code=204, headers=NO_STORE)
-
-
-def _scene_id(request: Request) -> str:
-    scene = str(request.path_params["scene"])
-    if len(scene) != 32 or not set(scene) <= set("0123456789abcdef"):
-        raise NoticeError("record_unknown")
-    return scene
 
 
 def _shown(drive: DriveRecord) -> dict[str, object]:
