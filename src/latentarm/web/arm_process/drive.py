@@ -15,6 +15,7 @@ from latentarm.core.call_log import CallLog
 from latentarm.core.types import StepRecord, Stop
 from latentarm.safety.straight_way import StraightWay
 from latentarm.safety.zones import zone_of_filter
+from latentarm.tasks.step_goals import StepGoals
 from latentarm.web.arm_process.disengaged import Disengaged
 from latentarm.web.arm_process.drive_setup import PERIOD_S, DriveSetup
 from latentarm.web.arm_process.episode_writer import EpisodeWriter
@@ -109,7 +110,8 @@ class Drive:
         self._disengaged = Disengaged(self._step, arm, self._episodes, self._say)
         self._run = steering.run or TaskRun(setup.todo, about, setup.task.robot.chain)
         steering.run = self._run
-        self._goals = setup.step_goals()
+        things = () if setup.scene is None else setup.scene.names
+        self._goals = StepGoals(setup.task.robot, setup.task.goals, setup.todo.steps, things)
         self._note_until_s = -math.inf if self.note is None else clock.now_s() + NOTE_S
         self.change: Change | None = None  # the order that ended the loop to restart it
         self._choose(steering.mode, steering.axes, steering.help)

@@ -38,7 +38,6 @@ from latentarm.safety.zones import Zone
 from latentarm.surroundings.catalogue import SCENE, TOUCH, check_source
 from latentarm.tasks.catalogue import HELD_OUT
 from latentarm.tasks.place import Place, ScenePlace, surroundings_of, watched
-from latentarm.tasks.step_goals import StepGoals
 from latentarm.tasks.task import Task
 from latentarm.web.arm_process.fixed_drive import FixedDrive
 from latentarm.web.arm_process.help import Help
@@ -251,11 +250,6 @@ class DriveSetup:
     def to_pose(self) -> ToPose:
         """A controller of slow motions to a pose; to the start at first."""
         return ToPose(self.task.robot, self.start)
-
-    def step_goals(self) -> StepGoals:
-        """The goals at the steps of the task."""
-        things = () if self.scene is None else self.scene.names
-        return StepGoals(self.task.robot, self.task.goals, self.todo.steps, things)
 
     def with_things(self, arm: Arm | None) -> SceneArm | None:
         """The arm, if it was made with the things of this setup; an arm in physics may have none about it."""

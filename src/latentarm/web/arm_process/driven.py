@@ -102,7 +102,6 @@ def _changed(driven: Driven, change: Change, clock: Clock) -> Driven:
 def _begun(driven: Driven, spec: Spec, clock: Clock) -> Driven:
     """Begin a spec from its start, after what is driven."""
     setup = load_setup(spec)
-    setup.step()
     if setup.real:
         setup = replace(setup, start=driven.setup.start)
     arm = next_arm(setup, driven.setup, driven.arm, clock)

@@ -43,10 +43,6 @@ class Episodes:
         how = BY_HAND if order.by_hand else self._steering.mode
         self._writer.begin(self._setup.episode(self._things, how, order.task, order.person))
 
-    def end_at_rest(self) -> None:
-        """End it once the arm is at rest: its last motion belongs to it."""
-        self._steering.ending_episode = True
-
     def end(self) -> None:
         """End it now."""
         self._writer.end(", ".join(sorted(self._inputs.devices)))

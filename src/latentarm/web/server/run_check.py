@@ -43,15 +43,10 @@ async def why_not_drivable(spec: Spec, name: str) -> Notice | None:
 
 
 def try_to_load(wire: Wire, spec: Spec, name: str) -> None:
-    """The child's work: load all that the control process and the server will load.
-
-    Raises UserError as `load_setup` does.
-    """
+    """The child's work: load all that the other processes will load. Raises UserError as `load_setup`."""
     try:
         with bounded_memory(f"The run {name}", _SIZE):
-            setup = load_setup(spec)
-            setup.step()
-            LoadedRun(setup, name)
+            LoadedRun(load_setup(spec), name)
     except UserError:
         raise
     except Exception as error:
