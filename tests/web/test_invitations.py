@@ -43,7 +43,7 @@ def test_each_link_is_said_and_drawn_where_the_terminal_can():
     for draws in (True, False):
         said = []
         invitations = Invitations(iter("abc").__next__, "http://10.0.0.1:8460", said.append, draws)
-        first = invitations.first()
+        first = invitations.new_link()
         assert first == "http://10.0.0.1:8460/enter?key=a"
         assert said == []
         link = invitations.next()

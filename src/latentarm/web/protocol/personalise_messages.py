@@ -1,11 +1,12 @@
 """Messages between pages and the server about a person's alignment: asking, trying, keeping."""
 
-from typing import Annotated, Final, Literal, final
+from typing import Annotated, Final, Literal
 
 from pydantic import Field
 
 from latentarm.alignment.contract import Seat
 from latentarm.web.protocol.notice import Message, Notice
+from latentarm.web.protocol.orders import Deflection
 from latentarm.web.protocol.report import Point
 
 MOST_QUESTIONS: Final = 30
@@ -15,10 +16,8 @@ PersonalisePhase = Literal[
     "preparing", "asking", "thinking", "learning", "learned", "refused", "kept", "failed"
 ]
 QuestionId = Annotated[int, Field(ge=0, le=2**31)]
-Deflection = Annotated[float, Field(ge=-1.0, le=1.0)]
 
 
-@final
 class BeginPersonalise(Message):
     """Ask a person what they mean by their stick; from the page that drives, while the arm is not enabled."""
 
@@ -28,7 +27,6 @@ class BeginPersonalise(Message):
     seat: Seat | None = None  # where the person sits, as in `ChooseProfile`
 
 
-@final
 class AnswerQuestion(Message):
     """The input with which the person would ask for the shown motion; from the page that drives."""
 
@@ -38,7 +36,6 @@ class AnswerQuestion(Message):
     u: Annotated[tuple[Deflection, ...], Field(min_length=1, max_length=8)]
 
 
-@final
 class LeaveQuestion(Message):
     """Skip the question, or go back to the previous one; from the page that drives."""
 
@@ -46,7 +43,6 @@ class LeaveQuestion(Message):
     question: QuestionId
 
 
-@final
 class PressPersonalise(Message):
     """A press on the Personalise page; from the page that drives.
 
@@ -62,7 +58,6 @@ QuestionReply = AnswerQuestion | LeaveQuestion
 PersonaliseMessage = BeginPersonalise | QuestionReply | PressPersonalise
 
 
-@final
 class ShownMotion(Message):
     """A motion that a person is asked about."""
 
@@ -72,7 +67,6 @@ class ShownMotion(Message):
     tools: tuple[tuple[Point, ...], ...]  # the paths of the tools that move, m
 
 
-@final
 class Personalise(Message):
     """Progress of a person's alignment."""
 

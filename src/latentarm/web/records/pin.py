@@ -3,7 +3,7 @@
 import hashlib
 import hmac
 import secrets
-from typing import Annotated, Final, final
+from typing import Annotated, Final
 
 from pydantic import Field
 
@@ -14,7 +14,6 @@ PIN: Final = r"^[0-9]{4,8}$"
 _N, _R, _P = 2**14, 8, 1  # cost of a guess: 16 MiB and some 50 ms
 
 
-@final
 class PinHash(Message):
     """The salt and scrypt's hash, in hexadecimal digits."""
 

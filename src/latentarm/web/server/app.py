@@ -135,7 +135,7 @@ def serve(
         )
 
         def open_it() -> None:
-            first = f"{base}/" if invitations is None else invitations.first()
+            first = f"{base}/" if invitations is None else invitations.new_link()
             say(f"The page is at {first} (end with Ctrl-C).")
             if invitations is not None:
                 invitations.draw(first)
@@ -294,7 +294,7 @@ def build_app(
         named = {str(number): content for number, content in states.loaded.scene.meshes.items()}
         content = named.get(request.path_params["number"])
         if content is None:
-            return JSONResponse({"detail": "There is no such mesh."}, 404)
+            raise HTTPException(404, "There is no such mesh.")
         return Response(content, media_type="application/octet-stream")
 
     routes = [

@@ -29,10 +29,6 @@ class Invitations:
     _say: Callable[[str], None]
     _draws: bool
 
-    def first(self) -> str:
-        """The host's own link; the caller prints it."""
-        return self._new_link()
-
     def draw(self, link: str) -> None:
         """Draw a link as a QR code, if the terminal can."""
         if self._draws:
@@ -42,12 +38,13 @@ class Invitations:
 
     def next(self) -> str:
         """Make and print a link for the next person."""
-        link = self._new_link()
+        link = self.new_link()
         self._say(f"For the next person, a link that works once: {link}")
         self.draw(link)
         return link
 
-    def _new_link(self) -> str:
+    def new_link(self) -> str:
+        """A link; the caller prints it."""
         return f"{self._base}{ENTRY}?key={self._new_key()}"
 
 

@@ -47,16 +47,6 @@ LOCKED: Final = ("personalise", "fit", "teach")
 
 
 @final
-@dataclass(frozen=True)
-class ModelChoice:
-    """A kind of model on the Teach page: name in the catalogue, title, and when to use it."""
-
-    name: str
-    title: str
-    help: str
-
-
-@final
 class Pages:
     """Every page in every language.
 
@@ -115,11 +105,11 @@ class Pages:
         return HTMLResponse(html, headers=headers)
 
 
-def _choice(model: str, words: Words) -> ModelChoice:
-    """A model's title and help: from the page's texts, else from its plug-in."""
+def _choice(model: str, words: Words) -> dict[str, str]:
+    """A model's name, its title and when to use it: from the page's texts, else from its plug-in."""
     if f"model.{model}" in words.texts:
-        return ModelChoice(model, words.say(f"model.{model}"), words.say(f"model.{model}.help"))
+        return {"name": model, "title": words.say(f"model.{model}"), "help": words.say(f"model.{model}.help")}
     title, about = model, ""
     with suppress(UserError):  # said when somebody chooses it
         title, about = KINDS[model].label, KINDS[model].description
-    return ModelChoice(model, title, about or words.say("model.plugin.help"))
+    return {"name": model, "title": title, "help": about or words.say("model.plugin.help")}

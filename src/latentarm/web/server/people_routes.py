@@ -83,9 +83,7 @@ class PeopleRoutes:
             {
                 "people": [
                     {
-                        "id": person.id,
-                        "name": person.name,
-                        "added": person.added,
+                        **_shown(person),
                         "pin": self._pins.asked(person),
                         **_history_of(person, drives),
                     }
