@@ -15,10 +15,7 @@ from latentarm.web.protocol.orders import Record
 
 @final
 class Disengaged:
-    """Guides the arm by hand, or connects it again. Neither moves it or enables it.
-
-    ``say`` shows people a notice for a while.
-    """
+    """Guides the arm by hand, or connects it again; neither moves it or enables it."""
 
     def __init__(self, step: Step, arm: Arm, episodes: Episodes, say: Callable[[Notice], None]) -> None:
         self._step = step

@@ -316,10 +316,7 @@ def with_profile(setup: DriveSetup, profile: str | None, seat: Seat | None) -> D
 
 
 def load_setup(spec: Spec) -> DriveSetup:
-    """Load a spec.
-
-    Raises UserError if arm, run, dataset or profile cannot be loaded, or do not fit each other.
-    """
+    """Load a spec. Raises UserError if a part of it cannot be loaded, or the parts do not fit each other."""
     if spec.fixed is not None:
         return _fixed_setup(spec, spec.fixed)
     run = None if spec.run is None else read_run(spec.run)

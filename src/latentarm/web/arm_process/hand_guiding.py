@@ -20,10 +20,7 @@ PAGE_S: Final = 1.0
 
 @final
 class HandGuiding:
-    """Begins and ends guiding. The arm's loop goes on, disengaged, and moves the gripper on request.
-
-    ``arm`` can be guided if it is a `GuidableArm`.
-    """
+    """Begins and ends guiding. The arm's loop goes on, disengaged, and moves the gripper on request."""
 
     def __init__(self, arm: Arm, step: Step) -> None:
         self._arm = arm if isinstance(arm, GuidableArm) else None

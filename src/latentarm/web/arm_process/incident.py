@@ -117,10 +117,7 @@ def rebuild(head: Mapping[str, Any], folder: Path, where: str) -> DriveSetup:
 
 
 def unpack(line: Mapping[str, Any], folder: Path, where: str) -> None:
-    """Append a line's part to its copy in ``folder``.
-
-    Raises UserError if it does not belong there; ``where`` is the file's name.
-    """
+    """Append a line's part to its copy in ``folder``. Raises UserError if it does not belong there."""
     path = (folder / str(line["file"])).resolve()
     if not path.is_relative_to(folder.resolve()):
         raise UserError(f"{where} holds {line['file']!r}, which is no file of a run: it is damaged.")

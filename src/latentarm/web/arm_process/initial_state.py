@@ -73,10 +73,7 @@ def begin(
 
 
 def with_scene(task: SceneTask, choice: int, begun: Beginning, arm: str) -> InitialState:
-    """A simulated arm among the things of a task.
-
-    Raises UserError if it can touch none, or they are too many.
-    """
+    """A simulated arm among a task's things. Raises UserError if it can touch none, or they are too many."""
     _check_things(task.name, begun.scene)
     # Made here too, so that an arm that can touch nothing is refused where the command was typed.
     make_scene_arm(arm, task.robot, begun.state, lambda: 0.0, begun.scene)

@@ -31,10 +31,7 @@ class Steering:
     def choose(
         self, mode: ModeName, axes: int, level: HelpLevel, modes: tuple[ModeName, ...], pairs: int
     ) -> bool:
-        """Steer in another way; the nearest of the ``pairs`` of axes counts.
-
-        Returns whether a push of the stick means something else now.
-        """
+        """Steer in another way, by the nearest pair of axes; returns whether it changes what a push means."""
         before = self.mode, self.axes, self.help_now
         self.mode = mode
         self.axes = min(max(axes, 0), pairs - 1)

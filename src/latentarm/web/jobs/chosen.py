@@ -22,10 +22,7 @@ class Chosen:
 
 
 def read_chosen(chosen: Sequence[Chosen]) -> dict[int, JournalEpisode]:
-    """The episodes by the numbers by which people call them.
-
-    Raises UserError where one is not there any more, or a journal cannot be read.
-    """
+    """Episodes by number. Raises UserError where one is not there any more, or a journal cannot be read."""
     found: dict[int, JournalEpisode] = {}
     ordered = sorted(set(chosen), key=lambda one: (str(one.journal), one.episode))
     for journal, group in groupby(ordered, key=lambda one: one.journal):

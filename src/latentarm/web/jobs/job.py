@@ -52,10 +52,7 @@ class Wire:
             sys.exit(1)
 
     def hear(self, kind: TypeAdapter[Told]) -> Told:
-        """Wait for the parent's next message; invalid ones are skipped.
-
-        Raises SystemExit if the parent is gone.
-        """
+        """Wait for the parent's next valid message. Raises SystemExit if the parent is gone."""
         while True:
             try:
                 return kind.validate_json(self._hearing.recv_bytes(MESSAGE_LIMIT))
@@ -70,14 +67,9 @@ class Job(Generic[Said]):
     """A child process at work. Everything but `end` returns at once.
 
     A `UserError` of the work ends it and is kept as `failure`; any other error is printed to standard error,
-    and `failure` says that the work broke off.
-
-    Args:
-        work: a module's function, called in the child with its `Wire` and then ``arguments``. Its module must
-            not import torch: the number of threads is set before.
-        arguments: for ``work``; multiprocessing pickles them.
-        kind: of the child's messages.
-        name: of the process.
+    and `failure` says that the work broke off. ``work`` is a module's function, called in the child with its
+    `Wire` and ``arguments``, which multiprocessing pickles. Its module must not import torch: the number of
+    threads is set before. ``kind`` is that of the child's messages.
     """
 
     def __init__(

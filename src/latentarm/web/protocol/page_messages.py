@@ -149,8 +149,5 @@ _CLIENT: Final[TypeAdapter[ClientMessage]] = TypeAdapter(
 
 
 def parse_message(frame: str) -> ClientMessage:
-    """Parse a page's message.
-
-    Raises ValueError if the text is not a valid message (as pydantic's ``ValidationError``).
-    """
+    """Parse a page's message. Raises ValueError, as pydantic's ``ValidationError``, if it is invalid."""
     return _CLIENT.validate_json(frame)

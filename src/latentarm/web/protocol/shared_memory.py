@@ -34,10 +34,7 @@ class LatestSlot:
         return int(self._memory[0])
 
     def write(self, message: bytes) -> None:
-        """Replace the message; only one process may do so.
-
-        Raises ValueError if the message is too long for the slot.
-        """
+        """Replace the message; only one process may do so. Raises ValueError if it is too long."""
         if len(message) > self._size:
             raise ValueError(f"a message of {len(message)} bytes is too long for {self._size}")
         view = self._view()

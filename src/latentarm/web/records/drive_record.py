@@ -141,10 +141,7 @@ def packed(trace: Trace) -> bytes:
 
 
 def checked_trace(content: bytes, where: str) -> Trace:
-    """Unpack and check a trace from `packed`; errors call it ``where``.
-
-    Raises UserError if it is damaged, too large, or no trace.
-    """
+    """Unpack and check a trace. Raises UserError, with ``where``, if it is damaged, too large, or none."""
     unpacker = zlib.decompressobj(wbits=31)
     try:
         document = unpacker.decompress(content, TRACE_LIMIT)

@@ -35,18 +35,12 @@ def stamp() -> str:
 
 
 def read_record(kind: type[Record], path: Path) -> Record:
-    """A record from its file.
-
-    Raises UserError if the file is missing, too large, damaged or not such a record.
-    """
+    """A record from its file. Raises UserError if it is missing, too large, damaged or no such record."""
     return parse_record(kind, read_bytes(path, DOCUMENT_LIMIT), str(path))
 
 
 def parse_record(kind: type[Record], content: bytes, where: str) -> Record:
-    """A record from UTF-8 JSON; errors call it ``where``.
-
-    Raises UserError if it is damaged or not such a record.
-    """
+    """A record from UTF-8 JSON. Raises UserError, with ``where``, if it is damaged or no such record."""
     parse_object(content, where)
     try:
         return kind.model_validate_json(content)

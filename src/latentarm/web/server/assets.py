@@ -61,10 +61,7 @@ class Assets:
         self._version = digest.hexdigest()[:16]
 
     def path(self, name: str) -> str:
-        """The URL of an asset, by its path in the folder of the pages.
-
-        Raises KeyError if there is no such asset.
-        """
+        """An asset's URL by its path among the pages. Raises KeyError if there is no such asset."""
         if name not in self._assets:
             raise KeyError(name)
         return f"/static/{self._version}/{name}"
