@@ -57,7 +57,7 @@ def finished(job: Job) -> None:
 
 
 def test_a_job_hears_and_says_and_then_is_done():
-    job = Job(double, (2,), NUMBERS, "Doubling")
+    job = Job(double, (2,), Number, "Doubling")
     try:
         assert job.heard() == [] or job.alive
         assert job.say(Number(value=3))
@@ -72,14 +72,14 @@ def test_a_job_hears_and_says_and_then_is_done():
 
 
 def test_an_error_of_the_user_arrives_as_its_sentence():
-    job = Job(refuse, (), NUMBERS, "Nothing")
+    job = Job(refuse, (), Number, "Nothing")
     finished(job)
     assert job.failure.text == "There is nothing to do: bring something."
     job.end()
 
 
 def test_a_job_names_the_extra_that_it_lacks():
-    job = Job(need_torch, (), NUMBERS, "Learning")
+    job = Job(need_torch, (), Number, "Learning")
     finished(job)
     assert job.failure.text == "This needs torch, which is not installed: pip install 'latentarm[train]'."
     job.end()
@@ -88,7 +88,7 @@ def test_a_job_names_the_extra_that_it_lacks():
 def test_a_job_that_is_killed_has_broken_off_and_one_that_is_ended_has_not(tmp_path):
     left_behind = tmp_path / "note"
     for end in (True, False):
-        job = Job(sleep_on, (str(left_behind),), NUMBERS, "Sleeping")
+        job = Job(sleep_on, (str(left_behind),), Number, "Sleeping")
         pid = until(job.heard)[0].value
         if end:
             job.end()
@@ -106,7 +106,7 @@ def test_a_job_dies_with_its_parent(tmp_path):
         "import sys, time; sys.path.insert(0, sys.argv[1]);"
         "import test_jobs as t;"
         "from latentarm.web.jobs.job import Job;"
-        "job = Job(t.sleep_on, (sys.argv[2],), t.NUMBERS, 'Sleeping');"
+        "job = Job(t.sleep_on, (sys.argv[2],), t.Number, 'Sleeping');"
         "print(t.until(job.heard)[0].value, flush=True); time.sleep(60)"
     )
     arguments = [sys.executable, "-c", code, str(Path(__file__).parent), str(tmp_path / "note")]
@@ -121,7 +121,7 @@ def test_a_job_dies_with_its_parent(tmp_path):
 
 
 def test_a_job_is_polite():
-    job = Job(say_niceness, (), NUMBERS, "Asking")
+    job = Job(say_niceness, (), Number, "Asking")
     finished(job)
     assert [number.value for number in job.heard()] == [min(os.nice(0) + 10, 19), 1]
     job.end()

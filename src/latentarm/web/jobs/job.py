@@ -28,7 +28,7 @@ MESSAGE_LIMIT: Final = 1 << 20
 _NICENESS: Final = 10
 _GRACE_S: Final = 2.0  # how long a child may take to tidy up, s
 
-Said = TypeVar("Said", bound=BaseModel)
+Said = TypeVar("Said", bound=Message)
 Told = TypeVar("Told", bound=BaseModel)
 
 
@@ -73,7 +73,7 @@ class Job(Generic[Said]):
     """
 
     def __init__(
-        self, work: Callable[..., None], arguments: tuple[object, ...], kind: TypeAdapter[Said], name: str
+        self, work: Callable[..., None], arguments: tuple[object, ...], kind: type[Said], name: str
     ) -> None:
         context = multiprocessing.get_context("spawn")
         child_hears, self._saying = context.Pipe(duplex=False)
@@ -133,8 +133,8 @@ class Job(Generic[Said]):
         if (failed := _Failed.parse(message)) is not None:
             self.failure = failed.failed
             return
-        with suppress(ValidationError):
-            self._heard.append(self._kind.validate_json(message))
+        if (said := self._kind.parse(message)) is not None:
+            self._heard.append(said)
 
 
 def _run(

@@ -18,7 +18,6 @@ from latentarm.web.protocol.scene import pose_of
 _FRAMES: Final = 16  # poses along a motion; pages interpolate
 _STILL_M: Final = 5e-4  # a tool that moves less is not shown
 
-_STATE: Final = TypeAdapter(Personalise)
 _REPLIES: Final[TypeAdapter[QuestionReply]] = TypeAdapter(
     Annotated[QuestionReply, Field(discriminator="type")]
 )
@@ -42,7 +41,7 @@ class PersonaliseJob:
     """A person being asked, for the page's server."""
 
     def __init__(self, plan: PersonalisePlan) -> None:
-        self._job = Job(ask_and_learn, (plan,), _STATE, "asking")
+        self._job = Job(ask_and_learn, (plan,), Personalise, "asking")
         self._state = Personalise(phase="preparing", name=plan.name, of=plan.questions)
 
     @property

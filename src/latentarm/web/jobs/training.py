@@ -9,8 +9,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, final
 
-from pydantic import TypeAdapter
-
 from latentarm.core.types import Demonstrations
 from latentarm.models.catalogue import DEFAULT_MODEL, KINDS
 from latentarm.recordings.dataset_export import ImplausibleWarning, demonstrations_of
@@ -29,7 +27,6 @@ _FIRST_MODELS: Final = (DEFAULT_MODEL, "homogeneous", "cvae", "cae", "pca")
 
 _NAME: Final = re.compile(r"\w[\w .-]{0,58}\w|\w")
 _TELL_EVERY_S: Final = 0.1
-_TRAINING: Final = TypeAdapter(Training)
 
 
 def model_names() -> tuple[str, ...]:
@@ -78,7 +75,7 @@ class TrainingJob:
     """A training under way, for the page's server."""
 
     def __init__(self, plan: TrainingPlan) -> None:
-        self._job = Job(train_as_planned, (plan,), _TRAINING, "training")
+        self._job = Job(train_as_planned, (plan,), Training, "training")
         self._state = Training(phase="exporting", run=plan.name)
         self._cancelled = False
 

@@ -9,8 +9,6 @@ import asyncio
 import time
 from typing import Final
 
-from pydantic import TypeAdapter
-
 from latentarm.core.errors import UserError
 from latentarm.core.untrusted.memory import bounded_memory
 from latentarm.core.untrusted.terminal import one_line
@@ -30,7 +28,7 @@ reads them."""
 
 async def why_not_drivable(spec: Spec, name: str) -> Notice | None:
     """Load a spec's run, called ``name`` on pages, in a child process; None if it can be driven."""
-    job = Job(try_to_load, (spec, name), TypeAdapter(Message), "loading a run")
+    job = Job(try_to_load, (spec, name), Message, "loading a run")
     until_s = time.monotonic() + WITHIN_S
     try:
         while job.alive:
