@@ -1,6 +1,6 @@
 /** How much the robot helps: the person chooses a level, which is kept with their settings. */
 
-import { byId, setHidden, setText } from "../layout/dom.js";
+import { byId, checkRadio, setHidden, setText } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 
 /** The effect of the current level. @param {Pick<State, "mode" | "help">} state */
@@ -12,7 +12,6 @@ export function helpWords({ mode, help }) {
 /** Asks for the person's level once they drive, and again whenever they choose another one. @param {Connection} connection @param {Settings} settings */
 export function attachHelp(connection, settings) {
   const fieldset = byId("help");
-  const radios = fieldset.querySelectorAll("input");
   /** @type {Values["help"] | null} What was asked for since this page drives. */
   let asked = null;
 
@@ -36,20 +35,14 @@ export function attachHelp(connection, settings) {
     const { state } = connection;
     if (!state) return;
     setHidden(fieldset, state.help === null);
-    for (const radio of radios) {
-      const checked = radio.value === (state.you ? settings.values.help : state.help);
-      if (radio.checked !== checked) radio.checked = checked;
-      if (radio.disabled === state.you) radio.disabled = !state.you;
-    }
+    checkRadio(fieldset, state.you ? settings.values.help : state.help, state.you);
     setText(byId("help-text"), helpWords(state));
   };
   const follow = () => {
     ask();
     show();
   };
-  for (const radio of radios) {
-    radio.addEventListener("change", () => choose(/** @type {Values["help"]} */ (radio.value)));
-  }
+  fieldset.addEventListener("change", ({ target }) => choose(/** @type {Values["help"]} */ (/** @type {HTMLInputElement} */ (target).value)));
   connection.addEventListener("welcome", () => {
     asked = null;
   });

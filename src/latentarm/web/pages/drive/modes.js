@@ -1,6 +1,6 @@
 /** The stick's modes: latent actions, with help or without, or the tool along two axes at a time. */
 
-import { byId, create, setHidden } from "../layout/dom.js";
+import { byId, checkRadio, create, setHidden } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 
 /** @typedef {Exclude<State["mode"], "assisted">} ModeName with help or without is chosen apart */
@@ -50,8 +50,9 @@ export function attachModes(connection, settings) {
     const { state, welcome } = connection;
     // A new choice stays until the server has had time to say otherwise.
     if (!state || performance.now() - askedAt < ANSWER_MS) return;
-    check(byId("mode"), welcome ? steeringModes(welcome).indexOf(withoutHelp(state.mode)) : -1, state.you);
-    check(byId("axes"), state.axes, state.you);
+    // What the server says is shown, not what was clicked.
+    checkRadio(byId("mode"), welcome ? steeringModes(welcome).indexOf(withoutHelp(state.mode)) : -1, state.you);
+    checkRadio(byId("axes"), state.axes, state.you);
     setHidden(byId("axes"), state.mode !== "end_effector");
   });
 
@@ -75,12 +76,4 @@ function fill(fieldset, name, labels, chosen) {
     return create("label", {}, input, create("span", { textContent }));
   });
   fieldset.querySelector(".options")?.replaceChildren(...options);
-}
-
-/** Show what the server says, not what was clicked. @param {HTMLElement} fieldset @param {number} index @param {boolean} free */
-function check(fieldset, index, free) {
-  fieldset.querySelectorAll("input").forEach((input, number) => {
-    if (input.checked !== (number === index)) input.checked = number === index;
-    if (input.disabled === free) input.disabled = !free;
-  });
 }

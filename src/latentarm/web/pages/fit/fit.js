@@ -54,7 +54,7 @@ for (const type of ["keydown", "pointerdown", "pointermove"]) {
   }, { capture: true });
 }
 const input = new AnswerInput();
-const { settings, connection, stop } = attachPage({ drop: () => input.drop(), repaint: () => drawing?.repaint() });
+const { settings, connection, stop } = attachPage({ drop: () => input.neutral(), repaint: () => drawing?.repaint() });
 const pad = () => navigator.getGamepads().find((one) => one?.connected);
 
 attachStick(input, settings);
@@ -114,7 +114,7 @@ function goOn(isSkipped = false) {
   if (isSkipped && now instanceof Hold) now.samples = [];
   if (isSkipped || now.share >= 1) {
     at += 1;
-    input.drop();
+    input.neutral();
   }
   if (at < exercises.length) tell();
   else void finish();

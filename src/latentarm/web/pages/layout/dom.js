@@ -22,6 +22,14 @@ export function setDisabled(element, off) {
   if (element.getAttribute("aria-disabled") !== String(off)) element.setAttribute("aria-disabled", String(off));
 }
 
+/** Check the radio button with this value; whether another can be chosen. @param {HTMLElement} group @param {string | number | null} value @param {boolean} free */
+export function checkRadio(group, value, free = true) {
+  for (const radio of group.querySelectorAll("input")) {
+    radio.checked = radio.value === String(value);
+    if (radio.disabled === free) radio.disabled = !free;
+  }
+}
+
 /** Do it now, and again at each of these events. @param {EventTarget} target @param {string[]} types @param {() => void} act */
 export function whenever(target, types, act) {
   for (const type of types) target.addEventListener(type, act);

@@ -24,7 +24,7 @@ export class AnswerInput extends Deflection {
       this._sample();
     }, PERIOD_MS);
     this.addEventListener("change", () => this._sample());
-    window.addEventListener("blur", () => this.drop());
+    window.addEventListener("blur", () => this.neutral());
   }
 
   /** While there is a question, the arrow keys are the stick's. */
@@ -42,17 +42,12 @@ export class AnswerInput extends Deflection {
   end() {
     this.live = false;
     this._mean(null);
-    this.drop();
-  }
-
-  /** Let go of everything; the dot stays. */
-  drop() {
     this.neutral();
   }
 
-  /** A pointer or a gamepad was taken away. */
+  /** A pointer or a gamepad was taken away: the dot stays. */
   halt() {
-    this.drop();
+    this.neutral();
   }
 
   _sample() {

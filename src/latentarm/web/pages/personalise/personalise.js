@@ -37,7 +37,7 @@ const STEP_BUTTONS = {
 };
 
 const input = new AnswerInput();
-const { settings, connection, lease, stop } = attachPage({ drop: () => input.drop(), repaint: () => drawing?.repaint() });
+const { settings, connection, lease, stop } = attachPage({ drop: () => input.neutral(), repaint: () => drawing?.repaint() });
 const trial = attachTrial(connection, settings, lease);
 const begin = /** @type {{person: HTMLInputElement, questions: HTMLSelectElement}} */ (
   /** @type {unknown} */ (byId("begin", HTMLFormElement).elements)
