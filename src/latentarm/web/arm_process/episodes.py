@@ -34,7 +34,6 @@ class Episodes:
         return self._writer.on and self._by_hand
 
     def begin(self, order: Record) -> None:
-        """Begin one, unless one is under way."""
         self._steering.ending_episode = False
         if not self._writer.on:
             self._inputs.devices.clear()

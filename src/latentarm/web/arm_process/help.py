@@ -32,12 +32,10 @@ class Help(Arbitration):
 
     @logged
     def choose(self, level: HelpLevel) -> None:
-        """Set the level."""
         self.level = level
 
     @property
     def on(self) -> bool:
-        """Whether there is any help."""
         return self.level != "off"
 
     @property

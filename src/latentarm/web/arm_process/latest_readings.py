@@ -24,7 +24,6 @@ class LatestReadings:
         return 0.0 if self._read_s is None else now_s - self._read_s
 
     def see(self, record: StepRecord) -> None:
-        """Take a step's readings."""
         if not math.isnan(record.state[0]):
             self.q, self._read_s = record.state, record.time_s
         elif self._read_s is None:

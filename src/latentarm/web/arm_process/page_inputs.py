@@ -56,7 +56,6 @@ class PageInputs(InputSource):
         self._was_used = False
 
     def latest(self, now_s: float) -> tuple[Input, float]:
-        """The newest input and its age, s."""
         if self._slot.version != self._version:
             self._take()
         given, age_s = self._port.latest(now_s)

@@ -75,7 +75,6 @@ class PoseMotion(InputSource):
             self._gate.demand()
 
     def latest(self, now_s: float) -> tuple[Input, float]:
-        """The input and its age, s."""
         given, age_s = self._gate.latest(now_s)
         if not self.on:
             return given, age_s

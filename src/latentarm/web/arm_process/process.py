@@ -109,7 +109,6 @@ class ControlProcess:
 
     @property
     def alive(self) -> bool:
-        """Whether it still runs."""
         return self._process.is_alive()
 
     @property
@@ -118,7 +117,6 @@ class ControlProcess:
         return self._channel.stop.version
 
     def give(self, given: orders.Given) -> None:
-        """Write the newest input."""
         self._channel.given.write(given.model_dump_json().encode())
 
     def stop(self, reason: Notice) -> None:

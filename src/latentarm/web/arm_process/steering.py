@@ -25,7 +25,6 @@ class Steering:
 
     @property
     def help_now(self) -> HelpLevel:
-        """The level of help in this mode."""
         return self.help if self.mode == "assisted" else "off"
 
     def choose(

@@ -79,7 +79,6 @@ class TaskRun:
 
     @property
     def state(self) -> TaskState:
-        """The progress."""
         failure = self._progress.failure
         return TaskState(
             choice=self._todo.choice,

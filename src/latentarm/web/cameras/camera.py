@@ -60,7 +60,6 @@ class Camera:
 
     @property
     def state(self) -> CameraState:
-        """The current state."""
         now_s = time.monotonic()
         if now_s - self._shown_s <= LOST_AFTER_S:
             return "dark" if self._dark else "live"

@@ -166,7 +166,6 @@ class CameraProcess:
         self._thread.submit(self._send, {"order": "leave", "page": page})
 
     def end(self) -> None:
-        """End the process."""
         self._thread.shutdown(wait=False, cancel_futures=True)
         self._pipe.close()
         self._process.join(1.0)

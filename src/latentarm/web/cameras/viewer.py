@@ -68,7 +68,6 @@ class CameraTrack(MediaStreamTrack):
         return {"state": self._camera.state, "rtp": rtp, "at": at_ms}
 
     async def recv(self) -> VideoFrame:
-        """The next picture as a frame."""
         self._number, picture = await self._camera.after(self._number)
         # A frame of its own: the encoder writes into it.
         frame = VideoFrame.from_ndarray(picture.planes, format="yuv420p")
@@ -124,7 +123,6 @@ class Viewer:
         return self._peer.localDescription.sdp
 
     async def close(self) -> None:
-        """Hang up."""
         if self._closed:
             return
         self._closed = True

@@ -46,11 +46,9 @@ class PersonaliseJob:
 
     @property
     def under_way(self) -> bool:
-        """Whether it is still under way."""
         return self._state.phase not in ("learned", "refused", "failed")
 
     def look(self) -> Personalise:
-        """The state to show."""
         if not self.under_way:
             return self._state
         alive = self._job.alive  # read before its messages: a child that has ended sends no more
@@ -86,13 +84,11 @@ class PersonOnPage(Respondent):
         self._state = Personalise(phase="preparing", name=plan.name, of=plan.questions)
 
     def say(self, **fields: object) -> None:
-        """Tell the page what has changed."""
         self._state = self._state.model_copy(update=fields)
         self._wire.say(self._state)
 
     @property
     def kind(self) -> Kind:
-        """``person``."""
         return "person"
 
     def answer(self, question: Question) -> Reply:

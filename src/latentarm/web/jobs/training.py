@@ -61,12 +61,10 @@ class TrainingPlan:
 
     @property
     def dataset(self) -> Path:
-        """The new dataset's folder."""
         return self.out / "datasets" / self.name
 
     @property
     def run(self) -> Path:
-        """The new run's folder."""
         return self.out / "runs" / self.name
 
 
@@ -81,11 +79,9 @@ class TrainingJob:
 
     @property
     def under_way(self) -> bool:
-        """Whether it is still under way."""
         return self._state.phase in ("exporting", "training")
 
     def look(self) -> Training:
-        """The state to show."""
         if not self.under_way:
             return self._state
         alive = self._job.alive  # read before its messages: a child that has ended sends no more
@@ -183,7 +179,6 @@ class _Progress:
         self._told_s = -math.inf
 
     def say(self, **fields: object) -> None:
-        """Tell what has changed."""
         self._state = self._state.model_copy(update=fields)
         self._wire.say(self._state)
 

@@ -87,7 +87,6 @@ class Logged:
 
     @property
     def scene(self) -> Drawable:
-        """The things about the arm."""
         return self._drive.about.scene
 
     def trace(self) -> Trace:
@@ -124,7 +123,6 @@ class DriveLog:
 
     @property
     def under_way(self) -> About | None:
-        """The drive under way, or None."""
         return None if self._open is None else self._open.about
 
     def begins(self, report: Report) -> bool:

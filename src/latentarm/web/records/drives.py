@@ -34,7 +34,6 @@ class Wanted:
     until: str | None = None  # last day, as above
 
     def takes(self, drive: DriveRecord) -> bool:
-        """Whether a drive matches."""
         return (
             self.person in (None, drive.person or "")
             and self.task in (None, drive.task)
@@ -76,7 +75,6 @@ class Drives:
         return sorted(found, key=lambda drive: (drive.started, drive.id), reverse=True)
 
     def find(self, drive: str) -> DriveRecord | None:
-        """The drive with an id."""
         return self._drives.get(drive)
 
     def keep(self, drive: DriveRecord, trace: Trace) -> None:
@@ -109,7 +107,6 @@ class Drives:
         return content
 
     def entitle(self, drive: str, title: str) -> DriveRecord:
-        """Give a drive a title."""
         with self._lock:
             changed = self._known(drive).model_copy(update={"title": title})
             write_record(changed, self._path(changed))
@@ -125,7 +122,6 @@ class Drives:
             self._deleted[drive] = (self._now_s() + UNDO_S, record)
 
     def restore(self, drive: str) -> DriveRecord:
-        """Bring back a deleted drive."""
         with self._lock:
             if drive not in self._deleted:
                 raise NoticeError("record_unknown")

@@ -90,14 +90,12 @@ class People:
         return None if person is None else self._people.get(person)
 
     def known(self, person: str) -> PersonRecord:
-        """The person with an id."""
         found = self._people.get(person)
         if found is None:
             raise NoticeError("person_unknown")
         return found
 
     def folder_of(self, person: str) -> Path:
-        """The folder with a person's records."""
         return self._folder / person
 
     def add(self, name: str, settings: Settings | None = None) -> PersonRecord:
@@ -135,13 +133,11 @@ class People:
             return person
 
     def rename(self, person: str, name: str) -> PersonRecord:
-        """Rename a person."""
         with self._lock:
             known = self.known(person)
             return self._keep(known.model_copy(update={"name": self._free_name(name, person)}))
 
     def keep_settings(self, person: str, settings: Settings) -> PersonRecord:
-        """Replace a person's settings."""
         with self._lock:
             return self._keep(self.known(person).model_copy(update={"settings": settings}))
 
@@ -152,7 +148,6 @@ class People:
             return self._keep(self.known(person).model_copy(update={"pin": kept}))
 
     def add_profile(self, person: str, run: str, name: str) -> PersonRecord:
-        """Note that a profile is a person's."""
         with self._lock:
             known = self.known(person)
             profiles = dict.fromkeys([*known.profiles, KeptProfile(run=run, name=name)])

@@ -86,7 +86,6 @@ class Recordings:
             return [self._look(path, titles.get(path.name, "")) for path in reversed(self._journals())]
 
     def entitle(self, name: str, title: str) -> None:
-        """Give a recording a title."""
         with self._lock:
             self._path(name)
             known = {path.name for path in self._journals()}
@@ -103,7 +102,6 @@ class Recordings:
             self._deleted[name] = time.monotonic() + UNDO_S
 
     def restore(self, name: str) -> None:
-        """Bring back a deleted recording."""
         with self._lock:
             if name not in self._deleted:
                 raise NoticeError("record_unknown")

@@ -52,7 +52,6 @@ class Records:
             self.drives.keep(logged.record.model_copy(update={"scene": scene}), logged.trace())
 
     def contents(self, person: str) -> dict[str, int]:
-        """Count a person's records."""
         return {
             "drives": len(self.drives.wanted(Wanted(person=person))),
             "profiles": len(self._profiles(self.people.known(person))),

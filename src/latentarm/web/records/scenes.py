@@ -36,7 +36,6 @@ class Scenes:
         self._lock = threading.Lock()
 
     def keep(self, scene: Drawable) -> str:
-        """Keep a scene and return its id."""
         meshes = {
             str(number): hashlib.sha256(content).hexdigest() for number, content in scene.meshes.items()
         }

@@ -35,7 +35,6 @@ class CameraRoutes:
     _looking: set[str] = field(default_factory=set[str], init=False)
 
     def routes(self) -> list[Route]:
-        """The routes."""
         return [Route(CAMERAS, self._offer, methods=["POST"])]
 
     async def follow(self) -> None:

@@ -40,7 +40,6 @@ class Health:
         states.heard.append(self._hear)
 
     def routes(self) -> list[Route]:
-        """The routes."""
         return [Route(HEALTH, self._health), Route(METRICS, self._metrics)]
 
     @property

@@ -48,7 +48,6 @@ class History:
         return None if about is None else about.person
 
     def end(self, why: Ending) -> None:
-        """End the drive under way, if any."""
         logged = self.log.end(why)
         if logged is None:
             return

@@ -52,7 +52,6 @@ class Learning:
         self._tell(self._run_list.runs())
 
     async def follow(self) -> None:
-        """Update the state, until cancelled."""
         while True:
             await self._list_recordings()
             if self._job is not None:
@@ -86,7 +85,6 @@ class Learning:
             self._training = Training(phase="failed", run=wish.name.strip()[:80], why=(notice_of(error),))
 
     def cancel(self) -> None:
-        """End the training under way."""
         cancelling = self._cancelling is not None and not self._cancelling.done()
         if self._job is not None and self._job.under_way and not cancelling:
             self._cancelling = asyncio.create_task(asyncio.to_thread(self._job.cancel))
@@ -105,7 +103,6 @@ class Learning:
         self._choosing = asyncio.create_task(self._try_run(name, run.resolve()))
 
     async def close(self) -> None:
-        """End what is under way."""
         if self._choosing is not None:
             self._choosing.cancel()
         await self.personalising.close()

@@ -55,7 +55,6 @@ class LoadedRun:
         return beginning_of(report) == (run, self.spec.own_task, self.spec.seed, self.spec.choice)
 
     def welcome(self, page: str, server: str) -> messages.Welcome:
-        """The first message to a page."""
         setup = self.setup
         gripper = setup.task.robot.gripper
         return messages.Welcome(

@@ -26,7 +26,6 @@ class Page:
 
     @property
     def script(self) -> str:
-        """The module's path."""
         return f"{self.name}/{self.name}.js"
 
     @property

@@ -63,7 +63,6 @@ class PeopleRoutes:
     _lock_of_setup: SetupLock
 
     def routes(self) -> list[Route]:
-        """The routes."""
         answers = {
             "/records/people": {"GET": self._people, "POST": self._add},
             "/records/people/{person}": {"GET": self._person, "PUT": self._rename, "DELETE": self._erase},

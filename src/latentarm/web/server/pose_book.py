@@ -45,7 +45,6 @@ class PoseBook:
             self._fail(error)
 
     def delete(self, person: str | None, robot: str, name: str) -> None:
-        """Forget a pose."""
         self._keep(person, without_pose(self._of(person), robot, name))
 
     async def settled(self) -> None:

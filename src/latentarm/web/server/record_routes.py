@@ -42,7 +42,6 @@ class RecordRoutes:
     _pins: Pins
 
     def routes(self) -> list[Route]:
-        """The routes."""
         answers = {
             "/records/drives": {"GET": self._drives},
             "/records/drives.csv": {"GET": self._csv},

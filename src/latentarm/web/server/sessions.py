@@ -38,12 +38,10 @@ class Sessions:
 
     @property
     def driver(self) -> Page | None:
-        """The page that drives."""
         return None if self._driver is None else self._pages[self._driver]
 
     @property
     def asking(self) -> Page | None:
-        """The page that asks to drive."""
         return None if self._asking is None else self._pages[self._asking]
 
     def named(self, page_id: str | None) -> Page | None:
@@ -52,11 +50,9 @@ class Sessions:
 
     @property
     def count(self) -> int:
-        """How many pages are connected."""
         return len(self._pages)
 
     def drives(self, page: Page) -> bool:
-        """Whether this page drives."""
         return self._driver == page.id
 
     def join(self, name: str | None, person: str | None = None) -> Page | None:
