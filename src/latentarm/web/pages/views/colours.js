@@ -12,9 +12,7 @@ export function directionColour(turn) {
 
 /** The same as `rgb()`, for the canvas. @param {number} turn */
 export function directionPaint(turn) {
-  const canvas = document.createElement("canvas");
-  canvas.width = canvas.height = 1;
-  const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
+  const context = /** @type {OffscreenCanvasRenderingContext2D} */ (new OffscreenCanvas(1, 1).getContext("2d"));
   context.fillStyle = resolved(directionColour(turn));
   context.fillRect(0, 0, 1, 1);
   return `rgb(${context.getImageData(0, 0, 1, 1).data.slice(0, 3).join()})`;

@@ -60,12 +60,8 @@ export class Drawing {
   }
 
   /**
-   * @param {State} state
-   * @param {Predicted} predicted
-   * @param {Direction[]} pressed
-   * @param {Values} wanted
-   * @param {string | null} [thing] what the task is about now
-   * @returns {boolean} whether the arm or a thing is somewhere else now
+   * Whether the arm or a thing is somewhere else now. @param {State} state @param {Predicted} predicted @param {Direction[]} pressed
+   * @param {Values} wanted @param {string | null} [thing] what the task is about now
    */
   show(state, predicted, pressed, wanted, thing = null) {
     // An arm at rest needs no new frame; a press or a new belief none that would be in the way of its motion.

@@ -34,9 +34,8 @@ export class Shadows {
 
 /** Dark in the middle, and clear at the edge. */
 function spot() {
-  const canvas = document.createElement("canvas");
-  canvas.width = canvas.height = DISC_PX;
-  const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
+  const canvas = new OffscreenCanvas(DISC_PX, DISC_PX);
+  const context = /** @type {OffscreenCanvasRenderingContext2D} */ (canvas.getContext("2d"));
   const middle = DISC_PX / 2;
   const shade = context.createRadialGradient(middle, middle, 0, middle, middle, middle);
   shade.addColorStop(0, `rgb(0 0 0 / ${DARKEST})`);

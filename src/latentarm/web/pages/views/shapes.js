@@ -30,15 +30,14 @@ export function standing(bodies, meshes, food = false) {
 
 const GRAIN_PX = 64;
 const SPECKS = 260;
-/** @type {THREE.CanvasTexture | null} */
+/** @type {THREE.CanvasTexture<OffscreenCanvas> | null} */
 let made = null;
 
 /** Light and dark specks, which nothing smooth and clean has. */
 function grain() {
   if (made) return made;
-  const canvas = document.createElement("canvas");
-  canvas.width = canvas.height = GRAIN_PX;
-  const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
+  const canvas = new OffscreenCanvas(GRAIN_PX, GRAIN_PX);
+  const context = /** @type {OffscreenCanvasRenderingContext2D} */ (canvas.getContext("2d"));
   context.fillStyle = "#e8e8e8";
   context.fillRect(0, 0, GRAIN_PX, GRAIN_PX);
   for (let speck = 0; speck < SPECKS; speck += 1) {

@@ -45,9 +45,8 @@ export class Trail {
 
 /** A point is a square: this makes it round. */
 function disc() {
-  const canvas = document.createElement("canvas");
-  canvas.width = canvas.height = DISC_PX;
-  const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
+  const canvas = new OffscreenCanvas(DISC_PX, DISC_PX);
+  const context = /** @type {OffscreenCanvasRenderingContext2D} */ (canvas.getContext("2d"));
   context.fillStyle = "white";
   context.arc(DISC_PX / 2, DISC_PX / 2, DISC_PX / 2, 0, 2 * Math.PI);
   context.fill();
