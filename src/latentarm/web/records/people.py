@@ -3,6 +3,7 @@
 import shutil
 import threading
 from collections.abc import Callable
+from itertools import chain, count
 from pathlib import Path
 from typing import Annotated, Final, Literal, final
 
@@ -116,11 +117,9 @@ class People:
         with self._lock:
             if len(self._people) >= MOST_PEOPLE:
                 raise NoticeError("too_many_people", count=MOST_PEOPLE)
-            names = [
-                brought.name,
-                *(f"{brought.name[:34]} ({number})" for number in range(2, MOST_PEOPLE + 2)),
-            ]
-            person = brought.model_copy(update={"id": new_id(), "name": self._first_free(names), "pin": None})
+            names = chain([brought.name], (f"{brought.name[:34]} ({number})" for number in count(2)))
+            name = next(clean for clean in map(_clean, names) if not self._taken(clean))
+            person = brought.model_copy(update={"id": new_id(), "name": name, "pin": None})
             staging = self._folder / f"{_STAGING}{person.id}"
             try:
                 with disk_errors(staging, "written"):
@@ -167,20 +166,18 @@ class People:
         self._people[person.id] = person
         return person
 
-    def _first_free(self, names: list[str]) -> str:
-        for name in names[:-1]:
-            try:
-                return self._free_name(name, None)
-            except NoticeError as error:
-                if error.notice.code != "person_name_taken":
-                    raise
-        return self._free_name(names[-1], None)
-
     def _free_name(self, name: str, of: str | None) -> str:
-        try:
-            clean = clean_name(name)
-        except UserError as error:
-            raise NoticeError("person_name_invalid", count=MOST_CHARACTERS) from error
-        if any(same_name(clean, other.name) for other in self._people.values() if other.id != of):
+        clean = _clean(name)
+        if self._taken(clean, of):
             raise NoticeError("person_name_taken", name=clean)
         return clean
+
+    def _taken(self, name: str, of: str | None = None) -> bool:
+        return any(same_name(name, other.name) for other in self._people.values() if other.id != of)
+
+
+def _clean(name: str) -> str:
+    try:
+        return clean_name(name)
+    except UserError as error:
+        raise NoticeError("person_name_invalid", count=MOST_CHARACTERS) from error
