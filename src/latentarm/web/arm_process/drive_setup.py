@@ -349,7 +349,12 @@ def load_setup(spec: Spec) -> DriveSetup:
         scene=begun.scene,
     )
     if setup.real and run is not None:
-        _check_blind(run, setup)
+        if BELIEF in run.context and not setup.task.goals:
+            # Nothing detects goals about a real arm.
+            raise UserError(
+                f"{run.folder} sees a belief over goals, and nothing sees where they are about a real arm:"
+                " train a model that does not, with --context joints."
+            )
         setup = _with_markers(setup)
     if spec.objects and not setup.tracked:
         raise UserError(
@@ -396,12 +401,3 @@ def _with_markers(setup: DriveSetup) -> DriveSetup:
         Thing(name, (Part("sphere", (MARKER_M,)),), 0.1, stood) for name in setup.controller.objects
     )
     return replace(setup, scene=Scene(marks), stand=False)
-
-
-def _check_blind(run: Run, setup: DriveSetup) -> None:
-    """Refuse a model that needs goals, which nothing detects about a real arm."""
-    if BELIEF in run.context and not setup.task.goals:
-        raise UserError(
-            f"{run.folder} sees a belief over goals, and nothing sees where they are about a real arm: train"
-            " a model that does not, with --context joints."
-        )

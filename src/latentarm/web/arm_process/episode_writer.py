@@ -3,6 +3,7 @@
 import math
 import threading
 from collections.abc import Callable
+from contextlib import suppress
 from datetime import datetime
 from functools import partial
 from pathlib import Path
@@ -144,11 +145,9 @@ class EpisodeWriter:
         except UserError as error:
             self._lost = isinstance(error, JournalLostError)
             self._break_off(_notice_of(error))
-            while True:
-                try:
+            with suppress(Empty):
+                while True:
                     self._waiting.get_nowait()
-                except Empty:
-                    return
 
     def _next(self) -> _Work | None:
         """The next work; a check of the journal if there is none for a while."""

@@ -35,9 +35,9 @@ class LoadedRun:
         self.latent_dim = setup.latent_dim
         self.setup = setup
         robot = setup.task.robot
-        home: dict[BuiltInPose, FloatArray] = {"home": robot.home} if robot.home_stated else {}
-        tuck: dict[BuiltInPose, FloatArray] = {} if robot.tuck is None else {"tuck": robot.tuck}
-        self._poses: dict[BuiltInPose, FloatArray] = {**home, **tuck}
+        self._poses: dict[BuiltInPose, FloatArray] = {"home": robot.home} if robot.home_stated else {}
+        if robot.tuck is not None:
+            self._poses["tuck"] = robot.tuck
 
     def built_in(self, pose: BuiltInPose, name: str) -> PoseToGoTo | None:
         """A pose of the robot's own; None where its model states none. ``name`` is what people call it."""
