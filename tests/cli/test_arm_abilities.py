@@ -14,7 +14,7 @@ from latentarm.core.errors import UserError
 from latentarm.robots.panda import panda
 from latentarm.safety.bounds import Bounds
 from latentarm.web.arm_process.drive_setup import PERIOD_S, safety_limits
-from latentarm.web.arm_process.speeds import Speeds
+from latentarm.web.arm_process.speed_limits import Speeds
 
 
 @pytest.fixture(scope="module")

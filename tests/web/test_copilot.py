@@ -5,7 +5,7 @@ import pytest
 
 from latentarm.web.arm_process.page_inputs import COPILOT_TIMEOUT_S
 from latentarm.web.protocol.orders import Enable, Paced
-from latentarm.web.server.sessions import Sessions
+from latentarm.web.server.connected_pages import ConnectedPages
 
 
 def driven(desk, pace, until_s=2.5, begin_s=0.0, end_s=np.inf, heard_until_s=np.inf):
@@ -73,13 +73,13 @@ def test_the_arm_stops_when_a_copilot_comes_or_goes(desk, change):
 
 
 def sat():
-    sessions = Sessions()
-    return sessions, *(sessions.join(name) for name in ("Ada", "Bob", "Eve"))
+    connected = ConnectedPages()
+    return connected, *(connected.join(name) for name in ("Ada", "Bob", "Eve"))
 
 
 def test_a_copilot_asks_and_the_driver_accepts():
-    sessions, ada, bob, eve = sat()
-    copilot = sessions.copilot
+    connected, ada, bob, eve = sat()
+    copilot = connected.copilot
     assert not copilot.accept(bob.id)
     copilot.ask(bob.id)
     copilot.ask(eve.id)
@@ -91,13 +91,13 @@ def test_a_copilot_asks_and_the_driver_accepts():
     assert copilot.paced.pace == 0.2
     copilot.ask(eve.id)
     assert copilot.asking is None
-    assert sessions.drives(ada)
+    assert connected.drives(ada)
 
 
 def test_a_copilot_goes_with_the_driver_and_by_either():
-    sessions, ada, bob, _ = sat()
-    copilot = sessions.copilot
-    for end in (lambda: copilot.leaves(bob.id), copilot.end, lambda: sessions.release(ada)):
+    connected, ada, bob, _ = sat()
+    copilot = connected.copilot
+    for end in (lambda: copilot.leaves(bob.id), copilot.end, lambda: connected.release(ada)):
         copilot.ask(bob.id)
         assert copilot.accept(bob.id)
         assert end()
@@ -105,11 +105,11 @@ def test_a_copilot_goes_with_the_driver_and_by_either():
 
 
 def test_the_next_copilot_is_another_one():
-    sessions, _, bob, eve = sat()
+    connected, _, bob, eve = sat()
     numbers = []
     for page in (bob, eve):
-        sessions.copilot.ask(page.id)
-        sessions.copilot.accept(page.id)
-        numbers.append(sessions.copilot.paced.copilot)
-        sessions.copilot.end()
+        connected.copilot.ask(page.id)
+        connected.copilot.accept(page.id)
+        numbers.append(connected.copilot.paced.copilot)
+        connected.copilot.end()
     assert numbers[0] != numbers[1]

@@ -27,7 +27,7 @@ from latentarm.robots.panda import panda
 from latentarm.web.arm_process.arm_lifecycle import first_arm
 from latentarm.web.arm_process.drive_setup import DriveSetup, Spec, load_setup
 from latentarm.web.arm_process.initial_state import RobotOptions
-from latentarm.web.arm_process.speeds import Speeds
+from latentarm.web.arm_process.speed_limits import Speeds
 
 pytestmark = pytest.mark.clock
 

@@ -6,7 +6,7 @@ import time
 import pytest
 
 from latentarm.web.protocol.report import Report
-from latentarm.web.server.sessions import Sessions
+from latentarm.web.server.connected_pages import ConnectedPages
 from latentarm.web.server.states import States
 
 LONG_S = 0.4
@@ -40,7 +40,7 @@ def report(height):
 )
 def test_a_pause_ends_as_soon_as_the_arm_sets_off(heights, at_once):
     async def paused_s():
-        states = States(AnyRun(), Control(heights), Sessions(), None)
+        states = States(AnyRun(), Control(heights), ConnectedPages(), None)
         following = asyncio.create_task(states.follow())
         began_s = time.monotonic()
         await states.pause(LONG_S)

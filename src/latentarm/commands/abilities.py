@@ -11,7 +11,7 @@ from latentarm.core.errors import UserError
 from latentarm.robots.robot import Robot
 from latentarm.safety.bounds import Bounds
 from latentarm.web.arm_process.drive_setup import PERIOD_S, safety_limits
-from latentarm.web.arm_process.speeds import SLOWEST, Speeds
+from latentarm.web.arm_process.speed_limits import SLOWEST, Speeds
 
 _SAMPLES: Final = 4000
 _HARDLY_RAD: Final = 0.1  # a joint with a smaller range hardly moves, rad or m

@@ -18,7 +18,7 @@ from latentarm.commands.output import print_renderables, refuse, say
 from latentarm.control.clock import MonotonicClock
 from latentarm.core.errors import UserError
 from latentarm.runs.options import EndEffector, Json
-from latentarm.web.arm_process.speeds import Speeds
+from latentarm.web.arm_process.speed_limits import Speeds
 
 if TYPE_CHECKING:
     from latentarm.web.arm_process.initial_state import RobotOptions

@@ -83,7 +83,7 @@ def look_at_arm(
     """Look at an arm as `arms check` does, which commands nothing."""
     from latentarm.commands.arms import check_arm_at
     from latentarm.web.arm_process.initial_state import RobotOptions
-    from latentarm.web.arm_process.speeds import Speeds
+    from latentarm.web.arm_process.speed_limits import Speeds
 
     said: list[str] = [f"{address} has not answered for {ARM_WITHIN_S:g} s: check power, cable and address."]
 

@@ -116,7 +116,7 @@ def teleop(
     from latentarm.web.arm_process.drive_setup import Spec
     from latentarm.web.arm_process.idle_limit import idle_s_of
     from latentarm.web.arm_process.initial_state import RobotOptions
-    from latentarm.web.arm_process.speeds import Speeds
+    from latentarm.web.arm_process.speed_limits import Speeds
     from latentarm.web.server.app import serve
     from latentarm.web.server.config import TeleopConfig
 

@@ -44,7 +44,7 @@ from latentarm.web.arm_process.help import Help
 from latentarm.web.arm_process.idle_limit import USUAL_MINUTES, idle_s_of
 from latentarm.web.arm_process.initial_state import FREE, RobotOptions, begin, begin_real, with_scene
 from latentarm.web.arm_process.page_inputs import INPUT_TIMEOUT_S
-from latentarm.web.arm_process.speeds import Speeds
+from latentarm.web.arm_process.speed_limits import Speeds
 from latentarm.web.arm_process.task_run import Todo
 from latentarm.web.protocol.orders import HelpLevel, ModeName
 

@@ -35,7 +35,7 @@ from latentarm.runs.folder import ROBOT
 from latentarm.safety.zones import Zone
 from latentarm.web.arm_process.drive_setup import DriveSetup, Spec, load_setup
 from latentarm.web.arm_process.initial_state import RobotOptions
-from latentarm.web.arm_process.speeds import Speeds
+from latentarm.web.arm_process.speed_limits import Speeds
 
 VERSION: Final = 2
 KEPT_BYTES: Final = 512 << 20  # size of all incident files in a folder; the oldest are deleted first

@@ -47,6 +47,7 @@ from latentarm.web.server.answers import refused
 from latentarm.web.server.assets import Assets
 from latentarm.web.server.camera_routes import CameraRoutes
 from latentarm.web.server.config import TeleopConfig, check_certificate, listen
+from latentarm.web.server.connected_pages import ConnectedPages
 from latentarm.web.server.drive_socket import DriveSocket
 from latentarm.web.server.health import Health
 from latentarm.web.server.history import History
@@ -61,7 +62,6 @@ from latentarm.web.server.pose_book import PoseBook
 from latentarm.web.server.rate_limit import MeteredSocket
 from latentarm.web.server.record_routes import RecordRoutes
 from latentarm.web.server.security import DRIVE, Gate
-from latentarm.web.server.sessions import Sessions
 from latentarm.web.server.setup_lock import SetupLock
 from latentarm.web.server.states import States
 
@@ -240,25 +240,25 @@ def build_app(
     setup: DriveSetup, control: ControlProcess, config: TeleopConfig, cameras: CameraProcess | None = None
 ) -> Starlette:
     """The application: pages, their assets, the scene, and the socket that drives."""
-    sessions = Sessions()
+    connected = ConnectedPages()
     spec = setup.spec
     run_list = RunList(spec.out, spec.run)
-    states = States(LoadedRun(setup, run_list.name_of(spec.run)), control, sessions, run_list)
+    states = States(LoadedRun(setup, run_list.name_of(spec.run)), control, connected, run_list)
     records = Records(spec.out, run_list.runs, states.journal)
     learning = Learning(control, states, run_list, records.recordings, spec.out)
-    history = History(states, sessions, records)
-    health = Health(states, sessions, history, cameras)
+    history = History(states, connected, records)
+    health = Health(states, connected, history, cameras)
     pins = Pins(records.people, wanted=config.pins)
     lock = SetupLock(records.people, states, on=config.lock_setup)
     poses = PoseBook(records.people, spec.out / FOLDER)
-    drive = DriveSocket(control, states, sessions, learning, records.people, pins, history, poses, lock)
+    drive = DriveSocket(control, states, connected, learning, records.people, pins, history, poses, lock)
 
     def driven_with(person: PersonRecord) -> bool:
         report = states.report
         return report is not None and report.profile in {profile.name for profile in person.profiles}
 
     def busy(person: PersonRecord) -> bool:
-        driver = sessions.driver
+        driver = connected.driver
         theirs = driven_with(person) or (driver is not None and driver.person == person.id)
         return theirs and not states.at_rest
 
@@ -269,7 +269,7 @@ def build_app(
     assets = Assets()
     camera_names = [] if cameras is None else [source.name for source in cameras.sources]
     pages = Pages(assets, model_names(), camera_names, locked=lock.on, fixed=spec.fixed is not None)
-    camera_routes = None if cameras is None else CameraRoutes(cameras, sessions)
+    camera_routes = None if cameras is None else CameraRoutes(cameras, connected)
 
     @asynccontextmanager
     async def lifespan(_: Starlette) -> AsyncGenerator[None]:

@@ -12,8 +12,8 @@ from starlette.routing import Route
 from latentarm.web.cameras.process import CameraProcess
 from latentarm.web.protocol.notice import Message, NoticeError
 from latentarm.web.server.answers import body_of, json_answer
+from latentarm.web.server.connected_pages import ConnectedPages
 from latentarm.web.server.security import BODY_LIMIT
-from latentarm.web.server.sessions import Sessions
 
 CAMERAS: Final = "/cameras"
 
@@ -31,7 +31,7 @@ class CameraRoutes:
     """Shows pages the cameras while they are connected to `/drive`."""
 
     _cameras: CameraProcess
-    _sessions: Sessions
+    _connected: ConnectedPages
     _looking: set[str] = field(default_factory=set[str], init=False)
 
     def routes(self) -> list[Route]:
@@ -40,14 +40,14 @@ class CameraRoutes:
     async def follow(self) -> None:
         """Drop the viewers of pages that have gone, until cancelled."""
         while True:
-            for page in [one for one in self._looking if self._sessions.named(one) is None]:
+            for page in [one for one in self._looking if self._connected.named(one) is None]:
                 self._looking.discard(page)
                 self._cameras.leave(page)
             await asyncio.sleep(_LOOK_S)
 
     async def _offer(self, request: Request) -> Response:
         offer = await body_of(request, _Offer)
-        if self._sessions.named(offer.page) is None:
+        if self._connected.named(offer.page) is None:
             raise NoticeError("request_invalid")
         self._looking.add(offer.page)
         return json_answer({"sdp": await self._cameras.answer(offer.page, offer.sdp)})

@@ -16,13 +16,13 @@ from latentarm.web.protocol.personalise_messages import AnswerQuestion, Personal
 from latentarm.web.protocol.server_messages import Refused
 from latentarm.web.records.drive_record import Ending
 from latentarm.web.records.people import People
+from latentarm.web.server.connected_pages import MOST, ConnectedPages, Page
 from latentarm.web.server.history import History
 from latentarm.web.server.learning import Learning
 from latentarm.web.server.pins import Pins
 from latentarm.web.server.pose_book import PoseBook
 from latentarm.web.server.receiving import ExpiredError, ViolationError, receive
 from latentarm.web.server.security import EXPIRED, EXPIRED_WHY
-from latentarm.web.server.sessions import MOST, Page, Sessions
 from latentarm.web.server.setup_lock import SetupLock
 from latentarm.web.server.states import PageMemory, States
 
@@ -57,7 +57,7 @@ class DriveSocket:
 
     _control: "ControlProcess"
     _states: States
-    _sessions: Sessions
+    _sessions: ConnectedPages
     _learning: Learning
     _people: People
     _pins: Pins

@@ -13,9 +13,9 @@ from latentarm.web.cameras.process import CameraProcess
 from latentarm.web.protocol.notice import Notice
 from latentarm.web.protocol.report import Report
 from latentarm.web.server.answers import NO_STORE, json_answer
+from latentarm.web.server.connected_pages import ConnectedPages
 from latentarm.web.server.history import History
 from latentarm.web.server.security import HEALTH
-from latentarm.web.server.sessions import Sessions
 from latentarm.web.server.states import States
 
 METRICS: Final = "/metrics"
@@ -31,9 +31,9 @@ class Health:
     """Counts and logs what reports say. It knows no names of people."""
 
     def __init__(
-        self, states: States, sessions: Sessions, history: History, cameras: CameraProcess | None
+        self, states: States, connected: ConnectedPages, history: History, cameras: CameraProcess | None
     ) -> None:
-        self._states, self._sessions, self._history, self._cameras = states, sessions, history, cameras
+        self._states, self._connected, self._history, self._cameras = states, connected, history, cameras
         self._before: Report | None = None
         self._stops: Counter[str] = Counter()
         self._drive_s = 0.0
@@ -89,7 +89,7 @@ class Health:
             _family("reading_age_seconds", "gauge", "age of the arm's newest usable reading", readings),
             _family("picture_age_seconds", "gauge", "age of a watched camera's newest picture", ages),
             _family("stops_total", "counter", "stops of an enabled arm, by code", stops),
-            _family("pages", "gauge", "connected pages", {(): float(self._sessions.count)}),
+            _family("pages", "gauge", "connected pages", {(): float(self._connected.count)}),
             _family("drive_seconds_total", "counter", "time that the arm was enabled", {(): self._drive_s}),
         )
         return PlainTextResponse("".join(families), media_type=CONTENT_TYPE, headers=NO_STORE)

@@ -11,7 +11,7 @@ from latentarm.web.protocol.report import Report
 from latentarm.web.records.drive_log import About, DriveLog, Logged
 from latentarm.web.records.drive_record import Ending
 from latentarm.web.records.records import Records
-from latentarm.web.server.sessions import Sessions
+from latentarm.web.server.connected_pages import ConnectedPages
 from latentarm.web.server.states import States
 
 SO_FAR_S: Final = 5.0  # how often the drive under way is written, s of the control process's clock
@@ -22,9 +22,9 @@ PURGE_S: Final = 60.0  # how often deleted records are removed for good, s
 class History:
     """Logs what is driven; another thread writes it."""
 
-    def __init__(self, states: States, sessions: Sessions, records: Records) -> None:
+    def __init__(self, states: States, connected: ConnectedPages, records: Records) -> None:
         self._states = states
-        self._sessions = sessions
+        self._connected = connected
         self._records = records
         self.log = DriveLog()  # of the drive under way
         self._keeping: set[asyncio.Task[None]] = set()
@@ -78,7 +78,7 @@ class History:
             if report.time_s - self._written_s > SO_FAR_S:
                 self._keep_so_far(report)
             return
-        driver = self._sessions.driver
+        driver = self._connected.driver
         self.log.begin(
             report,
             About(

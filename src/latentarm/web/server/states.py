@@ -17,8 +17,8 @@ from latentarm.web.protocol.notice import Notice, notice_of
 from latentarm.web.protocol.report import ArmState, Ghosts, Report, Things
 from latentarm.web.protocol.scene import pose_of
 from latentarm.web.protocol.server_messages import CopilotState, Person, State
+from latentarm.web.server.connected_pages import ConnectedPages, Page
 from latentarm.web.server.loaded_run import Beginning, LoadedRun, RunList, beginning_of, load_reported_run
-from latentarm.web.server.sessions import Page, Sessions
 
 if TYPE_CHECKING:
     from latentarm.web.arm_process.process import ControlProcess
@@ -71,7 +71,7 @@ class States:
 
     loaded: LoadedRun  # the setup that is driven
     _control: "ControlProcess"
-    _sessions: Sessions
+    _sessions: ConnectedPages
     _run_list: RunList
 
     def __post_init__(self) -> None:

@@ -15,7 +15,7 @@ import { attachInputChoice } from "../inputs/input_choice.js";
 import { attachKeyboard } from "../inputs/keyboard.js";
 import { paced } from "../inputs/paced.js";
 import { attachLatchLimit } from "../inputs/latch_limit.js";
-import { buttonChoice, moreChoices, radioChoices } from "../inputs/page_choices.js";
+import { buttonChoice, moreChoices, radioChoices } from "../inputs/scan_choices.js";
 import { attachScanning, directionChoices } from "../inputs/scanning.js";
 import { modeInput } from "../inputs/shaping.js";
 import { attachRim } from "../inputs/rim.js";

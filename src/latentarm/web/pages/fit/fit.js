@@ -7,7 +7,7 @@ import { attachDpad } from "../inputs/dpad.js";
 import { attachGamepad } from "../inputs/gamepad.js";
 import { attachInputChoice } from "../inputs/input_choice.js";
 import { attachKeyboard } from "../inputs/keyboard.js";
-import { commonChoices } from "../inputs/page_choices.js";
+import { commonChoices } from "../inputs/scan_choices.js";
 import { pageControls } from "../inputs/page_controls.js";
 import { attachScanning } from "../inputs/scanning.js";
 import { attachStick } from "../inputs/stick.js";

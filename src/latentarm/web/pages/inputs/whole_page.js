@@ -4,7 +4,7 @@ import { byId } from "../layout/dom.js";
 import { Deflection } from "./deflection.js";
 import { attachGamepad } from "./gamepad.js";
 import { pageControls } from "./page_controls.js";
-import { commonChoices } from "./page_choices.js";
+import { commonChoices } from "./scan_choices.js";
 import { attachScanning } from "./scanning.js";
 
 /** @param {Settings} settings @param {() => void} stop */

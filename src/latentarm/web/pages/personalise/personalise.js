@@ -3,7 +3,7 @@
 import { attachDpad } from "../inputs/dpad.js";
 import { attachGamepad } from "../inputs/gamepad.js";
 import { attachInputChoice } from "../inputs/input_choice.js";
-import { buttonChoice, linkChoices, moreChoices } from "../inputs/page_choices.js";
+import { buttonChoice, linkChoices, moreChoices } from "../inputs/scan_choices.js";
 import { attachKeyboard } from "../inputs/keyboard.js";
 import { attachScanning, directionChoices } from "../inputs/scanning.js";
 import { latentInput } from "../inputs/shaping.js";

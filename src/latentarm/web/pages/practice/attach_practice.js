@@ -1,6 +1,6 @@
 /** The panel of the guided practice: offered to a person who is new, shown step by step, and gone when they skip it. */
 
-import { linkChoices } from "../inputs/page_choices.js";
+import { linkChoices } from "../inputs/scan_choices.js";
 import { byId, create, setText } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 import { Practice, STEPS } from "./steps.js";

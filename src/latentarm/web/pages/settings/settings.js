@@ -29,7 +29,7 @@ const SETTINGS = {
   switches: oneOf("1", "2"), // how many
   scan: oneOf("auto", "inverse", "step"), // how the light goes on with one switch
   switchMotion: oneOf("latch", "hold"), // how a direction moves: until the next press, or while the switch is held
-  dwellS: within(1.2, 0.4, 5), // how long a choice stays lit, s
+  dwellS: within(1.2, 0.4, 5), // scan interval: how long a choice stays lit, s
   firstS: within(0, 0, 3), // how much longer the first one does, s
   // How long a switch must be held before that counts, s. Of 168,000 people a key press takes 116 ms with an SD of 24
   // (Dhakal et al., CHI 2018): 0.05 s is nearly three below.

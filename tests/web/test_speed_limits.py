@@ -11,7 +11,7 @@ from latentarm.core.types import Context
 from latentarm.web.arm_process.drive_setup import Spec, load_setup
 from latentarm.web.arm_process.ghosts import GhostPaths
 from latentarm.web.arm_process.initial_state import RobotOptions
-from latentarm.web.arm_process.speeds import Speeds
+from latentarm.web.arm_process.speed_limits import Speeds
 from latentarm.web.protocol.orders import Enable
 
 

@@ -21,7 +21,7 @@ class Page:
 
 
 @final
-class Sessions:
+class ConnectedPages:
     """At most one page drives; handing over is explicit on both sides.
 
     The first page drives. Later ones ask: they drive if nobody does, or when the driver hands over or lets
