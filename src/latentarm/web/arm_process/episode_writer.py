@@ -6,6 +6,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from datetime import datetime
 from functools import partial
+from itertools import chain, count
 from pathlib import Path
 from queue import Empty, Full, Queue
 from typing import Final, final
@@ -139,7 +140,9 @@ class EpisodeWriter:
                     try:
                         work(recorder)
                     except JournalFullError as error:
-                        self._full(recorder, error)
+                        self._episodes += error.ended_episode
+                        if self.on:
+                            self._break_off(_notice_of(error))
             finally:
                 recorder.close()
         except UserError as error:
@@ -161,20 +164,10 @@ class EpisodeWriter:
             recorder.end_episode(device)
             self._episodes += 1
 
-    def _full(self, recorder: Recorder, error: JournalFullError) -> None:
-        if error.ended_episode:
-            self._episodes += 1
-        if self.on:
-            self._break_off(_notice_of(error))
-
     def _new_path(self) -> Path:
         named = f"journal-{datetime.now():%Y%m%d-%H%M%S}"
-        path = self._folder / f"{named}.sqlite"
-        number = 1
-        while path.exists():
-            number += 1
-            path = self._folder / f"{named}-{number}.sqlite"
-        return path
+        names = chain([named], (f"{named}-{number}" for number in count(2)))
+        return next(path for name in names if not (path := self._folder / f"{name}.sqlite").exists())
 
 
 def _notice_of(error: UserError) -> Notice:

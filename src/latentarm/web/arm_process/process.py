@@ -94,7 +94,9 @@ class ControlProcess:
 
     def __init__(self, spec: Spec, sightings: Connection | None = None) -> None:
         context = multiprocessing.get_context("spawn")
-        reading, self._orders = _order_pipe()
+        reading, self._orders = multiprocessing.Pipe(duplex=False)
+        # Writing never waits, and an order is short enough to fit whole or not at all.
+        os.set_blocking(self._orders.fileno(), False)
         self._channel = Channel(reading, sightings)
         self._seen = 0
         self._process = context.Process(
@@ -155,10 +157,3 @@ class ControlProcess:
             self._process.kill()
             self._process.join()
         self._orders.close()
-
-
-def _order_pipe() -> tuple[Connection, Connection]:
-    """Both ends of a pipe; writing never waits, and an order is short enough to fit whole or not at all."""
-    reading, writing = multiprocessing.Pipe(duplex=False)
-    os.set_blocking(writing.fileno(), False)
-    return reading, writing
