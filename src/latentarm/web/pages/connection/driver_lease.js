@@ -34,6 +34,11 @@ export class DriverLease {
     this._connection.send({ type: "ask_to_drive" });
   }
 
+  /** @param {ClientMessage} message */
+  send(message) {
+    this.ask(() => this._connection.send(message));
+  }
+
   forget() {
     this._until = -Infinity;
   }

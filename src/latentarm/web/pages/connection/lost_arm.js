@@ -8,7 +8,7 @@ export function attachLostArm(connection, lease) {
   const button = byId("lost-again");
   const free = () => connection.driving || connection.state?.driver === null;
   const again = () => {
-    if (connection.state?.lost && free()) lease.ask(() => connection.send({ type: "reconnect" }));
+    if (connection.state?.lost && free()) lease.send({ type: "reconnect" });
   };
   const show = () => {
     setHidden(byId("lost"), !connection.state?.lost);

@@ -43,11 +43,6 @@ const begin = /** @type {{person: HTMLInputElement, questions: HTMLSelectElement
   /** @type {unknown} */ (byId("begin", HTMLFormElement).elements)
 );
 
-/** This page drives first, if nobody else does. @param {ClientMessage} message */
-function tell(message) {
-  lease.ask(() => connection.send(message));
-}
-
 const stick = attachStick(input, settings);
 attachDpad(input, settings);
 attachInputChoice(input, settings);
@@ -77,15 +72,15 @@ function meant() {
 
 function answer() {
   const u = meant();
-  if (input.live && state && u) tell({ type: "answer", question: state.question, u });
+  if (input.live && state && u) lease.send({ type: "answer", question: state.question, u });
 }
 
 function skip() {
-  if (input.live && state) tell({ type: "skip_question", question: state.question });
+  if (input.live && state) lease.send({ type: "skip_question", question: state.question });
 }
 
 function back() {
-  if (input.live && state?.back) tell({ type: "question_before", question: state.question });
+  if (input.live && state?.back) lease.send({ type: "question_before", question: state.question });
 }
 
 const replay = new Replay(
@@ -97,14 +92,14 @@ const replay = new Replay(
 byId("begin").addEventListener("submit", (event) => {
   event.preventDefault();
   again = false;
-  tell({ type: "personalise", name: begin.person.value, questions: Number(begin.questions.value), seat: settings.values.seat });
+  lease.send({ type: "personalise", name: begin.person.value, questions: Number(begin.questions.value), seat: settings.values.seat });
 });
 byId("answer-send").addEventListener("click", answer);
 byId("answer-skip").addEventListener("click", skip);
 byId("answer-again").addEventListener("click", () => replay.again());
 byId("answer-back").addEventListener("click", back);
 for (const id of ["answer-cancel", "working-cancel", "refused-again", "another"]) {
-  byId(id).addEventListener("click", () => tell({ type: "cancel_personalise" }));
+  byId(id).addEventListener("click", () => lease.send({ type: "cancel_personalise" }));
 }
 byId("try").addEventListener("click", () => {
   leaving = true;

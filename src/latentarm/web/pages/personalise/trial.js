@@ -19,10 +19,10 @@ export function attachTrial(connection, settings, lease) {
   return {
     keep() {
       keeping = true;
-      lease.ask(() => connection.send({ type: "keep_alignment" }));
+      lease.send({ type: "keep_alignment" });
     },
     discard() {
-      lease.ask(() => connection.send({ type: "discard_alignment" }));
+      lease.send({ type: "discard_alignment" });
     },
   };
 }

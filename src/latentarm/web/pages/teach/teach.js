@@ -36,21 +36,16 @@ const fields = /** @type {{name: HTMLInputElement, model: HTMLSelectElement, lat
   /** @type {unknown} */ (form.elements)
 );
 
-/** This page drives first, if nobody else does. @param {ClientMessage} message */
-function tell(message) {
-  lease.ask(() => connection.send(message));
-}
-
 /** @param {string} run */
 function drive(run) {
   going = { run, until: performance.now() + LOADING_MS };
   if (connection.learning?.run === run) location.assign("/");
-  else tell({ type: "run", run });
+  else lease.send({ type: "run", run });
 }
 
 form.addEventListener("submit", (event) => {
   event.preventDefault();
-  tell({
+  lease.send({
     type: "train",
     name: fields.name.value.trim(),
     model: fields.model.value,
@@ -59,7 +54,7 @@ form.addEventListener("submit", (event) => {
   });
 });
 fields.model.addEventListener("change", showHelp);
-byId("training-cancel").addEventListener("click", () => tell({ type: "cancel_training" }));
+byId("training-cancel").addEventListener("click", () => lease.send({ type: "cancel_training" }));
 byId("training-drive").addEventListener("click", () => {
   const training = connection.learning?.training;
   if (training) drive(training.run);
