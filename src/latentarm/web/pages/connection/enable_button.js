@@ -5,10 +5,8 @@ import { say } from "../layout/words.js";
 import { whoAsks } from "./driver_lease.js";
 
 /**
- * The button's action now.
- *
- * @param {Pick<Connection, "open" | "engaged" | "state" | "welcome">} connection
- * @returns {{label: WordKey, does: "enable" | "ask" | null}} null where it does nothing, which the state says why
+ * The button's action now; null where it does nothing, which the state says why.
+ * @param {Pick<Connection, "open" | "engaged" | "state" | "welcome">} connection @returns {{label: WordKey, does: "enable" | "ask" | null}}
  */
 export function enableButtonOf({ open, engaged, state, welcome }) {
   if (!open || state === null) return { label: "layout.enable", does: null };

@@ -39,23 +39,20 @@ let context = null;
 
 /** @param {Occasion} occasion */
 function play(occasion) {
-  context ??= new AudioContext();
+  const audio = (context ??= new AudioContext());
   // A page that nobody has touched yet may not sound.
-  if (context.state === "suspended") context.resume();
-  const begin = context.currentTime;
-  TONES[occasion].forEach((frequency, index) => tone(/** @type {AudioContext} */ (context), frequency, begin + index * TONE_S));
-}
-
-/** @param {AudioContext} audio @param {number} frequency Hz @param {number} begin s */
-function tone(audio, frequency, begin) {
-  const end = begin + TONE_S;
-  const source = new OscillatorNode(audio, { frequency });
-  const loudness = new GainNode(audio, { gain: 0 });
-  loudness.gain.setValueAtTime(0, begin);
-  loudness.gain.linearRampToValueAtTime(LOUDNESS, begin + SWELL_S);
-  loudness.gain.setValueAtTime(LOUDNESS, end - SWELL_S);
-  loudness.gain.linearRampToValueAtTime(0, end);
-  source.connect(loudness).connect(audio.destination);
-  source.start(begin);
-  source.stop(end);
+  if (audio.state === "suspended") audio.resume();
+  const now = audio.currentTime;
+  TONES[occasion].forEach((frequency, index) => {
+    const [begin, end] = [now + index * TONE_S, now + (index + 1) * TONE_S];
+    const source = new OscillatorNode(audio, { frequency });
+    const loudness = new GainNode(audio, { gain: 0 });
+    loudness.gain.setValueAtTime(0, begin);
+    loudness.gain.linearRampToValueAtTime(LOUDNESS, begin + SWELL_S);
+    loudness.gain.setValueAtTime(LOUDNESS, end - SWELL_S);
+    loudness.gain.linearRampToValueAtTime(0, end);
+    source.connect(loudness).connect(audio.destination);
+    source.start(begin);
+    source.stop(end);
+  });
 }

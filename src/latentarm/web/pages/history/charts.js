@@ -35,10 +35,7 @@ export function charts(drives) {
 }
 
 /**
- * @param {string} title
- * @param {Period[]} periods
- * @param {(period: Period) => number | null} value
- * @param {(value: number) => string} words
+ * @param {string} title @param {Period[]} periods @param {(period: Period) => number | null} value @param {(value: number) => string} words
  * @param {(day: string, value: string) => string} told a period in a sentence
  */
 function chart(title, periods, value, words, told) {

@@ -16,12 +16,8 @@ export function attachKeyboard(input, settings, actions) {
   const held = new Map();
 
   const push = () => {
-    let [x, y] = [0, 0];
-    for (const [across, along] of held.values()) {
-      x += across;
-      y += along;
-    }
-    input.hold("keyboard", Math.sign(x), Math.sign(y));
+    const [x, y] = [0, 1].map((axis) => Math.sign([...held.values()].reduce((sum, direction) => sum + direction[axis], 0)));
+    input.hold("keyboard", x, y);
   };
   const letGo = () => {
     held.clear();

@@ -16,8 +16,8 @@ export function attachStick(inputs, settings) {
   const push = (/** @type {PointerEvent} */ event) => {
     const box = element.getBoundingClientRect();
     const unit = (REACH / SIZE) * box.width;
-    const x = clamp((event.clientX - box.left - box.width / 2) / unit);
-    const y = clamp(-(event.clientY - box.top - box.height / 2) / unit);
+    const pushed = [event.clientX - box.left - box.width / 2, box.top + box.height / 2 - event.clientY];
+    const [x, y] = pushed.map((px) => Math.min(Math.max(px / unit, -1), 1));
     inputs.hold("pointer", x, y, settings.values.press === "latch");
   };
   const letGo = () => inputs.release("pointer");
@@ -71,9 +71,4 @@ export function deflectionWords(x, y) {
   if (along) said.push(say(y > 0 ? "stick.up" : "stick.down", { percent: along }));
   if (across) said.push(say(x > 0 ? "stick.right" : "stick.left", { percent: across }));
   return said.join(", ") || say("stick.centre");
-}
-
-/** @param {number} value */
-function clamp(value) {
-  return Math.min(Math.max(value, -1), 1);
 }

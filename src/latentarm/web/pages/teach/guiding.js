@@ -10,11 +10,8 @@ const PERIOD_MS = 200;
 const BEGINS_MS = 6000;
 
 /**
- * The button's action now, the text next to it, and whether a motion by hand can be recorded.
- *
- * @param {State | null} state
- * @param {{waiting: boolean, confirmed: boolean}} page whether it waits for the arm, and whether its person has confirmed
- * @returns {{does: "begin" | "end" | null, why: WordKey, records: boolean}}
+ * The button's action now, the text next to it, and whether a motion by hand can be recorded. @param {State | null} state
+ * @param {{waiting: boolean, confirmed: boolean}} page @returns {{does: "begin" | "end" | null, why: WordKey, records: boolean}}
  */
 export function guidingOf(state, { waiting, confirmed }) {
   if (state === null || (state.driver !== null && !state.you)) return { does: null, why: "guiding.driver_only", records: false };

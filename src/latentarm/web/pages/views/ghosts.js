@@ -102,7 +102,5 @@ function isUpright(direction) {
 
 /** @param {number[][]} path */
 function lengthOf(path) {
-  let length = 0;
-  for (let i = 1; i < path.length; i += 1) length += Math.hypot(...path[i].map((to, axis) => to - path[i - 1][axis]));
-  return length;
+  return path.slice(1).reduce((sum, to, from) => sum + Math.hypot(...to.map((end, axis) => end - path[from][axis])), 0);
 }
