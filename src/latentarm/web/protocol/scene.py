@@ -149,21 +149,16 @@ def _geom(
     mujoco.mju_quat2Mat(rotation, model.geom_quat[geom])
     in_link = reading.body_transform[body] @ _frame(model.geom_pos[geom], rotation.reshape(3, 3))
     in_link[:3, 3] += shift
-    mesh = int(model.geom_dataid[geom])
+    mesh, material = int(model.geom_dataid[geom]), int(model.geom_matid[geom])
     pose = _rounded(pose_of(in_link[None])[0])
     return {
         "type": _TYPES[int(model.geom_type[geom])],
         "size": _rounded(model.geom_size[geom]),
         "pos": pose[:3],
         "quat": pose[3:],
-        "rgba": _rounded(_colour(model, geom)),
+        "rgba": _rounded(model.geom_rgba[geom] if material < 0 else model.mat_rgba[material]),
         "mesh": mesh if mesh >= 0 else None,
     }
-
-
-def _colour(model: mujoco.MjModel, geom: int) -> FloatArray:
-    material = int(model.geom_matid[geom])
-    return model.geom_rgba[geom] if material < 0 else model.mat_rgba[material]
 
 
 def _mesh(model: mujoco.MjModel, mesh: int) -> bytes:

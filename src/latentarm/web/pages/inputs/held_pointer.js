@@ -1,16 +1,10 @@
 /**
  * One pointer that holds a control, from its press until it comes up.
  *
- * Some browsers lose the release, and then the pointer moves with no button down: it has let go.
- *
  * @param {HTMLElement} element
- * @param {object} does
- * @param {(event: PointerEvent) => boolean} does.begins what a press does; whether it is held from now on
- * @param {(event: PointerEvent) => void} [does.moves]
- * @param {() => void} does.ends it has come up
- * @param {() => void} does.missed it has come up some time ago
- * @param {() => void} does.lost it was taken away
- * @returns {() => void} forgets the press.
+ * @param {{begins: (event: PointerEvent) => boolean, moves?: (event: PointerEvent) => void, ends: () => void, missed: () => void, lost: () => void}} does
+ *   `begins` tells whether it is held from now on; it is `missed` where it came up some time ago, and `lost` where it was taken away
+ * @returns {() => void} forgets the press
  */
 export function attachHeldPointer(element, { begins, moves = () => {}, ends, missed, lost }) {
   /** @type {number | null} */
@@ -28,6 +22,7 @@ export function attachHeldPointer(element, { begins, moves = () => {}, ends, mis
       moves(event);
       return;
     }
+    // Some browsers lose the release, and then the pointer moves with no button down: it has let go.
     held = null;
     missed();
   }, { capture: true });

@@ -114,7 +114,8 @@ export class Drawing {
     await this._scene.renew();
     this._pose = "";
     this._scene.trail.clear();
-    this._views.forget();
+    this._views.aim.forget();
+    this._views.layOut();
   }
 
   /** A second arm that can be seen through, or none. @param {number[][] | null} bodies */

@@ -107,12 +107,6 @@ export class Views {
     this.layOut();
   }
 
-  /** The tool is somewhere else altogether. */
-  forget() {
-    this.aim.forget();
-    this.layOut();
-  }
-
   /** Fit the canvas and the cameras to the page. */
   layOut() {
     const box = this._canvas.getBoundingClientRect();
