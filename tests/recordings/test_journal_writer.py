@@ -24,8 +24,8 @@ from latentarm.core.types import Command, Goal, GripperCommand, GripperReading, 
 from latentarm.demonstrations.dataset import read_dataset
 from latentarm.recordings.dataset_export import ImplausibleWarning, demonstrations_of, export_journal
 from latentarm.recordings.journal_reader import list_journal, read_journal
+from latentarm.recordings.journal_samples import figures_of, packed, unpacked
 from latentarm.recordings.journal_writer import EpisodeHeader, Recorder
-from latentarm.recordings.samples import figures_of, packed, unpacked
 
 HOME = np.array([0.0, -0.785, 0.0, -2.356, 0.0, 1.571, 0.785])
 NAMES = tuple(f"joint{i}" for i in range(7))

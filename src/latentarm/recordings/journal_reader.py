@@ -16,8 +16,7 @@ from latentarm.core.untrusted.documents import parse_object
 from latentarm.core.untrusted.memory import bounded_memory
 from latentarm.core.untrusted.opening import check_file, is_missing
 from latentarm.demonstrations.provenance import parse_provenance
-from latentarm.recordings.journal_writer import LIMITS, EpisodeHeader, check_is_journal
-from latentarm.recordings.samples import (
+from latentarm.recordings.journal_samples import (
     ALWAYS,
     COMPACT,
     gripper_command,
@@ -25,6 +24,7 @@ from latentarm.recordings.samples import (
     thing_poses,
     unpacked,
 )
+from latentarm.recordings.journal_writer import LIMITS, EpisodeHeader, check_is_journal
 from latentarm.robots.limits import JointLimits
 from latentarm.robots.limits_file import parse_limits
 

@@ -17,7 +17,7 @@ from latentarm.core.types import NO_THINGS, Goal, Provenance, StatedLimits, Step
 from latentarm.core.untrusted.opening import check_file, is_missing
 from latentarm.demonstrations.info import goals_document
 from latentarm.demonstrations.provenance import provenance_json
-from latentarm.recordings.samples import ALWAYS, figures_of, packed, without_things
+from latentarm.recordings.journal_samples import ALWAYS, figures_of, packed, without_things
 from latentarm.robots.kinematics.pose_rows import STORED
 from latentarm.robots.limits import JointLimits
 from latentarm.robots.limits_file import limits_document
