@@ -1,10 +1,10 @@
 """Where a person brings the tool next: the waypoints of a task's steps, at the person's pace."""
 
-from typing import Final, final
+from typing import Final, Literal, final
 
 import numpy as np
 
-from latentarm.core.types import FloatArray, GripperAsk
+from latentarm.core.types import FloatArray
 from latentarm.robots.kinematics.rotations import rotation_vector
 from latentarm.robots.scene.scene import SceneState
 from latentarm.tasks.steps import PATIENCE_S, RETRY_S, TaskStep, Waypoint
@@ -86,13 +86,13 @@ class WaypointGuide:
             self._still_s = state.time_s
         return self._still_s is not None and state.time_s - self._still_s >= PATIENCE_S
 
-    def _asked(self, waypoint: Waypoint, state: SceneState) -> GripperAsk | None:
+    def _asked(self, waypoint: Waypoint, state: SceneState) -> Literal["open", "close"] | None:
         if self._arrived_s is None:
             # Shut fingers would push away the thing that they are to take.
             return "open" if waypoint.gripper is not None and self._empty else None
         if waypoint.gripper == "close":
             return None if state.gripped else "close"
-        return waypoint.gripper if state.gripped or self._empty else None
+        return "open" if waypoint.gripper == "open" and (state.gripped or self._empty) else None
 
 
 def _left(waypoint: Waypoint, state: SceneState) -> tuple[FloatArray, FloatArray]:
