@@ -83,6 +83,21 @@ def test_arm_stick_and_stop_are_on_one_screen(opened, name):
             assert_on_one_screen(page, (name, panel))
 
 
+@pytest.mark.parametrize("name", SIZES)
+def test_a_close_up_leaves_the_large_view_where_it_is(opened, name):
+    page = opened(SIZES[name])
+    boxes = page.evaluate("""() => {
+      const views = document.querySelector("#views");
+      const box = (one) => Object.values(one.getBoundingClientRect().toJSON()).slice(0, 4);
+      const large = document.querySelector(`#view-${views.dataset.large}`);
+      return [false, true].map((close) => {
+        views.toggleAttribute("data-close", close);
+        return box(large);
+      });
+    }""")
+    assert boxes[0] == boxes[1]
+
+
 @pytest.mark.parametrize("task", ["learned", *TASKS, *SCENE_TASKS])
 def test_nothing_scrolls_in_any_task_at_any_size_with_any_control(
     chromium, start_server, tmp_path, trained, task
