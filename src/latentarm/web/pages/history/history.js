@@ -51,16 +51,11 @@ async function refresh() {
   byId("csv", HTMLAnchorElement).href = `/records/drives.csv?${query()}`;
   setText(byId("weeks-title"), chartsTitle(drives));
   byId("charts").replaceChildren(...charts(drives));
-  byId("report").replaceChildren(...report(drives, whose()));
+  byId("report").replaceChildren(...report(drives, fields.person.value === "*" ? say("history.everybody") : nameOf(fields.person.value)));
   setText(byId("drives-title"), say("history.drives", { count: drives.length }));
   const problems = found.problem ? [found.problem] : found.problems;
   if (problems.length) showProblem(problems.map(sayNotice).join(" "));
   showDrives();
-}
-
-function whose() {
-  const { value } = fields.person;
-  return value === "*" ? say("history.everybody") : people[value] ?? say("settings.guest");
 }
 
 /** @param {string | null} person */

@@ -61,7 +61,8 @@ export class Scanner extends EventTarget {
     const nothing = () => {};
     this._switches = [
       new SwitchTiming(times, {
-        pressed: (downAt) => this._pressed(downAt), released: () => this._released(), repeated: () => this._repeated(),
+        pressed: (downAt) => this._pressed(downAt), released: () => this._released(),
+        repeated: () => this.style === "step" && this._going && this.next(),
       }),
       new SwitchTiming(times, { pressed: () => this._next(), released: nothing, repeated: () => this._next() }),
     ];
@@ -160,10 +161,6 @@ export class Scanner extends EventTarget {
     if (this._spent) return;
     if (this.moving !== null && !this._input.latched) this._rest();
     else if (this.style === "inverse" && this._going) this._take(performance.now());
-  }
-
-  _repeated() {
-    if (this.style === "step" && this._going) this.next();
   }
 
   _next() {

@@ -88,7 +88,9 @@ function showEpisodes({ recordings }) {
   const now = JSON.stringify(recordings);
   if (now !== listed) list(recordings);
   listed = now;
-  setText(byId("chosen"), recordings.length ? chosenWords(recordings.length) : "");
+  const count = chosen().length;
+  const words = count < FEWEST ? say("teach.chosen_too_few", { chosen: count, count: FEWEST - count }) : say("teach.chosen", { chosen: count, all: recordings.length });
+  setText(byId("chosen"), recordings.length ? words : "");
 }
 
 /** @param {Recorded[]} recordings */
@@ -101,13 +103,6 @@ function list(recordings) {
   earlier.open ||= ofNow.length === 0;
   earlier.querySelector("ul")?.replaceChildren(...before.map((one) => row(one, short)));
   setText(/** @type {HTMLElement} */ (earlier.querySelector("summary")), say("teach.earlier", { count: before.length }));
-}
-
-/** @param {number} all */
-function chosenWords(all) {
-  const count = chosen().length;
-  if (count < FEWEST) return say("teach.chosen_too_few", { chosen: count, count: FEWEST - count });
-  return say("teach.chosen", { chosen: count, all });
 }
 
 /** @param {Recorded} recorded @param {number[]} short numbers of those that are short */

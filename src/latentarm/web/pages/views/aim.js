@@ -91,7 +91,10 @@ function fit({ camera, width, height }, points, direction, margin) {
   const right = new THREE.Vector3(0, 0, 1).cross(away).normalize();
   const up = away.clone().cross(right);
   const tall = Math.tan((FOV_DEG * Math.PI) / 360);
-  const [across, along] = [right, up].map((axis) => middleOf(points.map((point) => point.dot(axis))));
+  const [across, along] = [right, up].map((axis) => {
+    const values = points.map((point) => point.dot(axis));
+    return (Math.min(...values) + Math.max(...values)) / 2;
+  });
   camera.aspect = width / height;
   const nearest = Math.max(...points.map((point) => point.dot(away) + Math.max(
     (Math.abs(point.dot(right) - across) + margin) / (tall * camera.aspect),
@@ -101,9 +104,4 @@ function fit({ camera, width, height }, points, direction, margin) {
   camera.lookAt(camera.position.clone().sub(away));
   camera.updateProjectionMatrix();
   camera.updateMatrixWorld();
-}
-
-/** The middle of what values there are. @param {number[]} values */
-function middleOf(values) {
-  return (Math.min(...values) + Math.max(...values)) / 2;
 }
