@@ -48,10 +48,8 @@ class History:
         return None if about is None else about.person
 
     def end(self, why: Ending) -> None:
-        logged = self.log.end(why)
-        if logged is None:
-            return
-        self._do(partial(self._write, logged))
+        if (logged := self.log.end(why)) is not None:
+            self._do(partial(self._write, logged))
 
     def keep_profile(self, person: str, run: str, name: str) -> None:
         """Note that a new profile is a person's."""
@@ -79,15 +77,8 @@ class History:
                 self._keep_so_far(report)
             return
         driver = self._connected.driver
-        self.log.begin(
-            report,
-            About(
-                person=None if driver is None or self._gone(driver.person) else driver.person,
-                setup=loaded.setup,
-                run=loaded.name,
-                scene=loaded.scene,
-            ),
-        )
+        person = None if driver is None or self._gone(driver.person) else driver.person
+        self.log.begin(report, About(person, loaded.setup, loaded.name, loaded.scene))
         self._keep_so_far(report)
 
     def _keep_so_far(self, report: Report) -> None:
@@ -112,6 +103,5 @@ class History:
             self.problem = notice_of(error)
 
     def _write(self, logged: Logged) -> None:
-        if logged.record.person is not None and self._gone(logged.record.person):
-            return
-        self._records.keep(logged)
+        if logged.record.person is None or not self._gone(logged.record.person):
+            self._records.keep(logged)
