@@ -50,7 +50,7 @@ export function attachModes(connection, settings) {
     const { state, welcome } = connection;
     // A new choice stays until the server has had time to say otherwise.
     if (!state || performance.now() - askedAt < ANSWER_MS) return;
-    // What the server says is shown, not what was clicked.
+    // The server's choice is shown, not the click.
     checkRadio(byId("mode"), welcome ? steeringModes(welcome).indexOf(withoutHelp(state.mode)) : -1, state.you);
     checkRadio(byId("axes"), state.axes, state.you);
     setHidden(byId("axes"), state.mode !== "end_effector");

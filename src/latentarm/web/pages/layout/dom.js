@@ -22,8 +22,8 @@ export function setDisabled(element, off) {
   if (element.getAttribute("aria-disabled") !== String(off)) element.setAttribute("aria-disabled", String(off));
 }
 
-/** Check the radio button with this value; whether another can be chosen. @param {HTMLElement} group @param {string | number | null} value @param {boolean} free */
-export function checkRadio(group, value, free = true) {
+/** Check the radio button with this value. @param {HTMLElement} group @param {string | number | null} value @param {boolean} free lets people choose another */
+export function checkRadio(group, value, free) {
   for (const radio of group.querySelectorAll("input")) {
     radio.checked = radio.value === String(value);
     if (radio.disabled === free) radio.disabled = !free;

@@ -60,7 +60,7 @@ export class Drawing {
   }
 
   /**
-   * Whether the arm or a thing is somewhere else now. @param {State} state @param {Predicted} predicted @param {Direction[]} pressed
+   * True if the arm or a thing is somewhere else now. @param {State} state @param {Predicted} predicted @param {Direction[]} pressed
    * @param {Values} wanted @param {string | null} [thing] what the task is about now
    */
   show(state, predicted, pressed, wanted, thing = null) {

@@ -136,7 +136,7 @@ export function place(object, [x, y, z, w, i, j, k]) {
   object.quaternion.set(i, j, k, w);
 }
 
-/** Where it stands now. @param {THREE.Object3D} object */
+/** The pose in which it stands now. @param {THREE.Object3D} object */
 export function stanceOf({ position, quaternion }) {
   return { position: position.clone(), quaternion: quaternion.clone() };
 }
