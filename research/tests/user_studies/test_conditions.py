@@ -1,3 +1,6 @@
+import subprocess
+import sys
+
 import pytest
 
 from latentarm.assistance.boltzmann import BoltzmannBelief
@@ -24,7 +27,7 @@ CONTROLLERS = {
 def test_a_condition_without_a_model_drives_with_what_it_says(place: tuple[str, str]) -> None:
     condition = CONDITIONS[place]
     kind, modes = CONTROLLERS[condition.controls]
-    controller = controller_of(condition, ROBOT, None, 0)
+    controller = controller_of(condition, ROBOT, None)
     assert isinstance(controller, kind)
     assert controller.modes == modes
 
@@ -42,4 +45,16 @@ def test_help_is_that_of_the_condition() -> None:
 
 def test_latent_actions_without_a_model_are_a_mistake() -> None:
     with pytest.raises(ValueError, match="has no model"):
-        controller_of(CONDITIONS["harmonic", "cVAE"], ROBOT, None, 0)
+        controller_of(CONDITIONS["harmonic", "cVAE"], ROBOT, None)
+
+
+def test_the_arms_process_of_a_study_loads_neither_training_nor_a_database() -> None:
+    """It begins with every drive; torch alone takes it seconds, in which others wait for the processor."""
+    heavy = {"torch", "sklearn", "pandas", "sqlalchemy", "starlette"}
+    loads = (
+        "import sys, latentarm_research.user_studies.serving.page_drive, latentarm.web.arm_process.process"
+    )
+    found = subprocess.run(
+        [sys.executable, "-c", f"{loads}; print(*sys.modules)"], capture_output=True, text=True, check=True
+    )
+    assert not heavy & set(found.stdout.split())

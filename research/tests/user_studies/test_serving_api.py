@@ -24,8 +24,9 @@ from latentarm_research.user_studies.serving import request_limit
 from latentarm_research.user_studies.serving.app import COOKIE, Answered, Consented, StudyServer
 from latentarm_research.user_studies.serving.models import Models
 from latentarm_research.user_studies.serving.options import Serving
+from latentarm_research.user_studies.serving.page_drive import ToDrive
 from latentarm_research.user_studies.serving.store import Store
-from latentarm_research.user_studies.serving.way import ToAnswer, ToDrive, Way
+from latentarm_research.user_studies.serving.way import ToAnswer, Way
 from latentarm_research.user_studies.sizes import PRESETS
 from latentarm_research.user_studies.trace import Trace
 from study_participant import MODES, TWIST, definition

@@ -1,9 +1,9 @@
-"""What a simulated person drives with in a condition."""
+"""What a person drives with in a condition. The arm's process of the page loads this, and no training."""
 
 from functools import partial
 from typing import Final
 
-from latentarm.alignment.contract import identity
+from latentarm.alignment.contract import Alignment, identity
 from latentarm.assistance.assistance import AssistanceRule
 from latentarm.assistance.belief import Rule
 from latentarm.assistance.blending import FixedAlpha
@@ -13,14 +13,11 @@ from latentarm.assistance.controllers.contract import Controller
 from latentarm.assistance.controllers.end_effector import EndEffectorController
 from latentarm.assistance.controllers.latent import LatentController
 from latentarm.assistance.goal_blending import blending
+from latentarm.models.decoder import Decoder
 from latentarm.robots.robot import Robot
-from latentarm.tasks.scene_task import SceneTask
 from latentarm_research.assistance.published_help import Interpolation, published_belief
 from latentarm_research.baselines.retargeting import RetargetingController
-from latentarm_research.drives.drive import Setup
-from latentarm_research.people.person import Person
 from latentarm_research.user_studies.definition import Condition
-from latentarm_research.user_studies.training import Trained
 
 LINEAR_M_S: Final = 0.2
 ANGULAR_RAD_S: Final = 0.4
@@ -28,33 +25,19 @@ ANGULAR_RAD_S: Final = 0.4
 2018)."""
 
 
-def setup_of(
-    condition: Condition, task: SceneTask, person: Person, trained: Trained | None, number: int
-) -> Setup:
-    """Everything that a trial of a condition is driven with."""
-    return Setup(
-        task,
-        controller_of(condition, task.robot, trained, number),
-        person,
-        assistance_of(condition, task.robot),
-        rule=belief_of(condition, task.robot),
-    )
-
-
-def controller_of(condition: Condition, robot: Robot, trained: Trained | None, number: int) -> Controller:
-    """What turns a person's input into motion."""
+def controller_of(
+    condition: Condition, robot: Robot, decoder: Decoder | None, alignment: Alignment = identity
+) -> Controller:
+    """What turns a person's input into motion; without latent actions no decoder is needed."""
     if condition.controls == "two_sticks":
         return EndEffectorController(robot, LINEAR_M_S, ANGULAR_RAD_S, modes=TWO_STICKS)
     if condition.controls == "retargeting":
         return RetargetingController(robot, LINEAR_M_S, ANGULAR_RAD_S)
     if condition.controls == "modes":
         return EndEffectorController(robot, LINEAR_M_S, ANGULAR_RAD_S)
-    if trained is None:
+    if decoder is None:
         raise ValueError(f"the condition {condition.name} has no model")
-    alignment = identity
-    if condition.aligns != "none" and trained.aligned is not None:
-        alignment = trained.aligned.alignments[condition.aligns][number]
-    return LatentController(trained.decoder(condition), alignment)
+    return LatentController(decoder, alignment)
 
 
 def belief_of(condition: Condition, robot: Robot) -> Rule:

@@ -6,12 +6,13 @@ from typing import Final, final
 
 from threadpoolctl import threadpool_limits
 
+from latentarm.alignment.contract import identity
 from latentarm.tasks.scene_task import SceneTask
-from latentarm_research.drives.drive import drive
+from latentarm_research.drives.drive import Setup, drive
 from latentarm_research.people.person import Person
 from latentarm_research.people.traits import Traits
 from latentarm_research.studies.streams import generator
-from latentarm_research.user_studies.conditions import setup_of
+from latentarm_research.user_studies.conditions import assistance_of, belief_of, controller_of
 from latentarm_research.user_studies.definition import Condition, Definition, StudyTask
 from latentarm_research.user_studies.drive_record import DriveRecord, record_of, trial_of
 from latentarm_research.user_studies.record import Trial
@@ -100,7 +101,12 @@ def _drive(
     cell: SessionCell, task: SceneTask, left_s: float, number: int, choice: int, attempt: int
 ) -> DriveRecord:
     person = cell.traits.number
-    setup = setup_of(cell.condition, task, _person(cell, number), cell.trained, person)
+    condition, trained, robot = cell.condition, cell.trained, task.robot
+    decoder = None if trained is None else trained.decoder(condition)
+    alignment = identity if trained is None else trained.alignment(condition, person)
+    controller = controller_of(condition, robot, decoder, alignment)
+    helped, rule = assistance_of(condition, robot), belief_of(condition, robot)
+    setup = Setup(task, controller, _person(cell, number), helped, rule=rule)
     use = (Stream.TRIALS, person, number, attempt)
     rng = generator(cell.seed, f"{cell.definition.name} {cell.task.name}", *use)
     driven = drive(setup, choice, rng, time_limit_s=left_s)

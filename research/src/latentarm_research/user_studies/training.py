@@ -7,6 +7,7 @@ from typing import Final, final
 import numpy as np
 from threadpoolctl import threadpool_limits
 
+from latentarm.alignment.contract import Alignment, identity
 from latentarm.assistance.annotation import annotated
 from latentarm.assistance.boltzmann import BoltzmannBelief
 from latentarm.core.context import BELIEF
@@ -56,9 +57,15 @@ class Trained:
     episodes: int  # demonstrations that were learned from
     seconds: float  # how long these took together, s
 
-    def decoder(self, condition: Condition) -> Decoder:
-        """What a condition drives with."""
-        return Decoder(self.models[condition.model, condition.context], 0)
+    def decoder(self, condition: Condition) -> Decoder | None:
+        """What a condition drives with; None without latent actions."""
+        return Decoder(self.models[condition.model, condition.context], 0) if condition.model else None
+
+    def alignment(self, condition: Condition, number: int) -> Alignment:
+        """What the person with this number means by the stick, as far as the condition knows."""
+        if condition.aligns == "none" or self.aligned is None:
+            return identity
+        return self.aligned.alignments[condition.aligns][number]
 
 
 def train(cell: TrainingCell) -> Trained:

@@ -26,12 +26,13 @@ from latentarm_research.user_studies.answers.items import items_of
 from latentarm_research.user_studies.drive_record import DriveRecord
 from latentarm_research.user_studies.serving.models import Models
 from latentarm_research.user_studies.serving.options import Serving
+from latentarm_research.user_studies.serving.page_drive import ToDrive
 from latentarm_research.user_studies.serving.participant_pages import HOME, ParticipantPages, answer_file
 from latentarm_research.user_studies.serving.request_limit import RequestLimit
 from latentarm_research.user_studies.serving.running import DRIVES, RunningDrive, recovered, refuse_socket
 from latentarm_research.user_studies.serving.store import Standing, Store
 from latentarm_research.user_studies.serving.study_files import STEPS, forget, keep_steps, steps_of
-from latentarm_research.user_studies.serving.way import Next, ToAnswer, ToDrive, Way
+from latentarm_research.user_studies.serving.way import Next, ToAnswer, Way
 
 COOKIE: Final = "latentarm_study"
 SITE_IDS: Final = ("PROLIFIC_PID", "STUDY_ID", "SESSION_ID")  # that a recruiting site adds to its link

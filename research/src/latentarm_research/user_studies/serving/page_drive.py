@@ -1,9 +1,12 @@
-"""One drive of a study on the Drive page: what is driven, and its record, written by the arm's process."""
+"""One drive of a study on the Drive page: what is driven, and its record, written by the arm's process.
+
+That process begins with every drive, so nothing is imported here that takes seconds.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Final, final
+from typing import Final, Literal, final
 
 from latentarm.arms.contract import SceneArm
 from latentarm.assistance.assistance import AssistanceRule
@@ -12,16 +15,15 @@ from latentarm.assistance.controllers.contract import Controller
 from latentarm.core.errors import UserError
 from latentarm.core.files import write_text
 from latentarm.core.types import StepRecord
+from latentarm.models.decoder import Decoder
 from latentarm.models.saving import read_model
 from latentarm.tasks.scene_task import Beginning, SceneTask
 from latentarm.web.arm_process.fixed_drive import FixedDrive
 from latentarm_research.user_studies.conditions import assistance_of, belief_of, controller_of
-from latentarm_research.user_studies.definition import Definition
+from latentarm_research.user_studies.definition import Condition, Definition, StudyTask
 from latentarm_research.user_studies.drive_record import record_of
 from latentarm_research.user_studies.drive_steps import Measuring, StepLog, begin
 from latentarm_research.user_studies.scenes import scene_of
-from latentarm_research.user_studies.serving.way import ToDrive
-from latentarm_research.user_studies.training import Trained
 
 RECORD: Final = "drive.json"  # appears whole in the folder of a drive once it has ended
 STEPS: Final = "drive.safetensors"  # there before it
@@ -39,6 +41,22 @@ def check_served(definition: Definition) -> None:
             why = "needs answers about each person's own directions, which are not asked yet"
         if why:
             raise UserError(f"{definition.name} cannot be served: its condition {one.name} {why}.")
+
+
+@final
+@dataclass(frozen=True)
+class ToDrive:
+    """A drive that is due, for practice or as part of a trial."""
+
+    kind: Literal["practice", "trial"]
+    condition: Condition
+    order: int  # place of the condition in the person's order
+    task: StudyTask
+    trial: int
+    choice: int
+    attempt: int
+    limit_s: float  # for how long it may last, s
+    seed: int  # of the scene and the start
 
 
 @final
@@ -67,11 +85,8 @@ class PageDrive(FixedDrive):
 
     def controller(self) -> Controller:
         """That of the condition, as for simulated people."""
-        trained = None
-        if self.model is not None:
-            key = (self.due.condition.model, self.due.condition.context)
-            trained = Trained(self.due.task.name, {key: read_model(self.model)}, None, 0, 0.0)
-        return controller_of(self.due.condition, self.task.robot, trained, self.person)
+        decoder = None if self.model is None else Decoder(read_model(self.model), 0)
+        return controller_of(self.due.condition, self.task.robot, decoder)
 
     @property
     def rule(self) -> Rule:

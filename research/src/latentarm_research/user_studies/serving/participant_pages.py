@@ -12,8 +12,9 @@ from latentarm.web.server.answers import NO_STORE
 from latentarm.web.server.assets import Assets
 from latentarm_research.user_studies.answers.items import items_of
 from latentarm_research.user_studies.serving.options import PAGES, Serving
+from latentarm_research.user_studies.serving.page_drive import ToDrive
 from latentarm_research.user_studies.serving.store import Standing
-from latentarm_research.user_studies.serving.way import ToAnswer, ToDrive, Way
+from latentarm_research.user_studies.serving.way import ToAnswer, Way
 
 HOME: Final = "/study"
 

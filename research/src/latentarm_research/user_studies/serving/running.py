@@ -20,8 +20,7 @@ from latentarm.web.protocol.server_messages import Refused
 from latentarm.web.server.app import build_app
 from latentarm.web.server.config import TeleopConfig
 from latentarm_research.user_studies.drive_record import DriveRecord
-from latentarm_research.user_studies.serving.page_drive import RECORD, STEPS, PageDrive
-from latentarm_research.user_studies.serving.way import ToDrive
+from latentarm_research.user_studies.serving.page_drive import RECORD, STEPS, PageDrive, ToDrive
 
 DRIVES: Final = "drives"  # of the drives under way; in it a folder for each person, and there one by kind
 RECORD_LIMIT: Final = 1 << 22  # bytes of a drive's record

@@ -7,10 +7,11 @@ from typing import Final, Literal, final
 from latentarm.tasks.scene_task import SceneTask
 from latentarm_research.studies.streams import generator, integer, sequence
 from latentarm_research.user_studies.answers.items import sheet
-from latentarm_research.user_studies.definition import Condition, Definition, StudyTask
+from latentarm_research.user_studies.definition import Condition, Definition
 from latentarm_research.user_studies.designs import design_of
 from latentarm_research.user_studies.drive_record import DriveRecord
 from latentarm_research.user_studies.scenes import scene_of
+from latentarm_research.user_studies.serving.page_drive import ToDrive
 from latentarm_research.user_studies.serving.store import Standing
 from latentarm_research.user_studies.session import choices_of, left_for
 from latentarm_research.user_studies.sizes import Sizes, Stream
@@ -18,22 +19,6 @@ from latentarm_research.user_studies.sizes import Sizes, Stream
 FIRST_PRACTICE_S: Final = (
     300.0  # of the first practice where the definition has none, in which people set up, s
 )
-
-
-@final
-@dataclass(frozen=True)
-class ToDrive:
-    """The next drive is due, for practice or as part of a trial."""
-
-    kind: Literal["practice", "trial"]
-    condition: Condition
-    order: int  # place of the condition in the person's order
-    task: StudyTask
-    trial: int
-    choice: int
-    attempt: int
-    limit_s: float  # for how long it may last, s
-    seed: int  # of the scene and the start
 
 
 @final
