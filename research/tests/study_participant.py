@@ -154,6 +154,7 @@ class Participant:
         All of it goes over a line with this person's delay.
         """
         while (answer := self.post("begin")).status_code == 503:
+            assert answer.json()["waits_s"] > 0
             time.sleep(1.0)
         assert answer.json()["to"] == "/"
         assert 'id="stick"' in self.client.get("/").text

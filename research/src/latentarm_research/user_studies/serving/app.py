@@ -28,6 +28,7 @@ from latentarm_research.user_studies.serving.models import Models
 from latentarm_research.user_studies.serving.options import Serving
 from latentarm_research.user_studies.serving.page_drive import ToDrive
 from latentarm_research.user_studies.serving.participant_pages import HOME, ParticipantPages, answer_file
+from latentarm_research.user_studies.serving.queue import Queue
 from latentarm_research.user_studies.serving.request_limit import RequestLimit
 from latentarm_research.user_studies.serving.running import DRIVES, RunningDrive, recovered, refuse_socket
 from latentarm_research.user_studies.serving.store import Standing, Store
@@ -69,6 +70,7 @@ class StudyServer:
         self._drives: dict[str, RunningDrive] = {}  # by the person's key
         self._met: set[str] = set()  # keys that are somebody's
         self._limit = RequestLimit()
+        self._queue = Queue(serving.at_once)
         self._following: set[asyncio.Task[None]] = set()
         self._changing = asyncio.Lock()
         posts = (self.consent, self.begin, self.ready, self.answers, self.withdraw)
@@ -207,8 +209,9 @@ class StudyServer:
             if key in self._drives and self._drives[key].due != due:
                 await self._end_drive(key)
             if key not in self._drives:
-                if len(self._drives) >= self._serving.at_once:
-                    return _refused("All arms are in use. Wait a minute, and press again.", 503)
+                left_s = [drive.left_s for drive in self._drives.values()]
+                if waits_s := self._queue.waits_s(key, due.limit_s, left_s):
+                    return json_answer({"waits_s": round(waits_s)}, 503)
                 model = self._models.folder(due.condition, due.task)
                 drive = await RunningDrive.begin(standing.number, due, model, self._serving.config, key)
                 self._drives[key] = drive

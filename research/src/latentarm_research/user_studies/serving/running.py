@@ -88,6 +88,11 @@ class RunningDrive:
         return None
 
     @property
+    def left_s(self) -> float:
+        """How long it may still take, s, if the person sets out at once."""
+        return max(self._begun_s + self.due.limit_s - time.monotonic(), 0.0)
+
+    @property
     def steps(self) -> Path:
         """The file of its steps, once it has ended."""
         return self._folder / STEPS

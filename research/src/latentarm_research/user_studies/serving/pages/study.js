@@ -1,6 +1,8 @@
 /** A participant's page: what is filled in goes to the server, which answers where to go on, or why not. */
 
 const HOME = "/study";
+/** How often somebody who waits for an arm asks again, ms. */
+const ASK_AGAIN_MS = 3000;
 
 /** The content of a form. @param {HTMLFormElement} form */
 function content(form) {
@@ -11,7 +13,7 @@ function content(form) {
   return { order: Number(order), points };
 }
 
-/** @param {HTMLFormElement} form @returns {Promise<{to?: string, problem?: string}>} */
+/** @param {HTMLFormElement} form @returns {Promise<{to?: string, problem?: string, waits_s?: number}>} */
 async function send(form) {
   const headers = { "content-type": "application/json" };
   try {
@@ -20,6 +22,14 @@ async function send(form) {
   } catch {
     return { problem: "The server cannot be reached. Try again." };
   }
+}
+
+/** Says how long it takes until an arm is free. @param {number} seconds */
+function waiting(seconds) {
+  const minutes = Math.ceil(seconds / 60);
+  const text = `All arms are in use. Yours is free in about ${minutes} ${minutes === 1 ? "minute" : "minutes"}. Stay on this page: it goes on by itself.`;
+  // A screen reader says what has changed.
+  if (busy && busy.textContent !== text) busy.textContent = text;
 }
 
 const problem = document.getElementById("problem");
@@ -31,7 +41,12 @@ for (const form of document.querySelectorAll("form")) {
     for (const button of buttons) button.disabled = true;
     problem?.parentElement?.toggleAttribute("hidden", true);
     busy?.toggleAttribute("hidden", form.dataset.to !== "begin");
-    const answer = await send(form);
+    let answer = await send(form);
+    while (answer.waits_s !== undefined) {
+      waiting(answer.waits_s);
+      await new Promise((done) => setTimeout(done, ASK_AGAIN_MS));
+      answer = await send(form);
+    }
     if (answer.to) {
       location.assign(answer.to);
       return;
