@@ -15,6 +15,12 @@ from latentarm.safety.zones_file import read_zones
 from stepping import stepped
 
 EXAMPLE = Path(__file__).parents[2] / "docs" / "your-arm" / "zones.toml"
+TABLE = """
+[keep_out.table]
+shape = "half_space"
+point_m = [0.0, 0.0, 0.0]
+normal = [0.0, 0.0, 1.0]
+"""
 FACE = """
 [zones.face]
 shape = "sphere"
@@ -117,7 +123,9 @@ def test_what_the_gripper_holds_is_a_box(written):
         (FACE.replace("0.55]", "0.55, 1]"), "zones.face.centre_m must be three numbers"),
         (FACE.replace("0.15", "inf"), "zones.face.radius_m must be a finite number"),
         (FACE.replace("0.15", "0"), "The zone 'face' has radius 0.0"),
-        (FACE.replace("0.6", "600"), "The zone 'face' has its centre over 100 m away: give metres"),
+        (FACE.replace("0.6", "600"), "The zone 'face' has its centre over 10 m away: give metres"),
+        (TABLE.replace("0.0]", "-20.0]", 1), "The obstacle 'table' has its point over 10 m away"),
+        (TABLE.replace("1.0]", "-1.0]"), "'table' holds the arm itself: its normal must point out"),
         (FACE.replace("0.05", "0.001"), "The zone 'face' allows 0.001 m/s: it must be at least 0.01"),
         (FACE.replace("0.05", '"slow"'), "zones.face.speed_m_per_s must be a finite number, not 'slow'"),
         (FACE.replace("zones.face", 'zones."a,b"'), "needs another name"),

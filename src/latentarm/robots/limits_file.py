@@ -45,6 +45,8 @@ _FIGURES: Final = {
     "margin": "",
 }
 _UNITS: Final = {"rad": 1.0, "deg": math.pi / 180.0, "m": 1.0}
+_MOST_RAD: Final = {"lower": 50.0, "upper": 50.0, "velocity": 30.0, "acceleration": 100.0, "jerk": 20_000.0}
+"""No joint of an arm has more, in rad and s: a larger figure is in degrees."""
 
 
 def read_limits(path: Path) -> StatedLimits:
@@ -55,7 +57,23 @@ def read_limits(path: Path) -> StatedLimits:
         document = parse_yaml(read_bytes(path, MOST_BYTES), path, "a limits file that can be read")
     else:
         raise UserError(f"The limits file {path} must be TOML or YAML: name it .toml, .yaml or .yml.")
-    return parse_limits(document, str(path))
+    stated = parse_limits(document, str(path))
+    for joint, figures in table_of(
+        table_of(document, str(path), "").get("joints", {}), str(path), ""
+    ).items():
+        _check_not_degrees(table_of(figures, str(path), joint), f"{path}: joints.{joint}")
+    return stated
+
+
+def _check_not_degrees(figures: Mapping[str, object], where: str) -> None:
+    """Refuse figures in degrees under a key in rad: the arm would be too fast to stop in time."""
+    for figure, per in _FIGURES.items():
+        value = figures.get(f"{figure}_rad{per}", 0.0)
+        if figure in _MOST_RAD and isinstance(value, int | float) and abs(value) > _MOST_RAD[figure]:
+            raise UserError(
+                f"{where}.{figure}_rad{per} is {value:g}, more than a joint of an arm has: if it is in"
+                f" degrees, name it {figure}_deg{per}."
+            )
 
 
 def parse_limits(document: object, where: str) -> StatedLimits:

@@ -10,7 +10,8 @@ from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray
 from latentarm.robots.kinematics.obstacles import Box, Capsule, HalfSpace, Obstacle, Sphere
 
-_FAR_M = 100.0  # coordinates beyond this are a mistake in units, not an obstacle
+_FAR_M = 10.0
+_LARGE_M = 100.0  # places farther away, and larger things, are not in metres
 
 
 def table(height: float) -> HalfSpace:
@@ -98,6 +99,6 @@ def _rotation(what: str, value: FloatArray) -> FloatArray:
 def _size(what: str, field: str, value: object) -> float:
     if not is_number(value):
         raise UserError(f"{what} needs a number as its {field}.")
-    if not 0.0 < value <= _FAR_M:
-        raise UserError(f"{what} has {field} {value}: it must be above 0 and at most {_FAR_M:g} m.")
+    if not 0.0 < value <= _LARGE_M:
+        raise UserError(f"{what} has {field} {value}: it must be above 0 and at most {_LARGE_M:g} m.")
     return float(value)

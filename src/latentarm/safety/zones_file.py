@@ -45,6 +45,7 @@ _GRIPPED: Final = "gripped"
 _SPEED: Final = "speed_m_per_s"
 _CLEARANCE: Final = "clearance_m"
 _MOST_CLEARANCE_M: Final = 0.5
+_OVER_BASE_M: Final = 0.3  # no half-space holds the place so high over the base: the arm is there
 
 
 @final
@@ -116,7 +117,19 @@ def _solid(name: str, entry: object, where: str) -> Callable[[], Obstacle]:
             f" {_MOST_CLEARANCE_M:g} m."
         )
     make, _ = _entry(key, given, where)
-    return lambda: _grown(make(name), clearance_m - usual_m)
+    return lambda: _grown(_beside_arm(make(name)), clearance_m - usual_m)
+
+
+def _beside_arm(solid: Obstacle) -> Obstacle:
+    if (
+        isinstance(solid, HalfSpace)
+        and (np.array([0.0, 0.0, _OVER_BASE_M]) - solid.point) @ solid.normal < 0.0
+    ):
+        raise UserError(
+            f"The half-space {solid.name!r} holds the arm itself: its normal must point out of the solid,"
+            " towards the arm."
+        )
+    return solid
 
 
 def _grown(solid: Obstacle, by_m: float) -> Obstacle:
