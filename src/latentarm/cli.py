@@ -19,7 +19,10 @@ from latentarm.commands.configuration import configurable, file_named_in, read_o
 from latentarm.core.errors import UserError, naming_extras
 from latentarm.core.untrusted.terminal import one_line
 
-RESEARCH: Final = "pip install 'latentarm[research]'"
+_BESIDES: Final = (
+    "Demo, simulated drives, studies with people, the paper's studies and benchmarks are in"
+    " latentarm-research: pip install 'latentarm[research]', or ./research in a clone."
+)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -80,16 +83,15 @@ def _app(words: Sequence[str]) -> SubcommandApp:
             add(name=last)(configurable(command, name, defaults))
         else:
             add(name=last, help=entry.summary)(_never_run)
+    unknown = bool(words) and words[0] not in {name.split()[0] for name in known.commands}
+    if unknown and not words[0].startswith("-") and "research" not in COMMAND_SETS:
+        raise UserError(f"There is no command {words[0]!r} here. {_BESIDES}")
     return app
 
 
 def _description() -> str:
     """The program in a sentence, and the extra to install where the research is missing."""
-    more = (
-        ""
-        if "research" in COMMAND_SETS
-        else f" Demo, simulated drives, the paper's studies and benchmarks: {RESEARCH}."
-    )
+    more = "" if "research" in COMMAND_SETS else f" {_BESIDES}"
     return (
         "Steer a high-DoF assistive arm with a low-DoF input, by latent actions. "
         f"`latentarm --version` prints the version.{more}"

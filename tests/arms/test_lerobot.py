@@ -429,6 +429,9 @@ class SimulatedServos(StandIn):
         """See the base class."""
         return _places(self._bus) - 2000.0 / STEPS_PER_RAD
 
+    def press_emergency_stop(self) -> None:
+        pytest.skip("an SO-101 has no emergency stop")
+
     def break_down(self) -> None:
         """A motor lets go."""
         if not self._bus.powered()[1]:

@@ -41,7 +41,7 @@ def stated(tmp_path, **figures):
 def test_limits_that_suit_say_so(server, capsys, tmp_path):
     code, facts, refusals = checked(server, capsys, stated(tmp_path, velocity_rad_per_s=2.0))
     assert (code, refusals) == (0, [])
-    assert "0.5 rad/s and 0.25 m/s, stopping within" in facts["driven at up to"]
+    assert "0.5 rad/s and 0.25 m/s; commands end within" in facts["driven at up to"]
     assert "m from the base" in facts["reach"]
     assert "7 joints" in facts["learns from"]
 

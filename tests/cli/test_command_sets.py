@@ -2,6 +2,8 @@
 
 import pytest
 
+from latentarm import cli
+from latentarm.cli import main
 from latentarm.commands import catalogue
 from latentarm.commands.catalogue import OWN, CommandEntry, CommandSet, all_commands
 from latentarm.core.plugins import PluginWarning
@@ -31,3 +33,14 @@ def test_a_command_that_is_taken_or_lacks_its_group_is_left_out(
     monkeypatch.setattr(catalogue, "COMMAND_SETS", Registered({words: THEIRS}, {}))
     with pytest.warns(PluginWarning, match=f"'{words}'"):
         assert all_commands() == OWN
+
+
+def test_a_command_of_the_research_names_what_to_install(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(cli, "COMMAND_SETS", ())
+    monkeypatch.setattr(catalogue, "COMMAND_SETS", Registered({}, {}))
+    assert main(["study", "serve", "eating"]) == 2
+    said = capsys.readouterr().err
+    assert "no command 'study'" in said
+    assert "latentarm[research]" in said

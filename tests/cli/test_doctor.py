@@ -73,7 +73,7 @@ def test_a_port_in_use_is_the_users_to_change_and_a_free_one_is_left_free(capsys
     code, said = found(capsys, "--out", str(tmp_path), "--port", port)
     assert code < 2
     assert said["port"]["level"] == "good"
-    assert set(said) == {"priority", "cores", "pauses", "clock", "disk", "GL", "port"}
+    assert set(said) == {"priority", "cores", "load", "pauses", "clock", "disk", "GL", "port"}
     assert not list(tmp_path.iterdir())
 
 

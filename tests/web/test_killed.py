@@ -136,8 +136,8 @@ def test_a_drive_under_a_killed_server_is_kept_as_broken_off_and_the_next_server
         second = subprocess.run(command(tmp_path), capture_output=True, text=True, timeout=120)
         assert (second.returncode, second.stdout) == (2, "")
         assert second.stderr == (
-            f"latentarm: {tmp_path} is being written by another program; end it with Ctrl-C, or choose"
-            " another folder with --out.\n"
+            f"latentarm: The folder {tmp_path} is being written by another program; end it with Ctrl-C,"
+            " or choose another folder with --out.\n"
         )
         with site.page() as page:
             page.drive(1.0, 0.0)

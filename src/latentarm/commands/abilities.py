@@ -25,7 +25,9 @@ def abilities(robot: Robot, asked: Speeds) -> tuple[tuple[Fact, ...], tuple[str,
     bounds = _bounds(robot, asked)
     facts = [Fact("reach", _reach(robot)), Fact("learns from", _learns(robot))]
     if isinstance(bounds, Bounds):
-        said = f"{asked.joint:g} rad/s and {asked.link:g} m/s, stopping within {1000 * bounds.stop_s:.0f} ms"
+        said = (
+            f"{asked.joint:g} rad/s and {asked.link:g} m/s; commands end within {1000 * bounds.stop_s:.0f} ms"
+        )
         return (*facts, Fact("driven at up to", said)), ()
     works = _slower(robot, asked)
     if works is not None:

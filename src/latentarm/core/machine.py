@@ -43,6 +43,8 @@ def examine_machine(folder: Path, least_free_bytes: int, for_s: float) -> Iterat
     """Look at this computer; ``folder`` is for records, pauses are measured ``for_s`` seconds."""
     yield _priority()
     yield _cores()
+    if hasattr(os, "getloadavg"):
+        yield _load(os.getloadavg()[0], os.cpu_count() or 1)
     yield from _pauses_and_clock(for_s)
     yield _disk(folder, least_free_bytes)
 
@@ -78,6 +80,15 @@ def _cores() -> Finding:
         means = "Cores may wake up late: `cpupower frequency-set -g performance`."
         return Finding("cores", found, "warning", means)
     return Finding("cores", found)
+
+
+def _load(running: float, cores: int) -> Finding:
+    """Finding about how many programs ran at once over the last minute."""
+    found = f"{running:.1f} programs at once over the last minute"
+    if running <= cores:
+        return Finding("load", found)
+    means = f"There are {cores} cores: page and arm may come too late, which stops it. End other programs."
+    return Finding("load", found, "warning", means)
 
 
 def _pauses_and_clock(for_s: float) -> Iterator[Finding]:

@@ -21,7 +21,7 @@ def locked(folder: Path, lock_file: Path, remedy: str = "wait for it") -> Genera
     try:
         lock.acquire()
     except Timeout as error:
-        raise UserError(f"{folder} is being written by another program; {remedy}.") from error
+        raise UserError(f"The folder {folder} is being written by another program; {remedy}.") from error
     except OSError as error:
         raise UserError(f"{folder} cannot be locked: {error.strerror or error}.") from error
     try:

@@ -66,13 +66,15 @@ def _drive(address: str, robot: Robot, velocity: FloatArray, hold_s: float, told
 
 
 HOLD_S = 0.05  # how long a command of these tests lasts, as on the page, s
+_UNTESTED = "The driver's stops are not tested: override {}, or skip there with the reason."
 RATE_HZ = 100.0  # how often they send one, if the arm takes so many
 
 
 class StandIn(ABC):
     """What answers in place of an arm, as it is from the arm's side of the network.
 
-    Tests of what a stand-in cannot do are skipped: it overrides what it can.
+    It overrides what it can do. Where an arm has no emergency stop or no faults, the method skips the test
+    with the reason (`pytest.skip`): a driver whose stops are not tested fails.
     """
 
     @abstractmethod
@@ -81,15 +83,15 @@ class StandIn(ABC):
 
     def press_emergency_stop(self) -> None:
         """Somebody presses the button on the arm."""
-        pytest.skip("this stand-in has no emergency stop")
+        pytest.fail(_UNTESTED.format("press_emergency_stop and release_emergency_stop"))
 
     def release_emergency_stop(self) -> None:
         """The button is released."""
-        pytest.skip("this stand-in has no emergency stop")
+        pytest.fail(_UNTESTED.format("press_emergency_stop and release_emergency_stop"))
 
     def break_down(self) -> None:
         """The arm stops by itself with a fault that can be recovered from, as after a collision."""
-        pytest.skip("this stand-in has no faults")
+        pytest.fail(_UNTESTED.format("break_down"))
 
     def push(self, by: FloatArray) -> None:
         """Somebody pushes the joints by hand, by (n,) rad; they move where the arm lets them."""
@@ -97,11 +99,11 @@ class StandIn(ABC):
 
     def cut(self) -> None:
         """Nothing passes between the driver and the arm any more, as when a cable is pulled out."""
-        pytest.skip("the way to this stand-in cannot be cut")
+        pytest.fail(_UNTESTED.format("cut and repair"))
 
     def repair(self) -> None:
         """The cable is plugged in again."""
-        pytest.skip("the way to this stand-in cannot be cut")
+        pytest.fail(_UNTESTED.format("cut and repair"))
 
 
 class RealArmRig(ArmLaws):
@@ -132,7 +134,7 @@ class RealArmRig(ArmLaws):
     @pytest.fixture
     def address(self) -> str:
         """The address of the stand-in, to be driven from another process; its scheme is registered."""
-        pytest.skip("the stand-in cannot be driven from another process")
+        pytest.fail(_UNTESTED.format("the fixture address"))
 
     @pytest.fixture
     def new_arm(self, make: Callable[[], RealArm]) -> Iterator[RealArm]:
