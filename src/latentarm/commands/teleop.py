@@ -101,7 +101,7 @@ def teleop(
     ] = 2.0,
     lock_setup: Annotated[
         bool,
-        arg(help="Nobody changes anything in Set up, teaches or personalises; people keep their settings."),
+        arg(help="Nobody changes anything in Settings, teaches or personalises; people keep their settings."),
     ] = False,
     pin: Annotated[bool, arg(help="People may protect their records by a PIN.")] = False,
     json: Json = False,
