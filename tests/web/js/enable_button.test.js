@@ -19,6 +19,7 @@ for (const [about, connection, label, does] of [
   ["driving", connectionOf({ you: true, driver: "me" }), "layout.enable", "enable"],
   ["driving, enabled", connectionOf({ you: true, driver: "me", phase: "ready" }), "layout.enable", null],
   ["nobody drives", connectionOf({}), "layout.enable", "enable"],
+  ["the arm is not connected", connectionOf({ you: true, driver: "me", lost: true }), "layout.enable", null],
   ["watching", connectionOf(WATCHING), "driver.ask", "ask"],
   ["watching a moving arm", connectionOf({ ...WATCHING, phase: "moving" }), "driver.ask", "ask"],
   ["has asked", connectionOf({ ...WATCHING, asking: "me" }), "driver.asked_button", null],

@@ -10,7 +10,7 @@ import { whoAsks } from "./driver_lease.js";
  */
 export function enableButtonOf({ open, engaged, state, welcome }) {
   if (!open || state === null) return { label: "layout.enable", does: null };
-  if (state.you || state.driver === null) return { label: "layout.enable", does: engaged ? null : "enable" };
+  if (state.you || state.driver === null) return { label: "layout.enable", does: engaged || state.lost ? null : "enable" };
   const asks = whoAsks(state, welcome?.id);
   if (asks === "you") return { label: "driver.asked_button", does: null };
   return { label: "driver.ask", does: asks === null ? "ask" : null };
