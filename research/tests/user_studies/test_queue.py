@@ -1,4 +1,4 @@
-"""Who waits for an arm gets one in turn, and is told how long it takes."""
+"""People who wait for an arm get one in turn, and hear how long it takes."""
 
 from hypothesis import given
 from hypothesis import strategies as st
@@ -28,7 +28,7 @@ def test_nobody_overtakes_the_first() -> None:
     assert queue.waits_s("a", LIMIT_S, [5.0]) == 5.0
     assert queue.waits_s("b", LIMIT_S, []) == LIMIT_S
     assert queue.waits_s("a", LIMIT_S, []) == 0.0
-    # Whoever has had an arm is the last of those who wait.
+    # Somebody who has had an arm is the last of those who wait.
     assert queue.waits_s("a", LIMIT_S, [5.0]) == 5.0 + LIMIT_S
 
 

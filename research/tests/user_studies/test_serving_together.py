@@ -14,8 +14,10 @@ from latentarm_research.user_studies.serving.store import Store
 from latentarm_research.user_studies.serving.study_files import STEPS
 from study_participant import next_link, participant, serving
 
-PEOPLE = int(os.environ.get("LATENTARM_STUDY_PEOPLE", "2"))
-"""Number of participants."""
+PEOPLE = int(os.environ.get("LATENTARM_STUDY_PEOPLE", "3"))
+"""Number of participants; those for whom there is no arm wait in the queue."""
+
+AT_ONCE = "2"
 
 EACH_WAY_S = 0.1  # a round trip of 200 ms
 
@@ -23,7 +25,7 @@ EACH_WAY_S = 0.1  # a round trip of 200 ms
 @pytest.mark.slow
 def test_participants_far_away_take_part_at_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "people"
-    with serving("eating", "--out", str(out), "--at-once", str(PEOPLE)) as (link, _):
+    with serving("eating", "--out", str(out), "--at-once", AT_ONCE) as (link, _):
 
         def takes_part(number: int) -> None:
             with participant(link, next_link(out, number), EACH_WAY_S) as person:

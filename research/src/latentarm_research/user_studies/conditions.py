@@ -1,4 +1,4 @@
-"""What a person drives with in a condition. The arm's process of the page loads this, and no training."""
+"""Controllers, beliefs and help of a study's conditions; the arm's process loads this, and no training."""
 
 from functools import partial
 from typing import Final
@@ -28,7 +28,7 @@ ANGULAR_RAD_S: Final = 0.4
 def controller_of(
     condition: Condition, robot: Robot, decoder: Decoder | None, alignment: Alignment = identity
 ) -> Controller:
-    """What turns a person's input into motion; without latent actions no decoder is needed."""
+    """The condition's controller; without latent actions it needs no decoder."""
     if condition.controls == "two_sticks":
         return EndEffectorController(robot, LINEAR_M_S, ANGULAR_RAD_S, modes=TWO_STICKS)
     if condition.controls == "retargeting":

@@ -58,11 +58,11 @@ class Trained:
     seconds: float  # how long these took together, s
 
     def decoder(self, condition: Condition) -> Decoder | None:
-        """What a condition drives with; None without latent actions."""
+        """The decoder that a condition drives with; None without latent actions."""
         return Decoder(self.models[condition.model, condition.context], 0) if condition.model else None
 
     def alignment(self, condition: Condition, number: int) -> Alignment:
-        """What the person with this number means by the stick, as far as the condition knows."""
+        """The alignment that a condition uses for the person with this number."""
         if condition.aligns == "none" or self.aligned is None:
             return identity
         return self.aligned.alignments[condition.aligns][number]

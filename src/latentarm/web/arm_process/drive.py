@@ -36,8 +36,8 @@ from latentarm.web.protocol.orders import Change, HelpLevel, ModeName, Order, Po
 from latentarm.web.protocol.report import HeldBack, Phase, Report
 
 ENABLE_WAITS_S: Final = 0.3
-"""How long an order to enable waits for a fresh neutral input, s, and longer where the arm allows more than
-`INPUT_BUDGET_S`: a new driver's first input counts for nothing, as it answers nothing that they were told.
+"""How long an order to enable waits for a fresh neutral input, s; longer where the arm allows more than
+`INPUT_BUDGET_S`. A new driver's first input never counts: they were sent no state yet that it could answer.
 """
 
 NOTE_S: Final = 6.0  # how long a refusal is shown instead of the arm's state, s
