@@ -1,10 +1,13 @@
 """The contract of real arms, over an arm that answers over TCP."""
 
+from dataclasses import replace
+
 import pytest
 from wooden_arm import WoodenArm
 from wooden_server import wooden_server
 
 from latentarm.arms.address import parse_address
+from latentarm.arms.checking import look_at
 from latentarm.control.clock import MonotonicClock
 from latentarm.testing.real_arms import RealArmContract
 
@@ -30,3 +33,16 @@ class TestWoodenArm(RealArmContract):
     @pytest.fixture
     def address(self, stand_in):
         return stand_in.address
+
+    @pytest.mark.parametrize(
+        ("stated", "why"),
+        [
+            ({"input_budget_s": 0.6}, "input_budget_s of 0.2 s at most"),
+            ({"simulated": True, "input_budget_s": 0.6}, "must state simulated=False"),
+        ],
+    )
+    def test_it_is_not_driven_from_far_away_whatever_its_driver_says(self, new_arm, robot, stated, why):
+        assert look_at(new_arm, robot, 0.01).refusals == ()
+        new_arm._spec = replace(new_arm.spec, **stated)
+        [refusal] = look_at(new_arm, robot, 0.01).refusals
+        assert why in refusal

@@ -17,6 +17,8 @@ def look_at(arm: RealArm, robot: Robot, dt_s: float) -> Findings:
     """Findings of a driver that is not connected, and checks of all arms; ``dt_s`` is the loop's period."""
     spec, found = arm.spec, arm.look()
     refusals = [*arm_refusals(spec, robot), *found.refusals]
+    if spec.simulated:
+        refusals.append("The driver says that this arm is simulated: it must state simulated=False.")
     try:
         check_rate(spec, dt_s)
     except UserError as error:
