@@ -27,7 +27,12 @@ from latentarm_research.user_studies.drive_record import DriveRecord
 from latentarm_research.user_studies.serving.models import Models
 from latentarm_research.user_studies.serving.options import Serving
 from latentarm_research.user_studies.serving.page_drive import ToDrive
-from latentarm_research.user_studies.serving.participant_pages import HOME, ParticipantPages, answer_file
+from latentarm_research.user_studies.serving.participant_pages import (
+    FILES,
+    HOME,
+    ParticipantPages,
+    answer_file,
+)
 from latentarm_research.user_studies.serving.queue import Queue
 from latentarm_research.user_studies.serving.request_limit import RequestLimit
 from latentarm_research.user_studies.serving.running import DRIVES, RunningDrive, recovered, refuse_socket
@@ -80,7 +85,7 @@ class StudyServer:
                 *(Route(f"{HOME}/{do.__name__}", self._known(do), methods=["POST"]) for do in posts),
                 Route(f"{HOME}/data", self._known(self.data)),
                 Route(f"{HOME}/steps/{{name}}", self._known(self.steps)),
-                *(Route(f"{HOME}/{name}", answer_file) for name in ("study.js", "study.css")),
+                *(Route(f"{HOME}/{name}", answer_file) for name in FILES),
                 Route("/static/{version}/{name:path}", assets.answer),
             ],
             lifespan=self._life,

@@ -9,7 +9,8 @@ from starlette.requests import Request
 from starlette.responses import FileResponse, HTMLResponse, Response
 
 from latentarm.web.server.answers import NO_STORE
-from latentarm.web.server.assets import Assets
+from latentarm.web.server.assets import FOLDER, Assets
+from latentarm.web.words.catalogue import languages
 from latentarm_research.user_studies.answers.items import items_of
 from latentarm_research.user_studies.serving.options import PAGES, Serving
 from latentarm_research.user_studies.serving.page_drive import ToDrive
@@ -17,6 +18,7 @@ from latentarm_research.user_studies.serving.store import Standing
 from latentarm_research.user_studies.serving.way import ToAnswer, Way
 
 HOME: Final = "/study"
+FILES: Final = ("study.js", "study_switch.js", "study.css")  # beside the template
 
 
 @final
@@ -26,18 +28,26 @@ class ParticipantPages:
     def __init__(self, serving: Serving, way: Way, assets: Assets) -> None:
         self._serving = serving
         self._way = way
-        self._assets = assets
         templates = Environment(
-            loader=FileSystemLoader(PAGES), autoescape=True, undefined=StrictUndefined, trim_blocks=True
+            loader=FileSystemLoader((PAGES, FOLDER)),
+            autoescape=True,
+            undefined=StrictUndefined,
+            trim_blocks=True,
         )
-        self._template = templates.get_template("study.html")
+        english = languages()["en"]
+        always = {
+            "definition": serving.definition,
+            "home": HOME,
+            "asset": assets.path,
+            "modules": assets.path("layout/words.js").removesuffix("/layout/words.js"),
+            "words": english.texts,
+            "say": english.say,
+        }
+        self._template = templates.get_template("study.html", globals=always)
 
     def page(self, name: str, *, status: int = 200, **shown: Any) -> Response:
         """A page; ``name`` is that of a part of the template, and ``shown`` what it needs."""
-        html = self._template.render(
-            name=name, definition=self._serving.definition, asset=self._assets.path, home=HOME, shown=shown
-        )
-        return HTMLResponse(html, status, headers=NO_STORE)
+        return HTMLResponse(self._template.render(name=name, shown=shown), status, headers=NO_STORE)
 
     def consent(self) -> Response:
         """The information that people consent to."""
