@@ -75,12 +75,15 @@ def agree(line: Mapping[str, str], figures: Mapping[str, Any], names: Sequence[s
             assert float(said) == pytest.approx(wanted, rel=1e-6, abs=1e-12), (name, line)
 
 
-@pytest.mark.parametrize("command", SCRIPTS)
-@pytest.mark.parametrize(
+EVERY_DESIGN = pytest.mark.parametrize(
     "definition",
     [EATING, pytest.param(BETWEEN, marks=pytest.mark.slow), pytest.param(PIE, marks=pytest.mark.slow)],
     ids=["within", "between", "equal"],
 )
+
+
+@pytest.mark.parametrize("command", SCRIPTS)
+@EVERY_DESIGN
 def test_a_script_makes_the_tables_of_the_report_from_csv_files_alone(
     definition: Definition, command: list[str], tmp_path: Path
 ) -> None:
@@ -119,6 +122,46 @@ def test_a_script_makes_the_tables_of_the_report_from_csv_files_alone(
     for line in tables.get("anova", []):
         (effect,) = (one for one in effects[line["measure"]] if one["name"] == line["effect"])
         agree(line, effect, ("f", "dof", "dof_error", "p", "eta"))
+
+
+def without(definition: Definition, out: Sequence[str], people: int) -> Recorded:
+    """So many people of a study, of whom no trial counts with the conditions in ``out``."""
+    study = recorded(definition)
+    trials = tuple(
+        replace(one, measures={**one.measures, "input_magnitude": 0.0}) if one.condition in out else one
+        for one in study.trials
+        if one.person < people
+    )
+    answers = tuple(one for one in study.answers if one.person < people)
+    return replace(study, trials=trials, answers=answers)
+
+
+@pytest.mark.parametrize("command", SCRIPTS)
+@EVERY_DESIGN
+@pytest.mark.parametrize(
+    "left",
+    [
+        "one condition excluded",
+        pytest.param("everything excluded", marks=pytest.mark.slow),
+        "one person",
+    ],
+)
+def test_a_script_leaves_cells_empty_where_nothing_is_left_to_compare(
+    definition: Definition, command: list[str], left: str, tmp_path: Path
+) -> None:
+    names = [one.name for one in definition.conditions]
+    out = {"one condition excluded": names[-1:], "everything excluded": names}.get(left, [])
+    study = without(definition, out, 1 if left == "one person" else definition.people)
+    write_dataset(tmp_path / "dataset", study)
+    tables = tables_of(command, tmp_path / "dataset", tmp_path / "tables")
+    report = report_of(study, "", rate(definition, study.answers, study.trials))
+    assert len(tables.get("results", [])) == len(report.rows)
+    assert len(tables["claims"]) == len(report.tests)
+    for line, claim in zip(tables["claims"], report.tests, strict=True):
+        said: Any = claim.as_json()
+        test = said["test"] or dict.fromkeys(["difference", "t", "d"])
+        figures = {**test, **said, "p_randomisation": said["model"]["p"]}
+        agree(line, figures, ["n", "mean", "difference", "t", "d", "p", "p_holm", "p_randomisation"])
 
 
 def test_a_dataset_follows_psych_ds_and_its_codebook_has_every_column(tmp_path: Path) -> None:

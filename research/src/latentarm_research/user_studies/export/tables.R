@@ -146,12 +146,11 @@ compared <- function(trials, claim, subject, against, tasks) {
     both <- intersect(rows$person[rows$condition %in% subject], rows$person[rows$condition %in% against])
     rows <- rows[rows$person %in% both, ]
   }
-  fixed <- cbind(rows$order, rows$trial, sapply(tasks[-1], function(task) as.numeric(rows$task == task)))
-  fixed <- matrix(as.numeric(fixed), nrow = nrow(rows))
+  fixed <- cbind(rows$order, rows$trial, outer(rows$task, tasks[-1], "=="))
   fixed <- scale(fixed, scale = FALSE)
   list(
     value = rows[[claim$measure]], label = ifelse(rows$condition %in% subject, 0.5, -0.5),
-    person = factor(rows$person), fixed = fixed[, apply(abs(fixed), 2, max) > 0, drop = FALSE]
+    person = factor(rows$person), fixed = fixed[, colSums(abs(fixed)) > 0, drop = FALSE]
   )
 }
 
@@ -255,7 +254,7 @@ anova_table <- function(trials, claims, sides, factors) {
     means <- cell_means(trials, measure, tasks)
     conditions <- names(weights[[1]])
     if (!all(conditions %in% colnames(means))) next
-    means <- means[, conditions]
+    means <- means[, conditions, drop = FALSE]
     first <- weights[[1]][conditions]
     second <- weights[[2]][conditions]
     contrasts <- list(first, second, first * second)
@@ -292,14 +291,14 @@ tables <- list(results = results_table(trials, measures))
 if (nrow(answers)) {
   rated <- scores_of(answers)
   tables$scales <- rated$table
-  for (scale in unique(answers$scale)) trials[[scale]] <- NA
+  for (scale in unique(answers$scale)) trials[[scale]] <- rep(NA_real_, nrow(trials))
   scores <- rated$scores[rated$scores$person %in% trials$person, ]
   at <- match(paste(scores$person, scores$condition), paste(every$person, every$condition))
   more <- trials[rep(NA_integer_, nrow(scores)), ]
   more[c("person", "condition")] <- scores[c("person", "condition")]
-  more$task <- "questionnaire"
+  more$task <- rep("questionnaire", nrow(scores))
   more$order <- every$order[at]
-  more$trial <- 0
+  more$trial <- rep(0, nrow(scores))
   for (scale in unique(answers$scale)) {
     here <- scores$scale == scale
     more[[scale]][here] <- scores$score[here]
@@ -311,7 +310,7 @@ tables$anova <- anova_table(trials, claims, sides, read("factors"))
 dir.create(out, showWarnings = FALSE, recursive = TRUE)
 for (name in names(tables)) {
   table <- tables[[name]]
-  if (!ncol(table)) next
+  if (!length(table)) next
   numeric <- sapply(table, is.double)
   table[numeric] <- lapply(
     table[numeric], function(column) ifelse(is.na(column), NA, sprintf("%.17g", column))

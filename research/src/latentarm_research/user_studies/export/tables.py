@@ -282,6 +282,8 @@ def anova_table(trials: Any, claims: Any, sides: Any, factors: Any) -> Any:
         if not tasks:
             continue
         means = cell_means(trials, measure, tasks).dropna().reset_index(name="mean")
+        if means.empty:
+            continue
         first, second = (means.condition.map(level[name]) for name in names)
         contrasts = {names[0]: first, names[1]: second, f"{names[0]} x {names[1]}": first * second}
         if claim.design == "within":
