@@ -62,7 +62,7 @@ def test_the_digest_changes_with_any_field(field: str) -> None:
         "people": 13,
         "practice_min": 4.0,
         "conditions": (*definition.conditions, Condition("more", "more", "modes")),
-        "orders": (("R", "LA"),),
+        "orders": (("LA+SA", "R", "LA", "R+SA"),),
         "tasks": (*definition.tasks, DEFINITIONS["harmonic"].tasks[0]),
         "hypotheses": definition.hypotheses[:1],
         "measures": (*definition.measures, "stops"),

@@ -6,15 +6,18 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from pydantic import TypeAdapter
 
 from latentarm.cli import main
 from latentarm.core.errors import UserError
 from latentarm_research.user_studies.catalogue import NAMES, load_definition
+from latentarm_research.user_studies.definition import Definition
 from latentarm_research.user_studies.own.definition_file import (
     check_definition,
     find_definition,
     read_definition,
 )
+from latentarm_research.user_studies.serving.page_drive import check_served
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "pie_apart.json"
 OWN: dict[str, Any] = json.loads(EXAMPLE.read_text(encoding="utf-8"))
@@ -51,6 +54,7 @@ def test_the_example_is_a_study_between_people() -> None:
     definition = find_definition(str(EXAMPLE))
     assert (definition.design, definition.people) == ("between", 24)
     check_definition(definition)
+    check_served(definition)
 
 
 def test_a_value_of_another_kind_is_refused_with_its_file(tmp_path: Path) -> None:
@@ -82,7 +86,13 @@ FAULTS: list[tuple[Callable[[dict[str, Any]], object], str]] = [
     (lambda one: one["conditions"][0].update(assists="blending"), "no goals"),
     (lambda one: one["conditions"][0].update(name="a\u202eb"), "cannot be printed"),
     (lambda one: one["tasks"][0].update(label="$x$"), "without \\$"),
-    (lambda one: one["tasks"][0].update(scene="moon"), "scene: .*moon"),
+    (lambda one: one["tasks"][0].update(scene="moon"), "tasks, entry 1: scene must be of .*, not 'moon'"),
+    (lambda one: one.update(practice="before every trial"), "unknown field 'practice'"),
+    (lambda one: one["conditions"][0].update(name="cVAE"), "two conditions of the name cVAE"),
+    (lambda one: one.update(design="within", orders=[["cVAE"]]), "is cVAE: it must have each of End-Eff"),
+    (lambda one: one.update(design="within", orders=[["cVAE", "cVAE"]]), "is cVAE, cVAE: it must have each"),
+    (lambda one: one.update(design="within", orders=[["cVAE", "R"]]), "is cVAE, R: it must have each"),
+    (lambda one: one.update(design="within", orders=[[]]), "is empty: it must have each"),
     (lambda one: one["tasks"][0].update(choices=[3]), "from 0 to 2"),
     (lambda one: one["tasks"][0].update(trials=0), "trials must be from 1"),
     (lambda one: one["tasks"][0].update(plates=["saucer"]), "plates must be of"),
@@ -104,6 +114,12 @@ def test_a_definition_that_cannot_be_run_is_refused(
     with pytest.raises(UserError, match=said) as refused:
         read_definition(written(changed(change), tmp_path))
     assert str(refused.value).startswith(str(tmp_path / "mine.json"))
+    assert "--" not in str(refused.value)
+
+
+def test_the_published_schema_is_that_of_a_definition() -> None:
+    published = EXAMPLE.parents[1] / "docs" / "study.schema.json"
+    assert json.loads(published.read_text()) == TypeAdapter(Definition).json_schema()
 
 
 def test_show_prints_what_a_file_may_hold(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -24,14 +24,18 @@ NAMED: Final = 16  # claims that a verdict names at most; the table of claims ha
 class Claim:
     """That there is less, or more, or as much of a measure under some conditions as under others."""
 
-    measure: str  # a measure of the study, or a scale of its questionnaire
-    # conditions, methods or models; with several, the mean over them, as in a main effect
+    measure: str
+    """A measure of the study, or a scale of its questionnaire."""
     subject: tuple[str, ...]
-    against: tuple[str, ...]  # other ones, or a fixed mark in digits
-    direction: Direction  # of the subject's mean, compared with that of the others
-    tasks: tuple[str, ...] = ()  # whose figures count; all of the study where empty
-    # for `equal`, the largest difference that does not matter, in the measure's unit
+    """Conditions, methods or models; with several, the mean over them, as in a main effect."""
+    against: tuple[str, ...]
+    """Other ones, or a fixed mark in digits."""
+    direction: Direction
+    """Direction of the subject's mean, compared with that of the others."""
+    tasks: tuple[str, ...] = ()
+    """Tasks whose figures count; all of the study where empty."""
     margin: float | None = None
+    """For `equal`, the largest difference that does not matter, in the measure's unit."""
 
     def __post_init__(self) -> None:
         if not self.subject or not self.against or set(self.subject) & set(self.against):
@@ -57,9 +61,12 @@ class Claim:
 class Hypothesis:
     """A hypothesis, held where all its claims hold after Holm's correction."""
 
-    name: str  # `H1`, `H2`, ...
-    text: str  # in the paper's words, where it is the paper's
-    claims: tuple[Claim, ...]  # what is tested
+    name: str
+    """`H1`, `H2`, ..."""
+    text: str
+    """Words of the hypothesis, the paper's where it is the paper's."""
+    claims: tuple[Claim, ...]
+    """Claims that are tested."""
 
 
 @final

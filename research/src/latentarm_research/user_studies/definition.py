@@ -3,7 +3,7 @@
 import hashlib
 import json
 from dataclasses import asdict, dataclass
-from typing import Final, Literal, final
+from typing import ClassVar, Final, Literal, final
 
 from latentarm.core.errors import UserError
 from latentarm.evaluation.measures import label_of
@@ -13,35 +13,36 @@ from latentarm_research.user_studies.hypothesis import Printed
 from latentarm_research.user_studies.questionnaire import Scale
 
 Controls = Literal["modes", "two_sticks", "retargeting", "latent"]
-"""Two axes of the end-effector at a time; two sticks and a toggle; one stick retargeted to the tool's twist;
-latent actions."""
-
 Assists = Literal["none", "interpolation", "blending"]
-"""Nobody; HARMONIC's interpolation with a fixed weight; Algorithm 1 of the paper (equations 2 and 3)."""
-
 Design = Literal["within", "between"]
-"""Each person meets every condition, in an order of their own; or one condition alone."""
-
 Aligns = Literal["none", "no_priors", "all_priors"]
-"""z = u; the paper's network f learned from answers alone; and with its three priors."""
-
-
 PREFIX: Final = "user study "  # before a study's name, in what a folder of its results says that it is
 
 
 @final
 @dataclass(frozen=True)
 class Condition:
-    """What people drive with. Raises a `UserError` where the parts do not go together."""
+    """A way to drive. Raises a `UserError` where the parts do not go together."""
 
-    name: str  # as tables call it
-    about: str  # in words
-    controls: Controls  # what turns their input into motion
-    model: str = ""  # a name of `latentarm.models.catalogue.KINDS`; empty without latent actions
-    context: tuple[str, ...] = ()  # features that its decoder sees
-    assists: Assists = "none"  # who helps
-    weight: float = 0.0  # of the help, where `assists` interpolates, in [0, 1]
-    aligns: Aligns = "none"  # what stands between input and latent action
+    name: str
+    """Name in tables."""
+    about: str
+    """Description in words."""
+    controls: Controls
+    """`modes`: two axes of the end-effector at a time; `two_sticks`: two sticks and a toggle; `retargeting`:
+    one stick retargeted to the tool's twist; `latent`: latent actions."""
+    model: str = ""
+    """Kind of model for latent actions, such as `cvae`; empty for other controls."""
+    context: tuple[str, ...] = ()
+    """Features that its decoder sees, `joints` first; empty without a model."""
+    assists: Assists = "none"
+    """`none`; `interpolation`: HARMONIC's, with a fixed weight; `blending`: Algorithm 1 of the paper
+    (equations 2 and 3)."""
+    weight: float = 0.0
+    """Weight of the help, where `assists` is `interpolation`, from 0 to 1."""
+    aligns: Aligns = "none"
+    """`none`: z = u; `no_priors`: the paper's network f learned from answers alone; `all_priors`: with its
+    three priors."""
 
     def __post_init__(self) -> None:
         latent = self.controls == "latent"
@@ -58,25 +59,33 @@ class Condition:
 @final
 @dataclass(frozen=True)
 class StudyTask:
-    """What people do."""
+    """Trials at one scene."""
 
-    name: str  # in records
-    label: str  # as tables call it
-    scene: str  # a name that `latentarm_research.user_studies.scenes.scene_of` knows
-    trials: int  # in each condition
-    # of the scene's task, in turn from trial to trial; each is driven in every trial where `all_choices` is
-    # set, one after the other
+    name: str
+    """Name in records: at most 40 of a to z, 0 to 9 and _, a letter first."""
+    label: str
+    """Name in tables."""
+    scene: str
+    """Name of a task with things, such as `marshmallows`, or `over_marshmallow`."""
+    trials: int
+    """Trials in each condition, 1 to 1000."""
     choices: tuple[int, ...]
-    all_choices: bool = False  # whether a trial is all choices in one arrangement, its figures summed
-    # things to the closest of which *Goal Error* is measured; empty where it is not measured
+    """Numbers of the scene's choices, from 0, in turn from trial to trial; with `all_choices` each is driven
+    in every trial, one after the other."""
+    all_choices: bool = False
+    """True for trials of all choices in one arrangement, their figures summed."""
     plates: tuple[str, ...] = ()
-    queries: int = 0  # motions that people are asked about before it, where a condition aligns
-    demonstrations_min: float = 0.0  # minutes of demonstrations from which its model learns
-    trained_with: str = ""  # name of the task whose model it shares; its own where empty
-    # how long people have for a trial, or for each choice where `all_choices` is set, s: after a failure
-    # everything is set up anew and they begin again, until then. 0 is one attempt, with the time limit of the
-    # scene's task
+    """Names of things; *Goal Error* is measured to the closest. Empty where it is not measured."""
+    queries: int = 0
+    """Motions that people are asked about before the task, where a condition aligns, 0 to 1000."""
+    demonstrations_min: float = 0.0
+    """Minutes of demonstrations from which its model learns."""
+    trained_with: str = ""
+    """Name of the task whose model it shares; empty for a model of its own."""
     trial_s: float = 0.0
+    """Time for a trial, or for each choice with `all_choices`, up to 3600 s: after a failure everything is
+    set up anew and people begin again, until then. 0 is one attempt, with the time limit of the scene's
+    task."""
 
 
 @final
@@ -84,44 +93,70 @@ class StudyTask:
 class Factor:
     """One factor of a factorial design, with two levels."""
 
-    name: str  # as tables call it
-    low: tuple[str, tuple[str, ...]]  # its first level and the conditions that have it
-    high: tuple[str, tuple[str, ...]]  # its second
+    name: str
+    """Name in tables."""
+    low: tuple[str, tuple[str, ...]]
+    """First level, and the conditions that have it."""
+    high: tuple[str, tuple[str, ...]]
+    """Second level, and the conditions that have it."""
 
 
 @final
 @dataclass(frozen=True)
 class Definition:
-    """A study."""
+    """A study. The docs publish this class as a JSON schema."""
 
-    name: str  # on the command line
-    title: str  # of its page
-    section: str  # of the paper
-    about: str  # what is asked, in a sentence
-    people: int  # how many go through it
-    papers_people: str  # who went through the paper's, in words
-    conditions: tuple[Condition, ...]  # in the order of tables
-    tasks: tuple[StudyTask, ...]  # in the order in which people do them
-    # of the conditions, person by person, repeated as needed; a seeded Williams design where empty
+    __pydantic_config__: ClassVar = {"use_attribute_docstrings": True, "extra": "forbid"}
+
+    name: str
+    """Name on the command line: at most 40 of a to z, 0 to 9 and _, a letter first."""
+    title: str
+    """Title of its page."""
+    section: str
+    """Section of the paper; empty for other studies."""
+    about: str
+    """The question, in a sentence."""
+    people: int
+    """Number of people, 2 to 1000."""
+    papers_people: str
+    """The paper's people, in words; empty for other studies."""
+    conditions: tuple[Condition, ...]
+    """Two or more, in the order of tables."""
+    tasks: tuple[StudyTask, ...]
+    """One or more, in the order in which people do them."""
     orders: tuple[tuple[str, ...], ...]
-    practice_min: float  # minutes of practice at most
-    practice: str  # when they practise, in words
-    input: str  # what people hold, in words
-    measures: tuple[str, ...]  # by name, in the order of tables
-    questionnaire: tuple[Scale, ...]  # after each condition
-    hypotheses: tuple[Hypothesis, ...]  # with their tests
-    exclusions: tuple[Exclusion, ...]  # what does not count
-    factors: tuple[Factor, ...]  # two of a 2 x 2 design, or none
-    printed: tuple[Printed, ...]  # statistics of the paper
-    departures: tuple[str, ...]  # where this definition differs from what the paper did, each a sentence
-    design: Design = "within"  # whether a person meets all conditions or one
+    """Orders of all conditions, person by person, repeated as needed; empty for a seeded Williams design,
+    and between people."""
+    practice_min: float
+    """Minutes of practice before each condition, at most, 0 to 1000; 0 for none."""
+    input: str
+    """Input devices, in words."""
+    measures: tuple[str, ...]
+    """Names, in the order of tables."""
+    questionnaire: tuple[Scale, ...]
+    """Scales after each condition."""
+    hypotheses: tuple[Hypothesis, ...]
+    """Hypotheses with their tests."""
+    exclusions: tuple[Exclusion, ...]
+    """Rules by which trials do not count."""
+    factors: tuple[Factor, ...]
+    """Two of a 2 x 2 design, or none."""
+    printed: tuple[Printed, ...]
+    """Statistics of the paper; empty for other studies."""
+    departures: tuple[str, ...]
+    """Differences from what the paper did, each a sentence."""
+    design: Design = "within"
+    """`within`: each person meets every condition, in an order of their own; `between`: one alone."""
 
     def __post_init__(self) -> None:
-        names = {condition.name for condition in self.conditions}
-        if len(names) < len(self.conditions) or len(names) < 2:
+        in_order = [condition.name for condition in self.conditions]
+        names = set(in_order)
+        if twice := [name for name in in_order if in_order.count(name) > 1]:
             raise UserError(
-                f"The study {self.name} needs two conditions or more, each with a name of its own."
+                f"The study {self.name} has two conditions of the name {twice[0]}: rename one of them."
             )
+        if len(names) < 2:
+            raise UserError(f"The study {self.name} needs two conditions or more, not {len(names)}.")
         tasks = {task.name for task in self.tasks}
         known = {*self.measures, *(scale.name for scale in self.questionnaire)}
         for claim in self.claims:
@@ -141,8 +176,11 @@ class Definition:
                 f"The study {self.name} has orders, but each person meets one condition: leave them empty."
             )
         for order in self.orders:
-            if len(set(order)) < len(order) or not set(order) <= names:
-                raise UserError(f"An order of the study {self.name} must name its conditions, each once.")
+            if sorted(order) != sorted(names):
+                raise UserError(
+                    f"An order of the study {self.name} is {', '.join(order) or 'empty'}: it must have each"
+                    f" of {', '.join(in_order)} once."
+                )
         if self.people < 2:
             raise UserError(f"The study {self.name} needs two people or more, not {self.people}.")
 

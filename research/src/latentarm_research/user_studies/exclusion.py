@@ -19,10 +19,14 @@ class Exclusion:
     It is given an `UnlabelledTrial`, which has no condition.
     """
 
-    measure: str  # which figure; a trial without it stays
-    side: Literal["less", "more"]  # excluded are trials with less than the limit, or with more
-    limit: float  # in the measure's unit
-    why: str  # the reason, in words
+    measure: str
+    """Measure of the study; a trial without it stays."""
+    side: Literal["less", "more"]
+    """Excluded are trials with less than the limit, or with more."""
+    limit: float
+    """Limit in the measure's unit."""
+    why: str
+    """The reason, in words."""
 
     def __post_init__(self) -> None:
         if not abs(self.limit) < float("inf"):

@@ -28,15 +28,22 @@ figure without any number, a bound on a time."""
 class Printed:
     """One statistic of the paper."""
 
-    test: PrintedTest  # how it came about
-    measure: str  # a measure of the study, or a scale of its questionnaire
-    subject: tuple[str, ...]  # conditions compared, as in `latentarm_research.studies.claims.Claim`
-    against: tuple[str, ...]  # with which; empty for figures of one condition
-    text: str  # as the paper prints it
-    # whether the subject has less than the others, in the paper; None where that is not said
+    test: PrintedTest
+    """Origin of the statistic."""
+    measure: str
+    """A measure of the study, or a scale of its questionnaire."""
+    subject: tuple[str, ...]
+    """Conditions compared, as in `latentarm_research.studies.claims.Claim`."""
+    against: tuple[str, ...]
+    """Other conditions; empty for figures of one condition."""
+    text: str
+    """The statistic as the paper prints it."""
     less: bool | None
-    significant: bool | None  # whether the paper calls it significant; None where there is no test
-    tasks: tuple[str, ...] = ()  # whose trials it is about; all where empty
+    """True if the subject has less than the others, in the paper; None if that is not said."""
+    significant: bool | None
+    """True if the paper calls it significant; None without a test."""
+    tasks: tuple[str, ...] = ()
+    """Tasks whose trials it is about; all where empty."""
 
 
 WRONG: Final[Mapping[PrintedTest, str]] = {

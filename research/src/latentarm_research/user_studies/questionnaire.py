@@ -13,8 +13,10 @@ FEWEST_ITEMS: Final = 4  # items of a scale, at least (Schrum et al., ACM THRI 1
 class Item:
     """One statement, with which people agree or disagree."""
 
-    text: str  # the statement
-    reversed: bool = False  # agreement means less of what the scale measures
+    text: str
+    """The statement."""
+    reversed: bool = False
+    """True if agreement means less of what the scale measures."""
 
 
 @final
@@ -22,10 +24,14 @@ class Item:
 class Scale:
     """One thing that several items ask about; its score is their mean."""
 
-    name: str  # the measure's name in records and claims
-    label: str  # as tables and figures call it
-    items: tuple[Item, ...]  # at least `FEWEST_ITEMS`, some of them reversed
-    points: int = 7  # of the answer, from "strongly disagree" to "strongly agree"
+    name: str
+    """Name in records and claims."""
+    label: str
+    """Name in tables and figures."""
+    items: tuple[Item, ...]
+    """Statements, four or more."""
+    points: int = 7
+    """Points of the answer, from "strongly disagree" to "strongly agree", two or more."""
 
     def __post_init__(self) -> None:
         if len(self.items) < FEWEST_ITEMS:

@@ -57,7 +57,6 @@ DEFINITION: Final = Definition(
     ),
     orders=(),
     practice_min=0.0,
-    practice="none is stated; people answer the questions before each task",
     input="one stick with two axes",
     measures=("success_rate", "attempts", "steps_done", *MEASURED, "input_magnitude", "idle_s"),
     questionnaire=(

@@ -85,7 +85,6 @@ DEFINITION: Final = Definition(
     ),
     orders=(),
     practice_min=0.0,
-    practice="none: people see a video of the task and a sheet that labels the inputs",
     input="two sticks with two axes each, or one of them",
     measures=(
         "success_rate",
@@ -153,6 +152,7 @@ DEFINITION: Final = Definition(
         " in one arrangement, their figures summed. The paper's whole has no breaks.",
         "Things stand at new places in every trial; the paper moved shelf, bowl and bin now and then.",
         "The two sticks move three axes at once, linear or angular; the paper's have four axes for three.",
+        "The paper's people saw a video of the task and a sheet that labels the inputs; here is neither.",
         "The paper's items are not published: all items are ours.",
     ),
 )

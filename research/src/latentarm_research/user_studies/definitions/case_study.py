@@ -30,7 +30,6 @@ DEFINITION: Final = Definition(
     tasks=(replace(DESSERT, trial_s=TRIAL_S), replace(ENTREE, trial_s=TRIAL_S)),
     orders=((DIRECT, LA_SA), (LA_SA, DIRECT)),
     practice_min=5.0,
-    practice="before each condition",
     input="a virtual stick on a page, drawn over a grid, next to two live views of the arm",
     measures=(
         "success_rate",

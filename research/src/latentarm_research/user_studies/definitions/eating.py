@@ -89,7 +89,6 @@ DEFINITION: Final = Definition(
     tasks=(ENTREE, DESSERT),
     orders=(),
     practice_min=5.0,
-    practice="before every trial",
     input="one stick with two axes",
     measures=(
         "success_rate",
@@ -147,6 +146,7 @@ DEFINITION: Final = Definition(
         " equations 2 and 3, with goals that move on with the steps of the dish, and an alpha of 0.15 that"
         " fades as the stick is let go.",
         "Each dish has a model of its own, from half of the 20 minutes of demonstrations.",
+        "The paper's people practised before every trial; here people practise before each condition.",
         "The paper's items are not published: all items are ours.",
     ),
 )

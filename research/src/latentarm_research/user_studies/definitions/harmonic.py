@@ -47,7 +47,6 @@ DEFINITION: Final = Definition(
     ),
     orders=(),
     practice_min=5.0,
-    practice="before the first trial of each condition",
     input="one stick with two axes; a button switches modes",
     measures=("success_rate", "time_s", "input_magnitude", "path_length", "mode_switches", "idle_s"),
     questionnaire=(),

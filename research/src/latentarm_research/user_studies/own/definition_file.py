@@ -16,7 +16,7 @@ from latentarm_research.metrics.drives import TRIAL_MEASURES
 from latentarm_research.user_studies.catalogue import NAMES, load_definition
 from latentarm_research.user_studies.definition import Definition, StudyTask
 from latentarm_research.user_studies.report.boxes import MOST_CONDITIONS
-from latentarm_research.user_studies.scenes import scene_of
+from latentarm_research.user_studies.scenes import scene_names, scene_of
 
 SUFFIX: Final = ".json"
 
@@ -137,6 +137,7 @@ def _check_conditions(definition: Definition) -> None:
 
 
 def _check_task(definition: Definition, task: StudyTask, where: str) -> None:
+    _known(f"{where}: scene", (task.scene,), scene_names())
     try:
         scene = scene_of(task.scene)
     except UserError as error:
