@@ -11,6 +11,7 @@ from drawn_trials import drawn_trials
 from latentarm.cli import main
 from latentarm.runs.results_folder import write_json
 from latentarm_research.user_studies.catalogue import load_definition
+from latentarm_research.user_studies.definition import Definition
 from latentarm_research.user_studies.preregistration import differences
 from latentarm_research.user_studies.recorded import Recorded
 from latentarm_research.user_studies.sizes import PRESETS
@@ -38,17 +39,25 @@ def test_it_holds_the_plan(plan: Path) -> None:
 
 
 def test_what_differs_is_said_field_by_field(plan: Path) -> None:
-    assert differences(plan, EATING) == []
-    (found,) = differences(plan, replace(EATING, people=20))
-    assert found == "definition.people was 12, and is 20."
+    study = whole(EATING)
+    assert differences(plan, study) == []
+    found = differences(plan, replace(study, definition=replace(EATING, people=20)))
+    assert found == ["definition.people was 12, and is 20.", "People: 20 planned, 12 took part."]
+    # One person who left out one trial.
+    (found,) = differences(plan, replace(study, trials=study.trials[1:]))
+    assert found.endswith("trials in each condition: 1 planned, 0 to 1 driven.")
+
+
+def whole(definition: Definition) -> Recorded:
+    """The study with as many people and trials as it plans."""
+    trials = tuple(drawn_trials(definition, definition.people, np.random.default_rng(1)))
+    return Recorded(definition, "real", trials, (), (), PRESETS["paper"])
 
 
 def test_a_document_that_was_changed_is_refused(plan: Path, capsys: pytest.CaptureFixture[str]) -> None:
     plan.write_text(plan.read_text().replace('"draws": 200', '"draws": 100'))
     folder = plan.parent / "people"
-    study = Recorded(
-        EATING, "real", tuple(drawn_trials(EATING, 4, np.random.default_rng(1))), (), (), PRESETS["paper"]
-    )
+    study = whole(EATING)
     write_json(folder / "config.json", {"study": EATING.study, "people_are": "real"})
     write_json(folder / "trials.json", study.documents["trials.json"])
     command = [

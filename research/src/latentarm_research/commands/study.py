@@ -1,6 +1,7 @@
 """`latentarm study`: the paper's user studies, gone through by simulated people."""
 
 import json as json_format
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -177,7 +178,8 @@ def preregister_study(
     path = Path(f"{definition.name}-preregistration.json") if out is None else out
     if path.exists():
         raise UserError(f"{path} already exists: name another file with --out.")
-    document = preregistration(definition, None if power is None else read_object(power / "power.json"))
+    computed = None if power is None else read_object(power / "power.json")
+    document = preregistration(definition, computed, datetime.now(UTC).isoformat(timespec="seconds"))
     write_json(path, document)
     say(f"The preregistration is in {path}, with the digest {document['digest']}.", json)
     if json:

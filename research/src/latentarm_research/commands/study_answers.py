@@ -13,7 +13,7 @@ from latentarm.core.errors import UserError
 from latentarm.core.untrusted.opening import read_bytes
 from latentarm.demonstrations.bounds import MAX_TEXT_BYTES
 from latentarm.runs.options import Json, Seed
-from latentarm_research.commands.study_options import Database, StudyName
+from latentarm_research.commands.study_options import Database, StudyName, beside
 from latentarm_research.user_studies.own.definition_file import find_definition
 
 AnswersFile = Annotated[
@@ -62,7 +62,7 @@ def analyse_study(
         arg(metavar="FILE", help="What latentarm study preregister wrote: the report says what differs."),
     ] = None,
     out: Annotated[
-        Path | None, arg(metavar="DIR", help="Folder for report and figures; studies/NAME-analysis.")
+        Path | None, arg(metavar="DIR", help="Folder for report and figures; by default DIR-analysis.")
     ] = None,
     json: Json = False,
 ) -> int:
@@ -92,12 +92,12 @@ def analyse_study(
         "people_are": recorded.people_are,
         "answers": digest,
     }
-    path = Path("studies", f"{definition.name}-analysis") if out is None else out
+    path = beside(folder, "analysis") if out is None else out
     claimed.claim(path, about)
     asked = "" if answers is None else f" --answers {answers}"
     departures = None
     if preregistered is not None:
-        departures = differences(preregistered, definition)
+        departures = differences(preregistered, recorded)
         asked += f" --preregistered {preregistered}"
     report = report_of(recorded, f"latentarm study analyse {folder}{asked}", ratings, departures)
     if why := write_report(path, report, about):

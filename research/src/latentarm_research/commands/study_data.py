@@ -11,7 +11,7 @@ from latentarm.commands.output import say
 from latentarm.core.errors import UserError
 from latentarm.runs.options import Json
 from latentarm_research.commands.study_answers import AnswersFile
-from latentarm_research.commands.study_options import Database
+from latentarm_research.commands.study_options import Database, beside
 
 if TYPE_CHECKING:
     from sqlalchemy import URL
@@ -25,7 +25,10 @@ def delete_people(
     folder: Positional[ServedFolder],
     code: Annotated[
         str | None,
-        arg(help="Delete the person with this code: of the link, of the end, or of the recruiting site."),
+        arg(
+            metavar="CODE",
+            help="Delete the person with this code: of the link, of the end, or of the recruiting site.",
+        ),
     ] = None,
     before: Annotated[
         str | None, arg(metavar="YYYY-MM-DD", help="Delete everybody who was last there before this day.")
@@ -72,7 +75,8 @@ def replay_study(folder: Positional[ServedFolder], database: Database = None, js
     from latentarm_research.user_studies.recorded import read_definition_of
 
     tasks = {task.name: task for task in read_definition_of(folder).tasks}
-    drives = _drives(folder, served_database(folder, database))
+    kept = _drives(folder, served_database(folder, database))
+    drives = [one for theirs in kept.values() for one in theirs]
     differ = 0
     for drive, steps in drives:
         again = measured_again(steps, drive, tasks[drive.task])
@@ -85,15 +89,15 @@ def replay_study(folder: Positional[ServedFolder], database: Database = None, js
     return 1 if differ else 0
 
 
-def _drives(folder: Path, database: "Path | URL") -> "list[tuple[DriveRecord, Path]]":
-    """All drives of a served study, each with the file of its steps."""
+def _drives(folder: Path, database: "Path | URL") -> "dict[str, list[tuple[DriveRecord, Path]]]":
+    """All drives of a served study by the person's key, each with the file of its steps."""
     from latentarm_research.user_studies.serving.store import Store
     from latentarm_research.user_studies.serving.study_files import steps_path
 
     store = Store(database)
     try:
         kept = store.drives().items()
-        return [(drive, steps_path(folder, key, drive)) for key, theirs in kept for drive in theirs]
+        return {key: [(drive, steps_path(folder, key, drive)) for drive in theirs] for key, theirs in kept}
     finally:
         store.close()
 
@@ -115,7 +119,7 @@ def export_study(
     answers: AnswersFile = None,
     database: Database = None,
     out: Annotated[
-        Path | None, arg(metavar="DIR", help="Folder of the dataset; by default studies/NAME-dataset.")
+        Path | None, arg(metavar="DIR", help="Folder of the dataset; by default DIR-dataset.")
     ] = None,
     json: Json = False,
 ) -> int:
@@ -131,9 +135,10 @@ def export_study(
 
     recorded = read_recorded(folder, database, answers)
     served = database is not None or (folder / DATABASE).exists()
-    everyone = _drives(folder, served_database(folder, database)) if served else []
-    drives = [one for one in everyone if one[0].person in recorded.met]
-    path = Path("studies", f"{recorded.definition.name}-dataset") if out is None else out
+    kept = _drives(folder, served_database(folder, database)) if served else {}
+    finished = [person.key for person in recorded.participants if person.finished]
+    drives = [drive for key in finished for drive in kept.get(key, [])]
+    path = beside(folder, "dataset") if out is None else out
     with staged_folder(path) as part:
         write_dataset(part, recorded, drives)
     say(

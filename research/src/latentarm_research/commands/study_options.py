@@ -46,6 +46,12 @@ Database = Annotated[
 ]
 
 
+def beside(folder: Path, kind: str) -> Path:
+    """The folder for what is made of a folder: its name, and the kind."""
+    named = folder if folder.name.strip(".") else folder.resolve()
+    return named.with_name(f"{named.name}-{kind}")
+
+
 @dataclass(frozen=True)
 class StudyOptions:
     """Options of every study."""

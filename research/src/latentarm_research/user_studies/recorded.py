@@ -14,6 +14,7 @@ from latentarm_research.user_studies.answers.items import Answer, read_answers
 from latentarm_research.user_studies.catalogue import NAMES, load_definition
 from latentarm_research.user_studies.definition import PREFIX, Definition
 from latentarm_research.user_studies.own.definition_file import read_definition
+from latentarm_research.user_studies.participant import Participant, participants_of
 from latentarm_research.user_studies.record import PeopleAre, Trial, read_trials
 from latentarm_research.user_studies.sizes import PRESETS, Sizes
 from latentarm_research.user_studies.trace import Trace, read_traces
@@ -40,6 +41,7 @@ class Recorded:
     simulated: tuple[Traits, ...]  # what the simulated people are like; empty for real people
     sizes: Sizes  # of the run
     answers: tuple[Answer, ...] = ()  # on the page of a served study, or from a file
+    participants: tuple[Participant, ...] = ()  # of a served study, everybody who has consented
 
     @property
     def documents(self) -> dict[str, object]:
@@ -125,7 +127,7 @@ def _served(definition: Definition, folder: Path, database: str | None, sizes: S
     from latentarm_research.user_studies.serving.store import Store
 
     store = Store(database_of(folder / DATABASE, database))
-    finished = store.finished()
+    finished, participants = store.finished(), participants_of(store)
     store.close()
     if not finished:
         raise UserError(f"Nobody has finished the study in {folder} yet.")
@@ -137,7 +139,7 @@ def _served(definition: Definition, folder: Path, database: str | None, sizes: S
             trials.append(trial_of(definition.measures, theirs))
     traces = tuple(drive.trace for one in finished for drive in one.drives)
     answers = tuple(answer for one in finished for answer in one.answers)
-    return Recorded(definition, "real", tuple(trials), traces, (), sizes, answers)
+    return Recorded(definition, "real", tuple(trials), traces, (), sizes, answers, participants)
 
 
 def read_definition_of(folder: Path) -> Definition:

@@ -59,6 +59,12 @@ VARIABLES: Final = (
     Variable("attempt", "number of earlier drives at this choice in this trial"),
     Variable("ending", "why the drive ended"),
     Variable("episode", "number of the drive's episode in the dataset drives/TASK; empty without steps"),
+    Variable("conditions", "names of the conditions that the person drove with, in order, separated by ;"),
+    Variable("consent", "SHA-256 of the text that the person consented to; the study's folder has the text as"
+             " information-HASH.md, named by the first 12 digits"),
+    Variable("consented", "day of the consent, UTC"),
+    Variable("practised", "number of conditions that the person practised"),
+    Variable("finished", "1 for a person who finished, else 0: without a number, and without trials"),
     Variable("factor", "factor of a 2 x 2 design"),
     Variable("level", "level of the factor, 1 or 2"),
 )  # fmt: skip
@@ -74,6 +80,10 @@ def write_dataset(folder: Path, recorded: Recorded, drives: Sequence[tuple[Drive
         "trials": (
             ("person", "condition", "task", "order", "trial", "excluded", *definition.measures),
             _trials(definition, recorded.trials),
+        ),
+        "people": (
+            ("person", "conditions", "consent", "consented", "practised", "finished"),
+            _people(recorded),
         ),
         "answers": (
             ("person", "condition", "scale", "item", "reversed", "points", "answer"),
@@ -134,6 +144,19 @@ def _trials(definition: Definition, trials: Sequence[Trial]) -> Iterable[Sequenc
         of_person = "too many trials of the person do not count" if one.person in out.people else None
         measures = [one.measures.get(name) for name in definition.measures]
         yield one.person, one.condition, one.task, one.order, one.trial, why.get(index, of_person), *measures
+
+
+def _people(recorded: Recorded) -> Iterable[Sequence[Cell]]:
+    """Everybody who has consented; only the conditions where nothing else is known."""
+    for one in recorded.participants:
+        person = one.number if one.finished else None
+        conditions, day = ";".join(one.conditions), one.consented[:10]
+        yield person, conditions, one.consent, day, one.practised, int(one.finished)
+    if not recorded.participants:
+        in_order = sorted(recorded.trials, key=lambda trial: trial.order)
+        for person in sorted(recorded.met):
+            theirs = dict.fromkeys(trial.condition for trial in in_order if trial.person == person)
+            yield person, ";".join(theirs), None, None, None, None
 
 
 def _answers(definition: Definition, answers: Sequence[Answer]) -> Iterable[Sequence[Cell]]:

@@ -20,6 +20,7 @@ from latentarm_research.user_studies.hypothesis import WRONG
 from latentarm_research.user_studies.record import Trial
 from latentarm_research.user_studies.recorded import Recorded
 from latentarm_research.user_studies.report.figures import Drawn, draw
+from latentarm_research.user_studies.report.people import consent_words, input_words, practice_words
 from latentarm_research.user_studies.report.words import (
     DESIGN_WORDS,
     PEOPLE_HEAD,
@@ -74,7 +75,9 @@ def report_page(content: Content) -> str:
         command=content.command,
         notice=f"{content.words.notice} {QUOTED}" if definition.printed else content.words.notice,
         design=DESIGN_WORDS[definition.design],
-        practice=_practice(definition),
+        input=input_words(recorded),
+        practice=practice_words(recorded),
+        consent=consent_words(recorded),
         order_words=order_words(definition),
         verdict_table=columns_table(verdict_columns(analysis.verdicts)),
         condition_lines=[(one.name, one.about, *condition_parts(one)) for one in definition.conditions],
@@ -96,12 +99,6 @@ def report_page(content: Content) -> str:
         item_lines=_item_lines(definition),
         departures=content.departures,
     )
-
-
-def _practice(definition: Definition) -> str:
-    if not definition.practice_min:
-        return definition.practice
-    return f"up to {definition.practice_min:g} minutes, {definition.practice}"
 
 
 def _excluded_words(analysis: Analysis, who: str) -> str:

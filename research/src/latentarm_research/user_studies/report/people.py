@@ -1,0 +1,41 @@
+"""People's input, practice and consent in words, as they were in the run that is reported."""
+
+from latentarm_research.user_studies.recorded import Recorded
+
+
+def input_words(recorded: Recorded) -> str:
+    """The devices that people held."""
+    if recorded.participants:
+        return (
+            "each person's own choice on the page, made in the first practice; the devices are not recorded"
+        )
+    return recorded.definition.input
+
+
+def practice_words(recorded: Recorded) -> str:
+    """The practice before trials, as it was carried out; as planned where that is not recorded."""
+    minutes = recorded.definition.practice_min
+    if recorded.people_are == "simulated":
+        return f"{minutes:g} minutes, before each condition at each task" if minutes else "none"
+    if not recorded.participants:
+        return f"planned for up to {minutes:g} minutes before each condition" if minutes else "none planned"
+    from latentarm_research.user_studies.serving.way import FIRST_PRACTICE_S  # with SQLAlchemy
+
+    task = recorded.definition.tasks[0].label
+    when = "before each condition" if minutes else "before the first condition only"
+    return f"up to {minutes or FIRST_PRACTICE_S / 60.0:g} minutes at {task}, {when}"
+
+
+def consent_words(recorded: Recorded) -> str:
+    """The number of people who consented, when and to what; empty where that is not recorded."""
+    people = recorded.participants
+    if not people:
+        return ""
+    days = sorted(one.consented[:10] for one in people)
+    texts = ", ".join(sorted({one.consent[:12] for one in people}))
+    when = days[0] if days[0] == days[-1] else f"{days[0]} to {days[-1]}"
+    finished = sum(one.finished for one in people)
+    return (
+        f"{len(people)} consented ({when}; text {texts}), and {finished} of them finished. People who were"
+        " deleted do not count. Nothing else about the people was recorded."
+    )
