@@ -4,12 +4,13 @@ from latentarm_research.user_studies.recorded import Recorded
 
 
 def input_words(recorded: Recorded) -> str:
-    """The devices that people held."""
+    """The devices that people held; as planned where that is not recorded."""
     if recorded.participants:
         return (
             "each person's own choice on the page, made in the first practice; the devices are not recorded"
         )
-    return recorded.definition.input
+    planned = recorded.definition.input
+    return planned if recorded.people_are == "simulated" else f"planned: {planned}"
 
 
 def practice_words(recorded: Recorded) -> str:
