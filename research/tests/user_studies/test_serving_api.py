@@ -22,12 +22,12 @@ from latentarm_research.user_studies.drive_record import DriveRecord
 from latentarm_research.user_studies.own.definition_file import read_definition
 from latentarm_research.user_studies.serving import request_limit
 from latentarm_research.user_studies.serving.app import COOKIE, Answered, Consented, StudyServer
+from latentarm_research.user_studies.serving.kept_options import KeptOptions, digest_of
 from latentarm_research.user_studies.serving.models import Models
 from latentarm_research.user_studies.serving.options import Serving
 from latentarm_research.user_studies.serving.page_drive import ToDrive
 from latentarm_research.user_studies.serving.store import Store
 from latentarm_research.user_studies.serving.way import ToAnswer, Way
-from latentarm_research.user_studies.sizes import PRESETS
 from latentarm_research.user_studies.trace import Trace
 from study_participant import MODES, TWIST, definition
 
@@ -36,6 +36,7 @@ CASES = int(os.environ.get("LATENTARM_STUDY_CASES", "20"))
 
 ORIGIN = "http://study.example"
 PROLIFIC = "5" * 24
+INFORMATION = "All that you need to know."
 
 HTML = {"description": "a page", "content": {"text/html": {}}}
 SENTENCE = {
@@ -87,10 +88,11 @@ class Study:
             json.dumps({**definition(MODES, TWIST), "people": 5, "papers_people": ""})
         )
         serving = Serving(
-            read_definition(folder / "two_ways.json"), PRESETS["smoke"], 0, TeleopConfig(Spec(out=folder)),
-            "All that you need to know.", 1, PROLIFIC, None, 7200.0, None,
+            read_definition(folder / "two_ways.json"),
+            KeptOptions(information=digest_of(INFORMATION), prolific=PROLIFIC, preset="smoke"),
+            TeleopConfig(Spec(out=folder)), INFORMATION, 1, folder / "study.sqlite",
         )  # fmt: skip
-        self.way = Way(serving.definition, serving.sizes, serving.seed)
+        self.way = Way(serving.definition, serving.sizes, serving.kept.seed)
         self.store = Store(folder / "study.sqlite", 7200.0)
         server = StudyServer(serving, self.store, Models(serving.definition, folder))
         gate = Gate(server, frozenset({"study.example"}), frozenset({ORIGIN}), stop=server.stop)

@@ -42,6 +42,8 @@ def a_drive(person: int, trial: int) -> DriveRecord:
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
     """A study of three people with drives and answers, who were last there on three days."""
+    (tmp_path / "config.json").write_text('{"study": "study two_ways"}')
+    (tmp_path / "drives").mkdir()
     store = Store(tmp_path / "study.sqlite")
     codes = store.open_places(3)
     (tmp_path / "links.csv").write_text("".join(f"http://study.example/study?code={one}\n" for one in codes))
@@ -51,6 +53,7 @@ def folder(tmp_path: Path) -> Path:
         store.place(key, 86400.0 * number)
         for trial in range(5):
             store.keep_drive(key, a_drive(number, trial))
+        (tmp_path / "drives" / key).mkdir()  # a killed server leaves it
         store.keep_answers(key, 0, "A", {"ease_1": 5})
         store.finish(key, f"COMPLETION{number}")
     store.close()
@@ -87,6 +90,8 @@ def test_no_byte_stays_of_people_whom_the_experimenter_deletes(folder: Path, by:
     after = [line.split("=")[1] for line in (folder / "links.csv").read_text().splitlines()]
     assert after[0] != links[0]
     assert after[1:] == links[1:]
+    assert len(list((folder / "drives").iterdir())) == 2
+    assert not (folder / "drives" / kept["people"][0]["key"]).exists()
     assert kept_of(folder, links[1])[1] == of_another
 
 

@@ -84,14 +84,20 @@ def test_a_guessed_link_opens_nothing(address: str) -> None:
         assert guesser.part == "unknown"
 
 
-def test_links_of_prolific_open_their_own_study_and_visit_alone(address: str) -> None:
+def test_links_of_prolific_open_their_own_study_alone(address: str) -> None:
     with participant(address, prolific()) as person:
         assert person.part == "consent"
     with participant(address, prolific()) as person:
         assert person.part == "consent"
-    for wrong in ({"SESSION_ID": "d" * 24}, {"STUDY_ID": "6" * 24}, {"PROLIFIC_PID": "' OR 1=1 --"}):
+    for wrong in ({"STUDY_ID": "6" * 24}, {"PROLIFIC_PID": "' OR 1=1 --"}):
         with participant(address, prolific(**wrong)) as guesser:
             assert guesser.part == "unknown", wrong
+    # Prolific gives a new session to a person who returns.
+    with participant(address, prolific(SESSION_ID="d" * 24)) as again:
+        again.consent()
+    with participant(address, prolific()) as person:
+        assert person.part == "practice"
+        person.post("withdraw")
 
 
 def test_what_was_sent_before_changes_nothing_when_it_is_sent_again(

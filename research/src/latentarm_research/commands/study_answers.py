@@ -95,6 +95,10 @@ def analyse_study(
     path = beside(folder, "analysis") if out is None else out
     claimed.claim(path, about)
     asked = "" if answers is None else f" --answers {answers}"
+    if database is not None:
+        from latentarm_research.user_studies.serving.database import postgresql, shown  # SQLAlchemy
+
+        asked += f" --database {shown(postgresql(database))}"
     departures = None
     if preregistered is not None:
         departures = differences(preregistered, recorded)

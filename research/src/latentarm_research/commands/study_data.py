@@ -14,8 +14,6 @@ from latentarm_research.commands.study_answers import AnswersFile
 from latentarm_research.commands.study_options import Database, beside
 
 if TYPE_CHECKING:
-    from sqlalchemy import URL
-
     from latentarm_research.user_studies.drive_record import DriveRecord
 
 ServedFolder = Annotated[Path, arg(metavar="DIR", help="Folder of a served study.")]
@@ -40,7 +38,7 @@ def delete_people(
 
     For example: latentarm study delete studies/eating-people --before 2026-01-31
     """
-    from latentarm_research.user_studies.serving.store import Store
+    from latentarm_research.user_studies.serving.served_store import served_store
     from latentarm_research.user_studies.serving.study_files import forget
 
     if (code is None) == (before is None):
@@ -49,14 +47,11 @@ def delete_people(
         day = None if before is None else datetime.fromisoformat(before).replace(tzinfo=UTC)
     except ValueError as error:
         raise UserError(f"--before must be a day, such as 2026-01-31, not {before!r}.") from error
-    store = Store(served_database(folder, database))
-    try:
+    with served_store(folder, database) as store:
         if day is None:
             gone = store.withdraw_by_code(code or "")
         else:
             gone = store.withdraw_unseen_since(day.timestamp())
-    finally:
-        store.close()
     if code is not None and not gone:
         raise UserError(f"Nobody in {folder} has the code {code}.")
     forget(folder, gone)
@@ -75,8 +70,7 @@ def replay_study(folder: Positional[ServedFolder], database: Database = None, js
     from latentarm_research.user_studies.recorded import read_definition_of
 
     tasks = {task.name: task for task in read_definition_of(folder).tasks}
-    kept = _drives(folder, served_database(folder, database))
-    drives = [one for theirs in kept.values() for one in theirs]
+    drives = [one for theirs in _drives(folder, database).values() for one in theirs]
     differ = 0
     for drive, steps in drives:
         again = measured_again(steps, drive, tasks[drive.task])
@@ -89,27 +83,14 @@ def replay_study(folder: Positional[ServedFolder], database: Database = None, js
     return 1 if differ else 0
 
 
-def _drives(folder: Path, database: "Path | URL") -> "dict[str, list[tuple[DriveRecord, Path]]]":
+def _drives(folder: Path, database: str | None) -> "dict[str, list[tuple[DriveRecord, Path]]]":
     """All drives of a served study by the person's key, each with the file of its steps."""
-    from latentarm_research.user_studies.serving.store import Store
+    from latentarm_research.user_studies.serving.served_store import served_store
     from latentarm_research.user_studies.serving.study_files import steps_path
 
-    store = Store(database)
-    try:
+    with served_store(folder, database) as store:
         kept = store.drives().items()
-        return {key: [(drive, steps_path(folder, key, drive)) for drive in theirs] for key, theirs in kept}
-    finally:
-        store.close()
-
-
-def served_database(folder: Path, database: str | None) -> "Path | URL":
-    """The database of a served study. Raises a `UserError` where none was served from this folder."""
-    from latentarm_research.user_studies.recorded import DATABASE
-    from latentarm_research.user_studies.serving.database import database_of
-
-    if database is None and not (folder / DATABASE).exists():
-        raise UserError(f"{folder} holds no study that was served.")
-    return database_of(folder / DATABASE, database)
+    return {key: [(drive, steps_path(folder, key, drive)) for drive in theirs] for key, theirs in kept}
 
 
 def export_study(
@@ -131,11 +112,10 @@ def export_study(
     """
     from latentarm.demonstrations.folders import staged_folder
     from latentarm_research.user_studies.export.dataset import write_dataset
-    from latentarm_research.user_studies.recorded import DATABASE, read_recorded
+    from latentarm_research.user_studies.recorded import read_recorded, was_served
 
     recorded = read_recorded(folder, database, answers)
-    served = database is not None or (folder / DATABASE).exists()
-    kept = _drives(folder, served_database(folder, database)) if served else {}
+    kept = _drives(folder, database) if was_served(folder, database) else {}
     finished = [person.key for person in recorded.participants if person.finished]
     drives = [drive for key in finished for drive in kept.get(key, [])]
     path = beside(folder, "dataset") if out is None else out

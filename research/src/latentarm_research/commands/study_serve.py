@@ -10,7 +10,7 @@ from tyro.conf import Positional, arg
 
 from latentarm.commands.output import say
 from latentarm.core.errors import UserError
-from latentarm.runs.options import Json, Seed
+from latentarm.runs.options import Json
 from latentarm_research.commands.study_options import Database, StudyName
 from latentarm_research.user_studies.own.definition_file import find_definition
 from latentarm_research.user_studies.sizes import PRESETS
@@ -49,50 +49,73 @@ def serve_study(
         arg(metavar="N", help="How many people may drive at the same time; by default one per processor."),
     ] = None,
     away_hours: Annotated[
-        float, arg(metavar="H", help="Who is away for longer loses the place to the next.")
-    ] = 2.0,
+        float | None,
+        arg(metavar="H", help="Who is away for longer loses the place to the next; by default 2."),
+    ] = None,
     database: Database = None,
     preset: Annotated[
-        str, arg(metavar="{" + ",".join(PRESETS) + "}", help="smoke: trials of a second, to try it out.")
-    ] = "paper",
-    seed: Seed = 0,
+        str | None,
+        arg(metavar="{" + ",".join(PRESETS) + "}", help="smoke: trials of a second; by default paper."),
+    ] = None,
+    seed: Annotated[int | None, arg(help="Seed of all randomness; by default 0.")] = None,
     json: Json = False,
 ) -> int:
     """Take real people through a study on the page: consent, practice, trials, questions, completion code.
 
-    Prints the links for participants; Ctrl-C ends it, and the same command goes on with it.
+    Prints the links for participants; Ctrl-C ends it, and the same command goes on with it. The folder keeps
+    --information, --prolific, --completion-code, --away-hours, --database, --preset and --seed of the first
+    start. A later start may leave them out, except for the database's password; one that names others is
+    refused.
+
     For example: latentarm study serve eating
     """
-    from latentarm.core.untrusted.opening import read_bytes
-    from latentarm.demonstrations.bounds import MAX_TEXT_BYTES
     from latentarm.web.arm_process.drive_setup import Spec
     from latentarm.web.server.config import TeleopConfig
+    from latentarm_research.user_studies.recorded import DATABASE
+    from latentarm_research.user_studies.serving.database import database_of, postgresql, shown
+    from latentarm_research.user_studies.serving.kept_options import (
+        AWAY_HOURS,
+        digest_of,
+        go_on,
+        information_path,
+        read_information,
+        read_kept,
+    )
     from latentarm_research.user_studies.serving.options import Serving, general_information
     from latentarm_research.user_studies.serving.serve import serve
 
     definition = find_definition(name)
-    if preset not in PRESETS:
+    if preset is not None and preset not in PRESETS:
         raise UserError(f"There is no preset {preset!r}: choose from {', '.join(PRESETS)}.")
-    if not 0.0 < away_hours <= 24 * 365:
+    if away_hours is not None and not 0.0 < away_hours <= 24 * 365:
         raise UserError(f"--away-hours must be above 0 and at most a year, not {away_hours:g}.")
     if at_once is not None and at_once < 1:
         raise UserError(f"--at-once must be 1 or more, not {at_once}.")
     folder = Path("studies", f"{definition.name}-people") if out is None else out
-    if information is None:
-        text = general_information(definition, away_hours)
+    earlier = read_kept(folder)
+    if information is not None:
+        text = read_information(information)
+    elif earlier is not None:
+        text = read_information(information_path(folder, earlier.information))
     else:
-        text = read_bytes(information, MAX_TEXT_BYTES).decode("utf-8", "replace")
+        text = general_information(definition, AWAY_HOURS if away_hours is None else away_hours)
+    given = {
+        "information": digest_of(text),
+        "prolific": prolific,
+        "completion_code": completion_code,
+        "away_hours": away_hours,
+        "database": None if database is None else shown(postgresql(database)),
+        "preset": preset,
+        "seed": seed,
+    }
+    kept = go_on(folder, earlier, given, partial(say, json=json))
     serving = Serving(
         definition,
-        PRESETS[preset],
-        seed,
+        kept,
         TeleopConfig(Spec(out=folder), host, port, certfile, keyfile, public_url=public_url),
         text,
         at_once or os.cpu_count() or 1,
-        prolific,
-        completion_code,
-        3600.0 * away_hours,
-        database,
+        database_of(folder / DATABASE, database or kept.database),
     )
 
     def ready(address: str) -> None:

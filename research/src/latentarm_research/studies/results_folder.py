@@ -36,9 +36,16 @@ class ResultsFolder:
         Where finished parts are kept, the new run may have more or less of them. The options ``about`` go to
         `CONFIG` with the versions of the packages.
 
-        Raises UserError where the folder holds anything else, or the results of other options, or cannot be
-        written.
+        Raises UserError where `check` does, or the folder cannot be written.
         """
+        self.check(out, about)
+        if out.exists():
+            for name in self.made:
+                (out / name).unlink(missing_ok=True)
+        write_options(out, about)
+
+    def check(self, out: Path, about: Mapping[str, object]) -> None:
+        """Raise a UserError where the folder holds anything else, or the results of other options."""
         earlier = self._earlier(out)
         if out.exists() and earlier is None and not (out.is_dir() and not any(out.iterdir())):
             raise UserError(
@@ -49,10 +56,6 @@ class ResultsFolder:
             fixed = {key: value for key, value in about.items() if key not in self.grows}
             wanted = cast(dict[str, object], json.loads(json.dumps(fixed)))
             refuse_other_results(out, out, {key: earlier.get(key) for key in wanted}, wanted)
-        if out.exists():
-            for name in self.made:
-                (out / name).unlink(missing_ok=True)
-        write_json(out / CONFIG, {**about, "versions": package_versions(), "git_commit": git_commit()})
 
     def _earlier(self, out: Path) -> dict[str, Any] | None:
         """The options of an earlier run of this study; None where the folder holds none."""
@@ -61,6 +64,11 @@ class ResultsFolder:
         except UserError:
             return None
         return config if config.get("study") == self.name else None
+
+
+def write_options(out: Path, about: Mapping[str, object]) -> None:
+    """Write the options of a run to `CONFIG`, with the versions of the packages."""
+    write_json(out / CONFIG, {**about, "versions": package_versions(), "git_commit": git_commit()})
 
 
 def package_versions() -> dict[str, str]:

@@ -96,13 +96,27 @@ def read_recorded(
     return replace(recorded, answers=tuple(read_answers(answers, recorded.definition, recorded.met)))
 
 
+def read_config(folder: Path) -> dict[str, Any]:
+    """The options of the study in a folder. Raises a `UserError` where there is none."""
+    if not (folder / CONFIG).exists():
+        served = folder.name.removesuffix("-people")
+        name = served if served in NAMES else "NAME"
+        raise UserError(f"No study is in {folder}: latentarm study serve {name} makes one.")
+    return read_object(folder / CONFIG)
+
+
+def was_served(folder: Path, database: str | None) -> bool:
+    """Check if the study in a folder is one with a database."""
+    return database is not None or (folder / DATABASE).exists() or "served" in read_config(folder)
+
+
 def _read_recorded(folder: Path, database: str | None) -> Recorded:
-    config = read_object(folder / CONFIG)
+    config = read_config(folder)
     definition = _definition(folder, config)
     people_are: Any = config.get("people_are")
     if people_are not in PEOPLE_ARE:
         raise UserError(f"{folder / CONFIG}: people_are must be one of {', '.join(PEOPLE_ARE)}.")
-    if database is not None or (folder / DATABASE).exists():
+    if was_served(folder, database):
         return _served(definition, folder, database, _sizes(folder / CONFIG, config))
     document = _document(folder / TRIALS, definition)
     if document.get("people_are") != people_are:
@@ -123,12 +137,10 @@ def _read_recorded(folder: Path, database: str | None) -> Recorded:
 def _served(definition: Definition, folder: Path, database: str | None, sizes: Sizes) -> Recorded:
     """Everybody who has finished a served study."""
     from latentarm_research.user_studies.drive_record import trial_of
-    from latentarm_research.user_studies.serving.database import database_of  # SQLAlchemy
-    from latentarm_research.user_studies.serving.store import Store
+    from latentarm_research.user_studies.serving.served_store import served_store  # SQLAlchemy
 
-    store = Store(database_of(folder / DATABASE, database))
-    finished, participants = store.finished(), participants_of(store)
-    store.close()
+    with served_store(folder, database) as store:
+        finished, participants = store.finished(), participants_of(store)
     if not finished:
         raise UserError(f"Nobody has finished the study in {folder} yet.")
     trials: list[Trial] = []
@@ -144,7 +156,7 @@ def _served(definition: Definition, folder: Path, database: str | None, sizes: S
 
 def read_definition_of(folder: Path) -> Definition:
     """The definition of the study in a folder."""
-    return _definition(folder, read_object(folder / CONFIG))
+    return _definition(folder, read_config(folder))
 
 
 def _definition(folder: Path, config: Mapping[str, Any]) -> Definition:

@@ -12,7 +12,7 @@ from typing import Annotated, Final, final
 
 from pydantic import Field
 from starlette.applications import Starlette
-from starlette.datastructures import Headers, QueryParams
+from starlette.datastructures import Headers
 from starlette.requests import HTTPConnection, Request
 from starlette.responses import FileResponse, PlainTextResponse, RedirectResponse, Response
 from starlette.routing import Route
@@ -24,6 +24,7 @@ from latentarm.web.server.answers import NO_STORE, body_of, json_answer
 from latentarm.web.server.assets import Assets
 from latentarm_research.user_studies.answers.items import items_of
 from latentarm_research.user_studies.drive_record import DriveRecord
+from latentarm_research.user_studies.serving.links import link_of
 from latentarm_research.user_studies.serving.models import Models
 from latentarm_research.user_studies.serving.options import Serving
 from latentarm_research.user_studies.serving.page_drive import ToDrive
@@ -35,14 +36,12 @@ from latentarm_research.user_studies.serving.participant_pages import (
 )
 from latentarm_research.user_studies.serving.queue import Queue
 from latentarm_research.user_studies.serving.request_limit import RequestLimit
-from latentarm_research.user_studies.serving.running import DRIVES, RunningDrive, recovered, refuse_socket
+from latentarm_research.user_studies.serving.running import RunningDrive, recovered, refuse_socket
 from latentarm_research.user_studies.serving.store import Standing, Store
-from latentarm_research.user_studies.serving.study_files import STEPS, forget, keep_steps, steps_of
+from latentarm_research.user_studies.serving.study_files import DRIVES, STEPS, forget, keep_steps, steps_of
 from latentarm_research.user_studies.serving.way import Next, ToAnswer, Way
 
 COOKIE: Final = "latentarm_study"
-SITE_IDS: Final = ("PROLIFIC_PID", "STUDY_ID", "SESSION_ID")  # that a recruiting site adds to its link
-MOST: Final = 64  # characters of a code or id in a link, at most
 _READING: Final = ("GET", "HEAD")
 
 
@@ -69,7 +68,7 @@ class StudyServer:
         self._serving = serving
         self._store = store
         self._models = models
-        self._way = Way(serving.definition, serving.sizes, serving.seed)
+        self._way = Way(serving.definition, serving.sizes, serving.kept.seed)
         assets = Assets()
         self._pages = ParticipantPages(serving, self._way, assets)
         self._drives: dict[str, RunningDrive] = {}  # by the person's key
@@ -155,7 +154,10 @@ class StudyServer:
     async def _home(self, request: Request) -> Response:
         if "left" in request.query_params:
             return self._pages.page("left")
-        link, visit = self._link(request.query_params)
+        try:
+            link, visit = link_of(request.query_params, self._serving.kept.prolific)
+        except UserError as error:
+            return self._pages.page("unknown", status=404, problem=str(error))
         if link:
             return self._arrive(link, visit)
         standing = self._store.standing(request.cookies.get(COOKIE, ""))
@@ -163,14 +165,6 @@ class StudyServer:
             return self._pages.page("unknown", status=404)
         self._met.add(standing.key)
         return await self._next_page(standing)
-
-    def _link(self, given: QueryParams) -> tuple[str, str]:
-        """Code of a link of ours, or the person and visit of a link of the recruiting site; "" for none."""
-        pid, study, visit = (given.get(name, "") for name in SITE_IDS)
-        fits = all(one.isascii() and one.isalnum() and len(one) <= MOST for one in (pid, visit))
-        if study and study == self._serving.prolific and fits:
-            return pid, visit
-        return given.get("code", pid)[:MOST], ""
 
     def _arrive(self, link: str, visit: str) -> Response:
         key = self._store.arrive(link, visit, time.time())
@@ -191,7 +185,7 @@ class StudyServer:
             standing = self._store.standing(key) or standing
         due = self._way.after(standing)
         if due == "finished":
-            code = self._store.finish(key, self._serving.completion or secrets.token_hex(4).upper())
+            code = self._store.finish(key, self._serving.kept.completion_code or secrets.token_hex(4).upper())
             return self._pages.page("finished", code=code)
         if due == "consent":
             return self._pages.consent()
@@ -200,7 +194,7 @@ class StudyServer:
     async def consent(self, request: Request, key: str) -> Response:
         """Note that they consent."""
         given = await body_of(request, Consented)
-        if given.digest == self._serving.digest:
+        if given.digest == self._serving.kept.information:
             when = datetime.now(UTC).isoformat(timespec="seconds")
             await asyncio.to_thread(self._store.consent, key, given.digest, when)
         return _onward(HOME)

@@ -17,15 +17,27 @@ _LOCK: Final = 43  # number of the lock that transactions in PostgreSQL wait for
 
 def database_of(path: Path, url: str | None) -> Path | URL:
     """The database of a study: its file, or the one at a URL of PostgreSQL."""
-    if url is None:
-        return path
+    return path if url is None else postgresql(url)
+
+
+def postgresql(url: str) -> URL:
+    """The database at a URL of PostgreSQL."""
     try:
         given = make_url(url)
-    except ArgumentError as error:
-        raise UserError(f"--database must be postgresql://USER@HOST/NAME, not {url!r}.") from error
+    except (ArgumentError, ValueError) as error:
+        # Not the URL: it may have a password.
+        raise UserError("--database must be postgresql://USER@HOST:PORT/NAME.") from error
     if given.get_backend_name() != "postgresql":
         raise UserError(f"--database must begin with postgresql://, not {given.drivername}://.")
     return given.set(drivername="postgresql+psycopg")
+
+
+def shown(database: Path | URL) -> str:
+    """A database in words, without its password."""
+    if isinstance(database, Path):
+        return str(database)
+    public = database.set(drivername="postgresql").difference_update_query(["password"])
+    return public._replace(password=None).render_as_string()
 
 
 def open_database(database: Path | URL) -> Engine:
@@ -34,8 +46,24 @@ def open_database(database: Path | URL) -> Engine:
     try:
         Table.metadata.create_all(engine)
     except DatabaseError as error:
-        raise UserError(f"{database} is not the database of a study, or cannot be written.") from error
+        engine.dispose()
+        named, reason = shown(database), _reason(error)
+        if isinstance(database, Path):
+            raise UserError(
+                f"{named} is not the database of a study, or cannot be written: {reason}."
+            ) from error
+        raise UserError(
+            f"{named} cannot be opened: {reason}. Check that the server runs and has this database, its"
+            " address and port, and the password in ~/.pgpass or PGPASSWORD."
+        ) from error
     return engine
+
+
+def _reason(error: DatabaseError) -> str:
+    """The driver's own reason; libpq gives one line for each address that it tries, with some before it."""
+    lines = str(error.orig).strip().splitlines()
+    line = next((one for one in reversed(lines) if "failed: " in one), lines[0])
+    return line.rpartition("failed: ")[2].removeprefix("FATAL:").strip().rstrip(".")
 
 
 def _in_file(path: Path) -> Engine:
@@ -52,7 +80,7 @@ def _at_url(url: URL) -> Engine:
     """PostgreSQL."""
     try:
         engine = create_engine(url)
-    except ModuleNotFoundError as error:
+    except ImportError as error:
         raise UserError('PostgreSQL needs psycopg: pip install "latentarm-research[postgresql]".') from error
     event.listen(engine, "begin", _waits_its_turn)
     return engine

@@ -1,15 +1,16 @@
 """The options of a served study, and the text that people consent to."""
 
-import hashlib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, final
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from sqlalchemy import URL
 
 from latentarm.web.server.config import TeleopConfig
 from latentarm_research.user_studies.definition import Definition
-from latentarm_research.user_studies.sizes import Sizes
+from latentarm_research.user_studies.serving.kept_options import KeptOptions
+from latentarm_research.user_studies.sizes import PRESETS, Sizes
 
 PAGES: Final = Path(__file__).parent / "pages"
 
@@ -20,15 +21,11 @@ class Serving:
     """A study to serve."""
 
     definition: Definition
-    sizes: Sizes
-    seed: int  # of orders, scenes and items
+    kept: KeptOptions  # those that every start of it has in common
     config: TeleopConfig  # address, certificate, and the folder of the study
     information: str  # the text that people consent to, Markdown
     at_once: int  # how many people may drive at the same time
-    prolific: str | None  # the study at the recruiting site whose links count; None for none
-    completion: str | None  # the code that everybody gets; None for one of their own
-    away_s: float  # a person who opens no page for so long loses their place, s
-    database: str | None  # URL of PostgreSQL; None for a file in the folder
+    database: Path | URL  # a file, or PostgreSQL, with the password where one was given
 
     @property
     def out(self) -> Path:
@@ -36,9 +33,9 @@ class Serving:
         return self.config.spec.out
 
     @property
-    def digest(self) -> str:
-        """SHA-256 of the information, in hexadecimal."""
-        return hashlib.sha256(self.information.encode()).hexdigest()
+    def sizes(self) -> Sizes:
+        """The sizes of its preset."""
+        return PRESETS[self.kept.preset]
 
 
 def general_information(definition: Definition, away_hours: float) -> str:

@@ -52,7 +52,7 @@ class ParticipantPages:
     def consent(self) -> Response:
         """The information that people consent to."""
         text = MarkdownIt("commonmark", {"html": False}).render(self._serving.information)
-        return self.page("consent", information=text, digest=self._serving.digest)
+        return self.page("consent", information=text, digest=self._serving.kept.information)
 
     def due(self, due: ToDrive | ToAnswer, standing: Standing, *, running: bool) -> Response:
         """The page of the next step for a person with a place; ``running``: they have a drive in progress."""

@@ -21,8 +21,8 @@ from latentarm.web.server.app import build_app
 from latentarm.web.server.config import TeleopConfig
 from latentarm_research.user_studies.drive_record import DriveRecord
 from latentarm_research.user_studies.serving.page_drive import RECORD, STEPS, PageDrive, ToDrive
+from latentarm_research.user_studies.serving.study_files import DRIVES
 
-DRIVES: Final = "drives"  # of the drives under way; in it a folder for each person, and there one by kind
 RECORD_LIMIT: Final = 1 << 22  # bytes of a drive's record
 
 _LOOK_S: Final = 0.05
@@ -107,7 +107,8 @@ class RunningDrive:
         self._ended.set()
         await self._open.aclose()
         await asyncio.to_thread(self._control.end)
-        await asyncio.to_thread(shutil.rmtree, self._folder, ignore_errors=True)
+        # With the folder of the person: it has their key.
+        await asyncio.to_thread(shutil.rmtree, self._folder.parent, ignore_errors=True)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Answer a request of the Drive page, or serve its socket until the drive is over."""

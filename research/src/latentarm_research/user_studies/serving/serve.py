@@ -4,16 +4,18 @@ from collections.abc import Callable
 from contextlib import ExitStack
 from typing import Final
 
+from latentarm.core.errors import UserError
 from latentarm.core.files import write_text
 from latentarm.demonstrations.folders import locked
 from latentarm.runs.results_folder import write_json
 from latentarm.web.server.app import serve_gate
 from latentarm.web.server.config import check_certificate, listen
 from latentarm.web.server.security import Gate
-from latentarm_research.studies.results_folder import ResultsFolder
+from latentarm_research.studies.results_folder import ResultsFolder, write_options
 from latentarm_research.user_studies.recorded import DATABASE, DEFINITION
-from latentarm_research.user_studies.serving.app import SITE_IDS, StudyServer
-from latentarm_research.user_studies.serving.database import database_of
+from latentarm_research.user_studies.serving.app import StudyServer
+from latentarm_research.user_studies.serving.kept_options import SERVED, information_path
+from latentarm_research.user_studies.serving.links import SITE_IDS
 from latentarm_research.user_studies.serving.models import MODELS, Models
 from latentarm_research.user_studies.serving.options import Serving
 from latentarm_research.user_studies.serving.page_drive import check_served
@@ -25,53 +27,71 @@ _LOCK: Final = ".serve.lock"
 
 
 def serve(serving: Serving, say: Callable[[str], None], ready: Callable[[str], None]) -> None:
-    """Serve until Ctrl-C. ``say`` prints a line; ``ready`` is called once with the first address.
+    """Serve until Ctrl-C. ``say`` prints a line; ``ready`` is called once with a participant's link.
 
-    Raises a `UserError` where the page cannot offer a condition, or the folder holds something else.
+    Raises a `UserError` where the page cannot offer a condition, or the folder or the database holds
+    something else, which it leaves as it is.
     """
-    definition, config = serving.definition, serving.config
+    definition, config, kept = serving.definition, serving.config, serving.kept
     out = serving.out
     check_served(definition)
     check_certificate(config)
-    folder = ResultsFolder(definition.study, (), (DATABASE, MODELS))
-    folder.claim(
-        out,
-        {
-            "study": folder.name,
-            "definition": definition.digest,
-            "people_are": "real",
-            "preset": {"name": serving.sizes.name},
-            "seed": serving.seed,
-        },
-    )
-    write_json(out / DEFINITION, {"digest": definition.digest, **definition.as_json()})
+    folder = ResultsFolder(definition.study, (), (DEFINITION, DATABASE, MODELS), (SERVED, "places"))
+    about: dict[str, object] = {
+        "study": folder.name,
+        "definition": definition.digest,
+        "people_are": "real",
+        "preset": {"name": kept.preset},
+        "seed": kept.seed,
+        "places": definition.people,
+        SERVED: kept.model_dump(),
+    }
+    folder.check(out, about)
     with ExitStack() as at_end:
+        # All that may be refused comes before anything is written or trained.
+        listening = at_end.enter_context(listen(config))
+        try:
+            out.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise UserError(f"{out} cannot be made: {error.strerror or error}.") from error
         at_end.enter_context(
             locked(out, out / _LOCK, "end it with Ctrl-C, or choose another folder with --out")
         )
+        store = Store(serving.database, 3600.0 * kept.away_hours)
+        at_end.callback(store.close)
+        at_end.enter_context(store.alone())
+        store.check_owner(kept.key)
+        write_text(information_path(out, kept.information), serving.information)
+        write_json(out / DEFINITION, {"digest": definition.digest, **definition.as_json()})
+        write_options(out, about)
+        store.own(kept.key, definition.name)
         models = Models(definition, out)
         for task in models.missing():
             say(f"Models for {task.label} are being trained; this takes minutes, once.")
-            models.train(task, serving.sizes, serving.seed)
-        listening = at_end.enter_context(listen(config))
-        store = Store(database_of(out / DATABASE, serving.database), serving.away_s)
-        at_end.callback(store.close)
-        write_text(out / f"information-{serving.digest[:12]}.md", serving.information)
+            models.train(task, serving.sizes, kept.seed)
         origins = config.origins(int(listening.getsockname()[1]))
         app = StudyServer(serving, store, models)
         hosts = frozenset(origin.split("//")[1] for origin in origins)
         gate = Gate(app, hosts, frozenset(origins), secure=config.encrypted, stop=app.stop)
 
         def open_it() -> None:
-            links = [f"{origins[0]}{HOME}?code={code}" for code in store.open_places(definition.people)]
-            write_links(out, links)
-            say(f"A participant's link: {links[0]}")
-            say(f"All {len(links)} are in {out / LINKS}; each is for one person.")
-            if serving.prolific is not None:
+            address = f"{origins[0]}{HOME}"
+            codes = store.open_places(definition.people)
+            write_links(out, address, codes)
+            unused = store.unused()
+            link = address if unused is None else f"{address}?code={unused}"
+            if unused is None:
+                say("All links are in use.")
+            else:
+                say(f"A participant's link, which nobody has used: {link}")
+            say(f"All {len(codes)} are in {out / LINKS}; each is for one person.")
+            if kept.prolific is not None:
                 ids = "&".join(f"{name}={{{{%{name}%}}}}" for name in SITE_IDS)
-                say(f"For Prolific: {origins[0]}{HOME}?{ids}")
-            say(f"The report, at any time: latentarm study analyse {out} (end the study with Ctrl-C).")
-            ready(links[0])
+                say(f"For Prolific: {address}?{ids}")
+            database = "" if kept.database is None else f" --database {kept.database}"
+            say(f"The report, at any time: latentarm study analyse {out}{database}")
+            say("End the study with Ctrl-C.")
+            ready(link)
 
         serve_gate(gate, config, listening, open_it)
         say("The study is closed; the same command goes on with it.")

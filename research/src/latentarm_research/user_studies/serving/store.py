@@ -10,17 +10,19 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final, final
 
-from sqlalchemy import URL, delete, func, or_, select, update
+from sqlalchemy import URL, delete, func, or_, select, text, update
 from sqlalchemy.orm import Session
 from sqlalchemy.sql import ColumnElement
 
 from latentarm.core.errors import UserError
 from latentarm_research.user_studies.answers.items import Answer
 from latentarm_research.user_studies.drive_record import DriveRecord
-from latentarm_research.user_studies.serving.database import open_database
-from latentarm_research.user_studies.serving.tables import Answers, Drive, Person, Place
+from latentarm_research.user_studies.serving.database import open_database, shown
+from latentarm_research.user_studies.serving.tables import Answers, Drive, Person, Place, Study
 
 KEY_BYTES: Final = 16  # of random keys
+
+_SERVER_LOCK: Final = 44  # number of the lock in PostgreSQL that a server holds as long as it runs
 
 
 @final
@@ -67,7 +69,39 @@ class Store:
         away_s: float = float("inf"),  # a person who does nothing for so long loses their place, s
     ) -> None:
         self._away_s = away_s
+        self._shown = shown(database)
         self._engine = open_database(database)
+
+    @contextmanager
+    def alone(self) -> Generator[None]:
+        """Keep other servers off the database; the lock of its folder does so for a file."""
+        if self._engine.dialect.name == "sqlite":
+            yield
+            return
+        with self._engine.connect() as connection:
+            free = connection.scalar(text(f"SELECT pg_try_advisory_lock({_SERVER_LOCK})"))
+            connection.commit()  # the lock lasts as long as the connection
+            if not free:
+                raise UserError(
+                    f"{self._shown} is being served by another program: end that with Ctrl-C, or name"
+                    " another database with --database."
+                )
+            yield
+
+    def check_owner(self, key: str) -> None:
+        """Raise a `UserError` where it is the database of another study than the one with this key."""
+        with self._change() as session:
+            owner = session.scalar(select(Study))
+            if owner is not None and owner.key != key:
+                raise UserError(
+                    f"{self._shown} holds the study {owner.name} of another folder: name that folder, or"
+                    " another database with --database."
+                )
+
+    def own(self, key: str, name: str) -> None:
+        """Note whose database it is."""
+        with self._change() as session:
+            session.merge(Study(key=key, name=name))
 
     def open_places(self, count: int) -> list[str]:
         """Have so many places, with the numbers from 0, and codes for links to them, which it returns."""
@@ -77,6 +111,13 @@ class Store:
             session.flush()
             return list(session.scalars(select(Place.code).order_by(Place.number)))
 
+    def unused(self) -> str | None:
+        """The first code of ours by which nobody has come; None where there is none."""
+        used = select(Person.link)
+        with self._change() as session:
+            free = select(Place.code).where(Place.code.not_in(used)).order_by(Place.number)
+            return session.scalar(free.limit(1))
+
     def close(self) -> None:
         """Close the file."""
         self._engine.dispose()
@@ -85,7 +126,7 @@ class Store:
         """The key of the person with this link, new or known.
 
         ``visit`` is what a recruiting site calls their visit, "" for a code of ours. None for a code that is
-        unknown, and for a person of the site who was there in another visit.
+        unknown.
         """
         with self._change() as session:
             if not visit and session.scalar(select(Place).where(Place.code == link)) is None:
@@ -94,7 +135,8 @@ class Store:
             if person is None:
                 person = Person(key=_random(), link=link, visit=visit, seen_s=now_s)
                 session.add(person)
-            return person.key if person.visit == visit else None
+            person.visit = visit
+            return person.key
 
     def consent(self, key: str, digest: str, when: str) -> None:
         """Note that a person consents to a text."""

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
+from latentarm.core.errors import UserError
 from latentarm.core.files import write_text
 from latentarm.core.untrusted.opening import read_bytes
 from latentarm.demonstrations.bounds import MAX_TEXT_BYTES
@@ -12,12 +13,24 @@ from latentarm_research.user_studies.drive_record import DriveRecord
 from latentarm_research.user_studies.serving.store import Deleted
 
 LINKS: Final = "links.csv"
+DRIVES: Final = "drives"  # of the drives under way; in it a folder for each person, and there one by kind
 STEPS: Final = "steps"  # a folder for each person, and in it a file for each of their drives
 
 
-def write_links(out: Path, links: Sequence[str]) -> None:
-    """Write the list into the folder of the study."""
-    write_text(out / LINKS, "\n".join(["link", *links, ""]))
+def write_links(out: Path, address: str, codes: Sequence[str]) -> None:
+    """Write the list of the links to an address into the folder of the study.
+
+    Raises a `UserError` where the list there has other codes, which people may have.
+    """
+    path = out / LINKS
+    if path.exists():
+        _, *there = read_bytes(path, MAX_TEXT_BYTES).decode("utf-8", "replace").splitlines()
+        if not {one.rpartition("=")[2] for one in there} <= {*codes}:
+            raise UserError(
+                f"{path} has links that the study's database does not know: restore the database, or move the"
+                " file away if nobody has them."
+            )
+    write_text(path, "\n".join(["link", *(f"{address}?code={code}" for code in codes), ""]))
 
 
 def steps_path(out: Path, key: str, drive: DriveRecord) -> Path:
@@ -40,9 +53,10 @@ def keep_steps(out: Path, key: str, drive: DriveRecord, written: Path) -> None:
 
 
 def forget(out: Path, people: Sequence[Deleted]) -> None:
-    """Remove people who were deleted: their steps, and the codes of their links."""
+    """Remove people who were deleted: their drives with the steps, and the codes of their links."""
     for one in people:
-        shutil.rmtree(out / STEPS / one.key, ignore_errors=True)
+        for folder in (DRIVES, STEPS):
+            shutil.rmtree(out / folder / one.key, ignore_errors=True)
     if (out / LINKS).exists():
         text = read_bytes(out / LINKS, MAX_TEXT_BYTES).decode("utf-8", "replace")
         for one in people:

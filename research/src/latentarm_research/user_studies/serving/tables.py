@@ -12,6 +12,15 @@ class Table(DeclarativeBase):
     """Base of all tables."""
 
 
+class Study(Table):
+    """The study whose database it is: one row."""
+
+    __tablename__ = "study"
+
+    key: Mapped[str] = mapped_column(primary_key=True)  # random; the study's folder has it too
+    name: Mapped[str]
+
+
 class Person(Table):
     """Somebody who has opened their link."""
 
@@ -19,7 +28,7 @@ class Person(Table):
 
     key: Mapped[str] = mapped_column(primary_key=True)  # random; a cookie of their browser has it
     link: Mapped[str] = mapped_column(unique=True)  # a code of ours, or the id of a recruiting site
-    visit: Mapped[str]  # its name at the recruiting site, which nobody else knows; "" with a code of ours
+    visit: Mapped[str]  # the latest at the recruiting site, by its name there; "" with a code of ours
     seen_s: Mapped[float]  # when they last opened a page of the study, s since 1970
     number: Mapped[int | None]  # of their place, also after it was given to somebody else; None before
     consent: Mapped[str | None]  # SHA-256 of the text; None before
