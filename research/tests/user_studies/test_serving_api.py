@@ -155,6 +155,19 @@ def study(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Study]:
         study.store.close()
 
 
+def test_a_person_from_prolific_comes_back_in_another_session(study: Study) -> None:
+    def opens(visit: str) -> httpx.Response:
+        link = {"PROLIFIC_PID": "a" * 24, "STUDY_ID": PROLIFIC, "SESSION_ID": visit}
+        return study.loop.run_until_complete(study.client.get("/study", params=link))
+
+    first, again, without = opens("c" * 24), opens("d" * 24), opens("")
+    study.client.cookies.clear()
+    assert first.status_code == again.status_code == 303
+    assert first.cookies[COOKIE] == again.cookies[COOKIE]
+    assert without.status_code == 404
+    assert "it lacks SESSION_ID" in without.text
+
+
 PARTS = ("", "guess", "' OR 1=1 --", "consent", "questions", "finished")
 OPERATIONS = [one.ok() for one in schemathesis.openapi.from_dict(described()).get_all_operations()]
 SENT = [

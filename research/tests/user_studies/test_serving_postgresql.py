@@ -16,7 +16,7 @@ from latentarm_research.user_studies.serving.store import Store
 from postgres import postgres
 from study_start import Starts
 
-SECRET = "s3cret"
+SECRET = "s3cret"  # noqa: S105 - nobody's
 
 
 @pytest.fixture(scope="module")
@@ -78,7 +78,7 @@ def test_a_database_serves_one_folder(start: Starts, url: str) -> None:
 
 def test_one_server_at_a_time_serves_a_database(start: Starts, url: str) -> None:
     store = Store(postgresql(url))
-    with store.alone():
+    with store.owner.alone():
         assert start("--database", url) == 2
         assert "is being served by another program" in start.said
         assert not (start.out / "config.json").exists()

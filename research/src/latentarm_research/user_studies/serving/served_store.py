@@ -27,7 +27,7 @@ def served_store(folder: Path, database: str | None) -> Generator[Store]:
     store = Store(database_of(folder / DATABASE, database))
     try:
         if kept is not None:
-            store.check_owner(kept.key)
+            store.owner.check(kept.key)
         yield store
     finally:
         store.close()

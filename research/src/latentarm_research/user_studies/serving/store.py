@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final, final
 
-from sqlalchemy import URL, delete, func, or_, select, text, update
+from sqlalchemy import URL, delete, func, or_, select, update
 from sqlalchemy.orm import Session
 from sqlalchemy.sql import ColumnElement
 
@@ -18,11 +18,10 @@ from latentarm.core.errors import UserError
 from latentarm_research.user_studies.answers.items import Answer
 from latentarm_research.user_studies.drive_record import DriveRecord
 from latentarm_research.user_studies.serving.database import open_database, shown
-from latentarm_research.user_studies.serving.tables import Answers, Drive, Person, Place, Study
+from latentarm_research.user_studies.serving.owner import Owner
+from latentarm_research.user_studies.serving.tables import Answers, Drive, Person, Place
 
 KEY_BYTES: Final = 16  # of random keys
-
-_SERVER_LOCK: Final = 44  # number of the lock in PostgreSQL that a server holds as long as it runs
 
 
 @final
@@ -69,39 +68,8 @@ class Store:
         away_s: float = float("inf"),  # a person who does nothing for so long loses their place, s
     ) -> None:
         self._away_s = away_s
-        self._shown = shown(database)
         self._engine = open_database(database)
-
-    @contextmanager
-    def alone(self) -> Generator[None]:
-        """Keep other servers off the database; the lock of its folder does so for a file."""
-        if self._engine.dialect.name == "sqlite":
-            yield
-            return
-        with self._engine.connect() as connection:
-            free = connection.scalar(text(f"SELECT pg_try_advisory_lock({_SERVER_LOCK})"))
-            connection.commit()  # the lock lasts as long as the connection
-            if not free:
-                raise UserError(
-                    f"{self._shown} is being served by another program: end that with Ctrl-C, or name"
-                    " another database with --database."
-                )
-            yield
-
-    def check_owner(self, key: str) -> None:
-        """Raise a `UserError` where it is the database of another study than the one with this key."""
-        with self._change() as session:
-            owner = session.scalar(select(Study))
-            if owner is not None and owner.key != key:
-                raise UserError(
-                    f"{self._shown} holds the study {owner.name} of another folder: name that folder, or"
-                    " another database with --database."
-                )
-
-    def own(self, key: str, name: str) -> None:
-        """Note whose database it is."""
-        with self._change() as session:
-            session.merge(Study(key=key, name=name))
+        self.owner = Owner(self._engine, shown(database))
 
     def open_places(self, count: int) -> list[str]:
         """Have so many places, with the numbers from 0, and codes for links to them, which it returns."""
