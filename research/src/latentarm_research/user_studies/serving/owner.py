@@ -28,6 +28,10 @@ class Owner:
             yield
             return
         with self._engine.connect() as connection:
+            # A machine that is cut off keeps the lock for half a minute, not for two hours.
+            connection.exec_driver_sql(
+                "SET tcp_keepalives_idle = 15; SET tcp_keepalives_interval = 5; SET tcp_keepalives_count = 3"
+            )
             free = connection.scalar(select(func.pg_try_advisory_lock(_LOCK)))
             connection.commit()  # the lock lasts as long as the connection
             if not free:
