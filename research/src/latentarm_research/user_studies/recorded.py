@@ -24,6 +24,7 @@ TRIALS: Final = "trials.json"
 TRACES: Final = "traces.json"
 PEOPLE: Final = "people.json"
 DATABASE: Final = "study.sqlite"  # of a served study, in place of trials and traces
+SERVED: Final = "served"  # in `CONFIG` of a served study: the options of its first start
 DOCUMENTS: Final = (DEFINITION, TRIALS, TRACES, PEOPLE)
 
 PEOPLE_ARE: Final[tuple[PeopleAre, ...]] = ("simulated", "real")
@@ -107,7 +108,7 @@ def read_config(folder: Path) -> dict[str, Any]:
 
 def was_served(folder: Path, database: str | None) -> bool:
     """Check if the study in a folder is one with a database."""
-    return database is not None or (folder / DATABASE).exists() or "served" in read_config(folder)
+    return database is not None or (folder / DATABASE).exists() or SERVED in read_config(folder)
 
 
 def _read_recorded(folder: Path, database: str | None) -> Recorded:

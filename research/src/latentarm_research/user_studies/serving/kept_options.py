@@ -4,7 +4,7 @@ import hashlib
 import secrets
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Final, final
+from typing import Annotated, Final, final
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
@@ -13,8 +13,9 @@ from latentarm.core.untrusted.documents import read_object
 from latentarm.core.untrusted.opening import read_bytes
 from latentarm.demonstrations.bounds import MAX_TEXT_BYTES
 from latentarm_research.studies.results_folder import CONFIG
+from latentarm_research.user_studies.recorded import SERVED
+from latentarm_research.user_studies.sizes import PRESETS
 
-SERVED: Final = "served"  # key of these options in the folder's `CONFIG`
 AWAY_HOURS: Final = 2.0
 
 
@@ -30,7 +31,7 @@ class KeptOptions(BaseModel):
     completion_code: str | None = None  # that everybody gets; None for one of their own
     away_hours: float = AWAY_HOURS  # a person who opens no page for so long loses their place
     database: str | None = None  # URL of PostgreSQL without its password; None for a file in the folder
-    preset: str = "paper"
+    preset: Annotated[str, Field(pattern=f"^({'|'.join(PRESETS)})$")] = "paper"
     seed: int = 0  # of orders, scenes and items
 
 

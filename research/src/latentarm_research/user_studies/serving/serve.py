@@ -12,9 +12,9 @@ from latentarm.web.server.app import serve_gate
 from latentarm.web.server.config import check_certificate, listen
 from latentarm.web.server.security import Gate
 from latentarm_research.studies.results_folder import ResultsFolder, write_options
-from latentarm_research.user_studies.recorded import DATABASE, DEFINITION
+from latentarm_research.user_studies.recorded import DATABASE, DEFINITION, SERVED
 from latentarm_research.user_studies.serving.app import StudyServer
-from latentarm_research.user_studies.serving.kept_options import SERVED, information_path
+from latentarm_research.user_studies.serving.kept_options import information_path
 from latentarm_research.user_studies.serving.links import SITE_IDS
 from latentarm_research.user_studies.serving.models import MODELS, Models
 from latentarm_research.user_studies.serving.options import Serving
@@ -65,19 +65,19 @@ def serve(serving: Serving, say: Callable[[str], None], ready: Callable[[str], N
         write_json(out / DEFINITION, {"digest": definition.digest, **definition.as_json()})
         write_options(out, about)
         store.owner.note(kept.key, definition.name)
+        origins = config.origins(int(listening.getsockname()[1]))
+        address = f"{origins[0]}{HOME}"
+        codes = store.open_places(definition.people)
+        write_links(out, address, codes)
         models = Models(definition, out)
         for task in models.missing():
             say(f"Models for {task.label} are being trained; this takes minutes, once.")
             models.train(task, serving.sizes, kept.seed)
-        origins = config.origins(int(listening.getsockname()[1]))
         app = StudyServer(serving, store, models)
         hosts = frozenset(origin.split("//")[1] for origin in origins)
         gate = Gate(app, hosts, frozenset(origins), secure=config.encrypted, stop=app.stop)
 
         def open_it() -> None:
-            address = f"{origins[0]}{HOME}"
-            codes = store.open_places(definition.people)
-            write_links(out, address, codes)
             unused = store.unused()
             link = address if unused is None else f"{address}?code={unused}"
             if unused is None:
