@@ -138,10 +138,7 @@ class ControlProcess:
 
     def newest(self) -> Report | None:
         """The newest report, if it was not read yet."""
-        if self._channel.report.version == self._seen:
-            return None
-        found = self._channel.report.read()
-        if found is None:
+        if self._channel.report.version == self._seen or (found := self._channel.report.read()) is None:
             return None
         self._seen, message = found
         return Report.parse(message)

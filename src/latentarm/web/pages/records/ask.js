@@ -9,13 +9,9 @@ import { say, sayNotice } from "../layout/words.js";
  */
 export async function ask(method, path, body) {
   const content = body === undefined ? undefined : body instanceof Blob ? body : JSON.stringify(body);
-  /** @type {Response} */
-  let answer;
-  try {
-    answer = await fetch(path, { method, body: content, cache: "no-store" });
-  } catch {
+  const answer = await fetch(path, { method, body: content, cache: "no-store" }).catch(() => {
     throw new Error(say("records.no_answer"));
-  }
+  });
   const told = answer.status === 204 ? null : await answer.json().catch(() => null);
   if (answer.ok) return told;
   throw new Error(answer.status === 413 ? say("records.too_large") : told?.notice ? sayNotice(told.notice) : say("records.no_answer"));
