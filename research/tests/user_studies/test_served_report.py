@@ -2,6 +2,7 @@
 
 import csv
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -9,9 +10,13 @@ import pytest
 
 from latentarm.cli import main
 from latentarm.runs.results_folder import write_json
+from latentarm_research.user_studies.catalogue import load_definition
 from latentarm_research.user_studies.drive_record import DriveRecord
 from latentarm_research.user_studies.own.definition_file import read_definition
+from latentarm_research.user_studies.recorded import Recorded
+from latentarm_research.user_studies.report.people import input_words, practice_words
 from latentarm_research.user_studies.serving.store import Store
+from latentarm_research.user_studies.sizes import PRESETS
 from latentarm_research.user_studies.trace import BINS, Trace
 from study_participant import MODES, TWIST, definition
 
@@ -86,6 +91,15 @@ def test_the_report_says_what_people_did(served: Path) -> None:
     assert "one stick" not in page
     assert "Practice: up to 5 minutes at Marshmallows, before the first condition only." in page
     assert "2 consented (2026-01-02 to 2026-01-03; text abababababab, cdcdcdcdcdcd), and 1 of them" in page
+
+
+def test_practice_and_input_of_people_who_were_not_served_are_as_planned() -> None:
+    study = Recorded(load_definition("eating"), "real", (), (), (), PRESETS["paper"])
+    assert practice_words(study) == "planned for up to 5 minutes before each condition"
+    assert input_words(study) == "planned: one stick with two axes"
+    simulated = replace(study, people_are="simulated")
+    assert practice_words(simulated) == "5 minutes, before each condition at each task"
+    assert input_words(simulated) == "one stick with two axes"
 
 
 def test_the_dataset_has_everybody_who_consented_and_only_drives_of_people_who_finished(served: Path) -> None:
