@@ -106,7 +106,7 @@ class Factor:
 class Definition:
     """A study. The docs publish this class as a JSON schema."""
 
-    __pydantic_config__: ClassVar[dict[str, bool]] = {"use_attribute_docstrings": True, "extra": "forbid"}
+    __pydantic_config__: ClassVar[dict[str, object]] = {"use_attribute_docstrings": True, "extra": "forbid"}
 
     name: str
     """Name on the command line: at most 40 of a to z, 0 to 9 and _, a letter first."""
