@@ -90,7 +90,7 @@ def test_a_request_for_too_few_people_or_another_folder_is_refused(tmp_path: Pat
     (tmp_path / "mine.txt").write_text("keep")
     with pytest.raises(UserError, match="choose another folder"):
         run_study(study_of(HARMONIC), request(tmp_path, TINY, HARMONIC))
-    with pytest.raises(UserError, match=r"config\.json"):
+    with pytest.raises(UserError, match="No study is in"):
         read_recorded(tmp_path)
 
 

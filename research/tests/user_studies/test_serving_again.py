@@ -122,4 +122,4 @@ def test_a_folder_without_a_study_is_refused(start: Starts, command: str) -> Non
     assert main(["study", command, str(start.folder / "eating-people"), *options]) == 2
     said = start.said
     assert "No study is in" in said
-    assert "latentarm study serve eating makes one." in said
+    assert "latentarm study run eating, or serve eating, makes one." in said

@@ -102,7 +102,7 @@ def read_config(folder: Path) -> dict[str, Any]:
     if not (folder / CONFIG).exists():
         served = folder.name.removesuffix("-people")
         name = served if served in NAMES else "NAME"
-        raise UserError(f"No study is in {folder}: latentarm study serve {name} makes one.")
+        raise UserError(f"No study is in {folder}: latentarm study run {name}, or serve {name}, makes one.")
     return read_object(folder / CONFIG)
 
 
