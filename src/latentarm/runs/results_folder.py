@@ -24,7 +24,7 @@ def refuse_other_results(
         more = f" and {len(names) - 2} more differences" if len(names) > 2 else ""
         raise UserError(
             f"{results} holds the results of another run ({shown}{more}): choose another folder with --out,"
-            f" such as {vacant_name(out)}, or remove {results}."
+            f" such as {vacant_name(out)}."
         )
 
 
