@@ -1,19 +1,23 @@
-"""A study by keyboard alone, and at twice the size; axe finds nothing on its pages in any colours."""
+"""A study by keyboard or one switch alone, and at twice the size; axe finds nothing on its pages."""
 
 import json
+import re
 from pathlib import Path
 
 import pytest
 from playwright.sync_api import Browser, Locator, Page
 
 from latentarm_research.user_studies.recorded import read_recorded
-from study_participant import MODES, TWIST, definition, serving
+from study_participant import MODES, TWIST, definition, next_link, participant, serving
 
-from .conftest import STICKS_OUT
+from .conftest import STICKS_OUT, press_switch
 from .test_access import found
 
 WITHIN_MS = 60_000
 GIVEN = definition(MODES, TWIST)
+SLOW_LIGHT = """if (!localStorage.getItem("latentarm.settings."))
+  localStorage.setItem("latentarm.settings.", JSON.stringify({ dwellS: 2.5 }));"""
+"""A choice stays lit for so long that a busy computer presses in time, s."""
 LOOKS = (
     {"color_scheme": "light", "forced_colors": "none"},
     {"color_scheme": "dark", "forced_colors": "none"},
@@ -64,6 +68,14 @@ def drive(page: Page) -> None:
     raise AssertionError("the trial is never over")
 
 
+def choose(page: Page, name: str) -> None:
+    """Wait until it is lit, and press the switch."""
+    lit = page.locator("#scan li[aria-current=true]", has_text=re.compile(name))
+    lit.wait_for(timeout=WITHIN_MS)
+    press_switch(page, "Enter")
+    page.wait_for_timeout(150)
+
+
 @pytest.fixture
 def a_study(tmp_path: Path) -> tuple[str, ...]:
     """A study with one trial in each condition, and where what people do is kept."""
@@ -112,3 +124,64 @@ def test_a_study_is_done_by_keyboard_alone(
     recorded = read_recorded(tmp_path / "people")
     assert [one.points for one in recorded.answers] == [6] * 8
     assert all(one.measures["path_length"] > 0.0 for one in recorded.trials)
+
+
+def test_a_study_is_done_by_one_switch_alone(
+    chromium: Browser, a_study: tuple[str, ...], tmp_path: Path
+) -> None:
+    faults: list[str] = []
+    with serving(*a_study) as (link, _):
+        page = chromium.new_page()
+        page.add_init_script(SLOW_LIGHT)
+        page.on("pageerror", lambda error: faults.append(str(error)))
+        page.goto(link)
+        page.get_by_role("button", name="Take part").wait_for()
+        page.wait_for_timeout(1000)
+        press_switch(page, "Enter")
+        looked_at(page, GIVEN["title"])
+        choose(page, "I have read this")
+        choose(page, "Take part")
+        looked_at(page, "Practice")
+        choose(page, "Practise")
+        page.locator("#status[data-phase=disengaged]").wait_for(timeout=WITHIN_MS)
+        for name in ("More", "Other page", "The study"):
+            choose(page, name)
+        choose(page, "I am ready")
+        for _ in GIVEN["conditions"]:
+            looked_at(page, "Marshmallows")
+            choose(page, "Begin")
+            page.locator("#status[data-phase=disengaged]").wait_for(timeout=WITHIN_MS)
+            while not page.url.endswith("/study"):
+                lit = page.locator("#scan li[aria-current=true]", has_text=re.compile("^(Enable|Up)$"))
+                if lit.is_visible():
+                    press_switch(page, "Enter")
+                page.wait_for_timeout(100)
+            looked_at(page, "How was this way of driving?")
+            for number in range(1, 5):
+                choose(page, f"Statement {number}")
+                choose(page, "6")
+            choose(page, "Send my answers")
+        looked_at(page, "Thank you")
+        page.context.close()
+    assert faults == []
+    recorded = read_recorded(tmp_path / "people")
+    assert [one.points for one in recorded.answers] == [6] * 8
+    assert all(one.measures["path_length"] > 0.0 for one in recorded.trials)
+
+
+def test_a_page_waits_in_the_queue_and_goes_on_by_itself(
+    chromium: Browser, a_study: tuple[str, ...], tmp_path: Path
+) -> None:
+    with serving(*a_study, "--at-once", "1") as (link, _), participant(link, link) as first:
+        first.consent()
+        assert first.post("begin").json()["to"] == "/"
+        page = chromium.new_page()
+        page.goto(next_link(tmp_path / "people"))
+        page.get_by_role("checkbox").check()
+        page.get_by_role("button", name="Take part").click()
+        page.get_by_role("button", name="Practise").click()
+        page.get_by_role("status").get_by_text("Yours is free in about").wait_for()
+        looked_at(page, "Practice")
+        first.ready()
+        page.locator("#stick").wait_for(timeout=WITHIN_MS)
+        page.context.close()
