@@ -29,8 +29,8 @@ class Starts:
         return main(given)
 
     @property
-    def said(self) -> str:
-        """Everything printed since the last time, on one line."""
+    def output(self) -> str:
+        """Text printed since the last call, on one line."""
         printed = self._capsys.readouterr()
         return " ".join((printed.out + printed.err).split())
 

@@ -50,7 +50,7 @@ def test_there_is_room_for_so_many():
     assert connected.join("now") is not None
 
 
-class Whoever(RuleBasedStateMachine):
+class Handovers(RuleBasedStateMachine):
     """Pages come, ask, hand over, give up and go in any order."""
 
     def __init__(self):
@@ -93,7 +93,7 @@ class Whoever(RuleBasedStateMachine):
         assert self.connected.count == len(self.pages)
 
 
-TestWhoever = Whoever.TestCase
+TestHandovers = Handovers.TestCase
 
 
 def test_guests_are_numbered_from_1_among_those_who_are_there():

@@ -25,10 +25,10 @@ def contents(folder: Path) -> dict[str, bytes]:
 def test_options_that_are_left_out_are_those_of_the_first_start(start: Starts) -> None:
     assert start(*FIRST) == 0
     first, sent = json.loads((start.out / "config.json").read_text()), start.codes
-    assert "As at the first start" not in start.said
+    assert "As at the first start" not in start.output
     assert first["places"] == 2
     assert start() == 0
-    said = start.said
+    said = start.output
     assert (
         f"As at the first start: with --prolific {FIRST[1]}, with --completion-code C0DE, with --away-hours"
         " 2.3, with --preset smoke." in said
@@ -58,7 +58,7 @@ def test_a_start_with_another_option_is_refused(start: Starts, option: str, valu
         value = str(start.folder / value)
         Path(value).write_text("Something else.")
     assert start(option, value) == 2
-    refused = start.said
+    refused = start.output
     assert said in refused
     assert "secret" not in refused
     assert contents(start.out) == before
@@ -83,7 +83,7 @@ def test_a_damaged_list_of_options_is_refused(start: Starts) -> None:
     config["served"]["seed"] = "none"
     (start.out / "config.json").write_text(json.dumps(config))
     assert start() == 2
-    assert "served.seed" in start.said
+    assert "served.seed" in start.output
 
 
 def test_links_that_were_sent_are_not_replaced(start: Starts) -> None:
@@ -91,28 +91,28 @@ def test_links_that_were_sent_are_not_replaced(start: Starts) -> None:
     sent = (start.out / "links.csv").read_bytes()
     (start.out / "study.sqlite").unlink()
     assert start() == 2
-    assert "has links that the study's database does not know" in start.said
+    assert "has links that the study's database does not know" in start.output
     assert (start.out / "links.csv").read_bytes() == sent
 
 
 def test_the_link_that_is_printed_is_the_first_that_nobody_has_used(start: Starts) -> None:
     assert start() == 0
     first, second = start.codes
-    assert f"code={first}" in start.said
+    assert f"code={first}" in start.output
     store = Store(start.out / "study.sqlite")
     store.arrive(first, "", 0.0)
     assert start() == 0
-    assert f"code={second}" in start.said
+    assert f"code={second}" in start.output
     store.arrive(second, "", 0.0)
     store.close()
     assert start() == 0
-    assert "All links are in use." in start.said
+    assert "All links are in use." in start.output
 
 
 def test_a_port_that_is_taken_is_refused_before_anything_is_written(start: Starts) -> None:
     with socket.create_server(("127.0.0.1", 0)) as other:
         assert start("--port", str(other.getsockname()[1])) == 2
-    assert "cannot be used" in start.said
+    assert "cannot be used" in start.output
     assert not start.out.exists()
 
 
@@ -120,6 +120,6 @@ def test_a_port_that_is_taken_is_refused_before_anything_is_written(start: Start
 def test_a_folder_without_a_study_is_refused(start: Starts, command: str) -> None:
     options = ["--code", "x"] if command == "delete" else []
     assert main(["study", command, str(start.folder / "eating-people"), *options]) == 2
-    said = start.said
+    said = start.output
     assert "No study is in" in said
     assert "latentarm study run eating, or serve eating, makes one." in said

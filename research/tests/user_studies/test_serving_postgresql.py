@@ -45,15 +45,15 @@ def start(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.Captur
 def test_a_start_without_the_database_goes_on_in_it(start: Starts, url: str) -> None:
     secret = make_url(url).set(password=SECRET).render_as_string(hide_password=False)
     assert start("--database", secret) == 0
-    assert f"latentarm study analyse {start.out} --database {url}" in start.said
+    assert f"latentarm study analyse {start.out} --database {url}" in start.output
     sent = start.codes
     assert start() == 0
-    assert f"As at the first start: with --database {url}." in start.said
+    assert f"As at the first start: with --database {url}." in start.output
     assert start.codes == sent
     assert not (start.out / "study.sqlite").exists()
     assert all(SECRET.encode() not in path.read_bytes() for path in start.out.rglob("*") if path.is_file())
     assert start("--database", f"{url}2") == 2
-    assert f"began with --database {url}, and this start is with --database {url}2" in start.said
+    assert f"began with --database {url}, and this start is with --database {url}2" in start.output
 
 
 @pytest.mark.parametrize("command", ["analyse", "export", "replay", "delete"])
@@ -61,26 +61,26 @@ def test_commands_ask_for_the_database(start: Starts, url: str, command: str) ->
     assert start("--database", url) == 0
     options = ["--code", "x"] if command == "delete" else []
     assert main(["study", command, str(start.out), *options]) == 2
-    assert f"This study is in PostgreSQL: name it with --database, such as {url}." in start.said
+    assert f"This study is in PostgreSQL: name it with --database, such as {url}." in start.output
 
 
 def test_a_database_serves_one_folder(start: Starts, url: str) -> None:
     assert start("--database", url) == 0
     start.out = start.folder / "others"
     assert start("--database", url) == 2
-    assert "holds the study two_ways of another folder" in start.said
+    assert "holds the study two_ways of another folder" in start.output
     assert not (start.out / "config.json").exists()
     # Nor do the commands for another study read it.
     assert start() == 0
     assert main(["study", "delete", str(start.out), "--code", "x", "--database", url]) == 2
-    assert "of another folder" in start.said
+    assert "of another folder" in start.output
 
 
 def test_one_server_at_a_time_serves_a_database(start: Starts, url: str) -> None:
     store = Store(postgresql(url))
     with store.owner.alone():
         assert start("--database", url) == 2
-        assert "is being served by another program" in start.said
+        assert "is being served by another program" in start.output
         assert not (start.out / "config.json").exists()
     store.close()
     assert start("--database", url) == 0
@@ -97,7 +97,7 @@ def test_a_database_that_cannot_be_opened_says_why_before_models_are_trained(
         (right.set(port=1), "Connection refused"),
     ):
         assert start("--database", wrong.render_as_string(hide_password=False)) == 2
-        refused = start.said
+        refused = start.output
         assert f"cannot be opened: {why}. Check" in refused
         assert SECRET not in refused
         assert "PGPASSWORD" in refused

@@ -1,6 +1,7 @@
 """The arm, the stick and Stop are on one screen, whatever its size, direction and colours."""
 
 import itertools
+import json
 
 import pytest
 
@@ -174,6 +175,37 @@ def test_a_request_of_a_copilot_leaves_the_whole_sentence_on_the_screen(opened, 
     page.get_by_role("button", name="Say no").click()
     page.locator("#copilot-accept").wait_for(state="hidden")
     assert page.evaluate(CUT_OFF, ALWAYS) == []
+
+
+@pytest.mark.parametrize("language", ["en", "de", "es"])
+def test_a_long_sentence_lies_over_no_control(chromium, start_server, tmp_path, language):
+    astray = {"code": "joint_astray", "parameters": {"joint": "joint6", "off_deg": 3}}
+
+    def hear(socket):
+        def changed(text):
+            message = json.loads(text)
+            if message["type"] == "state":
+                message["reason"] = astray
+            socket.send(json.dumps(message))
+
+        socket.connect_to_server().on_message(changed)
+
+    # The task with the most to show: fill levels, a gripper, and three pairs of directions.
+    with start_server(tmp_path, "--task", "apple_pie", "--arm", "mujoco") as address:
+        context = chromium.new_context(reduced_motion="reduce")
+        context.add_cookies([{"name": COOKIE, "value": language, "url": address}])
+        context.add_init_script(f"localStorage['latentarm.settings.'] = '{PRACTISED}'")
+        page = context.new_page()
+        page.route_web_socket("**/drive", hear)
+        page.goto(address)
+        page.locator("#status-text", has_text="joint6").wait_for()
+        for name, panel in itertools.product(SIZES, PANELS):
+            page.set_viewport_size({"width": SIZES[name][0], "height": SIZES[name][1]})
+            page.locator(f"input[name=panel][value={panel}]").evaluate("one => one.click()")
+            page.wait_for_timeout(120)
+            shown = ["#stop", "#enable", "#status", *PANELS[panel], "#gripper-open"]
+            assert page.evaluate(CUT_OFF, shown) == [], (name, panel)
+        context.close()
 
 
 @pytest.mark.parametrize("path", ["", "personalise", "teach"])

@@ -1,4 +1,4 @@
-"""A participant takes a study on the real page, from the link to the completion code, with two real arms."""
+"""A participant takes a study on the page, from the link to the completion code, with simulated arms."""
 
 import json
 from pathlib import Path
@@ -10,6 +10,7 @@ from latentarm_research.user_studies.recorded import read_recorded
 from study_participant import MODES, TWIST, definition, serving
 
 from .conftest import STICKS_OUT
+from .study_pages import drive_trial
 
 WITHIN_MS = 60_000
 
@@ -22,20 +23,6 @@ def looked_at(page: Page, heading: str) -> None:
     """This page is there, and fits on the screen."""
     page.get_by_role("heading", name=heading).wait_for(timeout=WITHIN_MS)
     assert page.evaluate(STICKS_OUT) == []
-
-
-def drive(page: Page) -> None:
-    """Hold a key until the trial is over; a busy computer may stop the arm, and it is enabled again."""
-    page.locator("#stick").focus()
-    for _ in range(100):
-        page.keyboard.press("Enter")
-        page.wait_for_timeout(100)
-        page.keyboard.down("ArrowUp")
-        page.wait_for_timeout(1200)
-        if page.url.endswith("/study"):
-            return
-        page.keyboard.up("ArrowUp")
-    raise AssertionError("the trial is never over")
 
 
 @pytest.mark.parametrize(("width", "height"), [(1280, 720), (390, 844)])
@@ -75,7 +62,8 @@ def test_a_participant_takes_a_study_on_the_page(
             press(page, "Begin")
             page.locator("#status[data-phase=disengaged]").wait_for(timeout=WITHIN_MS)
             assert page.get_by_role("button", name="Settings are locked").is_disabled()
-            drive(page)
+            page.locator("#stick").focus()
+            drive_trial(page)
             looked_at(page, "How was this way of driving?")
             for item in page.locator("fieldset").all():
                 item.get_by_label("6").check()

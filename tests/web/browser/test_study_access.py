@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, Locator, Page
 
-from latentarm_research.user_studies.recorded import read_recorded
 from study_participant import MODES, TWIST, definition, next_link, participant, serving
 
 from .conftest import STICKS_OUT, press_switch
+from .study_pages import assert_recorded, drive_trial
 from .test_access import found
 
 WITHIN_MS = 60_000
@@ -52,20 +52,6 @@ def reach(page: Page, wanted: Locator) -> None:
 def press(page: Page, role: str, name: str, key: str = "Enter") -> None:
     reach(page, page.get_by_role(role, name=name).first)  # type: ignore[arg-type]
     page.keyboard.press(key)
-
-
-def drive(page: Page) -> None:
-    """Hold a key until the trial is over; a busy computer may stop the arm, and it is enabled again."""
-    reach(page, page.locator("#stick"))
-    for _ in range(100):
-        page.keyboard.press("Enter")
-        page.wait_for_timeout(100)
-        page.keyboard.down("ArrowUp")
-        page.wait_for_timeout(1200)
-        if page.url.endswith("/study"):
-            return
-        page.keyboard.up("ArrowUp")
-    raise AssertionError("the trial is never over")
 
 
 def choose(page: Page, name: str) -> None:
@@ -111,7 +97,8 @@ def test_a_study_is_done_by_keyboard_alone(
             looked_at(page, "Marshmallows")
             press(page, "button", "Begin")
             page.locator("#status[data-phase=disengaged]").wait_for(timeout=WITHIN_MS)
-            drive(page)
+            reach(page, page.locator("#stick"))
+            drive_trial(page)
             looked_at(page, "How was this way of driving?")
             for item in page.locator("fieldset").all():
                 reach(page, item.get_by_label("1"))
@@ -121,9 +108,7 @@ def test_a_study_is_done_by_keyboard_alone(
         looked_at(page, "Thank you")
         context.close()
     assert faults == []
-    recorded = read_recorded(tmp_path / "people")
-    assert [one.points for one in recorded.answers] == [6] * 8
-    assert all(one.measures["path_length"] > 0.0 for one in recorded.trials)
+    assert_recorded(tmp_path / "people")
 
 
 def test_a_study_is_done_by_one_switch_alone(
@@ -164,9 +149,7 @@ def test_a_study_is_done_by_one_switch_alone(
         looked_at(page, "Thank you")
         page.context.close()
     assert faults == []
-    recorded = read_recorded(tmp_path / "people")
-    assert [one.points for one in recorded.answers] == [6] * 8
-    assert all(one.measures["path_length"] > 0.0 for one in recorded.trials)
+    assert_recorded(tmp_path / "people")
 
 
 def test_a_page_waits_in_the_queue_and_goes_on_by_itself(

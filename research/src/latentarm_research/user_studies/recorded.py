@@ -98,7 +98,7 @@ def read_recorded(
 
 
 def read_config(folder: Path) -> dict[str, Any]:
-    """The options of the study in a folder. Raises a `UserError` where there is none."""
+    """Read the options of a study. Raises a `UserError` if the folder holds no study."""
     if not (folder / CONFIG).exists():
         served = folder.name.removesuffix("-people")
         name = served if served in NAMES else "NAME"

@@ -76,7 +76,7 @@ class WaypointGuide:
             self._arrived_s = None
 
     def _in_vain(self, waypoint: Waypoint, state: SceneState, *, true: bool) -> bool:
-        """Whether nothing comes true there: the gripper has missed, or nothing is left to drive."""
+        """Return True if the step cannot go on: the grip missed, or no way is left without ``true``."""
         if waypoint.gripper == "close":
             return self._empty
         shift_m, turn_rad = _left(waypoint, state)

@@ -66,17 +66,17 @@ def go_on(
     for name, value in chosen.items():
         if value != before[name]:
             raise UserError(
-                f"The study in {out} began {_said(name, before[name])}, and this start is"
-                f" {_said(name, value)}: begin it as before, or choose another folder with --out."
+                f"The study in {out} began {_option_words(name, before[name])}, and this start is"
+                f" {_option_words(name, value)}: begin it as before, or choose another folder with --out."
             )
     usual = {name: field.default for name, field in KeptOptions.model_fields.items()}
     left_out = [name for name in given if name not in chosen and before[name] != usual[name]]
     if left_out:
-        say(f"As at the first start: {', '.join(_said(name, before[name]) for name in left_out)}.")
+        say(f"As at the first start: {', '.join(_option_words(name, before[name]) for name in left_out)}.")
     return kept
 
 
-def _said(name: str, value: object) -> str:
+def _option_words(name: str, value: object) -> str:
     option = f"--{name.replace('_', '-')}"
     if name == "information":
         return f"with {option} of SHA-256 {str(value)[:12]}"

@@ -80,7 +80,7 @@ class Store:
             return list(session.scalars(select(Place.code).order_by(Place.number)))
 
     def unused(self) -> str | None:
-        """The first code of ours by which nobody has come; None where there is none."""
+        """The first link code that nobody has used yet; None if all are used."""
         used = select(Person.link)
         with self._change() as session:
             free = select(Place.code).where(Place.code.not_in(used)).order_by(Place.number)

@@ -13,6 +13,8 @@ const SETTLE_MS = 120;
 const LOOK_MS = 200;
 /** What lasts shorter than this, ms, is not spoken. */
 const SPOKEN_MS = 1000;
+/** A sentence with more letters takes the room of the legend on a phone. */
+const LONG = 90;
 /** How long is said why a press does nothing, ms. */
 const REFUSED_MS = 4000;
 
@@ -62,6 +64,7 @@ export function attachStatus(parts, connection, settings) {
     });
     const [{ phase }, text] = [sentence, textOf(sentence)];
     parts.line.toggleAttribute("data-trouble", isTrouble(state));
+    parts.line.toggleAttribute("data-long", text.length > LONG);
     if (parts.line.dataset.phase !== phase) parts.line.dataset.phase = phase;
     // While the arm moves there is nothing to be done but to look.
     if (!document.hidden) speak(phase === "moving" ? "" : text);

@@ -22,8 +22,8 @@ export function directionChoices(best) {
 }
 
 /**
- * A choice that opens others, which are asked for only while it is open: some lists are long. Stop, where it is given, and the
- * way back stand among them. @param {string} id @param {string} label @param {() => Choice[]} inner @param {Choice[]} [always]
+ * A group of choices. Its members are computed when it opens, because some lists are long; Back, and `always`, such as Stop, are
+ * added to them. @param {string} id @param {string} label @param {() => Choice[]} inner @param {Choice[]} [always]
  */
 export function groupOf(id, label, inner, always = []) {
   const back = { id: `${id}-back`, label: say("scanning.back"), back: true };
