@@ -31,6 +31,8 @@ class Hand:
     speed: ClassVar[float] = 1.0
     """Chosen on the page, as a share of the full one."""
     touch: ClassVar[bool] = False
+    gives_up_s: ClassVar[float] = 300.0
+    """Nobody drives one task for longer."""
 
     def __init__(self, page: Page) -> None:
         self.page, self.presses = page, 0
@@ -118,7 +120,8 @@ class Pointer(Hand):
 
     def _click(self, where: str) -> None:
         self.presses += 1
-        self.page.locator(where).click(timeout=2000)
+        # A person presses what they see, whether or not it is ready.
+        self.page.locator(where).click(timeout=2000, force=True)
 
 
 class Finger(Pointer):
@@ -146,7 +149,7 @@ class Finger(Pointer):
 
     def _click(self, where: str) -> None:
         self.presses += 1
-        self.page.locator(where).tap(timeout=2000)
+        self.page.locator(where).tap(timeout=2000, force=True)
 
 
 class Buttons(Pointer):
@@ -194,6 +197,7 @@ class OneSwitch(Hand):
 
     settings: ClassVar = {"panel": "switch", "dwellS": 0.6}
     speed = 0.5
+    gives_up_s = 900.0
 
     def push(self, direction: str) -> None:
         self._choose(direction)

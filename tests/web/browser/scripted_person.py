@@ -36,7 +36,6 @@ SPEED: Final = {"cm": 15.0, "°": 28.0}
 
 READS_S: Final = 0.3
 SHORTEST_S: Final = 0.04
-GIVES_UP_S: Final = 300.0
 GRIPS_S: Final = 2.0
 """The gripper takes no longer than this to do what it was asked."""
 ACROSS: Final = 0
@@ -80,9 +79,9 @@ class Person:
         self._gripped_s = -math.inf
 
     def drive(self) -> str:
-        """Drive until the page says how the task ended, or for five minutes; the page's last sentence."""
+        """Drive until the page says how the task ended, or give up; the page's last sentence."""
         seen: dict[str, Any] = {"said": ""}
-        end_s = time.monotonic() + GIVES_UP_S
+        end_s = time.monotonic() + self.hand.gives_up_s
         while time.monotonic() < end_s:
             seen = self._page.evaluate(LOOK)
             if seen["said"].startswith(("Done!", "Too little is left")) or "try again" in seen["said"]:
