@@ -12,6 +12,8 @@ PUSH = {"up": (0, 1), "down": (0, -1), "left": (-1, 0), "right": (1, 0)}
 FULL = 0.4
 """A full push of the stick, in shares of its drawing."""
 TAP_S = 0.08
+PATIENCE_MS = 10_000.0
+"""A busy computer takes this long to show what is pressed."""
 SCANNED_MS = 12_000.0
 """All choices have been lit within this."""
 
@@ -121,7 +123,7 @@ class Pointer(Hand):
     def _click(self, where: str) -> None:
         self.presses += 1
         # A person presses what they see, whether or not it is ready.
-        self.page.locator(where).click(timeout=2000, force=True)
+        self.page.locator(where).click(timeout=PATIENCE_MS, force=True)
 
 
 class Finger(Pointer):
@@ -149,7 +151,7 @@ class Finger(Pointer):
 
     def _click(self, where: str) -> None:
         self.presses += 1
-        self.page.locator(where).tap(timeout=2000, force=True)
+        self.page.locator(where).tap(timeout=PATIENCE_MS, force=True)
 
 
 class Buttons(Pointer):
@@ -159,7 +161,7 @@ class Buttons(Pointer):
 
     def push(self, direction: str) -> None:
         self.presses += 1
-        self.page.locator(f"#dpad [data-direction={direction}]").hover(timeout=2000)
+        self.page.locator(f"#dpad [data-direction={direction}]").hover(timeout=PATIENCE_MS)
         self.page.mouse.down()
 
 
