@@ -16,8 +16,11 @@ SEEN_PX = 90
 PRACTISED = '{"practised": true}'
 SIZES = {
     "a laptop": (1280, 720),
+    "a laptop below the bars of its browser": (1366, 600),
     "200 %": (640, 360),
+    "a large screen at 200 %": (960, 540),
     "a phone": (390, 844),
+    "a phone below the bars of its browser": (390, 664),
     "a phone on its side": (844, 390),
 }
 PANELS = {"stick": ["#stick"], "dpad": ["#dpad"], "switch": ["#scan", "#switch"]}
