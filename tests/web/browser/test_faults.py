@@ -10,6 +10,11 @@ window.pad = { index: 0, id: "pad", mapping: "standard", connected: true, axes: 
 navigator.getGamepads = () => (window.pad ? [window.pad] : [null]);
 """
 
+LOSE_PICTURE = """
+window.picture = document.querySelector("#scene").getContext("webgl2").getExtension("WEBGL_lose_context");
+picture.loseContext();
+"""
+
 
 @pytest.fixture
 def push(arm, drag_stick, press_until_moving):
@@ -60,6 +65,7 @@ def test_letting_go_outside_the_window_stops_the_arm(enabled, arm, push):
             "Object.defineProperty(document, 'hidden', { value: false, configurable: true })",
             "was hidden",
         ),
+        (LOSE_PICTURE, "picture of the arm was gone"),
     ],
 )
 def test_a_doubtful_page_stops_the_arm_until_it_is_enabled_again(
@@ -76,6 +82,22 @@ def test_a_doubtful_page_stops_the_arm_until_it_is_enabled_again(
     press_enable(enabled, arm)
     push(enabled)
     enabled.mouse.up()
+
+
+def test_a_picture_that_was_lost_is_drawn_again(page):
+    def drawn():  # letters of the picture
+        return page.evaluate("document.querySelector('#scene').toDataURL().length")
+
+    page.locator(".label").first.wait_for(state="attached")
+    at_first = drawn()
+    page.evaluate(LOSE_PICTURE)
+    page.locator("#scene-lost", has_text="cannot draw").wait_for()
+    assert drawn() < at_first / 2
+    page.evaluate("picture.restoreContext()")
+    page.locator("#scene-lost").wait_for(state="hidden")
+    end_s = time.monotonic() + 10.0
+    while drawn() < at_first / 2:
+        assert time.monotonic() < end_s, "the arm was not drawn again"
 
 
 def test_another_window_in_front_stops_the_arm(enabled, arm, push):

@@ -193,6 +193,7 @@ input.addEventListener("change", showSoon);
 
 const draw = () => attachViews(settings, say("drive.cannot_draw"), (loaded) => {
   drawing = loaded;
+  byId("scene").addEventListener("webglcontextlost", () => input.halt("picture_lost"));
   drawing.pace(() => input.lateness.frameGapMs > 0, () => input.goFirst());
   show();
 });

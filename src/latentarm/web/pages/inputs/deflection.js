@@ -2,7 +2,7 @@
 
 /** @typedef {import("../connection/messages.js").DriverInput["source"]} Source */
 /** @typedef {"up" | "down" | "left" | "right"} Direction */
-/** @typedef {"focus_lost" | "page_closed" | "page_hidden" | "pointer_lost" | "gamepad_lost" | "dialog_opened" | "input_changed" | "switch_chatters"} HaltReason */
+/** @typedef {"focus_lost" | "page_closed" | "page_hidden" | "pointer_lost" | "gamepad_lost" | "dialog_opened" | "picture_lost" | "input_changed" | "switch_chatters"} HaltReason */
 /** @typedef {import("./drive_input.js").DriveInput | import("../personalise/answer_input.js").AnswerInput | (Deflection & {live: boolean, flowing: boolean, halt: () => void})} PersonInput */
 
 /** Full deflections: right, up. @type {Record<Direction, [number, number]>} */

@@ -13,13 +13,22 @@ export async function attachViews(settings, without, loaded, where = "") {
   const caption = /** @type {HTMLElement} */ (byId("view-front").querySelector("figcaption span"));
   const name = () => setText(caption, say(settings.values.seat === "facing" ? "views.front" : "views.shoulder"));
   whenever(settings, ["change"], name);
+  const lost = () => {
+    byId("scene-lost").hidden = false;
+    setText(byId("scene-lost"), without);
+  };
   try {
     const { Drawing } = await import("./drawing.js");
     const elements = { canvas: byId("scene", HTMLCanvasElement), front: byId("view-front"), side: byId("view-side") };
-    loaded(await Drawing.load(elements, where));
+    const drawing = await Drawing.load(elements, where);
+    elements.canvas.addEventListener("webglcontextlost", lost);
+    elements.canvas.addEventListener("webglcontextrestored", () => {
+      byId("scene-lost").hidden = true;
+      drawing.restore();
+    });
+    loaded(drawing);
   } catch (error) {
-    byId("scene-lost").hidden = false;
-    setText(byId("scene-lost"), without);
+    lost();
     console.error(error);
   }
 }

@@ -59,6 +59,11 @@ export class Drawing {
     return drawing;
   }
 
+  /** Draw again, after the browser had lost the picture. */
+  restore() {
+    this._views.restore();
+  }
+
   /**
    * True if the arm or a thing is somewhere else now. @param {State} state @param {Predicted} predicted @param {Direction[]} pressed
    * @param {Values} wanted @param {string | null} [thing] what the task is about now

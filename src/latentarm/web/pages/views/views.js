@@ -127,6 +127,13 @@ export class Views {
     this.invalidate();
   }
 
+  /** Draw again, after the graphics processor had lost everything. */
+  restore() {
+    this._fence = null;
+    this._renderer.setScissorTest(true);
+    this.layOut();
+  }
+
   /** Where a point is, CSS px from its left upper corner, and how many of them a metre has there. @param {View} view @param {THREE.Vector3} point m */
   project({ camera, width, height }, point) {
     const seen = point.clone().project(camera);
