@@ -18,9 +18,9 @@ from latentarm_research.studies.properties.figures import (
     in_mm,
     points,
 )
-from latentarm_research.studies.properties.motion_figures.catalogue import TASK_FIGURES
-from latentarm_research.studies.properties.motion_figures.shown import as_trained, spread_states, turned
+from latentarm_research.studies.properties.held_motion import DrawnModel, spread_states, turned
 from latentarm_research.studies.properties.preset import PRESETS
+from latentarm_research.studies.properties.study import TASK_FIGURES
 from latentarm_research.tasks.planar.catalogue import MOTIONS
 from latentarm_research.tasks.planar.paths import STEP_S
 from latentarm_research.tasks.planar.resolved_rate import plane_point
@@ -94,7 +94,7 @@ def assert_well_drawn(figure):
 
 
 @pytest.mark.parametrize("models", [(*MODELS, OURS), ("pca",)])
-@pytest.mark.parametrize("task", MOTIONS)
+@pytest.mark.parametrize("task", TASK_FIGURES)
 def test_a_task_is_drawn_with_the_models_that_there_are(task, models):
     figure = TASK_FIGURES[task](decoders_of(task, models), rows_of([task], models))
     assert_well_drawn(figure)
@@ -132,7 +132,7 @@ def test_models_that_differ_in_the_sign_of_z_alone_look_the_same():
     robot = planar(5)
     states = np.random.default_rng(0).normal(1.0, 0.1, (6, 5))
     decoders = {"vae": Turning(1, 5), "cvae": Turning(1, 5, gain=-1.0)}
-    one, other = turned(decoders, ("vae", "cvae"), states, lambda state: plane_point(robot, state)[..., 0])
+    one, other = turned(decoders, states, lambda state: plane_point(robot, state)[..., 0])
     z = np.array([[1.0]])
     np.testing.assert_allclose(one.hold(states, z, 0.1), other.hold(states, z, 0.1), atol=1e-15)
     ends = plane_point(robot, one.hold(states, z, STEP_S)[0])[..., 0]
@@ -141,7 +141,7 @@ def test_models_that_differ_in_the_sign_of_z_alone_look_the_same():
 
 def test_a_held_latent_action_leads_where_the_measures_say():
     robot, start = planar(5), np.full((2, 5), 0.3)
-    (model,) = as_trained({"scl": Turning(2, 5)}, ("vae", "scl"))
+    model = DrawnModel("scl", Turning(2, 5), 1.0)
     z = np.array([[1.0, 0.0], [0.5, -1.0]])
     states = model.hold(start, z, 0.2)
     paths = held_paths(model.decoder, start, z, robot.chain, STEP_S, round(0.2 / STEP_S))

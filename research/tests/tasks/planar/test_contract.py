@@ -16,7 +16,6 @@ def task_jacobian(motion, state):
 def test_names_are_those_of_the_table(motion):
     assert MOTIONS[motion.name] is type(motion)
     assert 1 <= motion.latent_dim < motion.robot.dof
-    assert all(line.ndim == 2 and line.shape[1] == 2 for line in motion.guides)
 
 
 def test_demonstrations_are_of_the_robot_with_a_recorded_action_at_every_state(motion, shown):

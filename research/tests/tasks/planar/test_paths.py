@@ -65,7 +65,7 @@ def test_rotate_keeps_both_grippers_on_a_box_whose_middle_rests():
             left, right = (plane_point(motion.robot, reached, tool) for tool in (0, 1))
             np.testing.assert_allclose(np.linalg.norm(left - right, axis=-1), BOX_WIDTH_M, atol=2 * slack)
             assert np.ptp((left + right) / 2, axis=0).max() < 4 * slack
-            headings = motion.headings(reached)
+            headings = motion.constraint.coordinates(reached)[:, [2, 5]]
             np.testing.assert_allclose(headings[:, 0], headings[:, 1], atol=1e-6)
             # The grippers' heading is the box's.
             side = left - right
@@ -84,7 +84,7 @@ def test_rotate_puts_the_box_elsewhere_every_time():
 
 def test_reach_goes_straight_from_the_start_side_into_the_region():
     motion = ReachRegion()
-    outline = motion.guides[0]
+    outline = motion.region
     low, high = outline.min(axis=0), outline.max(axis=0)
     for state, following, slack in states_and_next(motion):
         place = plane_point(motion.robot, state)
@@ -101,7 +101,7 @@ def test_reach_goes_straight_from_the_start_side_into_the_region():
 
 def test_reach_samples_goals_in_its_region_and_starts_apart_from_it():
     motion, rng = ReachRegion(), np.random.default_rng(0)
-    outline = motion.guides[0]
+    outline = motion.region
     goals, starts = motion.sample_goals(200, rng), motion.sample_starts(200, rng)
     assert goals.shape == starts.shape == (200, 2)
     assert (goals >= outline.min(axis=0)).all()

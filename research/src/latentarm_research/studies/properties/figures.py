@@ -1,4 +1,4 @@
-"""The paper's figures next to ours, and what the figures of the tasks draw of the rows."""
+"""The paper's figures next to ours, and what the figures of tasks draw of the rows."""
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Final, NamedTuple
@@ -105,11 +105,6 @@ def draw_paper(axes: "Axes", place: float, figure: Point, left: float) -> None:
     axes.plot(figure.paper, place, "d", markersize=5.0, color="white", markeredgecolor="black", zorder=6)
 
 
-def beside(figures: Mapping[str, Point]) -> str:
-    """What the axis' label adds where figures of the paper are drawn."""
-    return f"   {PAPER_SIGN}" if any(figure.paper is not None for figure in figures.values()) else ""
-
-
 def draw_losses(
     axes: "Axes",  # where to draw
     rows: Sequence[Row],  # of the study; those of other tasks and measures are passed over
@@ -119,7 +114,8 @@ def draw_losses(
     losses = points(rows, task, "median_error_percent_of_pca")
     draw_points(axes, losses, log_axis(axes, losses.values()))
     title(axes, "median test loss, mean ± SD", "A")
-    axes.set_xlabel(f"% of PCA's{beside(losses)}")
+    papers = f"   {PAPER_SIGN}" if any(one.paper is not None for one in losses.values()) else ""
+    axes.set_xlabel(f"% of PCA's{papers}")
 
 
 COMPARED: Final = (

@@ -17,9 +17,10 @@ from latentarm_research.studies.properties.figures import (
     beside_paper_figure,
 )
 from latentarm_research.studies.properties.hypotheses import HYPOTHESES, LINEAR, MARK, compare_models
-from latentarm_research.studies.properties.motion_figures.catalogue import TASK_FIGURES
 from latentarm_research.studies.properties.paper import with_paper
 from latentarm_research.studies.properties.preset import PRESETS, Preset
+from latentarm_research.studies.properties.reach_figure import reach_figure
+from latentarm_research.studies.properties.sine_figure import sine_figure
 from latentarm_research.studies.properties.tables import (
     UNIT_NOT_STATED,
     cells_table,
@@ -34,6 +35,9 @@ from latentarm_research.tasks.planar.paths import STEP_S
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+TASK_FIGURES: Final = {"sine": sine_figure, "reach": reach_figure}
+"""What one decoder of each model, of the first seed, does on a task."""
 
 
 def _measure(request: Request[Preset], grid: Grid) -> list[PropertiesResult]:
@@ -74,9 +78,9 @@ def _series(result: PropertiesResult) -> list[Series]:
 def _figures(
     results: Sequence[PropertiesResult], rows: Sequence[Row], tasks: Sequence[str]
 ) -> "dict[str, Figure]":
-    """Those over all tasks, and one for each task."""
+    """That over all tasks, and those of `TASK_FIGURES`."""
     figures = {"beside_paper": beside_paper_figure(rows, tasks)}
-    for task in tasks:
+    for task in [task for task in tasks if task in TASK_FIGURES]:
         here = [one for one in results if one.cell.task == task]
         figures[task] = TASK_FIGURES[task]({one.cell.model: one.decoder for one in here}, rows)
     return figures

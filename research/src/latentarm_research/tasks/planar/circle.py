@@ -35,12 +35,6 @@ class Circle(OneArm):
         """Centre (2,) of the circles, m."""
         return plane_point(self.robot, curled(self.robot))
 
-    @property
-    def guides(self) -> tuple[FloatArray, ...]:
-        """The smallest circle, the largest, and one between."""
-        angle = np.linspace(0.0, 2 * np.pi, 100)
-        return tuple(self._place(np.full(100, radius), angle) for radius in np.linspace(*RADII_M, 3))
-
     def paths(self, count: int, rng: np.random.Generator) -> Path:
         """Strokes along circles and between them, in turn."""
         polar = np.array([_strokes(rng) for _ in range(count)])

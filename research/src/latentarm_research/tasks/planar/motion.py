@@ -47,12 +47,6 @@ DESIGN: Final = Design()
 """The design of the study."""
 
 
-def outline(middle: FloatArray, depth_m: float, width_m: float) -> FloatArray:
-    """The closed outline (5, 2) of a rectangle about a middle (2,), m: along x and along y."""
-    corner = np.array([[-1, -1], [-1, 1], [1, 1], [1, -1], [-1, -1]])
-    return middle + corner * (depth_m / 2, width_m / 2)
-
-
 class PlanarMotion(ABC):
     """A continuous motion to be demonstrated and learned, without discrete goals.
 
@@ -69,11 +63,6 @@ class PlanarMotion(ABC):
 
     def __init__(self, robot: Robot, design: Design) -> None:
         self.robot, self.design = robot, design
-
-    @property
-    @abstractmethod
-    def guides(self) -> tuple[FloatArray, ...]:
-        """Lines that show the task in a figure, each (K, 2) in the plane, m."""
 
     @property
     @abstractmethod

@@ -11,7 +11,7 @@ from typing import final
 import numpy as np
 
 from latentarm.core.types import FloatArray
-from latentarm_research.tasks.planar.motion import OneArm, outline
+from latentarm_research.tasks.planar.motion import OneArm
 from latentarm_research.tasks.planar.paths import Path, Timed
 from latentarm_research.tasks.planar.resolved_rate import curled, plane_point
 
@@ -35,14 +35,15 @@ class ReachRegion(OneArm):
     duration_s = DURATION_S
 
     @property
-    def guides(self) -> tuple[FloatArray, ...]:
-        """The outline of the goal region."""
-        return (outline(self._region, DEPTH_M, WIDTH_M),)
+    def region(self) -> FloatArray:
+        """The closed outline (5, 2) of the goal region, m."""
+        corner = np.array([[-1, -1], [-1, 1], [1, 1], [1, -1], [-1, -1]])
+        return self._goal + corner * (DEPTH_M / 2, WIDTH_M / 2)
 
     def sample_goals(self, count: int, rng: np.random.Generator) -> FloatArray:
         """Places (count, 2) in the goal region, m."""
         offset = rng.uniform(-0.5, 0.5, (count, 2)) * (DEPTH_M, WIDTH_M)
-        return self._region + offset
+        return self._goal + offset
 
     def sample_starts(self, count: int, rng: np.random.Generator) -> FloatArray:
         """Places (count, 2) to begin from, m."""
@@ -59,5 +60,5 @@ class ReachRegion(OneArm):
         return plane_point(self.robot, curled(self.robot))
 
     @property
-    def _region(self) -> FloatArray:
+    def _goal(self) -> FloatArray:
         return self._middle + np.array([DISTANCE_M / 2, 0.0])

@@ -13,12 +13,11 @@ import numpy as np
 from latentarm.core.types import FloatArray, Pose
 from latentarm.robots.planar import planar
 from latentarm.robots.robot import Robot
-from latentarm_research.tasks.planar.motion import DEMONSTRATION_S, DESIGN, Design, PlanarMotion, outline
+from latentarm_research.tasks.planar.motion import DEMONSTRATION_S, DESIGN, Design, PlanarMotion
 from latentarm_research.tasks.planar.paths import Paced, Path
 from latentarm_research.tasks.planar.resolved_rate import Constraint
 
 BOX_WIDTH_M: Final = 0.2
-BOX_DEPTH_M: Final = 0.12
 PLACE_M: Final = (0.62, 0.0)
 PLACE_SPREAD_M: Final = 0.05
 """How far the middle of the box lies from its nominal place at most, along x and along y."""
@@ -44,15 +43,6 @@ class Rotate(PlanarMotion):
 
     def __init__(self, design: Design = DESIGN) -> None:
         super().__init__(planar(5, arms=2), design)
-
-    @property
-    def guides(self) -> tuple[FloatArray, ...]:
-        """The box in its nominal place."""
-        return (outline(np.array(PLACE_M), BOX_DEPTH_M, BOX_WIDTH_M),)
-
-    def headings(self, state: FloatArray) -> FloatArray:
-        """Headings (..., 2) of the left and the right gripper at states (..., 10), rad."""
-        return np.stack([_head(self.robot.chain.forward(state, arm)) for arm in (0, 1)], axis=-1)
 
     @property
     def nominal(self) -> FloatArray:

@@ -29,11 +29,6 @@ class Sine(OneArm):
     words = "move along the sine wave"
     latent_dim = 1  # along the wave
 
-    @property
-    def guides(self) -> tuple[FloatArray, ...]:
-        """The wave."""
-        return (self.curve(np.linspace(-HALF_LENGTH_M, HALF_LENGTH_M, 200)),)
-
     def curve(self, along: FloatArray) -> FloatArray:
         """Points (..., 2) of the wave, m, at distances (...,) to the right of its middle, m."""
         wave = AMPLITUDE_M * np.sin(2 * np.pi * along / WAVELENGTH_M)

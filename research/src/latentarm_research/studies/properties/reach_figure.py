@@ -10,13 +10,7 @@ from latentarm.core.types import FloatArray, Row
 from latentarm.evaluation.effects import axis_grid
 from latentarm_research.studies.drawing import draw_arm, plane, row_of_panels, stacked_parts, title
 from latentarm_research.studies.properties.figures import draw_losses, draw_points, in_mm, log_axis, points
-from latentarm_research.studies.properties.motion_figures.shown import (
-    CONTRASTED,
-    Decoders,
-    DrawnModel,
-    passed_states,
-    turned,
-)
+from latentarm_research.studies.properties.held_motion import Decoders, DrawnModel, passed_states, turned
 from latentarm_research.tasks.planar.reach import DISTANCE_M, DURATION_S, ReachRegion
 from latentarm_research.tasks.planar.resolved_rate import plane_point
 
@@ -38,7 +32,7 @@ def reach_figure(decoders: Decoders, rows: Sequence[Row]) -> "Figure":
     """
     motion = ReachRegion()
     states = passed_states(motion)
-    shown = turned(decoders, CONTRASTED, states, lambda state: plane_point(motion.robot, state)[..., 1])
+    shown = turned(decoders, states, lambda state: plane_point(motion.robot, state)[..., 1])
     figure = new_figure(sum(PARTS_MM), TWO_COLUMNS_MM)
     figure.suptitle("Reach: a simulated planar arm of 5 joints, 1-D latent action", fontsize=FONT_SIZE)
     parts = stacked_parts(figure, PARTS_MM)
@@ -57,15 +51,13 @@ def reach_figure(decoders: Decoders, rows: Sequence[Row]) -> "Figure":
 
 def _middle_start(motion: ReachRegion, states: FloatArray) -> FloatArray:
     """A state (n,) at the middle of the start side."""
-    (outline,) = motion.guides
-    wanted = outline[:-1].mean(axis=0) - (DISTANCE_M, 0.0)
+    wanted = motion.region[:-1].mean(axis=0) - (DISTANCE_M, 0.0)
     return states[np.argmin(np.linalg.norm(plane_point(motion.robot, states) - wanted, axis=-1))]
 
 
 def _draw_reach_paths(axes: "Axes", motion: ReachRegion, model: DrawnModel, start: FloatArray) -> None:
     """The arm at the start, the goal region, and the tool's path for each value of z."""
-    (outline,) = motion.guides
-    axes.fill(*outline.T, facecolor=REGION_COLOUR, edgecolor="black", linewidth=0.8, zorder=1)
+    axes.fill(*motion.region.T, facecolor=REGION_COLOUR, edgecolor="black", linewidth=0.8, zorder=1)
     paths = plane_point(motion.robot, model.hold(start[None], HELD[:, None], DURATION_S)[:, 0])
     draw_arm(axes, motion.robot, start)
     for z, path in zip(HELD, paths, strict=True):
