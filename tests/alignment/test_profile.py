@@ -92,7 +92,7 @@ def test_a_profile_of_an_older_version_is_still_read(run, curved_model, arm, ans
     """Schema 1 held a network."""
     answers = answered(4)
     config = FitConfig(hidden=(8, 8), steps=2)
-    network = fit_alignments(curved_model, arm.chain, [answers], answers.motions.context, config).best
+    (network,) = fit_alignments(curved_model, arm.chain, [answers], answers.motions.context, config)
     content = save({name: np.ascontiguousarray(array) for name, array in network.tensors.items()})
     (run / TENSORS).write_bytes(content)
     sizes = {"latent": 2, "context": 4, "hidden": [8, 8], "sha256": hashlib.sha256(content).hexdigest()}

@@ -95,7 +95,7 @@ def test_the_list_of_studies(run: Run) -> None:
     [
         ("properties", MOTIONS, PRESETS),
         ("shared-autonomy", TASKS, shared_autonomy.PRESETS),
-        ("alignment", alignment.TASKS, alignment_preset.PRESETS),
+        ("alignment", alignment.STUDY.tasks, alignment_preset.PRESETS),
         ("tasks", moved.TASKS, tasks_preset.PRESETS),
     ],
 )

@@ -8,7 +8,7 @@ from latentarm.core.errors import UserError
 from latentarm.core.types import Context
 from latentarm.robots.catalogue import load_robot
 from latentarm_research.people.boltzmann import BoltzmannConfig, OneStep
-from latentarm_research.people.contract import UNLIMITED, KnowsTheArm, LoopLimits, Moment, Settled
+from latentarm_research.people.contract import UNLIMITED, KnowsTheArm, LoopLimits, Moment
 from latentarm_research.people.person import Person, SimulatedPerson
 
 PLANAR = load_robot("planar")
@@ -28,7 +28,7 @@ def outlook(controller, mode=0, time_s=0.0, **changes):
     """What they could do here, and how likely each is."""
     decision = OneStep(replace(BoltzmannConfig(), decision_s=0.05, **changes), period_s=0.05)
     moment = Moment(HERE, mode, AHEAD, np.zeros(controller.input_dim))
-    knows, rng = Settled(KnowsTheArm(PLANAR.chain, UNLIMITED)), np.random.default_rng(0)
+    knows, rng = KnowsTheArm(PLANAR.chain, UNLIMITED), np.random.default_rng(0)
     for _ in range(round(time_s / 0.05)):
         decision.decide(moment, controller, knows, rng)
     return decision.outlook(moment, controller, knows, rng)
@@ -104,7 +104,7 @@ def test_what_another_mode_gains_is_worth_a_switch_where_it_must_be_near(within_
     decision = OneStep(BoltzmannConfig(), period_s=0.01)
     context = Context(robot.home, np.zeros(0))
     moment = Moment(context, 1, aside, np.zeros(2), within_m)
-    knows = Settled(KnowsTheArm(robot.chain, UNLIMITED))
+    knows = KnowsTheArm(robot.chain, UNLIMITED)
     seen = decision.outlook(moment, EndEffectorController(robot), knows, np.random.default_rng(0))
     # Ten times per second; without reason it is 0.04.
     assert seen.switch > 0.1 if switches else seen.switch < 0.04
@@ -162,7 +162,7 @@ def test_who_knows_the_arm_knows_how_fast_it_may_go(planar, one_mode):
         target = pose_after([away_rad, 0.0, 0.0, 0.0, 0.0])
         knows, moment = KnowsTheArm(planar.chain, LoopLimits(speed=0.5)), Moment(HERE, 0, target, np.zeros(2))
         decision = OneStep(BoltzmannConfig(rotation_weight=0.0), period_s=0.05)
-        seen = decision.outlook(moment, fast, Settled(knows), np.random.default_rng(0))
+        seen = decision.outlook(moment, fast, knows, np.random.default_rng(0))
         nearest = np.linalg.norm(reached - target.position, axis=1).min()
         assert seen.left_m == pytest.approx(nearest, abs=0.05 * seen.rest_m)
 

@@ -8,7 +8,7 @@ import pytest
 from latentarm.core.errors import UserError
 from latentarm.core.types import Context
 from latentarm_research.people.boltzmann import BoltzmannConfig, OneStep
-from latentarm_research.people.contract import KnowsTheArm, LoopLimits, Moment, Settled
+from latentarm_research.people.contract import KnowsTheArm, LoopLimits, Moment
 from latentarm_research.people.linear_guess import LinearGuessConfig
 from latentarm_research.people.motor_noise import UNSTEADY, Hand, HandConfig
 from latentarm_research.people.page_rates import PAGE
@@ -37,7 +37,7 @@ def driven(person, robot, controller, calls, turn=0.4, seed=0):
 
 def test_a_person_without_the_new_traits_is_the_old_one_to_the_bit(planar, two_modes):
     decision = OneStep(BoltzmannConfig(), PERIOD_S, LIMITS.dead_zone)
-    imagination, hand = Settled(KnowsTheArm(planar.chain, LIMITS)), Hand(UNSTEADY, PERIOD_S)
+    imagination, hand = KnowsTheArm(planar.chain, LIMITS), Hand(UNSTEADY, PERIOD_S)
     rng, state, mode, u = np.random.default_rng(0), planar.home.copy(), 0, np.zeros(2)
     target = planar.chain.forward(planar.home + 0.4)
     expected = []

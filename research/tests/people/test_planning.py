@@ -7,7 +7,7 @@ from latentarm.core.types import Context
 from latentarm.robots.planar import planar
 from latentarm_research.people.boltzmann import BoltzmannConfig
 from latentarm_research.people.contract import UNLIMITED, LoopLimits
-from latentarm_research.people.expectation import Expectation
+from latentarm_research.people.linear_guess import LinearGuessConfig
 from latentarm_research.people.person import Person, SimulatedPerson
 from latentarm_research.people.planning import PlanningConfig
 
@@ -122,6 +122,5 @@ def test_the_same_randomness_gives_the_same_drive():
 
 
 def test_only_who_knows_the_arm_plans():
-    guess = Expectation(ARM.chain, np.eye(3)[:2], 0.1)
     with pytest.raises(UserError, match="knows the arm"):
-        Person(imagines=guess, plans=PlanningConfig())
+        Person(imagines=LinearGuessConfig(), plans=PlanningConfig())

@@ -2,7 +2,9 @@
 
 import re
 import shutil
+from math import cos, radians, sin
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,8 +12,8 @@ from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import expect
 
 from latentarm.alignment.demonstrated import demonstrated_motions
+from latentarm.runs.asking import FASTEST
 from latentarm.runs.folder import read_run, robot_of
-from latentarm_research.studies.alignment.drives_learning import turned_person
 
 from .conftest import ask_to_drive, set_up
 
@@ -52,10 +54,17 @@ def arm(watch, address):
 
 @pytest.fixture
 def person(run):
-    """A simulated person whose stick is turned by 60 degrees and mirrored, as in the drives of the study."""
+    """Simulated: means the two main directions of the tool on a stick turned by 60 degrees and mirrored."""
     known = read_run(run)
     motions = demonstrated_motions(known.dataset(), 10**9, np.random.default_rng(0))
-    return turned_person(motions, robot_of(known).chain)
+    chain = robot_of(known).chain
+    moved = chain.forward(motions.end).position - chain.forward(motions.start).position
+    main = np.linalg.svd(moved, full_matrices=False)[2][:2]
+    main *= np.sign(main[np.arange(2), np.abs(main).argmax(axis=1)])[:, None]
+    speed_m_s = np.quantile(np.abs(moved @ main.T).max(axis=1), FASTEST) / motions.duration_s
+    turn = radians(60.0)
+    directions = np.array([[cos(turn), sin(turn)], [sin(turn), -cos(turn)]]) @ main
+    return SimpleNamespace(directions=directions, speed_m_s=speed_m_s)
 
 
 def found(page):

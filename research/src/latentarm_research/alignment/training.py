@@ -21,8 +21,6 @@ from latentarm.robots.kinematics.chain import Chain
 from latentarm_research.alignment.loss import ANSWERS_AT_ONCE, AlignmentLoss, Draw
 from latentarm_research.alignment.priors import NO_PRIORS, Priors
 
-JUDGED: Final = 512  # contexts in which all runs are judged at the end
-JUDGE: Final = 0  # the seed that they are drawn from
 CHECK_EVERY: Final = 250  # steps between two looks at the answers that are held out
 
 
@@ -49,22 +47,6 @@ class FitConfig:
             raise UserError(f"A share of answers is held out, 0 or more and below 1, not {self.held_out:g}.")
 
 
-@final
-@dataclass(frozen=True, eq=False)
-class FittedAlignments:
-    """S learned alignments."""
-
-    alignments: tuple[LearnedAlignment, ...]  # S of them
-    # (S,), of equation 23 at the end, all runs judged in the same contexts, relative to the mean squared
-    # length of the motions
-    loss: FloatArray
-
-    @property
-    def best(self) -> LearnedAlignment:
-        """The alignment with the lowest loss."""
-        return self.alignments[int(self.loss.argmin())]
-
-
 def fit_alignments(
     model: LatentActionModel,
     chain: Chain,
@@ -72,13 +54,12 @@ def fit_alignments(
     unlabelled: FloatArray,  # (M, c), contexts in which the priors apply
     config: FitConfig | None = None,  # how; the defaults where None
     *,
-    seed_index: int = 0,
     seeds: Sequence[int] | None = None,  # S, of the weights and draws of each run; 0..S-1 where None
-) -> FittedAlignments:
-    """Learn an alignment for each run, all runs together."""
+) -> tuple[LearnedAlignment, ...]:
+    """Learn an alignment for each of S runs, all together, for the first of the model's seeds."""
     config = config or FitConfig()
     seeds = range(len(answers)) if seeds is None else seeds
-    decoder = model.torch_decoder(seed_index)
+    decoder = model.torch_decoder(0)
     if decoder.layout.sees_tool_frame:
         raise UserError(
             "The network f of the paper does not take poses in the tool's frame: align in the space of the"
@@ -105,19 +86,14 @@ def fit_alignments(
                 kept.look(networks)
     if kept is not None:
         kept.restore(networks)
-    with torch.no_grad():
-        # The same draws for every run, so that their losses compare.
-        judged = loss.draws([JUDGE] * len(seeds), 1, JUDGED)
-        final = loss(networks.networks, Draw(*(part[0] for part in judged))).double().numpy()
     weights = networks.arrays(networks.values)
-    if not np.isfinite(final).all():
+    if not all(np.isfinite(array).all() for array in weights.values()):
         raise UserError(f"The alignment diverged: lower its learning rate ({config.learning_rate:g}).")
     normaliser = decoder.contexts.tensors()
-    alignments = tuple(
+    return tuple(
         LearnedAlignment({**{name: array[run] for name, array in weights.items()}, **normaliser})
         for run in range(len(seeds))
     )
-    return FittedAlignments(alignments, final)
 
 
 def _divided(answers: Sequence[Answers], held_out: float) -> tuple[list[Answers], list[Answers]]:

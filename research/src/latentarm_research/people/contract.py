@@ -60,36 +60,6 @@ Foresight = Callable[[FloatArray, Context, Controller, Sequence[int], float], Po
 An input of zero leaves the tool where it is."""
 
 
-@final
-class KnowsTheArm:
-    """The ``Psi(s + phi(f(u, c), c) dt)`` of equation 24: they know exactly what each input does."""
-
-    def __init__(
-        self,
-        chain: Chain,  # the arm; only its first tool counts
-        limits: LoopLimits,
-    ) -> None:
-        self._chain = chain
-        self._limits = limits
-
-    def __call__(
-        self,
-        inputs: FloatArray,
-        context: Context,
-        controller: Controller,
-        modes: Sequence[int],
-        horizon_s: float,
-    ) -> Pose:
-        """Where the controller takes the tool."""
-        actions = np.stack(
-            [controller.action(controller.latent(inputs, context, m), context, m) for m in modes]
-        )
-        # The arm of a person who lets go stands still, whatever phi(0, c) is.
-        actions[:, ~self._limits.is_push(inputs)] = 0.0
-        # One call over all modes: (M, K, n).
-        return self._chain.forward(context.state + horizon_s * self._limits.slowed(actions))
-
-
 class Imagination(ABC):
     """What a simulated person imagines, which may change with what they see."""
 
@@ -107,11 +77,16 @@ class Imagination(ABC):
 
 
 @final
-class Settled(Imagination):
-    """Always expects the same, whatever happens."""
+class KnowsTheArm(Imagination):
+    """The ``Psi(s + phi(f(u, c), c) dt)`` of equation 24: they know exactly what each input does."""
 
-    def __init__(self, foresight: Foresight) -> None:
-        self._foresight = foresight
+    def __init__(
+        self,
+        chain: Chain,  # the arm; only its first tool counts
+        limits: LoopLimits,
+    ) -> None:
+        self._chain = chain
+        self._limits = limits
 
     def reset(self) -> None:
         """Nothing was learned."""
@@ -121,7 +96,24 @@ class Settled(Imagination):
 
     def foresight(self, rng: np.random.Generator) -> Foresight:
         """The same as ever."""
-        return self._foresight
+        return self.expected
+
+    def expected(
+        self,
+        inputs: FloatArray,
+        context: Context,
+        controller: Controller,
+        modes: Sequence[int],
+        horizon_s: float,
+    ) -> Pose:
+        """Where the controller takes the tool."""
+        actions = np.stack(
+            [controller.action(controller.latent(inputs, context, m), context, m) for m in modes]
+        )
+        # The arm of a person who lets go stands still, whatever phi(0, c) is.
+        actions[:, ~self._limits.is_push(inputs)] = 0.0
+        # One call over all modes: (M, K, n).
+        return self._chain.forward(context.state + horizon_s * self._limits.slowed(actions))
 
 
 class Decision(ABC):

@@ -28,9 +28,9 @@ class Person:
 
     # how they think of one step (equation 24)
     decides: BoltzmannConfig = field(default_factory=BoltzmannConfig)
-    # where they expect an input to lead: a foresight that never changes, how they learn a linear guess, or
-    # how they read the page's ring; None knows the arm and its decoder exactly
-    imagines: contract.Foresight | LinearGuessConfig | RingReadingConfig | None = None
+    # where they expect an input to lead: by a linear guess that they learn, or by the page's ring that they
+    # read; None knows the arm and its decoder exactly
+    imagines: LinearGuessConfig | RingReadingConfig | None = None
     plans: PlanningConfig | None = None  # how far they plan where one step leads no nearer; None never plans
     hand: HandConfig = field(default_factory=HandConfig)  # how late and how unsteady their hand is
     speed: OwnSpeed = field(default_factory=OwnSpeed)  # how fast they like to go
@@ -115,7 +115,7 @@ def _imagination(
         return LinearGuess(robot.chain, person.imagines, period_s)
     if isinstance(person.imagines, RingReadingConfig):
         return RingReading(robot.chain, person.imagines, limits)
-    return contract.Settled(person.imagines or contract.KnowsTheArm(robot.chain, limits))
+    return contract.KnowsTheArm(robot.chain, limits)
 
 
 def _decision(

@@ -44,8 +44,8 @@ STUDIES: Final[Mapping[str, Entry]] = {
     ),
     "alignment": Entry(
         "Learn from few answers what simulated people mean by their stick (section 8.3).",
-        ("plane", "pour", "reach_and_pour", "table_top"),
-        "One of the paper's tasks, drives at the demo's table, or all of it.",
+        ("plane", "pour", "reach_and_pour"),
+        "One of the paper's tasks, or all three.",
         {"paper": _PAPER, "smoke": _SMOKE},
     ),
     "tasks": Entry(

@@ -92,7 +92,7 @@ def learn_alignments(
     asked = candidates[np.array(order_of_questions(chain, candidates, min(queries, len(candidates))))]
     answers = [_answers(meaning, one, asked, rng) for one in people]
     learned: dict[Aligns, tuple[Alignment, ...]] = {
-        way: fit_alignments(model, chain, answers, unlabelled, FitConfig(PRIORS[way], steps=steps)).alignments
+        way: fit_alignments(model, chain, answers, unlabelled, FitConfig(PRIORS[way], steps=steps))
         for way in aligns
     }
     return Aligned(meaning.usual, learned)

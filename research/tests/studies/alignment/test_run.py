@@ -10,10 +10,9 @@ from latentarm_research.studies.alignment.preset import (
     IDEAL,
     PRESETS,
     Curves,
-    Drives,
     Preset,
 )
-from latentarm_research.studies.alignment.study import STUDY, TASKS
+from latentarm_research.studies.alignment.study import STUDY
 from latentarm_research.studies.page import PDF
 from latentarm_research.studies.results_folder import CONFIG
 from latentarm_research.studies.study import ALWAYS_MADE, Request, run_study
@@ -35,7 +34,6 @@ TINY = Preset(
     ideal_steps=2,
     surroundings=40,
     curves=Curves(noises=(0.0,), answers=(1, 4), networks=(4,), candidates=8),
-    drives=Drives(seeds=1, episodes=6, epochs=1, answers=2, to_each_goal=1, limit_s=0.2),
 )
 
 
@@ -79,33 +77,23 @@ def test_the_folder_holds_what_was_made_and_the_page_reads_by_itself(done):
         CONFIG,
         *(set(ALWAYS_MADE) - {PDF}),
         *STUDY.documents,
-        *(f"{name}.png" for name in STUDY.figures if name != "drives"),
+        *(f"{name}.png" for name in STUDY.figures),
     }
     page = (out / "results.md").read_text()
     assert "**simulated**" in page
     assert "--preset tiny --task plane --seed 0" in page
     for words in ("H1", "H2", "H3", *CONDITIONS, "Where asking stops"):
         assert words in page
-    for name in STUDY.figures[:2]:
+    for name in STUDY.figures:
         assert f"]({name}.png)" in page
-    assert "Drives to the goals" not in page
     timings = json.loads((out / "timings.json").read_text())
     assert timings["one_alignment"][0]["tool_space_call_s"] > 0
     runs = json.loads((out / "runs.json").read_text())
     assert all(len(one["values"]) in (1, 2) for one in runs)
 
 
-def test_drives_alone_are_a_page_of_their_own(tmp_path):
-    rows = run_study(STUDY, tiny(tmp_path / "run", tasks=("table_top",))).rows
-    assert {row.task for row in rows} == {"table_top"}
-    page = (tmp_path / "run" / "results.md").read_text()
-    assert "## Drives to the goals of the demo" in page
-    assert "Tests of the hypotheses" not in page
-    assert {path.name for path in (tmp_path / "run").glob("*.png")} == {"drives.png"}
-
-
 def test_the_paper_preset_has_the_papers_numbers():
     paper = PRESETS["paper"]
     assert (paper.answers, paper.ideal_answers, paper.unlabelled, paper.runs) == (10, 1000, 1000, 10)
     assert paper.noises == (0.0, 0.1, 0.5)
-    assert TASKS[:3] == ("plane", "pour", "reach_and_pour")
+    assert STUDY.tasks == ("plane", "pour", "reach_and_pour")

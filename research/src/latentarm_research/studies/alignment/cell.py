@@ -50,7 +50,7 @@ def measure_cell(cell: AlignmentCell) -> AlignmentErrors:
         began = perf_counter()
         fitted = scene.learn(few, FitConfig(priors, steps=preset.steps), runs)
         learn_s[name] = perf_counter() - began
-        errors[name] = scene.errors(fitted.alignments)
+        errors[name] = scene.errors(fitted)
     began = perf_counter()
     alignments = [scene.in_tool_space(answers) for answers in few]
     learn_s[ways.TOOL_SPACE] = perf_counter() - began
@@ -68,7 +68,7 @@ def measure_cell(cell: AlignmentCell) -> AlignmentErrors:
         ask(preset.ideal_answers)[: preset.ideal_runs], ideal_config(preset), runs[: preset.ideal_runs]
     )
     learn_s[ways.IDEAL] = perf_counter() - began
-    errors[ways.IDEAL] = scene.errors(ideal.alignments)
+    errors[ways.IDEAL] = scene.errors(ideal)
     return AlignmentErrors(cell, errors, scene.encoded(), learn_s)
 
 

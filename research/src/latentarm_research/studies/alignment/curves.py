@@ -83,4 +83,4 @@ def _stop(scene: Scene, said: Answers, order: Sequence[int]) -> int:
 def _with_priors(cell: AlignmentCell, scene: Scene, said: Sequence[Answers], count: int) -> FloatArray:
     """Relative errors (R,) of All Priors with the first answers, which are at random."""
     answers = [one[np.arange(count)] for one in said]
-    return scene.errors(scene.learn(answers, FitConfig(steps=cell.preset.steps), range(len(said))).alignments)
+    return scene.errors(scene.learn(answers, FitConfig(steps=cell.preset.steps), range(len(said))))

@@ -1,4 +1,4 @@
-"""The study's figures: conditions as in the paper's figure 12, learning curves, and drives from above."""
+"""The study's figures: conditions as in the paper's figure 12, and learning curves."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final
@@ -6,16 +6,12 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from latentarm.core.figure_style import legend_below, tidy
-from latentarm.core.types import Goal
 from latentarm.evaluation.looks import look_of
-from latentarm.tasks.table_top import TableTop
-from latentarm_research.drives.drive_figures import GOAL_COLOURS, GOAL_MARKERS, OUTCOMES, outcome_lines
 from latentarm_research.studies import drawing
 from latentarm_research.studies.alignment.cell import AlignmentErrors
 from latentarm_research.studies.alignment.curves import CHOICES, PRIORS_AT_RANDOM, CurveResult
-from latentarm_research.studies.alignment.drives import DRIVEN, AlignedDrive, DrivesResult
 from latentarm_research.studies.alignment.hypotheses import RANDOM_ANSWERS
-from latentarm_research.studies.alignment.preset import CHOSEN, CONDITIONS, DRIVEN_MODEL, PAPER_MODEL
+from latentarm_research.studies.alignment.preset import CHOSEN, CONDITIONS, PAPER_MODEL
 from latentarm_research.studies.alignment.rows import ENCODED
 from latentarm_research.studies.statistics import bootstrap_interval, reach_of_interval
 
@@ -145,61 +141,4 @@ def _draw_curves(axes: "Axes", curve: CurveResult) -> None:
     axes.set_yscale("log")
     drawing.plain_ticks(axes)
     axes.set_xlim(left=0.0)
-    tidy(axes)
-
-
-DRIVES_ACROSS: Final = 4
-DRIVES_ROW_MM: Final = 54.0
-DRIVES_LEGEND_MM: Final = 18.0
-VIEW: Final = ((-0.6, 0.6), (-0.2, 0.85))  # what is shown, y from and to, x from and to, m
-
-
-def drives_figure(result: DrivesResult) -> "Figure":
-    """All paths until the goal from above: a panel for each condition."""
-    goals, rows_each = TableTop().goals, -(-len(DRIVEN) // DRIVES_ACROSS)
-    heading = "Simulated drives from above, and how many reach their goal"
-    size = rows_each, DRIVES_ACROSS, DRIVES_ROW_MM, DRIVES_LEGEND_MM
-    figure, grid = drawing.panel_grid(heading, *size, sharex=True, sharey=True)
-    figure.set_layout_engine("compressed")  # panels keep their shape; without it the rest of a row is blank
-    panels = drawing.first_panels(grid, len(DRIVEN))
-    for axes, condition in zip(panels, DRIVEN, strict=True):
-        drives = result.drives[condition]
-        _draw_drives(axes, drives, goals)
-        name = condition.replace(", ", ",\n")
-        drawing.title(axes, f"{name}\n{sum(one.reached_s is not None for one in drives)} of {len(drives)}")
-    for axes in panels[-DRIVES_ACROSS:]:
-        axes.set_xlabel("y (m)")
-        axes.tick_params(labelbottom=True)
-    for axes in panels[::DRIVES_ACROSS]:
-        axes.set_ylabel(f"{look_of(DRIVEN_MODEL).label}: x (m)")
-    handles, labels = panels[0].get_legend_handles_labels()
-    legend_below(figure, [*handles, *outcome_lines()], [*labels, *OUTCOMES])
-    return figure
-
-
-def _draw_drives(axes: "Axes", drives: Sequence[AlignedDrive], goals: Sequence[Goal]) -> None:
-    for one in drives:
-        axes.plot(
-            one.path[:, 1],
-            one.path[:, 0],
-            color=GOAL_COLOURS[one.goal],
-            linestyle=OUTCOMES["goal not reached" if one.reached_s is None else "goal reached"],
-            linewidth=0.6,
-            alpha=0.6,
-        )
-    for index, goal in enumerate(goals):
-        axes.plot(
-            goal.pose.position[1],
-            goal.pose.position[0],
-            marker=GOAL_MARKERS[index],
-            color=GOAL_COLOURS[index],
-            markeredgecolor="black",
-            markersize=4.5,
-            linestyle="none",
-            label=goal.name,
-        )
-    axes.set_xlim(*VIEW[0])
-    axes.set_ylim(*VIEW[1])
-    axes.set_aspect("equal", adjustable="box")
-    axes.locator_params(nbins=3)
     tidy(axes)

@@ -8,7 +8,6 @@ from typing import Final
 from latentarm_research.alignment.priors import NO_PRIORS, Priors
 
 PAPER_MODEL: Final = "cae"  # the model of the paper's study
-DRIVEN_MODEL: Final = "cvae"  # that the goals of the demo's table are driven to with
 
 
 @dataclass(frozen=True)
@@ -20,18 +19,6 @@ class Curves:
     # those of them at which it is also taken of All Priors, which takes longer
     networks: tuple[int, ...] = (2, 4, 10)
     candidates: int = 100  # motions that may be asked about
-
-
-@dataclass(frozen=True)
-class Drives:
-    """Drives to the goals of the demo's table by a simulated person with their own expectation."""
-
-    seeds: int = 3  # models, used in turn
-    episodes: int = 60  # demonstrations, of which a fifth trains no model: alignments are judged on it
-    epochs: int = 16  # passes over the training pairs, at most
-    answers: int = 10  # that an alignment is learned from, asked for as `latentarm align` does
-    to_each_goal: int = 20  # drives to each goal, in each condition
-    limit_s: float = 30.0  # a drive that lasts longer has failed, s
 
 
 @dataclass(frozen=True)
@@ -59,7 +46,6 @@ class Preset:
     ideal_held_out: float = 0.1  # share of its answers that decide which weights are kept
     surroundings: int = 1000  # demonstrated motions that say which directions a place has
     curves: Curves = field(default_factory=Curves)  # how error falls with the number of answers
-    drives: Drives = field(default_factory=Drives)  # drives to the goals of the demo
 
 
 PRESETS: Final[dict[str, Preset]] = {
@@ -79,7 +65,6 @@ PRESETS: Final[dict[str, Preset]] = {
         ideal_runs=2,
         surroundings=300,
         curves=Curves(noises=(0.0,), answers=(1, 2, 4), networks=(2, 4), candidates=30),
-        drives=Drives(seeds=1, episodes=12, epochs=2, answers=4, to_each_goal=1, limit_s=3.0),
     ),
 }
 

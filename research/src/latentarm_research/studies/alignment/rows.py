@@ -12,7 +12,6 @@ from threadpoolctl import threadpool_limits
 from latentarm_research.alignment.training import FitConfig
 from latentarm_research.studies.alignment.cell import AlignmentErrors
 from latentarm_research.studies.alignment.curves import CurveResult
-from latentarm_research.studies.alignment.drives import DrivesResult
 from latentarm_research.studies.alignment.preset import (
     ALL_PRIORS,
     CHOSEN,
@@ -44,7 +43,6 @@ class AlignmentResults:
     decoders: Sequence[LearnedDecoder]  # that the alignments stand on
     results: Sequence[AlignmentErrors]  # the cells of the table, by task and noise
     curves: Sequence[CurveResult]  # by noise and task
-    drives: DrivesResult | None  # at the demo's table, where it was driven at
 
 
 def series_of(measured: AlignmentResults) -> list[Series]:

@@ -16,13 +16,14 @@ from latentarm.alignment.error import lengths, outcome, relative_alignment_error
 from latentarm.alignment.poses import pose_vectors
 from latentarm.alignment.posterior import Posterior, fit_meaning
 from latentarm.alignment.preference import Preference, ToolAxes
+from latentarm.alignment.runtime import LearnedAlignment
 from latentarm.alignment.tool_space import ToolSpace, ToolSpaceAlignment
 from latentarm.core.types import Demonstrations, FloatArray
 from latentarm.models.decoder import Decoder
 from latentarm.models.model import LatentActionModel
 from latentarm.robots.kinematics.chain import Chain
 from latentarm_research.alignment.preferences import ByPlace, HeightAndTilt, Imprecise
-from latentarm_research.alignment.training import FitConfig, FittedAlignments, fit_alignments
+from latentarm_research.alignment.training import FitConfig, fit_alignments
 from latentarm_research.studies.alignment.preset import PAPER_MODEL, Preset, Stream
 from latentarm_research.studies.fitting import fit_model, validation_episodes
 from latentarm_research.studies.streams import generator, integer, sequence
@@ -165,7 +166,9 @@ class Scene:
             for run in range(preset.runs)
         ]
 
-    def learn(self, answers: Sequence[Answers], config: FitConfig, seeds: Sequence[int]) -> FittedAlignments:
+    def learn(
+        self, answers: Sequence[Answers], config: FitConfig, seeds: Sequence[int]
+    ) -> tuple[LearnedAlignment, ...]:
         """An alignment for each of S runs, from the seeds' first weights."""
         return fit_alignments(self.model, self.chain, answers, self.unlabelled, config, seeds=seeds)
 

@@ -1,23 +1,19 @@
 """`latentarm reproduce alignment`: learning what simulated people mean by their stick (section 8.3)."""
 
 from collections.abc import Sequence
-from math import degrees, exp
+from math import exp
 from typing import TYPE_CHECKING, Final
 
 from latentarm.alignment import posterior, queries, tool_space
 from latentarm.alignment.demonstrated import DURATION_S
 from latentarm.alignment.poses import ROTATION_WEIGHT_M
 from latentarm.evaluation.looks import look_of
-from latentarm.tasks.table_top import TableTop
-from latentarm.tasks.task import REACHED_ANGLE, REACHED_DISTANCE
 from latentarm_research.alignment.priors import Priors
-from latentarm_research.studies.alignment import curves, drives, tables
+from latentarm_research.studies.alignment import curves, tables
 from latentarm_research.studies.alignment import preset as conditions
 from latentarm_research.studies.alignment.cell import AlignmentErrors, measure_cell
 from latentarm_research.studies.alignment.curves import CurveResult, measure_curve
-from latentarm_research.studies.alignment.drives import DrivesResult, measure_drives
-from latentarm_research.studies.alignment.drives_learning import TASK, TURN_RAD, AlignedDriveCell
-from latentarm_research.studies.alignment.figures import conditions_figure, curves_figure, drives_figure
+from latentarm_research.studies.alignment.figures import conditions_figure, curves_figure
 from latentarm_research.studies.alignment.hypotheses import (
     HYPOTHESES,
     NEAR,
@@ -47,38 +43,30 @@ from latentarm_research.tasks.pouring.tool_path import RATE_HZ, SPEED_M_S, TURN_
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-TASKS: Final = (*POURING_TASKS, TASK)  # the paper's tasks, and the demo's table, where goals are driven to
-AnyCell = AlignmentCell | AlignedDriveCell
-AnyResult = AlignmentErrors | CurveResult | DrivesResult
-
 MEASURES: Final = {"conditions": measure_cell, "curve": measure_curve}
 
 
 def _measure(request: Request[Preset], grid: Grid) -> AlignmentResults:
-    wanted = [
-        DecoderCell(task, request.preset, request.seed) for task in request.tasks if task in POURING_TASKS
-    ]
+    wanted = [DecoderCell(task, request.preset, request.seed) for task in request.tasks]
     decoders = grid.run("Decoders", learn_decoder, wanted, lambda cell: f"{cell.task}, decoder")
     cells = _cells(request, decoders)
-    found = grid.run("Alignments, learning curves and drives", measure, cells, _label)
+    found = grid.run("Alignments and learning curves", measure, cells, _label)
     return AlignmentResults(
         decoders,
         results=sorted((one for one in found if isinstance(one, AlignmentErrors)), key=_place),
         curves=[one for one in found if isinstance(one, CurveResult)],
-        drives=next((one for one in found if isinstance(one, DrivesResult)), None),
     )
 
 
-def measure(cell: AnyCell) -> AnyResult:
-    """Measure one cell of the second grid. Raises a `UserError` where it cannot be measured as asked."""
-    return measure_drives(cell) if isinstance(cell, AlignedDriveCell) else MEASURES[cell.kind](cell)
+def measure(cell: AlignmentCell) -> AlignmentErrors | CurveResult:
+    """Measure one cell of the second grid."""
+    return MEASURES[cell.kind](cell)
 
 
-def _cells(request: Request[Preset], decoders: Sequence[LearnedDecoder]) -> list[AnyCell]:
+def _cells(request: Request[Preset], decoders: Sequence[LearnedDecoder]) -> list[AlignmentCell]:
     """The second grid, its longest cells first."""
     preset = request.preset
     return [
-        *([AlignedDriveCell(preset, request.seed)] if TASK in request.tasks else []),
         *(AlignmentCell("curve", one, noise) for noise in preset.curves.noises for one in decoders),
         *(AlignmentCell("conditions", one, noise) for one in decoders for noise in preset.noises),
     ]
@@ -86,25 +74,21 @@ def _cells(request: Request[Preset], decoders: Sequence[LearnedDecoder]) -> list
 
 def _place(result: AlignmentErrors) -> tuple[int, float]:
     """Where a cell stands in tables."""
-    return TASKS.index(result.cell.task), result.cell.noise
+    return [*POURING_TASKS].index(result.cell.task), result.cell.noise
 
 
-def _label(cell: AnyCell) -> str:
-    if isinstance(cell, AlignedDriveCell):
-        return f"{TASK}, drives"
+def _label(cell: AlignmentCell) -> str:
     return f"{cell.task}, noise {cell.noise:g}, {cell.kind}"
 
 
 def _report(request: Request[Preset], measured: AlignmentResults) -> Report:
     series = series_of(measured)
-    driven = [] if measured.drives is None else tables.drives_rows(measured.drives)
-    rows = [*(one.row(NAME) for one in series), *driven]
     tests = compare_conditions(measured.results)
     figures = _figures(measured)
     # While nothing else runs.
     alone = [time_alignment(one) for one in measured.decoders]
     return Report(
-        rows=rows,
+        rows=[one.row(NAME) for one in series],
         page=_page(request, measured, tests, figures),
         figures=figures,
         tests=tests,
@@ -115,17 +99,13 @@ def _report(request: Request[Preset], measured: AlignmentResults) -> Report:
 
 
 def _figures(measured: AlignmentResults) -> "dict[str, Figure]":
-    """Those of what was measured."""
-    results, figures = measured.results, dict[str, "Figure"]()
+    results = measured.results
     tasks = list(dict.fromkeys(result.cell.task for result in results))
     noises = list(dict.fromkeys(result.cell.noise for result in results))
-    if results:
-        figures["conditions"] = conditions_figure(results, tasks, noises)
-    if measured.curves:
-        figures["curves"] = curves_figure(measured.curves, tasks)
-    if measured.drives is not None:
-        figures["drives"] = drives_figure(measured.drives)
-    return figures
+    return {
+        "conditions": conditions_figure(results, tasks, noises),
+        "curves": curves_figure(measured.curves, tasks),
+    }
 
 
 def _page(
@@ -162,16 +142,6 @@ def _page(
         tool_space=tool_space,
         stopping_table=tables.stopping_table(measured.curves),
         curve_tables={_curve_name(curve): tables.curve_table(curve) for curve in measured.curves},
-        drives=measured.drives,
-        driven_model=conditions.DRIVEN_MODEL,
-        drive_conditions=drives,
-        drive_words=tables.WORDS,
-        drive_table=tables.drive_table(measured.drives) if measured.drives else "",
-        ways=tables.axes_in_words(measured.drives) if measured.drives else [],
-        goals=[goal.name for goal in TableTop().goals],
-        reached_m=REACHED_DISTANCE,
-        reached_deg=degrees(REACHED_ANGLE),
-        turn_deg=degrees(TURN_RAD),
         near=NEAR,
     )
 
@@ -185,10 +155,10 @@ STUDY: Final = Study(
     name=NAME,
     command="reproduce alignment",
     presets=PRESETS,
-    tasks=TASKS,
+    tasks=tuple(POURING_TASKS),
     simulated=("arms", "people"),
     measure=_measure,
     report=_report,
-    figures=("conditions", "curves", "drives"),
+    figures=("conditions", "curves"),
     documents=("runs.json",),
 )
