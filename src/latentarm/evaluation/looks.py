@@ -26,8 +26,6 @@ LOOKS: Final[dict[str, Look]] = {
     "All Priors": Look("All Priors", "#0072B2", "o", "-"),
     "Ideal Align": Look("Ideal Align", "#009E73", "D", "-."),
     "Tool Space": Look("Tool Space", "#000000", "*", "-"),
-    "All Priors, at random": Look("All Priors, at random", "#0072B2", "o", ":"),
-    "Tool Space, at random": Look("Tool Space, at random", "#7f7f7f", "s", "--"),
     "Tool Space, chosen": Look("Tool Space, chosen", "#882255", "^", "-"),
     "plane": Look("Plane", "#009E73", "D", "--"),
     "pour": Look("Pour", "#CC79A7", "v", "-."),

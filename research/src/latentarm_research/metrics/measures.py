@@ -60,9 +60,6 @@ MEASURES.update(
         "final_distance_percent_of_vae": Measure(
             "%", "final distance, of the VAE's", "lower", "the same in % of the VAE's"
         ),
-        "answers": Measure(
-            "1", "answers until asking stops", "lower", "questions answered until enough is known"
-        ),
         "final_state_error": Measure(
             "1", "final state error", "lower", "distance of the final state from the goal"
         ),

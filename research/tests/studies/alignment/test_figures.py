@@ -4,8 +4,7 @@ import pytest
 from figure_faults import faults
 from latentarm.core.figure_style import MM_PER_INCH, TWO_COLUMNS_MM
 from latentarm.evaluation.looks import look_of
-from latentarm_research.studies.alignment.curves import CHOICES
-from latentarm_research.studies.alignment.figures import conditions_figure, curves_figure
+from latentarm_research.studies.alignment.figures import conditions_figure
 from latentarm_research.studies.alignment.preset import CONDITIONS
 from latentarm_research.tasks.pouring.tasks import POURING_TASKS
 
@@ -46,22 +45,8 @@ def test_one_run_has_bars_without_spread(result):
     assert_well_drawn(conditions_figure([result(runs=1)], ["plane"], [0.0]))
 
 
-@pytest.mark.parametrize("noises", [(0.0,), (0.0, 0.1)])
-def test_every_choice_has_a_curve_in_every_panel(curve, noises):
-    figure = curves_figure([curve(task, noise) for noise in noises for task in TASKS], TASKS)
-    assert_well_drawn(figure)
-    assert {*CHOICES, "All Priors, at random, 10 answers", "where asking stops (mean)"} <= words_of(figure)
-    assert len(figure.axes) == len(TASKS) * len(noises)
-
-
-def test_short_curves_have_no_mark_of_ten(curve):
-    figure = curves_figure([curve(counts=(1, 3), runs=1)], ["plane"])
-    assert_well_drawn(figure)
-    assert "All Priors, at random, 10 answers" not in words_of(figure)
-
-
 def test_conditions_are_told_apart_without_colour():
-    for group in (CONDITIONS, CHOICES, TASKS):
+    for group in (CONDITIONS, TASKS):
         looks = [look_of(name) for name in group]
         assert len({look.colour for look in looks}) == len(looks)
         assert len({(look.marker, look.dash) for look in looks}) == len(looks)

@@ -33,7 +33,7 @@ TINY = Preset(
     ideal_runs=1,
     ideal_steps=2,
     surroundings=40,
-    curves=Curves(noises=(0.0,), answers=(1, 4), networks=(4,), candidates=8),
+    curves=Curves(noises=(0.0,), answers=(1, 4), candidates=8),
 )
 
 
@@ -63,7 +63,6 @@ def test_every_condition_and_noise_has_its_row(done):
             assert row.mean > 0
     assert of["cae", "Tool Space, chosen, 4 answers, noise 0", "relative_alignment_error"].n == TINY.runs
     assert of["cae", "All Priors, at random, 4 answers, noise 0", "relative_alignment_error"].mean > 0
-    assert 2 <= of["cae", "Tool Space, chosen, stopped, noise 0", "answers"].mean <= 4
 
 
 def test_noise_changes_nothing_for_who_asks_nothing(done):
@@ -82,7 +81,7 @@ def test_the_folder_holds_what_was_made_and_the_page_reads_by_itself(done):
     page = (out / "results.md").read_text()
     assert "**simulated**" in page
     assert "--preset tiny --task plane --seed 0" in page
-    for words in ("H1", "H2", "H3", *CONDITIONS, "Where asking stops"):
+    for words in ("H1", "H2", "H3", *CONDITIONS):
         assert words in page
     for name in STUDY.figures:
         assert f"]({name}.png)" in page

@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from time import perf_counter
 
 import numpy as np
 
@@ -26,7 +25,6 @@ class AlignmentErrors:
     # condition -> (R,), relative error of each run on the held-out motions; (1,) where nothing is learned
     errors: Mapping[str, FloatArray]
     encoded: float  # the error of the encoder's choice, see `Scene.encoded`
-    learn_s: Mapping[str, float]  # condition -> how long all its runs took in one fit, s
 
 
 def measure_cell(cell: AlignmentCell) -> AlignmentErrors:
@@ -45,37 +43,16 @@ def measure_cell(cell: AlignmentCell) -> AlignmentErrors:
         ways.NO_ALIGN: scene.errors([identity]),
         ways.MANUAL: scene.errors([fit_affine(encoder, answers) for answers in few]),
     }
-    learn_s: dict[str, float] = {}
     for name, priors in ways.LEARNED.items():
-        began = perf_counter()
-        fitted = scene.learn(few, FitConfig(priors, steps=preset.steps), runs)
-        learn_s[name] = perf_counter() - began
-        errors[name] = scene.errors(fitted)
-    began = perf_counter()
-    alignments = [scene.in_tool_space(answers) for answers in few]
-    learn_s[ways.TOOL_SPACE] = perf_counter() - began
-    errors[ways.TOOL_SPACE] = scene.errors(alignments)
-    began = perf_counter()
+        errors[name] = scene.errors(scene.learn(few, FitConfig(priors, steps=preset.steps), runs))
+    errors[ways.TOOL_SPACE] = scene.errors([scene.in_tool_space(answers) for answers in few])
     asked = [
         said[np.array(order_of_questions(scene.chain, said.motions, min(preset.answers, len(said))))]
         for said in scene.candidates(cell.noise)
     ]
-    alignments = [scene.in_tool_space(answers) for answers in asked]
-    learn_s[ways.CHOSEN] = perf_counter() - began
-    errors[ways.CHOSEN] = scene.errors(alignments)
-    began = perf_counter()
-    ideal = scene.learn(
-        ask(preset.ideal_answers)[: preset.ideal_runs], ideal_config(preset), runs[: preset.ideal_runs]
-    )
-    learn_s[ways.IDEAL] = perf_counter() - began
-    errors[ways.IDEAL] = scene.errors(ideal)
-    return AlignmentErrors(cell, errors, scene.encoded(), learn_s)
-
-
-def ideal_config(preset: ways.Preset) -> FitConfig:
-    """How Ideal Align is learned: to its end, which answers decide that train nothing."""
-    return FitConfig(
-        NO_PRIORS,
-        steps=preset.ideal_steps,
-        held_out=preset.ideal_held_out,
-    )
+    errors[ways.CHOSEN] = scene.errors([scene.in_tool_space(answers) for answers in asked])
+    # To its end, which answers decide that train nothing.
+    to_its_end = FitConfig(NO_PRIORS, steps=preset.ideal_steps, held_out=preset.ideal_held_out)
+    many = ask(preset.ideal_answers)[: preset.ideal_runs]
+    errors[ways.IDEAL] = scene.errors(scene.learn(many, to_its_end, runs[: preset.ideal_runs]))
+    return AlignmentErrors(cell, errors, scene.encoded())

@@ -1,4 +1,4 @@
-"""The study's figures: conditions as in the paper's figure 12, and learning curves."""
+"""The study's figure: conditions as in the paper's figure 12."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final
@@ -9,9 +9,7 @@ from latentarm.core.figure_style import legend_below, tidy
 from latentarm.evaluation.looks import look_of
 from latentarm_research.studies import drawing
 from latentarm_research.studies.alignment.cell import AlignmentErrors
-from latentarm_research.studies.alignment.curves import CHOICES, PRIORS_AT_RANDOM, CurveResult
-from latentarm_research.studies.alignment.hypotheses import RANDOM_ANSWERS
-from latentarm_research.studies.alignment.preset import CHOSEN, CONDITIONS, PAPER_MODEL
+from latentarm_research.studies.alignment.preset import CONDITIONS
 from latentarm_research.studies.alignment.rows import ENCODED
 from latentarm_research.studies.statistics import bootstrap_interval, reach_of_interval
 
@@ -80,65 +78,3 @@ def _log_axis(axes: "Axes", results: Sequence[AlignmentErrors]) -> None:
     axes.set_yscale("log")
     axes.set_ylim(min(low, *encoded) / ROOM, max(high, *encoded) * ROOM)
     drawing.plain_ticks(axes)
-
-
-CURVES_ROW_MM: Final = 46.0
-CURVES_FRAME_MM: Final = 18.0
-NUDGE: Final = 0.16  # how far choices stand from each other, in answers, so that no bar hides another
-
-
-def curves_figure(curves: Sequence[CurveResult], tasks: Sequence[str]) -> "Figure":
-    """Means with 95 % intervals over the number of answers, a panel per task, a row per noise."""
-    known = {(one.cell.noise, one.cell.task): one for one in curves}
-    noises = list(dict.fromkeys(noise for noise, _ in known))
-    size = len(noises), len(tasks), CURVES_ROW_MM, CURVES_FRAME_MM
-    figure, panels = drawing.panel_grid(HEADING, *size, sharex=True)
-    for line, noise in zip(panels, noises, strict=True):
-        for axes, task in zip(line, tasks, strict=True):
-            _draw_curves(axes, known[noise, task])
-            drawing.title(axes, f"{look_of(task).label}, {look_of(PAPER_MODEL).label}, noise {noise:g}")
-    drawing.label_axes(panels[:, 0], y="relative error")
-    drawing.label_axes(panels[-1], x="answers")
-    drawing.name_series(figure, panels[0, 0], handle_length=2.6)
-    return figure
-
-
-def _draw_curves(axes: "Axes", curve: CurveResult) -> None:
-    for index, choice in enumerate(CHOICES):
-        errors = curve.errors[choice]
-        means = [float(values.mean()) for values in errors.values()]
-        drawing.draw_series(
-            axes,
-            choice,
-            [count + (index - 1) * NUDGE for count in errors],
-            means,
-            np.transpose([reach_of_interval(values) for values in errors.values()]),
-            markersize=3.2,
-            linewidth=1.0,
-            elinewidth=0.6,
-            zorder=3 + index,
-        )
-    if RANDOM_ANSWERS in curve.errors[PRIORS_AT_RANDOM]:
-        axes.axhline(
-            curve.errors[PRIORS_AT_RANDOM][RANDOM_ANSWERS].mean(),
-            color="black",
-            linestyle=":",
-            linewidth=0.8,
-            label=f"{PRIORS_AT_RANDOM}, {RANDOM_ANSWERS} answers",
-            zorder=2,
-        )
-    axes.plot(
-        curve.stopped_after.mean(),
-        curve.stopped_at.mean(),
-        marker="*",
-        markersize=8.0,
-        color="white",
-        markeredgecolor=look_of(CHOSEN).colour,
-        linestyle="none",
-        label="where asking stops (mean)",
-        zorder=8,
-    )
-    axes.set_yscale("log")
-    drawing.plain_ticks(axes)
-    axes.set_xlim(left=0.0)
-    tidy(axes)

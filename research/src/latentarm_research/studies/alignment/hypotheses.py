@@ -87,6 +87,3 @@ def _test(hypothesis: str, claim: Claim, result: AlignmentErrors) -> Tested:
         family=PAPER_MODEL,
         where=f"noise {result.cell.noise:g}",
     ).of(values, reference, compare_means(values, reference, "less"))
-
-
-RANDOM_ANSWERS: Final = 10  # answers at random, whose error with All Priors the curves are drawn beside

@@ -16,8 +16,6 @@ class Curves:
 
     noises: tuple[float, ...] = (0.0, 0.5)  # coefficients of variation of the answers
     answers: tuple[int, ...] = (1, 2, 3, 4, 6, 10)  # numbers of answers at which the error is taken, rising
-    # those of them at which it is also taken of All Priors, which takes longer
-    networks: tuple[int, ...] = (2, 4, 10)
     candidates: int = 100  # motions that may be asked about
 
 
@@ -64,7 +62,7 @@ PRESETS: Final[dict[str, Preset]] = {
         ideal_steps=60,
         ideal_runs=2,
         surroundings=300,
-        curves=Curves(noises=(0.0,), answers=(1, 2, 4), networks=(2, 4), candidates=30),
+        curves=Curves(noises=(0.0,), answers=(1, 2, 4), candidates=30),
     ),
 }
 

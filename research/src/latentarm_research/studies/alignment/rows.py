@@ -1,4 +1,4 @@
-"""Everything that the study measured, as its series, and how long it took."""
+"""Everything that the study measured, as its series, and how long an alignment takes."""
 
 import timeit
 from collections.abc import Sequence
@@ -9,26 +9,15 @@ from typing import Final
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from latentarm_research.alignment.training import FitConfig
 from latentarm_research.studies.alignment.cell import AlignmentErrors
 from latentarm_research.studies.alignment.curves import CurveResult
-from latentarm_research.studies.alignment.preset import (
-    ALL_PRIORS,
-    CHOSEN,
-    CONDITIONS,
-    LEARNED,
-    PAPER_MODEL,
-    Stream,
-    under,
-)
+from latentarm_research.studies.alignment.preset import CONDITIONS, PAPER_MODEL, Stream, under
 from latentarm_research.studies.alignment.scene import LearnedDecoder, scene_of
 from latentarm_research.studies.tables import Series
 
 STUDY: Final = "alignment"
 
 ERROR: Final = "relative_alignment_error"
-
-ANSWERS: Final = "answers"  # how many were asked for before asking stopped
 
 ENCODED: Final = "the encoder's own choice"
 """Condition of the rows that say what the encoder's own latent actions come to."""
@@ -57,14 +46,12 @@ def series_of(measured: AlignmentResults) -> list[Series]:
             for name in CONDITIONS
         ]
     for one in measured.curves:
-        cell, stopped = one.cell, under(f"{CHOSEN}, stopped", one.cell.noise)
+        cell = one.cell
         found += [
             Series(cell.task, PAPER_MODEL, under(_asked(choice, count), cell.noise), ERROR, values)
             for choice, errors in one.errors.items()
             for count, values in errors.items()
         ]
-        found.append(Series(cell.task, PAPER_MODEL, stopped, ANSWERS, one.stopped_after))
-        found.append(Series(cell.task, PAPER_MODEL, stopped, ERROR, one.stopped_at))
     return found
 
 
@@ -73,35 +60,19 @@ def _asked(choice: str, count: int) -> str:
     return f"{choice}, {count} answer{'s' * (count != 1)}"
 
 
-def timings(measured: AlignmentResults) -> dict[str, object]:
-    """How long everything took, s; cells ran side by side."""
-    return {
-        "decoders": [{"task": one.cell.task, "fit_s": one.fit_s} for one in measured.decoders],
-        "alignments": [
-            {"task": one.cell.task, "noise": one.cell.noise, "learn_s": dict(one.learn_s)}
-            for one in measured.results
-        ],
-    }
-
-
 def time_alignment(learned: LearnedDecoder) -> dict[str, object]:
-    """How long one alignment takes to learn, with priors and in tool space, and to call, s; one thread."""
+    """How long an alignment in tool space takes to learn, and to call, s; one thread."""
     preset, scene = learned.cell.preset, scene_of(learned)
-    answers = [scene.ask(preset.answers, 0.0, Stream.QUESTIONS, Stream.ANSWERS, 0)]
-    config = FitConfig(LEARNED[ALL_PRIORS], steps=preset.steps)
+    answers = scene.ask(preset.answers, 0.0, Stream.QUESTIONS, Stream.ANSWERS, 0)
     with threadpool_limits(limits=1):
         began = perf_counter()
-        scene.learn(answers[:1], config, [0])
-        priors_s, began = perf_counter() - began, perf_counter()
-        alignment = scene.in_tool_space(answers[0])
+        alignment = scene.in_tool_space(answers)
         tool_space_s = perf_counter() - began
         u, context = scene.test.u[0], scene.test.motions.context[0]
         calls = timeit.repeat(lambda: alignment(u, context), number=1, repeat=CALLS)
     return {
         "task": learned.cell.task,
         "answers": preset.answers,
-        "steps": preset.steps,
-        "all_priors_s": priors_s,
         "tool_space_s": tool_space_s,
         "tool_space_call_s": min(calls),
     }

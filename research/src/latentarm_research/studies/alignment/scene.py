@@ -3,8 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from time import perf_counter
-from typing import Final, Literal, final
+from typing import Final, final
 
 import numpy as np
 
@@ -14,7 +13,7 @@ from latentarm.alignment.demonstrated import CANDIDATES, demonstrated_motions, n
 from latentarm.alignment.demonstrated_directions import DemonstratedDirections
 from latentarm.alignment.error import lengths, outcome, relative_alignment_error
 from latentarm.alignment.poses import pose_vectors
-from latentarm.alignment.posterior import Posterior, fit_meaning
+from latentarm.alignment.posterior import fit_meaning
 from latentarm.alignment.preference import Preference, ToolAxes
 from latentarm.alignment.runtime import LearnedAlignment
 from latentarm.alignment.tool_space import ToolSpace, ToolSpaceAlignment
@@ -60,7 +59,6 @@ class LearnedDecoder:
 
     cell: DecoderCell
     model: LatentActionModel  # fitted, of one seed
-    fit_s: float  # how long that took, s
 
 
 @final
@@ -68,7 +66,6 @@ class LearnedDecoder:
 class AlignmentCell:
     """What is to be measured with a decoder."""
 
-    kind: Literal["conditions", "curve"]  # of the measurement
     learned: LearnedDecoder  # task and decoder
     noise: float  # coefficient of variation of the answers
 
@@ -85,10 +82,7 @@ class AlignmentCell:
 
 def learn_decoder(cell: DecoderCell) -> LearnedDecoder:
     """Demonstrate and fit."""
-    demonstrations = demonstrate(cell, Stream.TRAINING)
-    began = perf_counter()
-    model = _fit(cell, demonstrations)
-    return LearnedDecoder(cell, model, perf_counter() - began)
+    return LearnedDecoder(cell, _fit(cell, demonstrate(cell, Stream.TRAINING)))
 
 
 def demonstrate(cell: DecoderCell, stream: Stream) -> Demonstrations:
@@ -172,23 +166,18 @@ class Scene:
         """An alignment for each of S runs, from the seeds' first weights."""
         return fit_alignments(self.model, self.chain, answers, self.unlabelled, config, seeds=seeds)
 
-    def meant(self, answers: Answers) -> Posterior:
-        """What answers say of the person, judged on the first of the motions that are shown."""
-        few = self.shown[np.arange(min(CANDIDATES, len(self.shown)))]
-        return fit_meaning(answers, self.chain, self.surroundings, few)
-
     def in_tool_space(self, answers: Answers) -> ToolSpaceAlignment:
-        """The alignment of `latentarm align`."""
-        known = ToolSpace(self.meant(answers).meaning, self.surroundings, answers.motions.duration_s)
+        """The alignment of `latentarm align`, judged on the first of the motions that are shown."""
+        few = self.shown[np.arange(min(CANDIDATES, len(self.shown)))]
+        meant = fit_meaning(answers, self.chain, self.surroundings, few)
+        known = ToolSpace(meant.meaning, self.surroundings, answers.motions.duration_s)
         return known.with_arm(self.decoder, self.chain)
 
     def errors(self, alignments: Sequence[Alignment]) -> FloatArray:
         """Relative errors (S,) on the held-out motions."""
-        return np.array([self.error(one, self.test) for one in alignments])
-
-    def error(self, alignment: Alignment, test: Answers) -> float:
-        """The relative error for a person who meant ``test``."""
-        return relative_alignment_error(alignment, self.decoder, self.chain, test)
+        return np.array(
+            [relative_alignment_error(one, self.decoder, self.chain, self.test) for one in alignments]
+        )
 
     def encoded(self) -> float:
         """The relative error with the latent action that the encoder would choose, which knows the motion.

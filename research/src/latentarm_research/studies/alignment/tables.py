@@ -2,13 +2,12 @@
 
 from collections.abc import Sequence
 
-from latentarm.evaluation.looks import look_of
 from latentarm.evaluation.table import format_figure
 from latentarm_research.studies.alignment.cell import AlignmentErrors
-from latentarm_research.studies.alignment.curves import CHOICES, CurveResult
+from latentarm_research.studies.alignment.curves import CurveResult
 from latentarm_research.studies.alignment.preset import CONDITIONS
 from latentarm_research.studies.alignment.rows import ENCODED
-from latentarm_research.studies.tables import grid_table, markdown_table, mean_and_sd
+from latentarm_research.studies.tables import grid_table, mean_and_sd
 
 CORNER = "relative error, simulated"
 
@@ -31,19 +30,5 @@ def curve_table(curve: CurveResult) -> str:
 
     counts = sorted({count for errors in curve.errors.values() for count in errors})
     return grid_table(
-        "answers", {str(count): count for count in counts}, {name: name for name in CHOICES}, text
+        "answers", {str(count): count for count in counts}, {name: name for name in curve.errors}, text
     )
-
-
-def stopping_table(curves: Sequence[CurveResult]) -> str:
-    """Where asking stops, and the error there."""
-    lines = [
-        [
-            look_of(one.cell.task).label,
-            f"{one.cell.noise:g}",
-            mean_and_sd(one.stopped_after),
-            mean_and_sd(one.stopped_at),
-        ]
-        for one in curves
-    ]
-    return markdown_table(["", "noise", "answers", "relative error"], lines)
