@@ -6,9 +6,8 @@ from hypothesis import strategies as st
 
 from latentarm.assistance.entropy import (
     GoalEntropy,
-    entropy_over_goals,
-    goal_probabilities,
     goal_progress,
+    log_probabilities,
 )
 from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations, Episode
@@ -26,21 +25,21 @@ def test_the_probabilities_worked_by_hand():
     # Two inputs, two goals, kappa = ln 2: scores 2, 1 for the first goal, 1/2, 4 for the second.
     progress = torch.tensor([[1.0, -1.0], [0.0, 2.0]], dtype=torch.float64)
     kappa = float(np.log(2))
-    plain = goal_probabilities(progress, kappa, -np.inf)
+    plain = log_probabilities(progress, kappa, -np.inf).exp()
     assert plain == pytest.approx(np.array([3.0, 4.5]) / 7.5)
     # What conveys no goal scores 2 inputs times 2^1.
-    assert goal_probabilities(progress, kappa, 1.0) == pytest.approx(np.array([3.0, 4.5]) / 11.5)
+    assert log_probabilities(progress, kappa, 1.0).exp() == pytest.approx(np.array([3.0, 4.5]) / 11.5)
 
 
 @given(st.lists(st.tuples(speeds, speeds, speeds), min_size=1, max_size=5), st.floats(0.1, 20), speeds)
 def test_they_are_probabilities_whatever_the_order_of_goals(rows, sharpness, least):
     progress = torch.tensor(rows, dtype=torch.float64)
-    found = goal_probabilities(progress, sharpness, least)
+    found = log_probabilities(progress, sharpness, least).exp()
     assert (found >= 0).all()
     assert 0 < float(found.sum()) < 1 + 1e-12
     order = [2, 0, 1]
-    assert torch.allclose(goal_probabilities(progress[:, order], sharpness, least), found[order])
-    assert float(goal_probabilities(progress, sharpness, -np.inf).sum()) == pytest.approx(1.0)
+    assert torch.allclose(log_probabilities(progress[:, order], sharpness, least).exp(), found[order])
+    assert float(log_probabilities(progress, sharpness, -np.inf).exp().sum()) == pytest.approx(1.0)
 
 
 def test_progress_is_speed_towards_a_goal_and_fades_at_the_goal():
@@ -49,11 +48,6 @@ def test_progress_is_speed_towards_a_goal_and_fades_at_the_goal():
     progress = goal_progress(state, actions, torch.from_numpy(GOALS), speed=0.5)
     assert progress[0, 0] == pytest.approx([0.6, -0.6])
     assert progress[1, 0] == pytest.approx([0.3, -0.6])
-
-
-def test_a_uniform_choice_has_the_highest_entropy_and_none_has_none():
-    assert entropy_over_goals(torch.tensor([0.5, 0.5])) == pytest.approx(np.log(2))
-    assert entropy_over_goals(torch.tensor([1.0, 0.0])) == 0.0
 
 
 def situation(action_of):

@@ -22,7 +22,7 @@ from latentarm.recordings.dataset_export import demonstrations_of, export_journa
 from latentarm.recordings.journal_reader import read_journal
 from latentarm.recordings.journal_writer import EpisodeHeader, Recorder
 from latentarm.safety.config import SafetyConfig
-from latentarm_research.assistance.bound import radius
+from latentarm_research.assistance.bound import delta
 from latentarm_research.assistance.cost_to_go import HindsightBelief
 from latentarm_research.assistance.published_help import HindsightOptimisation
 from stepping import stepped
@@ -253,8 +253,8 @@ class TestBound:
             expected = radius_by_hand(arm, record.state, record.belief, record.alpha)
             assert bounds[tick] == pytest.approx(expected)
             goal = record.belief.argmax()
-            from_bound = radius(SIGMA_H, record.state, record.belief, goals, goal, record.alpha)
-            assert bounds[tick] == pytest.approx(float(from_bound))
+            from_bound = delta(SIGMA_H, record.state, record.belief, goals, goal, record.alpha)
+            assert bounds[tick] == pytest.approx(float(from_bound) / record.belief[goal])
 
     def test_however_often_the_belief_changes_fifty_milliseconds_are_enough(self, make, arm):
         records, _ = run(make(FixedAlpha(0.4), period_s=0.02), PUSH, arm.home, 60)
@@ -279,8 +279,8 @@ class TestBound:
             stepped(step, NEUTRAL, 0.0, arm.home, now_s())
             step.enable()
             record = stepped(step, PUSH, 0.0, arm.home, now_s())
-            expected = radius(SIGMA_H, arm.home, prior, states, prior.argmax(), 0.3)
-            assert record.bound_rad == pytest.approx(float(expected))
+            expected = delta(SIGMA_H, arm.home, prior, states, prior.argmax(), 0.3)
+            assert record.bound_rad == pytest.approx(float(expected) / prior.max())
 
     @pytest.mark.parametrize("known", [None, math.nan, math.inf])
     def test_a_controller_that_knows_no_bound_has_none_and_drives(self, make, arm, scripted, known):

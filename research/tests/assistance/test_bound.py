@@ -11,10 +11,10 @@ from latentarm.assistance.blending import assistive_action, blend
 from latentarm.core.errors import UserError
 from latentarm.models.enclosure import linear_enclosure
 from latentarm_research.assistance import bound
-from latentarm_research.assistance.bound import furthest, known_help, weighted
+from latentarm_research.assistance.bound import furthest, known_help
 
 MOMENTS = 100_000
-FORMS = (furthest, weighted, known_help)
+FORMS = (furthest, known_help)
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,14 +113,12 @@ def test_wherever_it_certifies_the_error_shrinks(seed):
 
 @settings(max_examples=3)
 @given(st.integers(0, 2**31))
-def test_each_form_certifies_what_the_one_before_does(seed):
+def test_with_known_help_what_equation_14_certifies_is_certified_too(seed):
     for drawn in all_moments(seed):
-        first, second, third = (bound.certified(*drawn.bounded, drawn.gain, form) for form in FORMS)
+        first, second = (bound.certified(*drawn.bounded, drawn.gain, form) for form in FORMS)
         assert (first <= second).all()
-        assert (second <= third).all()
         deltas = [bound.delta(*drawn.bounded, drawn.gain, form) for form in FORMS]
-        assert (deltas[0] >= deltas[1] * (1 - 1e-12)).all()
-        assert (deltas[1] >= deltas[2] - 1e-12 * abs(deltas[1])).all()
+        assert (deltas[0] >= deltas[1] - 1e-12 * abs(deltas[0])).all()
 
 
 @settings(max_examples=3)
@@ -200,27 +198,18 @@ def test_a_moment_worked_by_hand():
     """The goal 2 rad ahead, another 1 rad to the side; b = 0.8, alpha = 0.5, sigma_h = 0.4 rad/s."""
     goals, belief, state = np.array([[2.0, 0.0], [0.0, 1.0]]), np.array([0.8, 0.2]), np.zeros(2)
     moment = (0.4, state, belief, goals, 0, 0.5)
-    # 0.4 + 0.2 x 1, and 0.8 x 2 is more; one other goal, so equation 13 says the same; it is square to
-    # the error, so that help towards it does no harm.
+    # 0.4 + 0.2 x 1, and 0.8 x 2 is more; the other goal is square to the error, so that help towards it does
+    # no harm.
     assert bound.delta(*moment) == pytest.approx(0.6)
-    assert bound.delta(*moment, others=weighted) == pytest.approx(0.6)
     assert bound.delta(*moment, others=known_help) == pytest.approx(0.4)
-    assert bound.radius(*moment) == pytest.approx(0.75)
     assert bound.certified(*moment)
     # alpha = 0.2 and k = 2: (0.8 / 0.4) x 0.4 + 0.2 = 1.0.
     assert bound.delta(0.4, state, belief, goals, 0, 0.2, 2.0) == pytest.approx(1.0)
     # The other goal: 0.4 + 0.8 x 2 against 0.2 x 1.
     assert not bound.certified(0.4, state, belief, goals, 1, 0.5)
-    assert bound.radius(0.4, state, belief, goals, 1, 0.5) == pytest.approx(10.0)
     # e = (2, 0), a = 0.5 (-0.4, 0) + 0.5 (1.6, 0.2).
     action = blend(np.array([-0.4, 0.0]), assistive_action(state, belief, goals), 0.5)
     assert lyapunov_rate(state, goals[0], action) == pytest.approx(-2 * 0.6)
-
-
-def test_where_the_robot_is_sure_the_radius_is_what_the_person_can_do():
-    goals = np.array([[1.0, 0.0], [0.0, 1.0]])
-    assert bound.radius(0.3, np.zeros(2), np.array([1.0, 0.0]), goals, 0, 0.5) == pytest.approx(0.3)
-    assert bound.radius(0.3, np.zeros(2), np.array([1.0, 0.0]), goals, 0, 1.0) == 0.0
 
 
 @pytest.mark.parametrize("form", FORMS)
@@ -230,12 +219,6 @@ def test_no_help_certifies_nothing(form):
         moment = (sigma_h, np.zeros(2), belief, goals, 0, 0.0)
         assert bound.delta(*moment, others=form) == np.inf
         assert not bound.certified(*moment, others=form)
-        assert bound.radius(*moment) == np.inf
-
-
-def test_a_goal_without_belief_has_no_radius():
-    goals, belief = np.array([[1.0, 0.0], [0.0, 1.0]]), np.array([1.0, 0.0])
-    assert bound.radius(0.3, np.zeros(2), belief, goals, 1, 0.5) == np.inf
 
 
 @pytest.mark.parametrize("form", FORMS)

@@ -31,29 +31,6 @@ straight to a goal may hardly move its tool, m/rad."""
 Where = Literal["demonstrated", "any_belief", "anywhere"]
 
 
-def goal_probabilities(progress: Tensor, sharpness: float = 4.0, least_progress: float = 0.5) -> Tensor:
-    """``p_c(g)``: how much of a person's possible actions conveys each goal (equation 15).
-
-    The paper leaves the score open. Here it is::
-
-        eta(g, c, z) = exp(kappa rho_g(c, z)),    p_c(g) = Σ_z eta(g, c, z) / (Σ_g' Σ_z eta(g', c, z) + eta_0)
-
-    with rho the progress towards g, ``eta_0 = K exp(kappa rho_0)`` for K inputs z, and kappa so large that
-    the best input counts most. ``eta_0`` stands for conveying no goal: a goal counts as open where some
-    input makes more progress towards it than rho_0. Without it (rho_0 = -inf; equation 15 to the letter) a
-    decoder that hardly moves towards any goal has the highest entropy of all.
-
-    ``progress`` (..., K, G) is the speed towards each goal for K inputs, and ``least_progress`` is rho_0,
-    both in units of the demonstrated speed; ``sharpness`` is kappa.
-    """
-    return _log_probabilities(progress, sharpness, least_progress).exp()
-
-
-def entropy_over_goals(probabilities: Tensor) -> Tensor:
-    """Shannon entropy ``-Σ p log p`` of (..., G), in nats: (...)."""
-    return -torch.special.xlogy(probabilities, probabilities).sum(-1)
-
-
 def goal_progress(
     state: Tensor, actions: Tensor, goals: Tensor, speed: float, chain: TorchChain | None = None
 ) -> Tensor:
@@ -90,8 +67,8 @@ class GoalEntropy(LossTerm):
 
     goals: FloatArray  # (G, n), configurations, rad
     weight: float = 2.0  # lambda_2
-    sharpness: float = 4.0  # kappa of `goal_probabilities`
-    least_progress: float = 0.5  # rho_0 of `goal_probabilities`, of the demonstrated speed
+    sharpness: float = 4.0  # kappa of `log_probabilities`
+    least_progress: float = 0.5  # rho_0 of `log_probabilities`, of the demonstrated speed
     per_axis: int = 7  # evenly spaced inputs in [-1, 1] on each axis, over which z is summed
     where: Where = "anywhere"
     """``demonstrated`` contexts, their states with ``any_belief``, or ``anywhere`` between these states."""
@@ -139,7 +116,7 @@ class GoalEntropy(LossTerm):
         actions = situation.action_of(self._inputs(situation.axes))
         chain = None if self._torch_chain is None else self._torch_chain.to(state)
         progress = goal_progress(state, actions, goals, situation.speed, chain)
-        log = _log_probabilities(progress, self.sharpness, self.least_progress)
+        log = log_probabilities(progress, self.sharpness, self.least_progress)
         return self.weight * (log.exp() * log).sum(-1).mean(-1)
 
     @cached_property
@@ -157,8 +134,21 @@ def _direction(away: Tensor, near: float) -> Tensor:
     return away / torch.linalg.vector_norm(away, dim=-1, keepdim=True).clamp_min(near)
 
 
-def _log_probabilities(progress: Tensor, sharpness: float, least_progress: float) -> Tensor:
-    """Logarithms of `goal_probabilities`."""
+def log_probabilities(progress: Tensor, sharpness: float, least_progress: float) -> Tensor:
+    """Logarithm of ``p_c(g)``: how much of a person's possible actions conveys each goal (equation 15).
+
+    The paper leaves the score open. Here it is::
+
+        eta(g, c, z) = exp(kappa rho_g(c, z)),    p_c(g) = Σ_z eta(g, c, z) / (Σ_g' Σ_z eta(g', c, z) + eta_0)
+
+    with rho the progress towards g, ``eta_0 = K exp(kappa rho_0)`` for K inputs z, and kappa so large that
+    the best input counts most. ``eta_0`` stands for conveying no goal: a goal counts as open where some
+    input makes more progress towards it than rho_0. Without it (rho_0 = -inf; equation 15 to the letter) a
+    decoder that hardly moves towards any goal has the highest entropy of all.
+
+    ``progress`` (..., K, G) is the speed towards each goal for K inputs, and ``least_progress`` is rho_0,
+    both in units of the demonstrated speed; ``sharpness`` is kappa.
+    """
     score = torch.logsumexp(sharpness * progress, dim=-2)
     if not math.isfinite(least_progress):
         return torch.log_softmax(score, dim=-1)

@@ -36,7 +36,7 @@ class GoalBlending(Assistance):
         return type(self)(goals, self._arbitration)
 
     def bound_rad(self, given: Contribution, state: FloatArray, belief: FloatArray, sigma_h: float) -> float:
-        """Equation 14: `assistance.bound.radius` for one moment, in a quarter of its time."""
+        """Equation 14 for one moment: delta over the belief in the goal."""
         probabilities = belief.tolist()
         sure = max(probabilities)
         away = self._goals - state

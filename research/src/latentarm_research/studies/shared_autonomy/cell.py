@@ -3,7 +3,6 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
-from time import perf_counter
 from typing import Final
 
 import numpy as np
@@ -11,10 +10,7 @@ import numpy as np
 from latentarm.assistance.annotation import annotate
 from latentarm.assistance.blending import Arbitration
 from latentarm.assistance.entropy import GoalEntropy
-from latentarm.core.types import Demonstrations, FloatArray, Pairs
-from latentarm.demonstrations.pairs import make_pairs
-from latentarm.demonstrations.split import select_episodes
-from latentarm.evaluation.accuracy import pca_error, percent_of, reconstruction_error
+from latentarm.core.types import Demonstrations, FloatArray
 from latentarm.models.model import LatentActionModel
 from latentarm_research.studies.fitting import fit_model, validation_episodes
 from latentarm_research.studies.shared_autonomy.drive import (
@@ -48,7 +44,6 @@ class Stream(IntEnum):
     """Streams of randomness: one per use, so that none depends on another's draws."""
 
     TRAINING = 0
-    TEST = 1
     NETWORKS = 2
     STATE_NOISE = 3
     STARTS = 4
@@ -89,9 +84,6 @@ class AutonomyResult:
 
     cell: AutonomyCell
     outcomes: tuple[Outcome, ...]  # of every method and person
-    reconstruction: FloatArray  # (S,), error on test demonstrations, % of PCA's
-    fit_s: float  # how long the fit of all seeds took, s
-    drive_s: float  # how long all drives took, s
 
 
 def measure_cell(cell: AutonomyCell) -> AutonomyResult:
@@ -100,38 +92,16 @@ def measure_cell(cell: AutonomyCell) -> AutonomyResult:
     training = annotate(
         task.demonstrate(preset.demonstrations, generator(cell.seed, cell.task, Stream.TRAINING)), RULE
     )
-    test = annotate(
-        task.demonstrate(preset.test_demonstrations, generator(cell.seed, cell.task, Stream.TEST)), RULE
-    )
-    began = perf_counter()
     model = _fit(cell, task, training)
-    fitted = perf_counter()
-    chosen = select_episodes(training, range(validation_episodes(training).start))
-    scene = _scene(task, recorded_pairs(chosen))
+    goals = np.stack([goal.configuration for goal in task.goals])
+    scene = Scene(task.robot.chain, RULE(goals, period_s=STEP_S))
     outcomes = tuple(
         outcome
         for method in cell.methods
         for people in _together(cell)
         for outcome in _outcomes(cell, task, scene, model, method, people)
     )
-    return AutonomyResult(
-        cell=cell,
-        outcomes=outcomes,
-        reconstruction=_reconstruction(model, recorded_pairs(chosen), recorded_pairs(test)),
-        fit_s=fitted - began,
-        drive_s=perf_counter() - fitted,
-    )
-
-
-def recorded_pairs(demonstrations: Demonstrations) -> Pairs:
-    """Pairs of contexts ``(s, b)`` and actions as recorded, without noise."""
-    return make_pairs(demonstrations, 1, 0.0, "state_belief", np.random.default_rng(0), actions="recorded")
-
-
-def _scene(task: TwoCups, fitted: Pairs) -> Scene:
-    goals = np.stack([goal.configuration for goal in task.goals])
-    speed = float(np.sqrt(np.square(fitted.action).sum(axis=1).mean()))
-    return Scene(task.robot.chain, RULE(goals, period_s=STEP_S), speed)
+    return AutonomyResult(cell, outcomes)
 
 
 def _fit(cell: AutonomyCell, task: TwoCups, training: Demonstrations) -> LatentActionModel:
@@ -161,14 +131,6 @@ def _term(preset: Preset, task: TwoCups) -> GoalEntropy:
     return GoalEntropy(
         goals, weight=preset.entropy_weight, sharpness=preset.sharpness, chain=task.robot.chain
     )
-
-
-def _reconstruction(model: LatentActionModel, fitted: Pairs, pairs: Pairs) -> FloatArray:
-    """Error on other pairs, % of PCA's: (S,)."""
-    decoders = [model.decoder(seed) for seed in range(model.seeds)]
-    z = model.encode(pairs.context, pairs.action)
-    error = reconstruction_error(decoders, z, pairs.context, pairs.action)
-    return percent_of(pca_error(fitted.action, pairs.action, model.latent_dim), error)
 
 
 def _together(cell: AutonomyCell) -> list[list[Person]]:

@@ -45,7 +45,6 @@ class Scene:
 
     chain: Chain  # the arm's kinematics
     belief: Belief  # over the G goals, updated every `STEP_S`
-    speed: float  # root mean square of the demonstrated ‖a‖, rad/s
 
     @property
     def goals(self) -> FloatArray:

@@ -8,11 +8,9 @@ import numpy as np
 from latentarm.core.figure_style import COLUMN_MM, FONT_SIZE, new_figure, tidy
 from latentarm.core.types import FloatArray
 from latentarm.evaluation.looks import look_of
-from latentarm_research.drives.arm_figure import draw_arm as draw_solid_arm
-from latentarm_research.drives.arm_figure import frame
+from latentarm_research.drives.arm_figure import draw_arm, frame
 from latentarm_research.drives.drive_figures import GOAL_COLOURS, GOAL_MARKERS
 from latentarm_research.studies import drawing
-from latentarm_research.studies.drawing import draw_arm as draw_planar_arm
 from latentarm_research.studies.shared_autonomy import tables
 from latentarm_research.studies.shared_autonomy.cell import METHODS, AutonomyResult, Outcome
 from latentarm_research.studies.shared_autonomy.drive import STEP_S
@@ -23,7 +21,7 @@ from latentarm_research.studies.shared_autonomy.preset import (
     learner,
     of_fixed_expertise,
 )
-from latentarm_research.tasks.two_cups import BEARING_RAD, Place, PlanarTwoCups, TwoCups
+from latentarm_research.tasks.two_cups import BEARING_RAD, PandaTwoCups, Place, TwoCups
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -42,7 +40,6 @@ COURSES: Final = {"error": "state error", "belief": "belief in the true goal"}
 RATIONALITIES: Final = {1000.0: "$10^3$", 10000.0: "$10^4$"}  # numbers that would be too long for an axis
 DRAWN: Final = 12  # demonstrations that are drawn
 STREAM: Final = 82  # keeps them apart from those of the study; they are always the same
-MARGIN_M: Final = 0.06
 
 AT_THE_CUP: Final = Place(back=0.0, left=0.0, up=0.0, turn=0.0)
 
@@ -145,8 +142,9 @@ def slopes_figure(results: Sequence[AutonomyResult], preset: Preset, tasks: Sequ
     return figure
 
 
-def task_figure(task: TwoCups) -> "Drawing":
-    """The arm at its start, the goals before the cups and where the tool goes from there."""
+def task_figure() -> "Drawing":
+    """The Panda at its start, the goals before the cups and where the tool goes from there."""
+    task = PandaTwoCups()
     figure = new_figure(TASK_MM)
     figure.suptitle(f"Two cups, {look_of(task.name).label}; all simulated", fontsize=FONT_SIZE)
     demonstrations = task.demonstrate(DRAWN, np.random.default_rng(STREAM))
@@ -154,30 +152,21 @@ def task_figure(task: TwoCups) -> "Drawing":
     paths = [chain.forward(episode.state).position for episode in demonstrations.episodes]
     goals = np.stack([goal.pose.position for goal in task.goals])
     nearest = [int(np.linalg.norm(path[:, None] - goals, axis=-1).min(axis=0).argmin()) for path in paths]
-    if isinstance(task, PlanarTwoCups):
-        axes: Axes = figure.add_subplot()
-        draw_planar_arm(axes, task.robot, task.start)
-        _draw_paths(axes, task, [path[:, :2] for path in paths], nearest)
-        places = np.concatenate([*(path[:, :2] for path in paths), drawing.arm_line(task.robot, task.start)])
-        low, high = places.min(axis=0) - MARGIN_M, places.max(axis=0) + MARGIN_M
-        drawing.plane(axes, ((low[0], high[0]), (low[1], high[1])))
-    else:
-        solid: Axes3D = figure.add_subplot(projection="3d", computed_zorder=False)
-        places = draw_solid_arm(solid, task.robot, task.start)
-        _draw_paths(solid, task, paths, nearest)
-        frame(solid, np.concatenate([places, *paths]))
+    axes: Axes3D = figure.add_subplot(projection="3d", computed_zorder=False)
+    places = draw_arm(axes, task.robot, task.start)
+    _draw_paths(axes, task, paths, nearest)
+    frame(axes, np.concatenate([places, *paths]))
     drawing.name_series(figure, figure.axes[0], handle_length=1.0)
     return figure
 
 
-def _draw_paths(axes: "Axes", task: TwoCups, paths: list[FloatArray], led_to: list[int]) -> None:
-    """Paths (T, 2) or (T, 3) in the colour of the cup that they lead to, and the goals."""
+def _draw_paths(axes: "Axes3D", task: TwoCups, paths: list[FloatArray], led_to: list[int]) -> None:
+    """Paths (T, 3) in the colour of the cup that they lead to, and the goals."""
     for path, cup in zip(paths, led_to, strict=True):
         axes.plot(*path.T, color=GOAL_COLOURS[cup], linestyle=("-", "--")[cup], linewidth=0.8, zorder=4)
-    axis_count = paths[0].shape[1]
     for cup, goal in enumerate(task.goals):
         axes.plot(
-            *goal.pose.position[:axis_count, None],
+            *goal.pose.position[:, None],
             color=GOAL_COLOURS[cup],
             marker=GOAL_MARKERS[cup],
             markeredgecolor="black",
@@ -188,7 +177,7 @@ def _draw_paths(axes: "Axes", task: TwoCups, paths: list[FloatArray], led_to: li
         )
     cups = np.stack([task.pose(bearing, AT_THE_CUP).position for bearing in (BEARING_RAD, -BEARING_RAD)])
     axes.plot(
-        *cups[:, :axis_count].T,
+        *cups.T,
         color="black",
         marker="o",
         markerfacecolor="none",

@@ -54,7 +54,6 @@ class Preset:
 
     name: str  # what it is called on the command line
     demonstrations: int = 60  # to train on; a fifth of them is for validation and decides which epoch is best
-    test_demonstrations: int = 20  # further ones, that reconstruction is measured on
     seeds: int = 10  # models of each kind
     drives: int = 24  # drives with each of them and each person, half of them to each cup
     epochs: int = 60  # passes over the training pairs, at most
@@ -107,7 +106,6 @@ PRESETS: Final[dict[str, Preset]] = {
     "smoke": Preset(
         "smoke",
         demonstrations=12,
-        test_demonstrations=4,
         seeds=2,
         drives=8,
         epochs=8,

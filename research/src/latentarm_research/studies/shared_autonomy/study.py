@@ -7,7 +7,6 @@ from latentarm_research.studies.claim_tables import judged_parts, verdict_tables
 from latentarm_research.studies.claims import Tested
 from latentarm_research.studies.page import render_page
 from latentarm_research.studies.shared_autonomy import choice, drive, hypotheses
-from latentarm_research.studies.shared_autonomy import measures as measures_of
 from latentarm_research.studies.shared_autonomy import preset as people
 from latentarm_research.studies.shared_autonomy.cell import (
     TASKS,
@@ -23,7 +22,7 @@ from latentarm_research.studies.shared_autonomy.figures import (
     slopes_figure,
     task_figure,
 )
-from latentarm_research.studies.shared_autonomy.measures import ARRIVED
+from latentarm_research.studies.shared_autonomy.measures import ARRIVED, EVERY
 from latentarm_research.studies.shared_autonomy.preset import PRESETS, Preset
 from latentarm_research.studies.shared_autonomy.tables import (
     FEWEST_SEEDS,
@@ -82,24 +81,19 @@ def _report(request: Request[Preset], results: list[AutonomyResult]) -> Report:
         documents={
             "seeds.json": [_by_seed(figure) for figure in found],
         },
-        timings={
-            "cells": [
-                {"cell": _label(one.cell), "fit_s": one.fit_s, "drive_s": one.drive_s} for one in results
-            ]
-        },
         tables=verdict_tables(request.preset.name, hypotheses.HYPOTHESES, tests),
     )
 
 
 def _drawings(request: Request[Preset], results: Sequence[AutonomyResult]) -> "dict[str, Drawing]":
     preset, tasks = request.preset, request.tasks
-    drawings = {
+    drawings = {"panda_two_cups": task_figure()} if "panda_two_cups" in tasks else {}
+    return drawings | {
         "fixed_expertise": expertise_figure(results, preset, tasks),
         "change_of_mind": changes_figure(results, preset, tasks),
         "learners": learners_figure(results, preset, tasks),
         "learner_slopes": slopes_figure(results, preset, tasks),
     }
-    return drawings | {task: task_figure(TASKS[task]()) for task in tasks}
 
 
 def _page(
@@ -130,7 +124,7 @@ def _page(
         reached=hypotheses.REACHED,
         trapped=hypotheses.TRAPPED,
         choice=choice,
-        measures_of=measures_of,
+        every=EVERY,
         belief=drive.RULE.keywords,
     )
 
@@ -163,7 +157,7 @@ STUDY: Final = Study(
         "change_of_mind",
         "learners",
         "learner_slopes",
-        *TASKS,
+        "panda_two_cups",
     ),
     documents=("seeds.json",),
 )

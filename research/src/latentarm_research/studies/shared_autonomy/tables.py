@@ -97,8 +97,6 @@ PAPER: Final = {
 
 STUDY: Final = "shared_autonomy"
 
-RECONSTRUCTION: Final = "noise_free_error_percent_of_pca"
-
 
 class Figure(NamedTuple):
     """One figure of the study, before it is summed up."""
@@ -107,7 +105,7 @@ class Figure(NamedTuple):
     model: str
     condition: str  # method and person
     measure: str  # what was measured
-    values: FloatArray  # (S, P), of each drive with each seed's model; (S, 1) where it is the model's own
+    values: FloatArray  # (S, P), of each drive with each seed's model; (S, 1) of the seeds themselves
 
     @property
     def interval(self) -> Interval:
@@ -145,8 +143,6 @@ def rows_of(found: Iterable[Figure]) -> list[Row]:
 
 def _figures(result: AutonomyResult) -> Iterator[Figure]:
     cell = result.cell
-    trained = "with entropy" if cell.entropy else "without entropy"
-    yield Figure(cell.task, cell.model, trained, RECONSTRUCTION, result.reconstruction[:, None])
     for outcome in result.outcomes:
         condition = f"{outcome.method}, {outcome.person.label}"
         for measure, values in outcome.figures.items():
@@ -190,20 +186,6 @@ class Tables:
 
         models = {look_of(model).label: model for model in self._models}
         return grid_table(heading(EXTRA_TIME), self._people, models, text)
-
-    def reconstruction(self, tasks: Sequence[str]) -> str:
-        """Reconstruction without entropy and with it."""
-        columns = {
-            f"{look_of(model).label}, {kind}": (model, kind)
-            for model in self._models
-            for kind in ("without entropy", "with entropy")
-        }
-        return grid_table(
-            heading(RECONSTRUCTION),
-            {look_of(task).label: task for task in tasks},
-            columns,
-            lambda task, column: self._figure(task, *column, RECONSTRUCTION),
-        )
 
     def _figure(self, task: str, model: str, condition: str, measure: str) -> str:
         one = self._found.get((task, model, condition, measure))
