@@ -11,8 +11,6 @@ def cells(model: str, errors: tuple[float, ...]) -> list[FoldResult]:
             Place("pour", 0.01, model, fold, 12),
             {measure: np.array([error - 1.0, error + 1.0]) for measure in ENCODINGS},
             None,  # type: ignore[arg-type]
-            0.0,
-            0.0,
         )
         for fold, error in enumerate(errors)
     ]

@@ -16,7 +16,7 @@ from latentarm_research.studies.compare.tables import (
 
 def cell(fold: int, values: list[float], demonstrations: int = 4, measure: str = "reversal") -> FoldResult:
     place = Place("pour", 0.01, "cae", fold, demonstrations)
-    return FoldResult(place, {measure: np.array(values)}, None, 0.0, 0.0)  # type: ignore[arg-type]
+    return FoldResult(place, {measure: np.array(values)}, None)  # type: ignore[arg-type]
 
 
 RESULTS = [cell(0, [0.1, 0.3]), cell(1, [0.5, 0.9])]

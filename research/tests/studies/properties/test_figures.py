@@ -48,7 +48,6 @@ def results_of(tasks, models):
             PropertiesCell(task, model, PRESETS["smoke"], 0),
             {},
             Turning(MOTIONS[task]().latent_dim, MOTIONS[task]().robot.dof),
-            1.0,
         )
         for task in tasks
         for model in models

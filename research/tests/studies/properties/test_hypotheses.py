@@ -26,7 +26,7 @@ ERROR = "median_error_percent_of_pca"
 
 def result(model, measure, values, task="sine"):
     cell = PropertiesCell(task, model, PRESETS["smoke"], 0)
-    return PropertiesResult(cell, {measure: np.array(values, dtype=float)}, decoder=None, fit_s=0.0)
+    return PropertiesResult(cell, {measure: np.array(values, dtype=float)}, decoder=None)
 
 
 def only(results):

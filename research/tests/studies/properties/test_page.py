@@ -62,7 +62,6 @@ def results_of(seeds=3, tasks=tuple(MOTIONS)):
                     PropertiesCell(task, model, SMALL, 0),
                     figures,
                     Turning(MOTIONS[task]().latent_dim, MOTIONS[task]().robot.dof),
-                    fit_s=0.0,
                 )
             )
     return results

@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from time import perf_counter, process_time
 from typing import Final
 
 import numpy as np
@@ -58,18 +57,12 @@ class FoldResult:
     place: Place  # of the cell
     figures: Mapping[str, FloatArray]  # measure -> (S,), one figure per seed
     decoder: Decoder  # of the first seed
-    # processor time of the fit of all seeds, s: it depends less than wall time on what runs besides
-    fit_s: float
-    measure_s: float  # how long measuring took, s
 
 
 def measure_cell(cell: FoldCell) -> FoldResult:
     """Fit all seeds in one fit and measure them on the held-out episodes."""
     robot = load_recorded_robot(cell.dataset.demonstrations)
-    began = process_time()
     model = _fit(cell, robot)
-    fit_s = process_time() - began
-    began_measuring = perf_counter()
     figures = measure_model(
         model,
         cell.dataset.demonstrations,
@@ -82,8 +75,6 @@ def measure_cell(cell: FoldCell) -> FoldResult:
         place=cell.place,
         figures=figures,
         decoder=model.decoder(0),
-        fit_s=fit_s,
-        measure_s=perf_counter() - began_measuring,
     )
 
 

@@ -7,7 +7,6 @@ waypoints of latent actions, so here it plans up to 4 s ahead when no single ste
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from time import perf_counter
 from typing import Final
 
 import numpy as np
@@ -57,7 +56,6 @@ class DriveResult:
     figures: Drive  # of the drive
     progress: float  # share of the waypoints that were reached
     ending: Ending  # why it ended
-    took_s: float  # computing time, s
 
 
 def drive_cells(
@@ -89,7 +87,6 @@ def drive_cells(
 
 def measure_drive_cell(cell: ModelDriveCell) -> DriveResult:
     """Drive once; the start and the operator's randomness depend on the episode, not on the controller."""
-    began = perf_counter()
     robot = load_recorded_robot(cell.dataset.demonstrations)
     task = Replay(robot, routes_of(robot, select_episodes(cell.dataset.demonstrations, [cell.episode])))
     controller: Controller = (
@@ -109,7 +106,6 @@ def measure_drive_cell(cell: ModelDriveCell) -> DriveResult:
         figures=trace.figures,
         progress=trace.figures.steps_done,
         ending=trace.ending,
-        took_s=perf_counter() - began,
     )
 
 

@@ -186,7 +186,6 @@ def _report(asked: Asked, request: Request[Preset], measured: CompareResults) ->
             "seeds.json": tables.seeds_of(results),
             "drives.json": [{**asdict(one), "figures": one.figures.as_json()} for one in drives],
         },
-        timings=_timings(results, drives),
         tables=tables.terminal_tables(main, names, preset.noises_rad, VisibleConsole().width),
     )
 
@@ -229,29 +228,6 @@ def _page(
         driven_noise=tables.condition(preset.noises_rad[0]),
         drive_tables={name: tables.drive_table(driven, name) for name in names},
     )
-
-
-def _timings(results: Sequence[FoldResult], drives: Sequence[DriveResult]) -> dict[str, object]:
-    return {
-        "cells": [
-            {
-                **asdict(one.place),
-                "fit_s": one.fit_s,
-                "measure_s": one.measure_s,
-            }
-            for one in results
-        ],
-        "drives": [
-            {
-                "dataset": one.dataset,
-                "controller": one.controller,
-                "episode": one.episode,
-                "simulated_s": one.figures.time_s,
-                "took_s": one.took_s,
-            }
-            for one in drives
-        ],
-    }
 
 
 def _command(asked: Asked) -> str:

@@ -4,7 +4,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import IntEnum
 from functools import lru_cache
-from time import perf_counter
 from typing import Final
 
 import numpy as np
@@ -54,7 +53,6 @@ class PropertiesResult:
     # measure -> (S,), one figure per seed; each seed has demonstrations of its own
     figures: Mapping[str, FloatArray]
     decoder: Decoder  # of the first seed, for figures
-    fit_s: float  # how long the fit of all seeds took, s
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,9 +88,7 @@ def measure_cell(cell: PropertiesCell) -> PropertiesResult:
     motion = MOTIONS[cell.task](preset.design)
     sizes = preset.episodes, preset.test_episodes
     shown = demonstrated(cell.task, preset.design, sizes, preset.seeds, cell.seed)
-    began = perf_counter()
     models = _fit(cell, cell.model, shown)
-    fit_s = perf_counter() - began
     baselines = _fit(cell, BASELINE, shown)
     each = [
         _figures(cell, motion, index, *of_seed)
@@ -102,7 +98,6 @@ def measure_cell(cell: PropertiesCell) -> PropertiesResult:
         cell=cell,
         figures={name: np.concatenate([figures[name] for figures in each]) for name in each[0]},
         decoder=models[0].decoder(),
-        fit_s=fit_s,
     )
 
 

@@ -64,9 +64,6 @@ def _report(request: Request[Preset], results: list[PropertiesResult]) -> Report
         figures=figures,
         tests=tests,
         documents={"seeds.json": [one.as_json() for one in series]},
-        timings={
-            "cells": [{"task": one.cell.task, "model": one.cell.model, "fit_s": one.fit_s} for one in results]
-        },
     )
 
 

@@ -131,19 +131,16 @@ class TaskRunResult:
     task: str  # a name of `latentarm_research.studies.tasks.moved.TASKS`
     condition: Condition  # see `TaskRunCell`
     run: Run  # how it went
-    drive_s: float  # how long the simulation took, s
 
 
 def drive(cell: TaskRunCell) -> TaskRunResult:
     """Let the simulated person do the task."""
     task = task_of(cell.task, Stream.RUNS)
-    began = perf_counter()
     setup = drives.Setup(task, cell.driver.controller(task.robot, cell.number), PEOPLE[cell.person])
     # The same number gives the same scene and start to the demonstrator and in every condition.
     rng = generator(cell.seed, cell.task, Stream.RUNS, cell.number)
     trace = drives.drive(setup, choice_of(task, cell.number), rng)
-    run = driven_run(task, cell.number, trace)
-    return TaskRunResult(cell.task, cell.condition, run, perf_counter() - began)
+    return TaskRunResult(cell.task, cell.condition, driven_run(task, cell.number, trace))
 
 
 def training_set(

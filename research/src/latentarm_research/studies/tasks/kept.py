@@ -72,7 +72,7 @@ def _drive_path(out: Path, cell: TaskRunCell) -> Path:
 
 
 def _write_drive(out: Path, cell: TaskRunCell, driven: TaskRunResult) -> None:
-    write_json(_drive_path(out, cell), {**driven.run.as_json(), "drive_s": driven.drive_s})
+    write_json(_drive_path(out, cell), driven.run.as_json())
 
 
 def _read_drive(out: Path, cell: TaskRunCell) -> TaskRunResult | None:
@@ -81,9 +81,7 @@ def _read_drive(out: Path, cell: TaskRunCell) -> TaskRunResult | None:
         return None
     section = Section.of_file(path, LIMIT)
     figures = Drive(**_values(section, Drive))
-    return TaskRunResult(
-        cell.task, cell.condition, _run(section, cell.number, figures), section.number("drive_s")
-    )
+    return TaskRunResult(cell.task, cell.condition, _run(section, cell.number, figures))
 
 
 def _write_model(out: Path, cell: ModelCell, trained: FittedModel) -> None:

@@ -121,7 +121,6 @@ def _report(request: Request[Preset], measured: TasksResults) -> Report:
         page=_page(request, measured, by_task, rows, figures, verdict),
         figures=figures,
         documents={"runs.json": runs_as_json(by_task), "verdict.json": verdict.as_json()},
-        timings=_timings(measured),
         tables=[*tables.summary_tables(by_task), f"Default by the rule: {verdict.sentence}."],
     )
 
@@ -155,24 +154,6 @@ def _page(
         measure_tables={name: tables.measure_table(rows, runs, name) for name, runs in by_task.items()},
         failure_tables={name: tables.failure_table(runs) for name, runs in by_task.items()},
     )
-
-
-def _timings(measured: TasksResults) -> dict[str, object]:
-    """How long models were fitted and each condition was driven, s."""
-    drives: dict[tuple[str, str], float] = {}
-    for one in measured.driven:
-        place = one.task, f"{one.condition.label}, {one.condition.person}"
-        drives[place] = drives.get(place, 0.0) + one.drive_s
-    return {
-        "models": [
-            {"task": one.task, "condition": one.condition.label, "fit_s": one.fit_s}
-            for one in measured.trained
-        ],
-        "drives": [
-            {"task": task, "condition": condition, "drive_s": drive_s}
-            for (task, condition), drive_s in drives.items()
-        ],
-    }
 
 
 def _depends_on(request: Request[Preset]) -> dict[str, object]:
