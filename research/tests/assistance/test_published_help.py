@@ -142,11 +142,6 @@ class TestWays:
         # What the person commands moves nothing by itself.
         assert given.with_person(towards(0)) == pytest.approx(given.with_person(towards(1)))
 
-    @pytest.mark.parametrize("weight", [-0.1, 1.1, float("nan")])
-    def test_a_weight_that_is_none_is_refused(self, weight):
-        with pytest.raises(UserError, match="weight"):
-            Interpolation(GOALS, PANDA, weight)
-
     def test_policy_blending_waits_until_one_goal_is_ahead(self):
         way = PolicyBlending(GOALS, PANDA)
         action = towards(0)
@@ -157,5 +152,3 @@ class TestWays:
         assert sure.with_person(action) == pytest.approx(action + certain)
         alone = PolicyBlending(GOALS[:1], PANDA)
         assert alone.contribution(PUSH, action, PANDA.home, np.ones(1)).added == 1.0
-        with pytest.raises(UserError, match="ahead"):
-            PolicyBlending(GOALS, PANDA, ahead=2.0)

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from latentarm.assistance.controllers.end_effector import EndEffectorController
-from latentarm.core.errors import UserError
 from latentarm.core.types import Context
 from latentarm.robots.catalogue import load_robot
 from latentarm_research.people.boltzmann import BoltzmannConfig, OneStep
@@ -235,29 +234,3 @@ def test_a_decoder_that_gives_no_numbers_makes_them_let_go(planar, one_mode):
     given = operator().act(HERE, Broken([np.eye(planar.dof)[:2]]), 0, AHEAD, np.random.default_rng(0))
     assert not given.u.any()
     assert not given.switch_mode
-
-
-@pytest.mark.parametrize(
-    ("wrong", "named"),
-    [
-        ({"beta": -1.0}, "beta"),
-        ({"beta": float("nan")}, "beta"),
-        ({"beta_per_s": -1.0}, "beta_per_s"),
-        ({"beta_per_s": float("inf")}, "beta_per_s"),
-        ({"horizon_s": 0.0}, "horizon_s"),
-        ({"decision_s": float("inf")}, "decision_s"),
-        ({"rotation_weight": -0.1}, "rotation_weight"),
-        ({"switch_cost": float("nan")}, "switch_cost"),
-        ({"switch_s": -1.0}, "switch_s"),
-        ({"rest_share": 0.5}, "rest_share"),
-        ({"switch_share": -0.1}, "switch_share"),
-    ],
-)
-def test_a_person_who_cannot_be_is_refused(wrong, named):
-    with pytest.raises(UserError, match=named):
-        BoltzmannConfig(**wrong)
-
-
-def test_a_period_that_is_none_is_refused():
-    with pytest.raises(UserError, match="time between inputs"):
-        SimulatedPerson(PLANAR, Person(), period_s=0.0)

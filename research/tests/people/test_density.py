@@ -6,7 +6,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.stats import chisquare
 
-from latentarm.core.errors import UserError
 from latentarm_research.people.density import CostModel, InputDensity, Lattice
 
 TOOL = np.array([[0.10, 0.03], [0.0, 0.08], [0.02, 0.0]])
@@ -182,10 +181,3 @@ def test_what_cannot_be_imagined_is_never_given():
     assert nothing.value == np.inf
     assert not nothing.inputs.any()
     assert not unknown.best.any()
-
-
-@pytest.mark.parametrize("beta", [-1.0, np.nan])
-def test_a_rationality_that_cannot_be(beta):
-    grid = lattice(2)
-    with pytest.raises(UserError, match="beta"):
-        InputDensity(CostModel(grid, np.zeros((len(grid.nodes), 3))), beta)

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from latentarm.core.errors import UserError
 from latentarm.core.types import Context, Input, Pose
 from latentarm_research.people.contract import Moment
 from latentarm_research.people.motor_noise import UNSTEADY, Hand, HandConfig
@@ -67,26 +66,3 @@ def test_a_push_varies_in_proportion_and_is_held_as_long_as_it_is_meant():
 
 def test_a_steady_hand_gives_what_is_meant():
     np.testing.assert_array_equal(given(Hand(HandConfig(), PERIOD_S), [0.3, 0.1], 3), [[0.3, 0.1]] * 3)
-
-
-def test_a_loop_too_slow_for_a_tremor_is_refused():
-    with pytest.raises(UserError, match="more often"):
-        Hand(HandConfig(tremor=0.1), 0.05)
-
-
-@pytest.mark.parametrize(
-    "wrong",
-    [
-        {"reaction_s": -0.1},
-        {"reaction_s": np.inf},
-        {"tremor": 1.5},
-        {"tremor": np.nan},
-        {"lowest_hz": 0.0},
-        {"lowest_hz": 13.0},
-        {"variation": -0.1},
-        {"variation": np.inf},
-    ],
-)
-def test_a_hand_that_cannot_be(wrong):
-    with pytest.raises(UserError):
-        HandConfig(**wrong)

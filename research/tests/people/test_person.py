@@ -5,11 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from latentarm.core.errors import UserError
 from latentarm.core.types import Context
 from latentarm_research.people.boltzmann import BoltzmannConfig, OneStep
 from latentarm_research.people.contract import KnowsTheArm, LoopLimits, Moment
-from latentarm_research.people.linear_guess import LinearGuessConfig
 from latentarm_research.people.motor_noise import UNSTEADY, Hand, HandConfig
 from latentarm_research.people.page_rates import PAGE
 from latentarm_research.people.person import Person, SimulatedPerson
@@ -78,8 +76,3 @@ def test_the_page_delays_what_a_person_does_and_no_more(planar, two_modes):
     straight, _ = driven(Person(), planar, two_modes, 200)
     assert np.flatnonzero(straight.any(axis=1))[0] < np.flatnonzero(given.any(axis=1))[0] <= 5
     assert given[:, 2].sum() > 0
-
-
-def test_only_those_who_know_the_arm_anticipate():
-    with pytest.raises(UserError, match="anticipates"):
-        Person(imagines=LinearGuessConfig(), anticipates=True)

@@ -1,13 +1,10 @@
 import numpy as np
-import pytest
 
 from latentarm.assistance.controllers.contract import Controller
-from latentarm.core.errors import UserError
 from latentarm.core.types import Context
 from latentarm.robots.planar import planar
 from latentarm_research.people.boltzmann import BoltzmannConfig
 from latentarm_research.people.contract import UNLIMITED, LoopLimits
-from latentarm_research.people.linear_guess import LinearGuessConfig
 from latentarm_research.people.person import Person, SimulatedPerson
 from latentarm_research.people.planning import PlanningConfig
 
@@ -119,8 +116,3 @@ def test_the_same_randomness_gives_the_same_drive():
     operator = planner()
     first, second = (driven(operator, Driven(True), target, 4.0, seed=3)[1] for _ in range(2))
     np.testing.assert_array_equal(first, second)
-
-
-def test_only_who_knows_the_arm_plans():
-    with pytest.raises(UserError, match="knows the arm"):
-        Person(imagines=LinearGuessConfig(), plans=PlanningConfig())

@@ -13,7 +13,6 @@ from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray
 from latentarm.models.batches import seed_generator
 from latentarm.models.networks import Networks, mlp
-from latentarm.models.parameters import check_rows
 from latentarm.models.torch_decoder import TorchDecoder
 from latentarm.robots.kinematics.chain import Chain
 from latentarm_research.alignment.priors import (
@@ -58,8 +57,6 @@ class AlignmentLoss:
         unlabelled: FloatArray,  # (M, c), contexts in which the priors apply
         priors: Priors,
     ) -> None:
-        _check(decoder, chain, answers, unlabelled)
-
         def tensor(values: Sequence[FloatArray]) -> Tensor:
             return torch.as_tensor(np.stack(values), dtype=decoder.dtype)
 
@@ -132,30 +129,3 @@ def _rows(values: Tensor, rows: Tensor) -> Tensor:
         return values[0][rows]
     runs = torch.arange(len(rows), device=rows.device)[:, None]
     return values[runs, rows]
-
-
-def _check(decoder: TorchDecoder, chain: Chain, answers: Sequence[Answers], unlabelled: FloatArray) -> None:
-    """Refuse what does not fit."""
-    if not answers:
-        raise UserError("An alignment is learned from the answers of at least one run.")
-    if chain.dof != decoder.action_dim:
-        raise UserError(
-            f"The model was trained for {decoder.action_dim} joints, and the arm has {chain.dof}."
-        )
-    alike = {(len(one), one.motions.duration_s) for one in answers}
-    if len(alike) > 1:
-        raise UserError("Runs that are trained together answer equally many motions that take equally long.")
-    for one in answers:
-        context, axes = one.motions.context.shape[1], one.u.shape[1]
-        if (one.motions.start.shape[1], context, axes) != (
-            chain.dof,
-            decoder.context_dim,
-            decoder.latent_dim,
-        ):
-            raise UserError(
-                f"The answers are {axes} numbers in contexts of {context}, and the model takes "
-                f"{decoder.latent_dim} in contexts of {decoder.context_dim}."
-            )
-    check_rows("unlabelled", unlabelled, decoder.context_dim)
-    if len(unlabelled) == 0:
-        raise UserError("The priors need at least one context without an answer.")

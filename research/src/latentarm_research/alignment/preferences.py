@@ -1,6 +1,5 @@
 """Further meanings of the axes of the stick, and people who answer imprecisely."""
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import final
@@ -8,8 +7,7 @@ from typing import final
 import numpy as np
 
 from latentarm.alignment.answers import Motions
-from latentarm.alignment.preference import Preference, check_speed
-from latentarm.core.errors import UserError
+from latentarm.alignment.preference import Preference
 from latentarm.core.types import BoolArray, FloatArray
 from latentarm.robots.kinematics.chain import Chain
 from latentarm.robots.kinematics.rotations import pose_error
@@ -26,10 +24,6 @@ class HeightAndTilt:
     chain: Chain  # the arm, of which the first tool counts
     speed_m_s: float  # up, for which they would push all the way, m/s
     turn_rad_s: float  # the same of the tilt, rad/s
-
-    def __post_init__(self) -> None:
-        check_speed(self.speed_m_s, "m/s")
-        check_speed(self.turn_rad_s, "rad/s")
 
     def inputs(self, motions: Motions) -> FloatArray:
         """The inputs (N, d) by which they would ask for N motions."""
@@ -62,12 +56,6 @@ class Imprecise:
     preference: Preference
     variation: float  # coefficient of variation, the SD of an answer as a share of it
     rng: np.random.Generator  # source of the chances; each call draws anew
-
-    def __post_init__(self) -> None:
-        if not (math.isfinite(self.variation) and self.variation >= 0):
-            raise UserError(
-                f"The coefficient of variation of answers must be zero or more, not {self.variation:g}."
-            )
 
     def inputs(self, motions: Motions) -> FloatArray:
         """The inputs (N, d) by which they would ask for N motions."""

@@ -4,14 +4,11 @@ Each is a mean over the second axis, (S,), of squared lengths of poses, m^2 (see
 can be summed (equation 23).
 """
 
-import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, final
 
 import torch
 from torch import Tensor
-
-from latentarm.core.errors import UserError
 
 if TYPE_CHECKING:
     from latentarm_research.alignment.transition import Push
@@ -26,12 +23,6 @@ class Priors:
     reversible: float = 1.0  # lambda_2
     consistent: float = 0.2  # lambda_3. Lower, since the same input need not do quite the same elsewhere
     gamma: float = 1.0  # how fast consistency fades with the distance of two states, 1/rad
-
-    def __post_init__(self) -> None:
-        for name in ("proportional", "reversible", "consistent", "gamma"):
-            value = getattr(self, name)
-            if not (math.isfinite(value) and value >= 0):
-                raise UserError(f"The weight {name} of a prior must be zero or more, not {value:g}.")
 
 
 NO_PRIORS: Final = Priors(proportional=0.0, reversible=0.0, consistent=0.0)

@@ -1,6 +1,5 @@
 """Learning alignments: S runs in one batched loop, each independent of the others."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Final, final
@@ -27,7 +26,7 @@ CHECK_EVERY: Final = 250  # steps between two looks at the answers that are held
 @final
 @dataclass(frozen=True)
 class FitConfig:
-    """How an alignment is learned. Raises a `UserError` where a figure is out of its range."""
+    """How an alignment is learned."""
 
     priors: Priors = field(default_factory=Priors)  # what counts beside the answers
     hidden: tuple[int, ...] = (64, 64)  # units of each hidden layer of f
@@ -37,14 +36,6 @@ class FitConfig:
     # share of the answers, the last ones, that train nothing: the weights that miss them least are kept. 0
     # keeps the last weights
     held_out: float = 0.0
-
-    def __post_init__(self) -> None:
-        if min(self.steps, self.batch_size, *self.hidden) < 1:
-            raise UserError("An alignment is learned in at least one step, batch and unit of each layer.")
-        if not (math.isfinite(self.learning_rate) and self.learning_rate > 0):
-            raise UserError(f"The learning rate must be positive, not {self.learning_rate:g}.")
-        if not 0 <= self.held_out < 1:
-            raise UserError(f"A share of answers is held out, 0 or more and below 1, not {self.held_out:g}.")
 
 
 def fit_alignments(

@@ -14,7 +14,6 @@ import numpy as np
 
 from latentarm.assistance.assistance import Assistance, AssistanceRule, Contribution
 from latentarm.assistance.belief import Rule
-from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray
 from latentarm.robots.kinematics.resolved_rates import Damping, joint_velocities
 from latentarm.robots.robot import Robot
@@ -87,12 +86,9 @@ class Interpolation(ExpectedHelp):
 
     The robot's action and the belief are those of hindsight optimisation; only how they join the person's
     action differs. At weight 1 the person's input moves nothing, and still says which goal they want.
-    Raises a `UserError` where the weight is not in [0, 1].
     """
 
     def __init__(self, goals: FloatArray, robot: Robot, weight: float) -> None:
-        if not 0.0 <= weight <= 1.0:
-            raise UserError(f"The weight on assistance must be in [0, 1], not {weight}.")
         super().__init__(goals, robot)
         self._weight = weight
 
@@ -108,20 +104,17 @@ class Interpolation(ExpectedHelp):
         return Contribution(self.action(action_human, state, belief), alpha=self._weight)
 
 
+AHEAD: Final = 0.4  # probability by which the likeliest goal must be ahead of the next
+
+
 @final
 class PolicyBlending(ExpectedHelp):
     """The person alone, until the likeliest goal is ahead of the next by enough; then help towards it alone.
 
     This is the baseline "blend" of Javdani et al.: their public implementation adds all of the help towards
     the likeliest goal once ``p1 - p2 > 0.4``. Dragan and Srinivasa, "A policy-blending formalism for shared
-    control", 2013, leave the arbitration open. Raises a `UserError` where ``ahead`` is not in [0, 1].
+    control", 2013, leave the arbitration open.
     """
-
-    def __init__(self, goals: FloatArray, robot: Robot, ahead: float = 0.4) -> None:
-        if not 0.0 <= ahead <= 1.0:
-            raise UserError(f"How far a goal must be ahead must be in [0, 1], not {ahead}.")
-        super().__init__(goals, robot)
-        self._ahead = ahead
 
     @property
     def acts_at_rest(self) -> bool:
@@ -134,7 +127,7 @@ class PolicyBlending(ExpectedHelp):
         """Towards the likeliest goal, all of it or nothing."""
         likeliest = int(belief.argmax())
         others = np.delete(belief, likeliest)
-        if belief[likeliest] - others.max(initial=0.0) <= self._ahead:
+        if belief[likeliest] - others.max(initial=0.0) <= AHEAD:
             return Contribution(np.zeros_like(action_human), alpha=0.0)
         only = np.zeros_like(belief)
         only[likeliest] = 1.0

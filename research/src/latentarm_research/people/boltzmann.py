@@ -7,7 +7,6 @@ from typing import final
 import numpy as np
 
 from latentarm.assistance.controllers.contract import Controller
-from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray, Input, Pose
 from latentarm.robots.kinematics.rotations import pose_error
 from latentarm_research.people.contract import USUAL_WITHIN_M, Decision, Imagination, Moment
@@ -27,10 +26,6 @@ def boltzmann(cost: FloatArray, beta: FloatArray | float) -> FloatArray:
             against the leading axes of ``cost``.
     """
     rationality = np.asarray(beta, dtype=np.float64)[..., None]
-    if not cost.ndim or not cost.shape[-1]:
-        raise UserError("A simulated person who chooses needs at least one option.")
-    if not (rationality >= 0).all():
-        raise UserError("A simulated person's rationality beta must be zero or more.")
     possible = np.isfinite(cost)
     possible[..., 0] |= ~possible.any(axis=-1)
     known = np.where(possible, cost, np.inf)
@@ -60,30 +55,6 @@ class BoltzmannConfig:
     switch_share: float = 0.04  # how often they ask for another mode, where there is one, 0 to 1
     switch_cost: float = 0.015  # a switch of mode must bring the tool this much closer to be worth it, m
     switch_s: float = 0.8  # a switch takes this long, during which the input is zero, s
-
-    def __post_init__(self) -> None:
-        if not self.beta >= 0:
-            raise UserError(f"The simulated person's beta must be zero or more, not {self.beta}.")
-        if not 0 <= self.beta_per_s < np.inf:
-            raise UserError(
-                f"The simulated person's beta_per_s must be zero or more, and finite, not {self.beta_per_s}."
-            )
-        for name in ("horizon_s", "decision_s"):
-            if not 0 < getattr(self, name) < np.inf:
-                raise UserError(
-                    f"The simulated person's {name} must be positive and finite, not {getattr(self, name)}."
-                )
-        for name in ("rotation_weight", "switch_cost", "switch_s"):
-            if not 0 <= getattr(self, name) < np.inf:
-                raise UserError(
-                    f"The simulated person's {name} must be zero or more, and finite, "
-                    f"not {getattr(self, name)}."
-                )
-        for name in ("rest_share", "switch_share"):
-            if not 0 <= getattr(self, name) < 0.5:
-                raise UserError(
-                    f"The simulated person's {name} must be in [0, 0.5), not {getattr(self, name)}."
-                )
 
     def missed(self, target: Pose, reached: Pose, within_m: float) -> FloatArray:
         """How far poses are from the target, (..., 6), m; a radian counts as `rotation_weight`.
@@ -135,8 +106,6 @@ class OneStep(Decision):
     """
 
     def __init__(self, config: BoltzmannConfig, period_s: float, dead_zone: float = 0.0) -> None:
-        if not 0 < period_s < np.inf:
-            raise UserError(f"The time between inputs must be positive and finite, not {period_s} s.")
         self._config = config
         self._period_s = period_s
         self._dead_zone = dead_zone

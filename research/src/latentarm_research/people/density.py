@@ -17,7 +17,6 @@ from typing import Final, Self, final
 import numpy as np
 from scipy.special import logsumexp
 
-from latentarm.core.errors import UserError
 from latentarm.core.types import BoolArray, FloatArray, IntArray
 
 STRETCHES: Final[FloatArray] = np.array([0.01, 0.3, 0.65, 1.0])
@@ -136,8 +135,6 @@ class InputDensity:
     """The density ``p(u) ∝ exp(-beta cost(u))`` over the unit ball without the dead zone; beta in 1/m²."""
 
     def __init__(self, model: CostModel, beta: float) -> None:
-        if not beta >= 0:
-            raise UserError("A simulated person's rationality beta must be zero or more.")
         self._model, self._beta = model, beta
         if not len(model.direction):
             return

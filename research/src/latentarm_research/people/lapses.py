@@ -6,7 +6,6 @@ from typing import Final, final
 import numpy as np
 
 from latentarm.assistance.controllers.contract import Controller
-from latentarm.core.errors import UserError
 from latentarm.core.types import Input
 from latentarm_research.people.contract import Decision, Imagination, Moment
 
@@ -22,12 +21,6 @@ class LapseConfig:
 
     per_minute: float  # mean number of lapses that begin in a minute of attention
     mean_s: float  # mean duration, s: `SHORTEST_S`, and an exponential share beyond it
-
-    def __post_init__(self) -> None:
-        if not 0 < self.per_minute < np.inf:
-            raise UserError(f"Lapses per minute must be positive and finite, not {self.per_minute}.")
-        if not SHORTEST_S <= self.mean_s < np.inf:
-            raise UserError(f"A lapse lasts {SHORTEST_S} s or more on average, not {self.mean_s} s.")
 
 
 @final

@@ -6,7 +6,6 @@ from typing import Final, final
 
 import numpy as np
 
-from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray, Input
 from latentarm_research.people.contract import Moment
 
@@ -25,19 +24,6 @@ class HandConfig:
     # SD of each axis of a push about what was meant, as a share of its length; drawn anew for each push that
     # is meant, and held as long as it
     variation: float = 0.0
-
-    def __post_init__(self) -> None:
-        if not 0 <= self.reaction_s < np.inf:
-            raise UserError(f"A reaction time must be zero or more, and finite, not {self.reaction_s} s.")
-        if not 0 <= self.tremor <= 1:
-            raise UserError(f"A tremor must be a share of full deflection, 0 to 1, not {self.tremor}.")
-        if not 0 < self.lowest_hz < self.highest_hz < np.inf:
-            raise UserError(
-                "A tremor's band must go from a positive frequency to a higher one, not from"
-                f" {self.lowest_hz} to {self.highest_hz} Hz."
-            )
-        if not 0 <= self.variation < np.inf:
-            raise UserError(f"A variation of pushes must be zero or more, and finite, not {self.variation}.")
 
 
 REACTION_S: Final = 0.23
@@ -62,11 +48,6 @@ class Hand:
     """
 
     def __init__(self, config: HandConfig, period_s: float) -> None:
-        if config.tremor and 2.0 * config.highest_hz * period_s >= 1.0:
-            raise UserError(
-                f"A tremor of {config.highest_hz:g} Hz needs inputs every {0.5 / config.highest_hz:.3g} s or"
-                f" more often, not every {period_s:g} s."
-            )
         self._config = config
         self._period_s = period_s
         self._delay_calls = round(config.reaction_s / period_s)

@@ -6,7 +6,6 @@ from typing import final
 import numpy as np
 
 from latentarm.assistance.controllers.contract import Controller
-from latentarm.core.errors import UserError
 from latentarm.core.types import BoolArray, Context, Input, Pose
 from latentarm.robots.robot import Robot
 from latentarm_research.people import contract
@@ -38,12 +37,6 @@ class Person:
     # whether they make up for their reaction time by what they know that they have pushed
     anticipates: bool = False
     page: PageRates | None = None  # what they drive through; None sees and is heard at once
-
-    def __post_init__(self) -> None:
-        if self.imagines is not None and self.plans is not None:
-            raise UserError("Only a simulated person who knows the arm plans: give foresight or planning.")
-        if self.imagines is not None and self.anticipates:
-            raise UserError("Only a simulated person who knows the arm anticipates where it is.")
 
 
 @final
