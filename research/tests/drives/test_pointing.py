@@ -3,16 +3,16 @@
 import numpy as np
 import pytest
 
+from latentarm.assistance.controllers.axis_modes import AxisModes
 from latentarm.assistance.controllers.end_effector import EndEffectorController
 from latentarm.robots.catalogue import load_robot
-from latentarm_research.drives.pointing import FittsLaw, OneMode, Pointing, point
+from latentarm_research.drives.pointing import Pointing, point
 from latentarm_research.people.population import draw_people
 
 
 def test_a_person_comes_to_a_target_no_sooner_than_they_react():
     robot, traits = load_robot("panda_fork"), draw_people(1, 1)[0]
-    controller = OneMode(EndEffectorController(robot), 0)
-    assert controller.modes == ("x-y",)
+    controller = EndEffectorController(robot, modes=AxisModes(("x-y",), ((0, 1),)))
     movement = Pointing(axis=1, distance_m=0.03, width_m=0.03)
     took_s = [
         point(robot, controller, traits.person(0, 300.0), movement, np.random.default_rng(3))
@@ -24,8 +24,3 @@ def test_a_person_comes_to_a_target_no_sooner_than_they_react():
 
 def test_difficulty_is_shannons():
     assert Pointing(0, -0.07, 0.01).difficulty == pytest.approx(3.0)
-
-
-def test_fitts_law_of_a_line():
-    law = FittsLaw.fitted([1.0, 2.0, 4.0], [0.7, 1.2, 2.2])
-    assert (law.slope_s_per_bit, law.intercept_s, law.r2) == pytest.approx((0.5, 0.2, 1.0))

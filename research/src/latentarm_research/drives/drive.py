@@ -30,7 +30,7 @@ from latentarm.tasks.step_goals import StepGoals
 from latentarm.tasks.steps import Progress
 from latentarm_research.drives.following import Following, poses_at
 from latentarm_research.drives.trace import Trace
-from latentarm_research.people.contract import LoopLimits, Operator
+from latentarm_research.people.contract import LoopLimits
 from latentarm_research.people.person import Person, SimulatedPerson
 
 RATE_HZ: Final = 100.0
@@ -162,7 +162,7 @@ def _lead_on(step: Step, goals: StepGoals, progress: Progress, state: SceneState
 
 
 def _given(
-    operator: Operator,
+    operator: SimulatedPerson,
     reading: Reading,
     state: SceneState,
     progress: Progress,

@@ -48,6 +48,13 @@ COLUMNS: Final[dict[str, str]] = {
 A figure that a drive does not have, such as a force where nothing can be touched, is empty, or null in JSON.
 """
 
+FIGURES: Final[dict[str, str]] = {
+    "input_magnitude_s": "input_magnitude",
+    "path_length_m": "path_length",
+    "final_distance_m": "final_distance",
+}
+"""Columns that have another name than their field of `Drive`."""
+
 
 def drive_entries(
     planned: Sequence[Planned], traces: Sequence[Trace], *, controller: str, operator: str
@@ -63,8 +70,7 @@ def drive_entries(
 
 
 def _entry(number: int, plan: Planned, trace: Trace, controller: str, operator: str) -> dict[str, object]:
-    figures = trace.figures
-    return {
+    of_the_drive: dict[str, object] = {
         "drive": number,
         "choice": plan.choice,
         "choice_name": plan.setup.task.choices[plan.choice],
@@ -73,27 +79,13 @@ def _entry(number: int, plan: Planned, trace: Trace, controller: str, operator: 
         "seed": plan.seed,
         "controller": controller,
         "operator": operator,
-        "success": figures.success,
-        "steps_done": figures.steps_done,
         "not_done": trace.ended_in,
         "ended_because": trace.ending.reason,
         "ended_in_words": trace.ending.detail,
-        "time_s": figures.time_s,
-        "idle_s": figures.idle_s,
-        "input_magnitude_s": figures.input_magnitude,
-        "turned_round": figures.turned_round,
-        "mode_switches": figures.mode_switches,
-        "path_length_m": figures.path_length,
-        "stops": figures.stops,
-        "goal_error_m_s": figures.goal_error_m_s,
-        "goal_error_m": figures.goal_error_m,
-        "final_distance_m": figures.final_distance,
-        "final_angle_deg": figures.final_angle_deg,
-        "preference_alignment": figures.preference_alignment,
-        "table_force_n": figures.table_force_n,
-        "food_force_n": figures.food_force_n,
-        "spilled": figures.spilled,
-        "grains": figures.grains,
+    }
+    return {
+        name: of_the_drive[name] if name in of_the_drive else getattr(trace.figures, FIGURES.get(name, name))
+        for name in COLUMNS
     }
 
 

@@ -1,7 +1,6 @@
 """Movements of a simulated person along one axis, as in Fitts's law: to a target so far away and so wide."""
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final, final
 
@@ -12,7 +11,7 @@ from latentarm.arms.contract import check_arm
 from latentarm.assistance.controllers.contract import Controller
 from latentarm.control.clock import SimulatedClock
 from latentarm.control.step import Step
-from latentarm.core.types import Context, FloatArray, Input, Pose
+from latentarm.core.types import Input, Pose
 from latentarm.robots.robot import Robot
 from latentarm.safety.config import SafetyConfig
 from latentarm_research.drives.drive import RATE_HZ
@@ -39,37 +38,6 @@ class Pointing:
     def difficulty(self) -> float:
         """Index of difficulty, bits: Shannon's form, ``log2(D / W + 1)`` (MacKenzie 1992)."""
         return math.log2(abs(self.distance_m) / self.width_m + 1.0)
-
-
-@final
-class OneMode(Controller):
-    """One mode of a controller, with no other to switch to."""
-
-    def __init__(self, controller: Controller, mode: int) -> None:
-        self._controller = controller
-        self._mode = mode
-
-    @property
-    def modes(self) -> tuple[str, ...]:
-        """That one."""
-        return (self._controller.modes[self._mode],)
-
-    @property
-    def input_dim(self) -> int:
-        """As many axes as the controller has."""
-        return self._controller.input_dim
-
-    def latent(self, u: FloatArray, context: Context, mode: int) -> FloatArray:
-        """What the controller makes of the input in the mode."""
-        return self._controller.latent(u, context, self._mode)
-
-    def action(self, z: FloatArray, context: Context, mode: int) -> FloatArray:
-        """What the controller does in the mode."""
-        return self._controller.action(z, context, self._mode)
-
-    def speed_bound(self, context: Context, mode: int) -> float | None:
-        """That of the mode."""
-        return self._controller.speed_bound(context, self._mode)
 
 
 def point(
@@ -106,19 +74,3 @@ def point(
             )
             arm.send(step(given, 0.0, reading, clock.now_s()).command)
     return math.inf
-
-
-@final
-@dataclass(frozen=True)
-class FittsLaw:
-    """``time = intercept + slope difficulty``, fitted by least squares."""
-
-    slope_s_per_bit: float  # s/bit
-    intercept_s: float  # s
-    r2: float  # share of the variance that it explains
-
-    @classmethod
-    def fitted(cls, difficulty: Sequence[float], time_s: Sequence[float]) -> "FittsLaw":
-        """The law of some movements."""
-        slope, intercept = np.polyfit(difficulty, time_s, 1)
-        return cls(float(slope), float(intercept), float(np.corrcoef(difficulty, time_s)[0, 1]) ** 2)

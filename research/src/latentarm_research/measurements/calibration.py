@@ -11,12 +11,14 @@ from functools import partial
 from typing import Final
 
 import numpy as np
+from scipy.stats import linregress
 
+from latentarm.assistance.controllers.axis_modes import AxisModes
 from latentarm.assistance.controllers.end_effector import EndEffectorController
 from latentarm.robots.catalogue import load_robot
 from latentarm.tasks.catalogue import SCENE_TASKS
 from latentarm_research.drives.drive import Setup, drive
-from latentarm_research.drives.pointing import FittsLaw, OneMode, Pointing, point
+from latentarm_research.drives.pointing import Pointing, point
 from latentarm_research.measurements.catalogue import Calibrating
 from latentarm_research.measurements.measurement import Outcome, Work, line
 from latentarm_research.metrics.stick import switching
@@ -39,6 +41,7 @@ WIDTHS_M: Final = (0.0075, 0.015, 0.03)
 """Over distances longer than the usual ones the arm's top speed decides, whatever the width."""
 
 PUSHED: Final = 0.05  # deflection from which the stick counts as pushed
+ONE_MODE: Final = ((("x-y",), ((0, 1),)), (("z-yaw",), ((2, 5),)))  # of the stick, with no other to switch to
 MOVES, DRIVES = 1, 2  # streams of randomness of movements and drives
 
 
@@ -50,14 +53,12 @@ def measure(options: Calibrating, work: Work) -> Outcome:
         plan = [(d, w) for d in range(len(options.distances_m)) for w in range(len(WIDTHS_M))]
         times = work.each(partial(movements, options, calibration, work.seed), plan)
         difficulty = [Pointing(0, options.distances_m[d], WIDTHS_M[w]).difficulty for d, w in plan]
-        law = FittsLaw.fitted(
-            difficulty, [float(np.mean([one for one in each if math.isfinite(one)])) for each in times]
-        )
+        law = linregress(difficulty, [np.mean([one for one in each if math.isfinite(one)]) for each in times])
         failed = sum(math.isinf(one) for each in times for one in each)
         figures = {
-            "slope_s_per_bit": law.slope_s_per_bit,
-            "intercept_s": law.intercept_s,
-            "r2": law.r2,
+            "slope_s_per_bit": law.slope,
+            "intercept_s": law.intercept,
+            "r2": law.rvalue**2,
             "failed_movements": failed,
         }
         condition = f"pushes vary by {variation:g}"
@@ -86,11 +87,12 @@ def movements(
     """Times of all people's movements over one distance to one width, s; infinite where one failed."""
     d, w = cell
     robot = load_robot("panda_fork")
-    controller, found = EndEffectorController(robot), list[float]()
+    level, upright = (EndEffectorController(robot, modes=AxisModes(*one)) for one in ONE_MODE)
+    found = list[float]()
     for traits in draw_people(options.people, seed, calibration):
         for repeat in range(options.repeats):
             axis = (traits.number + d + w + repeat) % 3
-            mode = OneMode(controller, 1 if axis == 2 else 0)
+            mode = upright if axis == 2 else level
             movement = Pointing(axis, options.distances_m[d], WIDTHS_M[w])
             rng = np.random.default_rng([seed, MOVES, traits.number, d, w, repeat])
             found.append(point(robot, mode, traits.person(0, PRACTICE_S), movement, rng))

@@ -137,29 +137,3 @@ class Decision(ABC):
         rng: np.random.Generator,
     ) -> Input:
         """An input of length 1 at most, and whether the person switches to the next mode."""
-
-
-class Operator(ABC):
-    """A simulated person at the interface, asked once per step of the loop.
-
-    An operator remembers what it was doing (an input it holds, a switch under way), so a new drive
-    begins with `reset`.
-    """
-
-    @abstractmethod
-    def reset(self) -> None:
-        """Forget what was being done, before a new drive."""
-
-    @abstractmethod
-    def act(
-        self,
-        context: Context,
-        controller: Controller,
-        mode: int,
-        target: Pose,
-        rng: np.random.Generator,
-        within_m: float = USUAL_WITHIN_M,  # how near they have to come to it, m
-        speed: float = 1.0,  # share of their usual speed that is fit there, in (0, 1]
-        held: BoolArray = NOTHING_HELD,  # (K,), which of the context's things the tool holds
-    ) -> Input:
-        """Inputs in [-1, 1]^d for this step, and whether each person switches to the next mode."""

@@ -40,8 +40,11 @@ class Person:
 
 
 @final
-class SimulatedPerson(contract.Operator):
-    """The operator that a `Person` describes.
+class SimulatedPerson:
+    """A simulated person at the interface, whom a `Person` describes, asked once per step of the loop.
+
+    They remember what they were doing (an input that they hold, a switch under way), so a new drive begins
+    with `reset`.
 
     Args:
         robot: the arm.
@@ -82,11 +85,11 @@ class SimulatedPerson(contract.Operator):
         mode: int,
         target: Pose,
         rng: np.random.Generator,
-        within_m: float = contract.USUAL_WITHIN_M,
-        speed: float = 1.0,
-        held: BoolArray = contract.NOTHING_HELD,
+        within_m: float = contract.USUAL_WITHIN_M,  # how near they have to come to it, m
+        speed: float = 1.0,  # share of their usual speed that is fit there, in (0, 1]
+        held: BoolArray = contract.NOTHING_HELD,  # (K,), which of the context's things the tool holds
     ) -> Input:
-        """See, learn, decide and move the hand."""
+        """See, learn, decide and move the hand: an input in [-1, 1]^d, and whether they switch modes."""
         u = np.zeros(controller.input_dim) if self._given is None else self._given.u
         moment = contract.Moment(context, mode, target, u, within_m, speed, held)
         seen = self._hand.sees(moment if self._screen is None else self._screen.shown(moment))
