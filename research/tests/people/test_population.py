@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from latentarm.core.errors import UserError
 from latentarm_research.people.calibration import BEFORE, Calibration
 from latentarm_research.people.population import TRAITS, draw_people
-from latentarm_research.people.practice import Practice
+from latentarm_research.people.practice import time_share
 from latentarm_research.people.spread import LogNormal, Normal
 
 SEEDS = st.integers(0, 2**31)
@@ -60,9 +60,9 @@ def test_trials_and_practice_never_make_a_person_slower_or_less_sure(trial, prac
 
 
 def test_a_minute_of_practice_is_worth_a_trial():
-    assert Practice(0.2).time_share(3, 60.0) == pytest.approx(Practice(0.2).time_share(4))
-    assert Practice(0.2).time_share(0) == 1.0
-    assert Practice(0.3).time_share(1) == pytest.approx(2.0**-0.3)
+    assert time_share(0.2, 3, 60.0) == pytest.approx(time_share(0.2, 4))
+    assert time_share(0.2, 0) == 1.0
+    assert time_share(0.3, 1) == pytest.approx(2.0**-0.3)
 
 
 def test_a_person_is_the_same_for_every_condition_and_goes_into_a_file():

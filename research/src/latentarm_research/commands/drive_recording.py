@@ -1,14 +1,12 @@
 """Recording the drives of `latentarm drive`: a journal next to the results, then a dataset."""
 
-from collections.abc import Generator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TypeVar, final
 
 from latentarm.assistance.controllers.contract import Controller
 from latentarm.core.errors import UserError
 from latentarm.core.parallel import counting_bar
-from latentarm.core.types import Goal, StepRecord
+from latentarm.core.types import StepRecord
 from latentarm.demonstrations.folders import check_vacant
 from latentarm.demonstrations.provenance import provenance_now
 from latentarm.recordings.dataset_export import export_journal
@@ -16,58 +14,11 @@ from latentarm.recordings.journal_writer import EpisodeHeader, Recorder
 from latentarm.robots.robot import Robot
 from latentarm.runs.folder import weights_fingerprint
 from latentarm.surroundings.catalogue import SCENE
+from latentarm.tasks.scene_task import Beginning
 from latentarm_research.commands.drive_options import DriveOptions
 from latentarm_research.drives.drive import RATE_HZ
-
-_Call = TypeVar("_Call")
-
-
-@final
-class DriveRecording:
-    """Records one drive after the other."""
-
-    def __init__(
-        self, config: DriveOptions, robot: Robot, controller: Controller, recorder: Recorder
-    ) -> None:
-        self._config, self._robot, self._controller = config, robot, controller
-        self._recorder = recorder
-
-    def begin(
-        self, task: str, goals: Sequence[Goal], things: Sequence[str] = (), objects: Sequence[str] = ()
-    ) -> None:
-        """Begin a drive. Raises a `UserError` where the journal cannot be written."""
-        config, robot = self._config, self._robot
-        self._recorder.begin_episode(
-            EpisodeHeader(
-                robot=robot.name,
-                joint_names=robot.joint_names,
-                joint_limits=robot.limits,
-                rate_hz=RATE_HZ,
-                task=task,
-                goals=tuple(goals),
-                modes=self._controller.modes,
-                provenance=provenance_now(
-                    run="" if config.run is None else config.run.name,
-                    run_fingerprint="" if config.run is None else weights_fingerprint(config.run),
-                    profile=config.profile or "",
-                    device="simulated",
-                    controller=config.driver,
-                ),
-                end_effector=robot.end_effector,
-                limits=robot.stated_limits,
-                things=tuple(things),
-                objects=tuple(objects),
-                sources=(SCENE,) if things else (),
-            )
-        )
-
-    def step(self, record: StepRecord) -> None:
-        """Add a step of the drive. Raises a `UserError` where the journal cannot be written."""
-        self._recorder.record(record)
-
-    def end(self) -> None:
-        """Complete the drive. Raises a `UserError` where the journal cannot be written."""
-        self._recorder.end_episode()
+from latentarm_research.drives.drives import Planned
+from latentarm_research.drives.trace import Trace
 
 
 def check_recordable(config: DriveOptions) -> None:
@@ -79,26 +30,53 @@ def check_recordable(config: DriveOptions) -> None:
         raise UserError(f"{_journal(config)} already exists: choose another folder with --out.")
 
 
-@contextmanager
-def recording(
-    config: DriveOptions, dataset: Path, robot: Robot, controller: Controller
-) -> Generator[DriveRecording]:
-    """Record drives; export them as a dataset once all are done."""
+def record_drives(
+    planned: Sequence[Planned], config: DriveOptions, dataset: Path, robot: Robot, controller: Controller
+) -> list[Trace]:
+    """Drive one after the other, record every step with where the things are, and export a dataset.
+
+    Raises a `UserError` where the journal cannot be written.
+    """
     recorder = Recorder(_journal(config))
+
+    def begin(begun: Beginning) -> Callable[[StepRecord], None]:
+        recorder.begin_episode(_header(begun, config, robot, controller))
+        return recorder.record
+
+    traces: list[Trace] = []
     try:
-        yield DriveRecording(config, robot, controller, recorder)
+        with counting_bar(config.bars) as bar:
+            for one in bar.track(planned, description="drives"):
+                traces.append(one.drive(record=begin))
+                recorder.end_episode()
     finally:
         recorder.close()
     export_journal(_journal(config), dataset)
+    return traces
 
 
-def counted(plan: Sequence[_Call], bars: bool) -> Generator[_Call]:
-    """The drives, one after the other, with a bar that counts those that are done."""
-    with counting_bar(bars) as bar:
-        task = bar.add_task("drives", total=len(plan))
-        for call in plan:
-            yield call
-            bar.advance(task)
+def _header(begun: Beginning, config: DriveOptions, robot: Robot, controller: Controller) -> EpisodeHeader:
+    return EpisodeHeader(
+        robot=robot.name,
+        joint_names=robot.joint_names,
+        joint_limits=robot.limits,
+        rate_hz=RATE_HZ,
+        task=begun.text,
+        goals=begun.goals,
+        modes=controller.modes,
+        provenance=provenance_now(
+            run="" if config.run is None else config.run.name,
+            run_fingerprint="" if config.run is None else weights_fingerprint(config.run),
+            profile=config.profile or "",
+            device="simulated",
+            controller=config.driver,
+        ),
+        end_effector=robot.end_effector,
+        limits=robot.stated_limits,
+        things=begun.scene.names,
+        objects=begun.objects,
+        sources=(SCENE,) if begun.scene.names else (),
+    )
 
 
 def _journal(config: DriveOptions) -> Path:

@@ -1,32 +1,27 @@
 """`latentarm drive`: drive every choice of a task several times, and write what came of it."""
 
 from collections.abc import Callable, Sequence
-from pathlib import Path
 from typing import Final
 
-from latentarm.assistance.controllers.contract import Controller
 from latentarm.core.errors import UserError
-from latentarm.core.types import StepRecord
 from latentarm.evaluation.results import as_document
 from latentarm.evaluation.summary import Subject
 from latentarm.robots.limits_file import read_limits
 from latentarm.robots.notices import notices
-from latentarm.robots.robot import Robot
 from latentarm.runs.folder import Run, read_run
 from latentarm.runs.results_folder import write_json
 from latentarm.runs.tasks import task_of_run, task_without_run
 from latentarm.tasks.catalogue import HELD_OUT, SCENE_TASKS, make_scene_task
 from latentarm.tasks.goal_task import GoalTask
-from latentarm.tasks.scene_task import Beginning, SceneTask
+from latentarm.tasks.scene_task import SceneTask
 from latentarm.tasks.task import Task
 from latentarm_research.commands.drive_options import Driven, DriveOptions
-from latentarm_research.commands.drive_recording import check_recordable, counted, recording
+from latentarm_research.commands.drive_recording import check_recordable, record_drives
 from latentarm_research.commands.drive_steering import steering_of
 from latentarm_research.drives.drive import Setup
 from latentarm_research.drives.drive_figures import draw_drives, marks_of_first_steps, marks_of_goals
 from latentarm_research.drives.drive_table import drive_entries, write_drives_csv
-from latentarm_research.drives.drives import Planned, drive_all, plan_drives
-from latentarm_research.drives.trace import Trace
+from latentarm_research.drives.drives import drive_all, plan_drives
 from latentarm_research.metrics.drives import drive_rows
 from latentarm_research.studies.results_folder import ResultsFolder
 
@@ -63,7 +58,7 @@ def drive_run(config: DriveOptions, tell: Callable[[Sequence[str]], None] = lamb
     if config.record is None:
         (traces,) = drive_all([planned], config.jobs, bars=config.bars)
     else:
-        traces = _record_all(planned, config, config.record, task.robot, steering.controller)
+        traces = record_drives(planned, config, config.record, task.robot, steering.controller)
     subject = Subject("drive", task=task.name, model=steering.model, condition=config.driver)
     rows = drive_rows(subject, [trace.figures for trace in traces])
     operator = steering.operator
@@ -93,20 +88,3 @@ def _task_at_goals(config: DriveOptions, run: Run | None) -> Task:
     if run is None:
         return task_without_run(config.task, config.robot, config.end_effector, limits)
     return task_of_run(run, config.task, config.robot, config.end_effector, limits, config.demonstrations)
-
-
-def _record_all(
-    planned: Sequence[Planned], config: DriveOptions, dataset: Path, robot: Robot, controller: Controller
-) -> list[Trace]:
-    """Drive one after the other and record every step, with where the things are."""
-    traces: list[Trace] = []
-    with recording(config, dataset, robot, controller) as recorded:
-
-        def begin(begun: Beginning) -> Callable[[StepRecord], None]:
-            recorded.begin(begun.text, begun.goals, begun.scene.names, begun.objects)
-            return recorded.step
-
-        for one in counted(planned, config.bars):
-            traces.append(one.drive(record=begin))
-            recorded.end()
-    return traces

@@ -13,7 +13,7 @@ from latentarm_research.people.own_directions import OwnDirections, OwnSpeed
 from latentarm_research.people.page_rates import PAGE, PageRates
 from latentarm_research.people.person import Person
 from latentarm_research.people.planning import PlanningConfig
-from latentarm_research.people.practice import Practice
+from latentarm_research.people.practice import time_share
 
 UNSURE_M_S: Final = 0.05
 UNSURE_RAD_S: Final = 0.25
@@ -111,7 +111,7 @@ class Traits:
 
         The spread of their pushes shrinks as times do: beta is one over its square.
         """
-        share = Practice(self.learning).time_share(trial, practice_s)
+        share = time_share(self.learning, trial, practice_s)
         return BoltzmannConfig(
             beta=self.rationality / share**2,
             horizon_s=self.look_ahead_s,

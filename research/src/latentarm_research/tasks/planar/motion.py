@@ -1,6 +1,7 @@
 """The planar tasks of section 8.1: the parts that all four share, and those of the tasks with one arm."""
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar, Final, final
 
@@ -81,11 +82,6 @@ class PlanarMotion(ABC):
     @final
     def demonstrate(self, episodes: int, rng: np.random.Generator) -> Demonstrations:
         """Demonstrations by a simulated person: in each ``design.samples`` states with the actions there."""
-        return self._as_demonstrations(self.record(episodes, rng))
-
-    @final
-    def record(self, episodes: int, rng: np.random.Generator) -> Recording:
-        """As `demonstrate`, in arrays, and with where each path ends; the same arguments and errors."""
         if episodes < 1:
             raise UserError("Ask for at least one demonstration.")
         kept: list[Recording] = []
@@ -95,7 +91,7 @@ class PlanarMotion(ABC):
             kept.append(recording.of(np.flatnonzero(recording.sound)[:missing]))
             missing -= len(kept[-1].states)
             if not missing:
-                return Recording.joined(kept)
+                return self._as_demonstrations(kept)
         raise UserError(
             f"Too few postures of {self.name} pass a least conditioning of {self.design.least_conditioning:g}"
             f" at a spread of {self.design.spread_rad:g} rad: lower one of them."
@@ -124,13 +120,14 @@ class PlanarMotion(ABC):
         within = ~self.robot.limits.violation(states).any(axis=-1)
         return (conditioned & branch & within).all(axis=-1)
 
-    def _as_demonstrations(self, recording: Recording) -> Demonstrations:
+    def _as_demonstrations(self, recordings: Sequence[Recording]) -> Demonstrations:
         rate_hz = self.design.samples / self.duration_s
         timestamp = np.arange(self.design.samples) / rate_hz
         return Demonstrations(
             episodes=tuple(
                 Episode(state=state, timestamp=timestamp, action=action, task=self.words)
-                for state, action in zip(recording.states, recording.actions, strict=True)
+                for one in recordings
+                for state, action in zip(one.states, one.actions, strict=True)
             ),
             rate_hz=rate_hz,
             joint_names=self.robot.joint_names,

@@ -7,7 +7,6 @@ opposite of going forth, and the same place is passed in many postures.
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Final, final
 
@@ -78,15 +77,6 @@ class Recording:
     def judged(self, sound: BoolArray) -> "Recording":
         """The same, sound only where they also pass (E,)."""
         return replace(self, sound=self.sound & sound)
-
-    @staticmethod
-    def joined(parts: "Sequence[Recording]") -> "Recording":
-        """Several one after the other."""
-        return Recording(
-            np.concatenate([part.states for part in parts]),
-            np.concatenate([part.actions for part in parts]),
-            np.concatenate([part.sound for part in parts]),
-        )
 
 
 def curled(robot: Robot) -> FloatArray:
