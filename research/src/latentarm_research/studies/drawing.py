@@ -4,7 +4,6 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from latentarm.core.figure_style import (
     FONT_SIZE,
@@ -15,7 +14,6 @@ from latentarm.core.figure_style import (
     tidy,
 )
 from latentarm.core.types import FloatArray
-from latentarm.evaluation.looks import look_of
 from latentarm.robots.robot import Robot
 
 if TYPE_CHECKING:
@@ -72,35 +70,6 @@ def stacked_parts(figure: "Figure", heights_mm: Sequence[float]) -> "list[SubFig
 def row_of_panels(part: "FigureBase", count: int) -> "list[Axes]":
     """A row of panels that share their axes; empty if there is nothing to show."""
     return list(part.subplots(1, count, sharex=True, sharey=True, squeeze=False)[0]) if count else []
-
-
-def draw_series(
-    axes: "Axes",
-    name: str,
-    places: ArrayLike,
-    means: ArrayLike,
-    reach: ArrayLike,
-    *,
-    markersize: float = 3.6,
-    linewidth: float = 1.1,
-    elinewidth: float = 0.8,
-    zorder: float = 2.0,
-) -> None:
-    """Means (K,) with bars of a reach (K,) or (2, K), as a line that looks as its name does everywhere."""
-    look = look_of(name)
-    axes.errorbar(
-        places,
-        means,
-        yerr=reach,
-        color=look.colour,
-        marker=look.marker,
-        linestyle=look.dash,
-        label=look.label,
-        markersize=markersize,
-        linewidth=linewidth,
-        elinewidth=elinewidth,
-        zorder=zorder,
-    )
 
 
 def title(axes: "Axes", text: str, letter: str = "") -> None:

@@ -211,7 +211,20 @@ def draw_over(
     for index, method in enumerate(METHODS):
         if (method, people[0]) in outcomes:
             found = [tables.interval(outcomes[method, person].figures[measure]) for person in people]
-            _draw_series(axes, method, places + (index - 1) * shift, found, zorder=3 + index)
+            look = look_of(method)
+            axes.errorbar(
+                places + (index - 1) * shift,
+                [one.mean for one in found],
+                yerr=[one.half_width for one in found],
+                color=look.colour,
+                marker=look.marker,
+                linestyle=look.dash,
+                label=look.label,
+                markersize=3.6,
+                linewidth=1.1,
+                elinewidth=0.8,
+                zorder=3 + index,
+            )
 
 
 def draw_course(axes: "Axes", outcomes: Outcomes, person: str, what: str) -> None:
@@ -244,14 +257,6 @@ def _draw_changes(axes: "Axes", outcomes: Outcomes, preset: Preset) -> None:
     people = [changing(after_s).label for after_s in preset.changes_s]
     draw_over(axes, outcomes, people, "final_state_error", np.array(preset.changes_s))
     tidy(axes)
-
-
-def _draw_series(
-    axes: "Axes", name: str, places: FloatArray, found: Sequence[tables.Interval], zorder: float = 2.0
-) -> None:
-    """Means with their intervals."""
-    means, widths = [one.mean for one in found], [one.half_width for one in found]
-    drawing.draw_series(axes, name, places, means, widths, zorder=zorder)
 
 
 def _from_zero(panels: "Iterable[Axes]") -> None:
