@@ -104,7 +104,7 @@ def test_where_the_bound_certifies_a_step_the_arm_comes_nearer(scene, wild):
 
 
 def test_without_help_nothing_is_certified(scene, wild):
-    _, found = certify(driven(scene, wild, help_by=NO_HELP), scene, wild)
+    found = certify(driven(scene, wild, help_by=NO_HELP), scene, wild)
     assert not any(share.any() for share in found.values())
 
 
