@@ -11,7 +11,6 @@ from functools import partial
 from typing import Final
 
 import numpy as np
-from scipy.stats import linregress
 
 from latentarm.assistance.controllers.axis_modes import AxisModes
 from latentarm.assistance.controllers.end_effector import EndEffectorController
@@ -53,12 +52,13 @@ def measure(options: Calibrating, work: Work) -> Outcome:
         plan = [(d, w) for d in range(len(options.distances_m)) for w in range(len(WIDTHS_M))]
         times = work.each(partial(movements, options, calibration, work.seed), plan)
         difficulty = [Pointing(0, options.distances_m[d], WIDTHS_M[w]).difficulty for d, w in plan]
-        law = linregress(difficulty, [np.mean([one for one in each if math.isfinite(one)]) for each in times])
+        means_s = [float(np.mean([one for one in each if math.isfinite(one)])) for each in times]
+        slope, intercept = np.polyfit(difficulty, means_s, 1)
         failed = sum(math.isinf(one) for each in times for one in each)
         figures = {
-            "slope_s_per_bit": law.slope,
-            "intercept_s": law.intercept,
-            "r2": law.rvalue**2,
+            "slope_s_per_bit": slope,
+            "intercept_s": intercept,
+            "r2": float(np.corrcoef(difficulty, means_s)[0, 1]) ** 2,
             "failed_movements": failed,
         }
         condition = f"pushes vary by {variation:g}"
