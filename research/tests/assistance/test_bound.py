@@ -100,7 +100,7 @@ def lyapunov_rate(state, goal_state, action):
 @settings(max_examples=3)
 @given(st.integers(0, 2**31))
 def test_wherever_it_certifies_the_error_shrinks(seed):
-    held = np.zeros(3, dtype=int)
+    held = np.zeros(len(FORMS), dtype=int)
     for drawn in all_moments(seed):
         rate = lyapunov_rate(drawn.state, drawn.wanted, drawn.action)
         for index, form in enumerate(FORMS):
