@@ -26,7 +26,7 @@ CHECK_EVERY: Final = 250  # steps between two looks at the answers that are held
 @final
 @dataclass(frozen=True)
 class FitConfig:
-    """How an alignment is learned."""
+    """Settings for learning an alignment."""
 
     priors: Priors = field(default_factory=Priors)  # what counts beside the answers
     hidden: tuple[int, ...] = (64, 64)  # units of each hidden layer of f

@@ -106,7 +106,7 @@ class KnowsTheArm(Imagination):
         modes: Sequence[int],
         horizon_s: float,
     ) -> Pose:
-        """Where the controller takes the tool."""
+        """Poses to which the controller takes the tool."""
         actions = np.stack(
             [controller.action(controller.latent(inputs, context, m), context, m) for m in modes]
         )

@@ -1,4 +1,4 @@
-"""How the error falls with the number of answers about motions that `latentarm align` chooses."""
+"""The error by the number of answers about motions that `latentarm align` chooses."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

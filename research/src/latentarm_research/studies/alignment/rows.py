@@ -61,7 +61,7 @@ def _asked(choice: str, count: int) -> str:
 
 
 def time_alignment(learned: LearnedDecoder) -> dict[str, object]:
-    """How long an alignment in tool space takes to learn, and to call, s; one thread."""
+    """Times to learn an alignment in tool space and to call it, s; one thread."""
     preset, scene = learned.cell.preset, scene_of(learned)
     answers = scene.ask(preset.answers, 0.0, Stream.QUESTIONS, Stream.ANSWERS, 0)
     with threadpool_limits(limits=1):

@@ -97,7 +97,7 @@ def sine_figure(decoders: Decoders, rows: Sequence[Row]) -> "Figure":
 def _draw_effects(
     axes: "Axes", rows: Sequence[Row], motion: Sine, model: DrawnModel, states: FloatArray
 ) -> None:
-    """How far the tool gets from each state over z, and how well a line fits it over seeds and states."""
+    """The tool's distance from each state over z, and the fit of a line to it over seeds and states."""
     ends = model.hold(states, GRID[:, None], HOLD_S)[:, :, -1]
     moved = plane_point(motion.robot, ends) - plane_point(motion.robot, states)
     distance_mm = 1000.0 * np.sign(moved[..., 0]) * np.linalg.norm(moved, axis=-1)

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 TASK_FIGURES: Final = {"sine": sine_figure, "reach": reach_figure}
-"""What one decoder of each model, of the first seed, does on a task."""
+"""Motions of one decoder of each model, of the first seed, on a task."""
 
 
 def _measure(request: Request[Preset], grid: Grid) -> list[PropertiesResult]:

@@ -67,7 +67,7 @@ def true_belief(drives: Drives) -> FloatArray:
 
 
 def certify(drives: Drives, scene: Scene, decoder: Decoder) -> Mapping[str, BoolArray]:
-    """Where a bound says that the arm comes nearer, each (P, T / 10), by name."""
+    """Steps in which a bound says that the arm comes nearer, each (P, T / 10), by name."""
     at = drives.moments
     state, belief, alpha = (part[:, ::EVERY] for part in (at.state, at.belief, at.alpha))
     wanted = at.wanted[:, ::EVERY]
