@@ -1,7 +1,8 @@
 """A summary of a dataset, for a person to check before training on it."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Final, final
+from typing import Final, NamedTuple, final
 
 import numpy as np
 
@@ -19,7 +20,6 @@ STUDY: Final = "inspect"
 class EpisodeSummary:
     """Figures of one episode."""
 
-    index: int
     task: str
     samples: int
     duration_s: float
@@ -38,8 +38,7 @@ class JointSummary:
     name: str
     lowest: float
     highest: float
-    lower: float | None
-    upper: float | None
+    limits: str | None  # lower and upper, for people
     margin_rad: float | None  # least distance to a limit; negative past it
     speed_p50: float
     speed_p95: float
@@ -58,6 +57,42 @@ class Table:
     rows: tuple[tuple[str, ...], ...]
 
 
+class _Figure(NamedTuple):
+    field: str  # of a summary
+    heading: str  # of its column
+    shown: str = ""  # format in the table; a share is in percent
+    measure: str = ""  # in machine-readable form; "" for none
+    unit: str = ""
+
+
+_EPISODE: Final = (
+    _Figure("task", "task"),
+    _Figure("samples", "samples", "d", "samples", "count"),
+    _Figure("duration_s", "duration (s)", ".1f", "duration_s", "s"),
+    _Figure("rate_hz", "rate (Hz)", ".1f", "rate_hz", "Hz"),
+    _Figure("path_rad", "joint path (rad)", ".2f", "path_length_rad", "rad"),
+    _Figure("path_m", "tool path (m)", ".2f", "path_length", "m"),
+    _Figure("peak_speed_rad_s", "peak (rad/s)", ".2f", "peak_speed", "rad/s"),
+    _Figure("still_fraction", "still (%)", ".0%", "still_fraction", "1"),
+)
+_JOINT: Final = (
+    _Figure("lowest", "lowest (rad)", ".3f", "lowest", "rad"),
+    _Figure("highest", "highest (rad)", ".3f", "highest", "rad"),
+    _Figure("limits", "limits (rad)"),
+    _Figure("margin_rad", "margin (rad)", ".3f", "limit_margin", "rad"),
+    _Figure("speed_p50", "speed (rad/s) p50", ".2f", "speed_p50", "rad/s"),
+    _Figure("speed_p95", "p95", ".2f", "speed_p95", "rad/s"),
+    _Figure("speed_p99", "p99", ".2f", "speed_p99", "rad/s"),
+    _Figure("speed_max", "max", ".2f", "speed_max", "rad/s"),
+    _Figure("speed_limit", "limit", ".2f"),
+)
+_GRIPPER: Final = (
+    _Figure("closed_fraction", "closed (%)", ".0%", "gripper_closed_fraction", "1"),
+    _Figure("toggled_fraction", "toggled (%)", ".0%", "gripper_toggled_fraction", "1"),
+    _Figure("changes", "changes", "d", "gripper_changes", "count"),
+)
+
+
 @final
 @dataclass(frozen=True)
 class Summary:
@@ -70,15 +105,14 @@ class Summary:
 
     def tables(self) -> tuple[Table, ...]:
         """Tables of episodes, joints and, if recorded, the gripper."""
-        tables = {
-            "Episodes": [_episode_cells(episode) for episode in self.episodes],
-            "Joints": [_joint_cells(joint) for joint in self.joints],
-            "Gripper": [_gripper_cells(index, use) for index, use in enumerate(self.gripper)],
-        }
         return tuple(
-            Table(title, tuple(cells[0]), tuple(tuple(row.values()) for row in cells))
-            for title, cells in tables.items()
-            if cells
+            Table(
+                title,
+                (noun, *(one.heading for one in figures)),
+                tuple((name, *(_cell(part, one) for one in figures)) for name, part in parts.items()),
+            )
+            for title, noun, parts, figures in self._parts()
+            if parts
         )
 
     def rows(self) -> list[Row]:
@@ -89,42 +123,35 @@ class Summary:
             _row("duration_s", "s", sum(one.duration_s for one in self.episodes)),
             _row("rate_hz", "Hz", self.rate_hz),
         ]
-        for episode in self.episodes:
-            name = f"episode_{episode.index}"
-            rows += [
-                _row("samples", "count", episode.samples, name),
-                _row("duration_s", "s", episode.duration_s, name),
-                _row("rate_hz", "Hz", episode.rate_hz, name),
-                _row("path_length_rad", "rad", episode.path_rad, name),
-                _row("path_length", "m", episode.path_m, name),
-                _row("peak_speed", "rad/s", episode.peak_speed_rad_s, name),
-                _row("still_fraction", "1", episode.still_fraction, name),
-            ]
-        for joint in self.joints:
-            rows += [
-                _row("lowest", "rad", joint.lowest, joint.name),
-                _row("highest", "rad", joint.highest, joint.name),
-                _row("limit_margin", "rad", joint.margin_rad, joint.name),
-                _row("speed_p50", "rad/s", joint.speed_p50, joint.name),
-                _row("speed_p95", "rad/s", joint.speed_p95, joint.name),
-                _row("speed_p99", "rad/s", joint.speed_p99, joint.name),
-                _row("speed_max", "rad/s", joint.speed_max, joint.name),
-            ]
-        for index, use in enumerate(self.gripper):
-            name = f"episode_{index}"
-            rows += [
-                _row("gripper_closed_fraction", "1", use.closed_fraction, name),
-                _row("gripper_toggled_fraction", "1", use.toggled_fraction, name),
-                _row("gripper_changes", "count", use.changes, name),
-            ]
+        for _, noun, parts, figures in self._parts():
+            for name, part in parts.items():
+                condition = f"episode_{name}" if noun == "episode" else name
+                measured = (one for one in figures if one.measure)
+                rows += [_row(one.measure, one.unit, getattr(part, one.field), condition) for one in measured]
         return [row for row in rows if row.mean is not None]
+
+    def _parts(self) -> tuple[tuple[str, str, Mapping[str, object], tuple[_Figure, ...]], ...]:
+        """Title, noun, summaries by name, and figures of each table."""
+        episodes = {str(index): one for index, one in enumerate(self.episodes)}
+        joints = {one.name: one for one in self.joints}
+        gripper = dict(zip(episodes, self.gripper, strict=False))
+        return (
+            ("Episodes", "episode", episodes, _EPISODE),
+            ("Joints", "joint", joints, _JOINT),
+            ("Gripper", "episode", gripper, _GRIPPER),
+        )
+
+
+def _cell(part: object, figure: _Figure) -> str:
+    value = getattr(part, figure.field)
+    return "–" if value is None else format(value, figure.shown).removesuffix("%")
 
 
 def summarise(demonstrations: Demonstrations, robot: Robot | None = None) -> Summary:
     """Measure a dataset; with a robot also the limits and the end-effector's path."""
     return Summary(
         rate_hz=demonstrations.rate_hz,
-        episodes=tuple(_episode(index, one, robot) for index, one in enumerate(demonstrations.episodes)),
+        episodes=tuple(_episode(one, robot) for one in demonstrations.episodes),
         joints=_joints(demonstrations, None if robot is None else robot.limits),
         gripper=gripper_uses(demonstrations, None if robot is None else robot.gripper),
     )
@@ -135,12 +162,11 @@ def _speed(episode: Episode) -> FloatArray:
     return np.abs(np.diff(episode.state, axis=0)) / np.diff(episode.timestamp)[:, None]
 
 
-def _episode(index: int, episode: Episode, robot: Robot | None) -> EpisodeSummary:
+def _episode(episode: Episode, robot: Robot | None) -> EpisodeSummary:
     speed = _speed(episode).max(axis=1)
     elapsed = np.diff(episode.timestamp)
     duration = float(episode.timestamp[-1] - episode.timestamp[0])
     return EpisodeSummary(
-        index=index,
         task=episode.task,
         samples=len(episode.timestamp),
         duration_s=duration,
@@ -166,8 +192,7 @@ def _joints(demonstrations: Demonstrations, limits: JointLimits | None) -> tuple
             name=name,
             lowest=float(lowest[joint]),
             highest=float(highest[joint]),
-            lower=None if limits is None else float(limits.lower[joint]),
-            upper=None if limits is None else float(limits.upper[joint]),
+            limits=None if limits is None else f"{limits.lower[joint]:.3f} … {limits.upper[joint]:.3f}",
             margin_rad=None
             if limits is None
             else float(min(lowest[joint] - limits.lower[joint], limits.upper[joint] - highest[joint])),
@@ -183,49 +208,3 @@ def _joints(demonstrations: Demonstrations, limits: JointLimits | None) -> tuple
 
 def _row(measure: str, unit: str, value: float | None, condition: str | None = None) -> Row:
     return Row(study=STUDY, measure=measure, unit=unit, mean=value, sd=None, n=1, condition=condition)
-
-
-def _text(value: float | None, digits: int) -> str:
-    return "–" if value is None else f"{value:.{digits}f}"
-
-
-def _episode_cells(one: EpisodeSummary) -> dict[str, str]:
-    return {
-        "episode": str(one.index),
-        "task": one.task,
-        "samples": str(one.samples),
-        "duration (s)": _text(one.duration_s, 1),
-        "rate (Hz)": _text(one.rate_hz, 1),
-        "joint path (rad)": _text(one.path_rad, 2),
-        "tool path (m)": _text(one.path_m, 2),
-        "peak (rad/s)": _text(one.peak_speed_rad_s, 2),
-        "still (%)": _text(100 * one.still_fraction, 0),
-    }
-
-
-def _joint_cells(one: JointSummary) -> dict[str, str]:
-    return {
-        "joint": one.name,
-        "lowest (rad)": _text(one.lowest, 3),
-        "highest (rad)": _text(one.highest, 3),
-        "limits (rad)": "–" if one.lower is None else f"{_text(one.lower, 3)} … {_text(one.upper, 3)}",
-        "margin (rad)": _text(one.margin_rad, 3),
-        "speed (rad/s) p50": _text(one.speed_p50, 2),
-        "p95": _text(one.speed_p95, 2),
-        "p99": _text(one.speed_p99, 2),
-        "max": _text(one.speed_max, 2),
-        "limit": _text(one.speed_limit, 2),
-    }
-
-
-def _gripper_cells(index: int, use: GripperUse) -> dict[str, str]:
-    closed, toggled = (
-        _text(None if share is None else 100 * share, 0)
-        for share in (use.closed_fraction, use.toggled_fraction)
-    )
-    return {
-        "episode": str(index),
-        "closed (%)": closed,
-        "toggled (%)": toggled,
-        "changes": str(use.changes),
-    }
