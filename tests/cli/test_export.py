@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from latentarm.core.types import Command, GripperCommand, GripperReading, StepRecord
+from latentarm.core.types import Command, GripperCommand, GripperReading, Provenance, StepRecord
 from latentarm.demonstrations.dataset import read_dataset
 from latentarm.demonstrations.provenance import provenance_now
 from latentarm.recordings.journal_writer import EpisodeHeader, Recorder
@@ -20,7 +20,7 @@ def teleop(workplace: Path) -> Path:
     """A folder as `latentarm teleop` leaves it: three episodes, the last cut short."""
     recorder = Recorder(workplace / "teleop/journal-20260102-030405.sqlite")
     for index in range(3):
-        by = provenance_now(person="\x1b[31mAda", run="eat-cvae", controller="latent")
+        by = provenance_now(Provenance("\x1b[31mAda", "eat-cvae", controller="latent"))
         recorder.begin_episode(
             EpisodeHeader(
                 "arm",

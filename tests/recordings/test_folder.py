@@ -12,7 +12,7 @@ from latentarm.core.types import Command, Provenance, StepRecord
 from latentarm.demonstrations.dataset import append_episode, read_dataset, write_dataset
 from latentarm.demonstrations.provenance import BY_HAND, provenance_now
 from latentarm.recordings.dataset_export import demonstrations_of
-from latentarm.recordings.folder import list_recordings, read_recordings
+from latentarm.recordings.folder import list_recordings, read_episodes
 from latentarm.recordings.journal_reader import list_journal, read_journal
 from latentarm.recordings.journal_writer import EpisodeHeader, Recorder
 
@@ -40,7 +40,7 @@ def journal(
 ) -> Path:
     recorder = Recorder(path)
     for index, person in enumerate(people):
-        by = provenance_now(person=person, run="eat-cvae", run_fingerprint="ab" * 32, controller=controller)
+        by = provenance_now(Provenance(person, "eat-cvae", "ab" * 32, controller=controller))
         recorder.begin_episode(EpisodeHeader("arm", NAMES, 100.0, f"stab {index}", provenance=by))
         for tick in range(11):
             recorder.record(step(tick))
@@ -54,7 +54,7 @@ def test_who_recorded_an_episode_goes_into_the_dataset(tmp_path: Path) -> None:
     recordings = list_recordings(journal(tmp_path / "a.sqlite"))
     (listed,) = recordings
     assert (listed.entry.samples, listed.entry.duration_s) == (11, pytest.approx(0.1))
-    write_dataset(read_recordings(recordings, source="a", incomplete=False), tmp_path / "data")
+    write_dataset(demonstrations_of(read_episodes(recordings), source="a"), tmp_path / "data")
     (episode,) = read_dataset(tmp_path / "data").episodes
     by = episode.provenance
     assert by is not None
@@ -100,9 +100,13 @@ def test_journals_of_a_folder_are_counted_through(tmp_path: Path) -> None:
         (2, "Bob"),
         (3, "Cy"),
     ]
-    whole = read_recordings(recordings, source="here", incomplete=False)
+    whole = demonstrations_of(read_episodes(recordings), source="here")
     assert [one.provenance.person for one in whole.episodes if one.provenance] == ["Ada", "Bob"]
-    cut = read_recordings(recordings[2:], source="here", incomplete=True).episodes[0].provenance
+    cut = (
+        demonstrations_of(read_episodes(recordings[2:]), source="here", incomplete=True)
+        .episodes[0]
+        .provenance
+    )
     assert cut is not None
     assert (cut.person, cut.complete, cut.device) == ("Cy", False, "")
 
@@ -115,7 +119,7 @@ def test_a_folder_without_journals_is_refused(tmp_path: Path) -> None:
 @pytest.mark.parametrize("wrong", ["Ada", {"person": 3}, {"complete": "yes"}, [None]])
 def test_a_damaged_provenance_is_refused(tmp_path: Path, wrong: object) -> None:
     path = journal(tmp_path / "a.sqlite")
-    write_dataset(read_recordings(list_recordings(path), source="a", incomplete=False), tmp_path / "data")
+    write_dataset(demonstrations_of(read_episodes(list_recordings(path)), source="a"), tmp_path / "data")
     info = tmp_path / "data/meta/info.json"
     document = json.loads(info.read_text())
     document["latentarm"]["provenance"] = [wrong]

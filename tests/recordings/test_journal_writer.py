@@ -21,8 +21,8 @@ from hypothesis.extra.numpy import arrays
 from latentarm.core.errors import UserError
 from latentarm.core.journal_limits import JournalFullError, JournalLimits, JournalLostError, JournalWatch
 from latentarm.core.types import Command, Goal, GripperCommand, GripperReading, Pose, StepRecord, Stop
-from latentarm.demonstrations.dataset import read_dataset
-from latentarm.recordings.dataset_export import ImplausibleWarning, demonstrations_of, export_journal
+from latentarm.demonstrations.dataset import read_dataset, write_dataset
+from latentarm.recordings.dataset_export import ImplausibleWarning, demonstrations_of
 from latentarm.recordings.journal_reader import list_journal, read_journal
 from latentarm.recordings.journal_samples import figures_of, packed, unpacked
 from latentarm.recordings.journal_writer import EpisodeHeader, Recorder
@@ -373,7 +373,7 @@ def test_what_a_recording_says_of_sources_and_ages_is_read_and_exported_as_writt
         recorder.end_episode()
         recorder.close()
         known, unknown = read_journal(path)
-        export_journal(path, Path(folder) / "dataset")
+        write_dataset(demonstrations_of(read_journal(path), source="drive"), Path(folder) / "dataset")
         exported = read_dataset(Path(folder) / "dataset")
     assert known.header.sources == SOURCES
     for one, other in zip(given, known.records, strict=True):
@@ -546,8 +546,6 @@ def test_an_episode_is_exported_as_far_as_it_can_be_true(tmp_path, arm, change, 
         (episode,) = demonstrations_of(read_journal(path), source="drive").episodes
     assert len(episode.state) == 12
     assert np.isfinite(episode.state).all()
-    with pytest.warns(ImplausibleWarning, match="left out"):
-        assert export_journal(path, tmp_path / "dataset") == 0
 
 
 def test_what_cannot_be_true_from_its_beginning_is_no_episode(tmp_path):
@@ -562,7 +560,7 @@ def test_what_cannot_be_true_from_its_beginning_is_no_episode(tmp_path):
         pytest.warns(ImplausibleWarning, match="the episode is left out"),
         pytest.raises(UserError, match="no complete episode"),
     ):
-        export_journal(path, tmp_path / "dataset")
+        demonstrations_of(read_journal(path), source="drive")
 
 
 def test_a_journal_goes_on_where_it_was_left(tmp_path):
@@ -733,8 +731,6 @@ def test_exports_complete_episodes_with_all_that_was_decided(tmp_path):
 
 
 def test_the_exported_dataset_reads_back(tmp_path, arm):
-    from latentarm.demonstrations.dataset import read_dataset
-
     path = tmp_path / "drive.sqlite"
     recorder = Recorder(path)
     for ticks in (6, 5):
@@ -744,7 +740,7 @@ def test_the_exported_dataset_reads_back(tmp_path, arm):
         if ticks == 6:
             recorder.end_episode()
     recorder.close()
-    assert export_journal(path, tmp_path / "dataset") == 1
+    write_dataset(demonstrations_of(read_journal(path), source="drive"), tmp_path / "dataset")
     found = read_dataset(tmp_path / "dataset")
     assert len(found.episodes) == 1
     np.testing.assert_allclose(found.episodes[0].extras["action.human"][2], record(2).action_human, rtol=1e-6)
@@ -769,11 +765,12 @@ CLOSE, LET_GO = GripperCommand(0.0, 0.05, 20.0), GripperCommand(0.08, 0.05, 20.0
 
 
 def test_a_gripper_s_life_goes_into_the_dataset(tmp_path, arm):
-    from latentarm.demonstrations.dataset import read_dataset
+    from latentarm.demonstrations.dataset import read_dataset, write_dataset
     from latentarm.demonstrations.summary import summarise
 
     steps = [(OPEN, None), (OPEN, CLOSE), (HELD, None), (HELD, None), (GripperReading(-1e-5), LET_GO)]
-    export_journal(recorded(tmp_path / "drive.sqlite", steps, steps[:2]), tmp_path / "dataset")
+    journal = recorded(tmp_path / "drive.sqlite", steps, steps[:2])
+    write_dataset(demonstrations_of(read_journal(journal), source="drive"), tmp_path / "dataset")
     demonstrations = read_dataset(tmp_path / "dataset")
     extras = demonstrations.episodes[0].extras
     width, holding, action = (
@@ -808,8 +805,7 @@ def test_a_journal_without_a_complete_episode_exports_nothing(tmp_path):
     path = tmp_path / "drive.sqlite"
     write(path, [5], end_last=False)
     with pytest.raises(UserError, match="no complete episode"):
-        export_journal(path, tmp_path / "dataset")
-    assert not (tmp_path / "dataset").exists()
+        demonstrations_of(read_journal(path), source="drive")
 
 
 def test_episodes_of_different_robots_do_not_mix(tmp_path):

@@ -20,8 +20,8 @@ from latentarm.control.input_port import InputSource
 from latentarm.control.loop import ControlLoop
 from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray, Input, StepRecord
-from latentarm.demonstrations.dataset import read_dataset
-from latentarm.recordings.dataset_export import demonstrations_of, export_journal
+from latentarm.demonstrations.dataset import read_dataset, write_dataset
+from latentarm.recordings.dataset_export import demonstrations_of
 from latentarm.recordings.journal_reader import read_journal
 from latentarm.robots.panda import panda
 from latentarm.web.arm_process.arm_lifecycle import first_arm
@@ -123,7 +123,7 @@ def test_a_drive_is_computed_and_recorded_and_not_one_command_is_sent(
     (episode,) = read_journal(journal)
     assert episode.header.provenance.shadow
     assert max(float(np.abs(one.command.velocity).max()) for one in episode.records) > 0.02
-    export_journal(journal, tmp_path / "dataset")
+    write_dataset(demonstrations_of(read_journal(journal), source="drive"), tmp_path / "dataset")
     exported = read_dataset(tmp_path / "dataset")
     assert exported.episodes[0].provenance is not None
     assert exported.episodes[0].provenance.shadow

@@ -13,9 +13,9 @@ from latentarm.control.clock import SimulatedClock
 from latentarm.core.errors import UserError
 from latentarm.core.types import Pose
 from latentarm.demonstrations.contexts import context_layout
-from latentarm.demonstrations.dataset import read_dataset
+from latentarm.demonstrations.dataset import read_dataset, write_dataset
 from latentarm.demonstrations.things import ENVIRONMENT
-from latentarm.recordings.dataset_export import export_journal
+from latentarm.recordings.dataset_export import demonstrations_of
 from latentarm.recordings.journal_reader import read_journal
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.kinematics.rotations import angle_between
@@ -177,7 +177,7 @@ def test_a_recording_says_where_things_went_and_a_model_can_see_them(tmp_path):
     np.testing.assert_allclose(height[-1], 0.02, atol=2e-3)  # it lies on the table
     np.testing.assert_allclose(first.records[-1].things[0, :3], cup.pose.position, atol=2e-3)
 
-    export_journal(journal, tmp_path / "driven")
+    write_dataset(demonstrations_of(read_journal(journal), source="drive"), tmp_path / "driven")
     driven = read_dataset(tmp_path / "driven")
     assert driven.objects == ("ball",)
     seen = driven.episodes[0].extras[ENVIRONMENT]

@@ -128,7 +128,8 @@ def export(
     For example: latentarm export teleop --episodes 1 3-5 --out eaten
     """
     from latentarm.demonstrations.dataset import write_dataset
-    from latentarm.recordings.folder import list_recordings, read_episodes, read_recordings
+    from latentarm.recordings.dataset_export import demonstrations_of
+    from latentarm.recordings.folder import list_recordings, read_episodes
     from latentarm.recordings.mcap_export import write_mcap
 
     recordings = list_recordings(source)
@@ -141,10 +142,11 @@ def export(
         return 0
     check_vacant(out)
     chosen = choose(recordings, episodes, source, incomplete=incomplete)
+    recorded = read_episodes(chosen)
     if format == "mcap":
-        write_mcap(read_episodes(chosen), out)
+        write_mcap(recorded, out)
     else:
-        write_dataset(read_recordings(chosen, source=str(source), incomplete=incomplete), out)
+        write_dataset(demonstrations_of(recorded, source=str(source), incomplete=incomplete), out)
         write_options(out, "export")
     if json:
         print(json_format.dumps(describe(chosen), indent=2))

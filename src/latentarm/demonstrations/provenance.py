@@ -1,7 +1,7 @@
 """The provenance of an episode as JSON, in journals and in a dataset's ``meta/info.json``."""
 
 from collections.abc import Mapping
-from dataclasses import asdict, fields
+from dataclasses import asdict, fields, replace
 from datetime import UTC, datetime
 from typing import Any, Final, cast
 
@@ -13,30 +13,10 @@ FIELDS: Final = tuple(field.name for field in fields(Provenance) if field.name n
 """The fields that are text."""
 
 
-def provenance_now(
-    *,
-    person: str = "",
-    run: str = "",
-    run_fingerprint: str = "",
-    profile: str = "",
-    device: str = "",
-    controller: str = "",
-    task_name: str = "",
-    shadow: bool = False,
-) -> Provenance:
-    """Provenance of an episode that begins now, with this package."""
-    return Provenance(
-        person=person,
-        run=run,
-        run_fingerprint=run_fingerprint,
-        profile=profile,
-        device=device,
-        controller=controller,
-        task_name=task_name,
-        shadow=shadow,
-        version=__version__,
-        started_utc=datetime.now(UTC).isoformat(timespec="seconds"),
-    )
+def provenance_now(provenance: Provenance) -> Provenance:
+    """The provenance of an episode that begins now, with this package."""
+    now = datetime.now(UTC).isoformat(timespec="seconds")
+    return replace(provenance, version=__version__, started_utc=now)
 
 
 def provenance_json(provenance: Provenance) -> dict[str, object]:

@@ -3,7 +3,6 @@
 import warnings
 from collections.abc import Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import final
 
 import numpy as np
@@ -13,7 +12,7 @@ from latentarm.core.types import Demonstrations, Episode, FloatArray, StepRecord
 from latentarm.demonstrations.gripper import ACTION_GRIPPER, GRIPPER_HOLDING, GRIPPER_WIDTH, going_to
 from latentarm.demonstrations.provenance import BY_HAND
 from latentarm.demonstrations.things import AGE, ENVIRONMENT
-from latentarm.recordings.journal_reader import JournalEpisode, read_journal
+from latentarm.recordings.journal_reader import JournalEpisode
 from latentarm.recordings.journal_writer import EpisodeHeader
 from latentarm.recordings.recorded_states import first_implausible
 from latentarm.robots.kinematics.pose_rows import stored_rows
@@ -98,21 +97,6 @@ def _with_added(kept: Sequence[JournalEpisode], episodes: tuple[Episode, ...]) -
         replace(episode, extras={**episode.extras, "assist.added": one})
         for episode, one in zip(episodes, added, strict=True)
     )
-
-
-def export_journal(journal: Path, dataset: Path) -> int:
-    """Write a journal's complete episodes to a new dataset, which appears whole or not at all.
-
-    Returns the number of episodes left out because they were cut short. Raises UserError as `read_journal`,
-    `demonstrations_of` and `write_dataset` do.
-    """
-    # pyarrow is slow to load, and driving does not need it.
-    from latentarm.demonstrations.dataset import write_dataset
-
-    episodes = read_journal(journal)
-    demonstrations = demonstrations_of(episodes, source=str(journal))
-    write_dataset(demonstrations, dataset)
-    return len(episodes) - len(demonstrations.episodes)
 
 
 def _until_implausible(recorded: JournalEpisode) -> JournalEpisode:

@@ -1,4 +1,4 @@
-"""Episodes recorded in one journal or in a folder of journals, and their export to a dataset."""
+"""Episodes recorded in one journal or in a folder of journals."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -6,8 +6,6 @@ from pathlib import Path
 from typing import Final, final
 
 from latentarm.core.errors import UserError
-from latentarm.core.types import Demonstrations
-from latentarm.recordings.dataset_export import demonstrations_of
 from latentarm.recordings.journal_reader import JournalEntry, JournalEpisode, list_journal, read_journal
 
 JOURNAL_SUFFIX: Final = ".sqlite"
@@ -23,19 +21,15 @@ class NumberedEpisode:
     entry: JournalEntry
 
 
-def journals_in(path: Path) -> list[Path]:
-    """A journal itself, or those of a folder by name (``teleop``'s is their time); UserError without any."""
-    if not path.is_dir():
-        return [path]
-    found = sorted(path.glob(f"*{JOURNAL_SUFFIX}"))
-    if not found:
-        raise UserError(f"{path} holds no journal (*{JOURNAL_SUFFIX}): nothing was recorded there.")
-    return found
-
-
 def list_recordings(path: Path) -> list[NumberedEpisode]:
-    """All episodes of a journal, or of a folder's journals; UserError without any, or where one is broken."""
-    entries = [(journal, entry) for journal in journals_in(path) for entry in list_journal(journal)]
+    """All episodes of a journal, or of a folder's journals by name (``teleop``'s is their time).
+
+    Raises UserError without any journal, or where one is broken.
+    """
+    journals = sorted(path.glob(f"*{JOURNAL_SUFFIX}")) if path.is_dir() else [path]
+    if not journals:
+        raise UserError(f"{path} holds no journal (*{JOURNAL_SUFFIX}): nothing was recorded there.")
+    entries = [(journal, entry) for journal in journals for entry in list_journal(journal)]
     return [NumberedEpisode(number, journal, one) for number, (journal, one) in enumerate(entries, start=1)]
 
 
@@ -45,13 +39,3 @@ def read_episodes(recordings: Sequence[NumberedEpisode]) -> list[JournalEpisode]
     for recording in recordings:
         wanted.setdefault(recording.journal, []).append(recording.entry.number)
     return [episode for journal, numbers in wanted.items() for episode in read_journal(journal, numbers)]
-
-
-def read_recordings(
-    recordings: Sequence[NumberedEpisode], *, source: str, incomplete: bool
-) -> Demonstrations:
-    """Recorded episodes from `list_recordings` as demonstrations; see `demonstrations_of`.
-
-    Raises UserError where a journal is damaged, or `demonstrations_of` refuses.
-    """
-    return demonstrations_of(read_episodes(recordings), source=source, incomplete=incomplete)

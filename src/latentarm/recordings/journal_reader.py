@@ -11,10 +11,11 @@ from typing import Any, final
 import numpy as np
 
 from latentarm.core.errors import UserError
-from latentarm.core.types import NO_THINGS, Command, FloatArray, Goal, Pose, StepRecord, Stop
+from latentarm.core.types import NO_THINGS, Command, FloatArray, StepRecord, Stop
 from latentarm.core.untrusted.documents import parse_object
 from latentarm.core.untrusted.memory import bounded_memory
 from latentarm.core.untrusted.opening import check_file, is_missing
+from latentarm.demonstrations.info import parse_goals
 from latentarm.demonstrations.provenance import parse_provenance
 from latentarm.recordings.journal_samples import (
     ALWAYS,
@@ -158,7 +159,8 @@ def _episode(db: sqlite3.Connection, path: Path, number: int, about: str, comple
 
 def _checked_header(path: Path, number: int, about: str) -> EpisodeHeader:
     try:
-        return _header(parse_object(about, f"Episode {number} of the journal {path}"))
+        where = f"Episode {number} of the journal {path}"
+        return _header(parse_object(about, where), where)
     except (ValueError, KeyError, TypeError, AttributeError, OverflowError) as error:
         raise _damaged(path, number, error) from error
 
@@ -167,7 +169,7 @@ def _damaged(path: Path, number: int, error: Exception) -> UserError:
     return UserError(f"Episode {number} of the journal {path} is damaged ({error}).")
 
 
-def _header(about: dict[str, Any]) -> EpisodeHeader:
+def _header(about: dict[str, Any], where: str) -> EpisodeHeader:
     header = EpisodeHeader(
         robot=str(about["robot"]),
         joint_names=tuple(str(name) for name in about["joint_names"]),
@@ -177,7 +179,7 @@ def _header(about: dict[str, Any]) -> EpisodeHeader:
         # Journals from before these were kept have neither.
         end_effector=None if about.get("end_effector") is None else str(about["end_effector"]),
         limits=None if about.get("limits") is None else parse_limits(about["limits"], "its limits"),
-        goals=tuple(_goal(goal) for goal in about["goals"]),
+        goals=parse_goals(about["goals"], where),
         # Journals from before this was recorded have none.
         provenance=parse_provenance(about.get("provenance", {})),
         joint_limits=_joint_limits(about.get("joint_limits")),
@@ -208,11 +210,6 @@ def _joint_limits(limits: dict[str, Any] | None) -> JointLimits | None:
         return JointLimits(lower, upper, velocity, acceleration, jerk)
     except UserError as error:
         raise ValueError(str(error)) from error
-
-
-def _goal(goal: dict[str, Any]) -> Goal:
-    pose = Pose(np.array(goal["position"], dtype=np.float64), np.array(goal["rotation"], dtype=np.float64))
-    return Goal(str(goal["name"]), np.array(goal["configuration"], dtype=np.float64), pose)
 
 
 def _record(figures: bytes, stop: str | None, limited_by: str) -> StepRecord:

@@ -6,10 +6,11 @@ from pathlib import Path
 from latentarm.assistance.controllers.contract import Controller
 from latentarm.core.errors import UserError
 from latentarm.core.parallel import counting_bar
-from latentarm.core.types import StepRecord
+from latentarm.core.types import Provenance, StepRecord
 from latentarm.demonstrations.folders import check_vacant
 from latentarm.demonstrations.provenance import provenance_now
-from latentarm.recordings.dataset_export import export_journal
+from latentarm.recordings.dataset_export import demonstrations_of
+from latentarm.recordings.journal_reader import read_journal
 from latentarm.recordings.journal_writer import EpisodeHeader, Recorder
 from latentarm.robots.robot import Robot
 from latentarm.runs.folder import weights_fingerprint
@@ -51,7 +52,10 @@ def record_drives(
                 recorder.end_episode()
     finally:
         recorder.close()
-    export_journal(_journal(config), dataset)
+    # pyarrow is slow to load, and most drives are not recorded.
+    from latentarm.demonstrations.dataset import write_dataset
+
+    write_dataset(demonstrations_of(read_journal(_journal(config)), source=str(_journal(config))), dataset)
     return traces
 
 
@@ -65,11 +69,13 @@ def _header(begun: Beginning, config: DriveOptions, robot: Robot, controller: Co
         goals=begun.goals,
         modes=controller.modes,
         provenance=provenance_now(
-            run="" if config.run is None else config.run.name,
-            run_fingerprint="" if config.run is None else weights_fingerprint(config.run),
-            profile=config.profile or "",
-            device="simulated",
-            controller=config.driver,
+            Provenance(
+                run="" if config.run is None else config.run.name,
+                run_fingerprint="" if config.run is None else weights_fingerprint(config.run),
+                profile=config.profile or "",
+                device="simulated",
+                controller=config.driver,
+            )
         ),
         end_effector=robot.end_effector,
         limits=robot.stated_limits,

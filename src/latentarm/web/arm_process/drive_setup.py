@@ -25,7 +25,7 @@ from latentarm.core.context import BELIEF
 from latentarm.core.errors import UserError
 from latentarm.core.exact_json import as_text_json
 from latentarm.core.journal_limits import JournalLimits
-from latentarm.core.types import FloatArray, Pose
+from latentarm.core.types import FloatArray, Pose, Provenance
 from latentarm.demonstrations.provenance import provenance_now
 from latentarm.recordings.journal_writer import EpisodeHeader
 from latentarm.robots.kinematics.obstacles import Box, Obstacle
@@ -226,13 +226,15 @@ class DriveSetup:
             goals=self.task.goals,
             modes=self.controller.modes,
             provenance=provenance_now(
-                person=person,
-                run="" if spec.run is None else spec.run.name,
-                run_fingerprint=self.run_fingerprint,
-                profile=spec.profile or "",
-                controller=controller,
-                task_name="" if self.todo.task in (FREE, HELD_OUT) else self.todo.task,
-                shadow=spec.shadow,
+                Provenance(
+                    person=person,
+                    run="" if spec.run is None else spec.run.name,
+                    run_fingerprint=self.run_fingerprint,
+                    profile=spec.profile or "",
+                    controller=controller,
+                    task_name="" if self.todo.task in (FREE, HELD_OUT) else self.todo.task,
+                    shadow=spec.shadow,
+                )
             ),
             end_effector=robot.end_effector,
             limits=robot.stated_limits,
