@@ -6,8 +6,7 @@ from typing import final
 
 import numpy as np
 
-from latentarm.core.types import Goal, Pose
-from latentarm.robots.kinematics.obstacles import Obstacle
+from latentarm.core.types import Pose
 from latentarm.robots.robot import Robot
 from latentarm.robots.scene.scene import Scene, SceneState
 from latentarm.tasks.scene_task import Beginning, SceneTask
@@ -20,31 +19,13 @@ class GoalTask(SceneTask):
     """A task at goals, done in one of its manners, in at most ``time_limit_s``. Its choices are the goals."""
 
     def __init__(self, task: Task, manner: str, time_limit_s: float) -> None:
-        self._task, self._manner, self._time_limit_s = task, manner, time_limit_s
-
-    @property
-    def name(self) -> str:
-        return self._task.name
+        self._task, self._manner, self.time_limit_s = task, manner, time_limit_s
+        self.name, self.goals, self.obstacles = task.name, task.goals, tuple(task.obstacles)
+        self.choices = tuple(goal.name for goal in task.goals)
 
     @property
     def robot(self) -> Robot:
         return self._task.robot
-
-    @property
-    def choices(self) -> tuple[str, ...]:
-        return tuple(goal.name for goal in self._task.goals)
-
-    @property
-    def goals(self) -> tuple[Goal, ...]:
-        return self._task.goals
-
-    @property
-    def obstacles(self) -> tuple[Obstacle, ...]:
-        return tuple(self._task.obstacles)
-
-    @property
-    def time_limit_s(self) -> float:
-        return self._time_limit_s
 
     def begin(self, choice: int, rng: np.random.Generator) -> Beginning:
         """Draw where the arm starts; UserError without such a manner, or where nothing is left to do."""

@@ -21,6 +21,9 @@ class Reach(Task):
     """Bring the tool of any arm to poses about its home configuration, drawn by ``seed``, in free space."""
 
     any_robot = True
+    name = "reach"
+    manners = ("reach",)
+    obstacles = ()  # the place is unknown
 
     def __init__(self, robot: Robot, goals: int = 3, seed: int = 0) -> None:
         if goals < 1:
@@ -30,10 +33,6 @@ class Reach(Task):
         self._goals = tuple(self._goal(f"goal {index + 1}", rng) for index in range(goals))
 
     @property
-    def name(self) -> str:
-        return "reach"
-
-    @property
     def robot(self) -> Robot:
         return self._robot
 
@@ -41,16 +40,6 @@ class Reach(Task):
     def goals(self) -> tuple[Goal, ...]:
         """Poses about home."""
         return self._goals
-
-    @property
-    def manners(self) -> tuple[str, ...]:
-        """One: to reach."""
-        return ("reach",)
-
-    @property
-    def obstacles(self) -> tuple[()]:
-        """None: the place is unknown."""
-        return ()
 
     def sample_start(self, goal: int, rng: np.random.Generator) -> FloatArray:
         """About home and not yet at the goal, (n,), rad."""

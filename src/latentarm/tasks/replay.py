@@ -65,16 +65,16 @@ class Replay(GripperTask):
     real demonstrations. ``open_at`` is the gripper along them, see `GripperRoutes`; empty for none.
     """
 
+    name = "held_out"
+    manners = ("follow",)
+    obstacles = ()  # the place is unknown
+
     def __init__(
         self, robot: Robot, routes: Sequence[FloatArray], open_at: Sequence[FloatArray] = ()
     ) -> None:
         self._robot = robot
         self._routes = tuple(routes)
         self._open_at = tuple(open_at)
-
-    @property
-    def name(self) -> str:
-        return "held_out"
 
     @property
     def robot(self) -> Robot:
@@ -88,16 +88,6 @@ class Replay(GripperTask):
             Goal(f"end {index + 1}", route[-1], chain.forward(route[-1]))
             for index, route in enumerate(self._routes)
         )
-
-    @property
-    def manners(self) -> tuple[str, ...]:
-        """One: the way the person went."""
-        return ("follow",)
-
-    @property
-    def obstacles(self) -> tuple[()]:
-        """None: the place is unknown."""
-        return ()
 
     def sample_start(self, goal: int, rng: np.random.Generator) -> FloatArray:
         """The start of the goal's episode, (n,), rad."""

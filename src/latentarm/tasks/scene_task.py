@@ -42,30 +42,15 @@ class Beginning:
 class SceneTask(ABC):
     """A task with things, in steps."""
 
-    @property
-    @abstractmethod
-    def name(self) -> str:
-        """Short name, in snake_case."""
+    name: str  # short, in snake_case
+    choices: tuple[str, ...]  # variants that a person may choose from; at least one
+    obstacles: tuple[Obstacle, ...] = (Scene().table,)  # shapes that the arm must keep clear of
+    time_limit_s: float  # a run that takes longer has failed
 
     @property
     @abstractmethod
     def robot(self) -> Robot:
         """The arm, with what it carries."""
-
-    @property
-    @abstractmethod
-    def choices(self) -> tuple[str, ...]:
-        """Variants that a person may choose from; at least one."""
-
-    @property
-    @abstractmethod
-    def obstacles(self) -> tuple[Obstacle, ...]:
-        """Shapes that the arm must keep clear of."""
-
-    @property
-    @abstractmethod
-    def time_limit_s(self) -> float:
-        """A run that takes longer has failed, s."""
 
     @abstractmethod
     def begin(self, choice: int, rng: np.random.Generator) -> Beginning:

@@ -9,7 +9,7 @@ import numpy as np
 from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations, Episode, FloatArray, Goal, Pose
 from latentarm.robots.catalogue import load_robot
-from latentarm.robots.kinematics.obstacles import HalfSpace, Obstacle
+from latentarm.robots.kinematics.obstacles import HalfSpace
 from latentarm.robots.robot import Robot
 from latentarm.robots.scene.scene import Scene
 from latentarm.robots.scene.thing import Part, Thing
@@ -55,22 +55,14 @@ class TableTop(Task):
     demonstrator is a simulated person.
     """
 
-    @property
-    def name(self) -> str:
-        return "table_top"
+    name = "table_top"
+    manners = ("stab", "scoop")
+    # The table; the arm may touch the soft food and its dishes.
+    obstacles = (HalfSpace("table", np.array([0.0, 0.0, TABLE_HEIGHT]), np.array([0.0, 0.0, 1.0])),)
 
     @property
     def robot(self) -> Robot:
         return self._robot
-
-    @property
-    def manners(self) -> tuple[str, ...]:
-        return ("stab", "scoop")
-
-    @property
-    def obstacles(self) -> tuple[Obstacle, ...]:
-        """The table; the arm may touch the soft food and its dishes."""
-        return (HalfSpace("table", np.array([0.0, 0.0, TABLE_HEIGHT]), np.array([0.0, 0.0, 1.0])),)
 
     @property
     def shown(self) -> Scene:

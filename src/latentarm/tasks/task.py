@@ -20,10 +20,14 @@ class Task(ABC):
     # Whether the task takes any robot as its argument; else it takes no arguments and has its own
     any_robot: ClassVar[bool] = False
 
-    @property
-    @abstractmethod
-    def name(self) -> str:
-        """Short name, in snake_case."""
+    name: str
+    """Short name, in snake_case."""
+
+    manners: tuple[str, ...]
+    """Names of the acts that are possible at a goal, at least one."""
+
+    obstacles: Sequence[Obstacle]
+    """Shapes that the arm must keep clear of."""
 
     @property
     @abstractmethod
@@ -34,16 +38,6 @@ class Task(ABC):
     @abstractmethod
     def goals(self) -> tuple[Goal, ...]:
         """The discrete goals ``G`` that a person may have."""
-
-    @property
-    @abstractmethod
-    def manners(self) -> tuple[str, ...]:
-        """Names of the acts that are possible at a goal, at least one."""
-
-    @property
-    @abstractmethod
-    def obstacles(self) -> Sequence[Obstacle]:
-        """Shapes that the arm must keep clear of."""
 
     @property
     def shown(self) -> Scene:

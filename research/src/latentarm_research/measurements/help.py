@@ -5,7 +5,6 @@ with every level of help on the page: to items that the robot knows, and to one 
 its help pulls elsewhere.
 """
 
-from collections.abc import Sequence
 from typing import Any, Final, final
 
 import numpy as np
@@ -15,7 +14,6 @@ from latentarm.assistance.goal_blending import blending
 from latentarm.core.types import Demonstrations, FloatArray, Goal, Pose
 from latentarm.models.decoder import Decoder
 from latentarm.models.estimators import MODELS
-from latentarm.robots.kinematics.obstacles import Obstacle
 from latentarm.robots.robot import Robot
 from latentarm.tasks.goal_task import GoalTask
 from latentarm.tasks.table_top import TableTop
@@ -63,16 +61,15 @@ def measure(options: Help, work: Work) -> Outcome:
 class Hover(Task):
     """To be above an item, of which the robot may not know."""
 
+    name = "hover"
+    manners = ("hover",)
+    obstacles = TABLE.obstacles
+
     def __init__(
         self,
         hidden: int | None,  # index of the item that the robot does not know; None for none
     ) -> None:
         self._hidden = hidden
-
-    @property
-    def name(self) -> str:
-        """See the base class."""
-        return "hover"
 
     @property
     def robot(self) -> Robot:
@@ -83,16 +80,6 @@ class Hover(Task):
     def goals(self) -> tuple[Goal, ...]:
         """Those that the robot knows."""
         return tuple(goal for number, goal in enumerate(TABLE.goals) if number != self._hidden)
-
-    @property
-    def manners(self) -> tuple[str, ...]:
-        """See the base class."""
-        return ("hover",)
-
-    @property
-    def obstacles(self) -> Sequence[Obstacle]:
-        """See the base class."""
-        return TABLE.obstacles
 
     def sample_start(self, goal: int, rng: np.random.Generator) -> FloatArray:
         """See the base class."""

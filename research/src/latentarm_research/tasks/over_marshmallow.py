@@ -19,22 +19,10 @@ class OverMarshmallow(ForkTask):
     fork there keeps it there, so what comes after must not be part of such a task.
     """
 
+    name = "over_marshmallow"
+    choices = Marshmallows.choices
+    time_limit_s = Marshmallows.time_limit_s
     whole: Marshmallows = field(default_factory=Marshmallows)  # the task that this is the first step of
-
-    @property
-    def name(self) -> str:
-        """``over_marshmallow``."""
-        return "over_marshmallow"
-
-    @property
-    def choices(self) -> tuple[str, ...]:
-        """Which marshmallow."""
-        return self.whole.choices
-
-    @property
-    def time_limit_s(self) -> float:
-        """A minute."""
-        return self.whole.time_limit_s
 
     def begin(self, choice: int, rng: np.random.Generator) -> Beginning:
         """The same things and start as in the whole task."""

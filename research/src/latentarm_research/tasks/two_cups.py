@@ -72,6 +72,8 @@ class Place(NamedTuple):
 class TwoCups(Task, ABC):
     """Two cups and an arm that grasps one of them; the demonstrator is simulated."""
 
+    manners = ("side", "top")
+    obstacles = ()  # the arm may touch the cups
     before: Place = Place(back=0.06, left=0.0, up=0.0, turn=0.0)
     """Where a reach ends and a grasp begins."""
 
@@ -93,16 +95,6 @@ class TwoCups(Task, ABC):
     @abstractmethod
     def pose(self, bearing_rad: float, place: Place) -> Pose:
         """The tool's pose at a place, seen from a cup at a bearing."""
-
-    @property
-    def manners(self) -> tuple[str, ...]:
-        """From the side or from the top."""
-        return tuple(self.grasps)
-
-    @property
-    def obstacles(self) -> tuple[()]:
-        """None: the arm may touch the cups."""
-        return ()
 
     @property
     def goals(self) -> tuple[Goal, ...]:
@@ -188,10 +180,7 @@ class TwoCups(Task, ABC):
 class PlanarTwoCups(TwoCups):
     """A planar arm of 5 joints, seen from above; the second grasp mirrors the first, for lack of a top."""
 
-    @property
-    def name(self) -> str:
-        """``planar_two_cups``."""
-        return "planar_two_cups"
+    name = "planar_two_cups"
 
     @property
     def grasps(self) -> dict[str, Place]:
@@ -235,10 +224,7 @@ class PandaTwoCups(TwoCups):
     PITCH_RAD: Final = -1.3
     """Of the hand's pointing direction above the horizontal, where a cup is approached."""
 
-    @property
-    def name(self) -> str:
-        """``panda_two_cups``."""
-        return "panda_two_cups"
+    name = "panda_two_cups"
 
     @property
     def grasps(self) -> dict[str, Place]:

@@ -41,17 +41,9 @@ NAMES: Final = (MARSHMALLOW, "icing", "rice bowl", "own plate")  # relevant thin
 class Dessert(ForkTask):
     """Stab a marshmallow, scoop it through icing, dip it in rice, and set it down on the own plate."""
 
-    @property
-    def name(self) -> str:
-        return "dessert"
-
-    @property
-    def choices(self) -> tuple[str, ...]:
-        return (MARSHMALLOW,)
-
-    @property
-    def time_limit_s(self) -> float:
-        return 180.0
+    name = "dessert"
+    choices = (MARSHMALLOW,)
+    time_limit_s = 180.0
 
     def begin(self, choice: int, rng: np.random.Generator) -> Beginning:
         """The marshmallow at random near the middle of its plate."""

@@ -32,17 +32,9 @@ _COLOUR: Final = (0.96, 0.93, 0.82, 1.0)
 class Entree(ForkTask):
     """Cut a slice of tofu with the edge of the fork, stab it, and bring it to the person's own plate."""
 
-    @property
-    def name(self) -> str:
-        return "entree"
-
-    @property
-    def choices(self) -> tuple[str, ...]:
-        return ("slice",)
-
-    @property
-    def time_limit_s(self) -> float:
-        return 120.0
+    name = "entree"
+    choices = ("slice",)
+    time_limit_s = 120.0
 
     def begin(self, choice: int, rng: np.random.Generator) -> Beginning:
         """Tofu at random near the middle of its dish, turned a little."""

@@ -7,9 +7,7 @@ import numpy as np
 
 from latentarm.core.types import FloatArray, Goal
 from latentarm.robots.catalogue import load_robot
-from latentarm.robots.kinematics.obstacles import Obstacle
 from latentarm.robots.robot import Robot
-from latentarm.robots.scene.scene import Scene
 from latentarm.robots.scene.thing import Thing
 from latentarm.tasks.eating.stabbing import HOVER_M
 from latentarm.tasks.eating.table import STAND_M, fork
@@ -30,12 +28,6 @@ class ForkTask(SceneTask):
     @final
     def robot(self) -> Robot:
         return load_robot("panda_fork")
-
-    @property
-    @final
-    def obstacles(self) -> tuple[Obstacle, ...]:
-        """The table; the arm may touch food and dishes."""
-        return (Scene().table,)
 
     @final
     def start(self, rng: np.random.Generator) -> FloatArray:

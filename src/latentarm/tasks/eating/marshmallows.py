@@ -26,19 +26,10 @@ OUT_M: Final = (0.045, 0.075)  # distance from the plate's middle
 class Marshmallows(ForkTask):
     """Bring the fork over the chosen marshmallow, stab it and lift it."""
 
+    name = "marshmallows"
+    choices = NAMES
+    time_limit_s = 60.0
     plate_at_m: Region = PLATE_AT_M  # region of the plate's middle, x and y, m
-
-    @property
-    def name(self) -> str:
-        return "marshmallows"
-
-    @property
-    def choices(self) -> tuple[str, ...]:
-        return NAMES
-
-    @property
-    def time_limit_s(self) -> float:
-        return 60.0
 
     def begin(self, choice: int, rng: np.random.Generator) -> Beginning:
         """Marshmallows at random in their sectors, the arm about its home."""

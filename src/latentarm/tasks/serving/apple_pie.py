@@ -55,18 +55,9 @@ STROKE_M: Final = 0.009  # tolerance at the end of a stroke: there is 12 mm of r
 class ApplePie(CounterTask):
     """Pour eggs into a bowl and drop their cup into the bin; flour, and put it back; an apple, and stir."""
 
-    @property
-    def name(self) -> str:
-        return "apple_pie"
-
-    @property
-    def choices(self) -> tuple[str, ...]:
-        """The three parts of the recipe; between them the arm goes back to its start, as in the paper."""
-        return CHOICES
-
-    @property
-    def time_limit_s(self) -> float:
-        return 180.0
+    name = "apple_pie"
+    choices = CHOICES  # between them the arm goes back to its start, as in the paper
+    time_limit_s = 180.0
 
     def begin(self, choice: int, rng: np.random.Generator) -> Beginning:
         """Shelf, bowl and bin at random in their regions."""

@@ -30,17 +30,9 @@ _RADIUS_M: Final = 0.03
 class Avoid(CounterTask):
     """Guide the hand in a plane past a bottle to a place behind it."""
 
-    @property
-    def name(self) -> str:
-        return "avoid"
-
-    @property
-    def choices(self) -> tuple[str, ...]:
-        return ("place",)
-
-    @property
-    def time_limit_s(self) -> float:
-        return 60.0
+    name = "avoid"
+    choices = ("place",)
+    time_limit_s = 60.0
 
     def begin(self, choice: int, rng: np.random.Generator) -> Beginning:
         """Bottle, start and goal at random in their regions."""

@@ -6,9 +6,7 @@ import numpy as np
 
 from latentarm.core.types import FloatArray
 from latentarm.robots.catalogue import load_robot
-from latentarm.robots.kinematics.obstacles import Obstacle
 from latentarm.robots.robot import Robot
-from latentarm.robots.scene.scene import Scene
 from latentarm.robots.scene.thing import Thing
 from latentarm.tasks.inverse_kinematics import solve
 from latentarm.tasks.predicates import Dropped, Spilled
@@ -27,12 +25,6 @@ class CounterTask(SceneTask):
     @final
     def robot(self) -> Robot:
         return load_robot("panda")
-
-    @property
-    @final
-    def obstacles(self) -> tuple[Obstacle, ...]:
-        """The table; the arm may touch the counter and things on it."""
-        return (Scene().table,)
 
     @final
     def reaching(self, place: FloatArray) -> FloatArray:

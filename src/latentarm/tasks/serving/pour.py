@@ -28,17 +28,9 @@ TIP_SPEED: Final = 0.12  # of tipping, as a share of the person's usual speed: s
 class Pour(CounterTask):
     """Take a cup, pour some of it into the left bowl and some into the right one."""
 
-    @property
-    def name(self) -> str:
-        return "pour"
-
-    @property
-    def choices(self) -> tuple[str, ...]:
-        return ("cup",)
-
-    @property
-    def time_limit_s(self) -> float:
-        return 120.0
+    name = "pour"
+    choices = ("cup",)
+    time_limit_s = 120.0
 
     def begin(self, choice: int, rng: np.random.Generator) -> Beginning:
         """Cup and bowls at random in their regions of the counter."""

@@ -29,20 +29,11 @@ GRAINS: Final = 24
 class ReachAndPour(CounterTask):
     """Take a cup, carry it over a bowl, and pour it out."""
 
+    name = "reach_and_pour"
+    choices = ("cup",)
+    time_limit_s = 120.0
     cup_at_m: Region = CUP_AT_M  # region of the cup, x and y, m
     bowl_at_m: Region = BOWL_AT_M
-
-    @property
-    def name(self) -> str:
-        return "reach_and_pour"
-
-    @property
-    def choices(self) -> tuple[str, ...]:
-        return ("cup",)
-
-    @property
-    def time_limit_s(self) -> float:
-        return 120.0
 
     def begin(self, choice: int, rng: np.random.Generator) -> Beginning:
         """Cup and bowl at random in their regions of the counter."""

@@ -16,13 +16,13 @@ PRESSED_M = 0.03
 class TwoButtons(Task):
     """A button to the left and one to the right."""
 
+    name = "two_buttons"
+    manners = ("press",)
+    obstacles = ()
+
     def __init__(self) -> None:
         self._robot = load_robot("panda")
         self._goals = tuple(self._button(name, turn) for name, turn in (("left", 0.6), ("right", -0.6)))
-
-    @property
-    def name(self) -> str:
-        return "two_buttons"
 
     @property
     def robot(self) -> Robot:
@@ -31,14 +31,6 @@ class TwoButtons(Task):
     @property
     def goals(self) -> tuple[Goal, ...]:
         return self._goals
-
-    @property
-    def manners(self) -> tuple[str, ...]:
-        return ("press",)
-
-    @property
-    def obstacles(self) -> tuple[()]:
-        return ()
 
     def sample_start(self, goal: int, rng: np.random.Generator) -> FloatArray:
         return self._robot.home + rng.uniform(-0.05, 0.05, self._robot.dof)
