@@ -11,7 +11,7 @@ from latentarm.tasks.catalogue import SCENE_TASKS, make_scene_task
 from latentarm.tasks.eating import dessert, entree
 from latentarm.tasks.eating.stabbing import LIFTED_M as STABBED_M
 from latentarm.tasks.eating.table import MARSHMALLOW
-from latentarm.tasks.predicates import Holding, Poured, Pressed, Spilled, Stabbed, Swept
+from latentarm.tasks.predicates import Lifted, Poured, Pressed, Spilled, Swept
 from latentarm.tasks.serving.cup_steps import LIFTED_M as TAKEN_M
 from latentarm.tasks.steps import FINE_M, FINE_RAD, PATIENCE_S
 from latentarm_research.drives.demonstrate import GRASP_N
@@ -34,13 +34,11 @@ def stated(text):
     return {(float(number), unit) for number, unit in FIGURE.findall(text)}
 
 
-def figures_of(condition):
-    """What a condition of a step, or of a failure, has in figures."""
+def figures_of(condition, kind=""):
+    """What a condition of a step of a kind, or of a failure, has in figures."""
     match condition:
-        case Stabbed():
-            return {(100 * STABBED_M, "cm")}
-        case Holding():
-            return {(100 * TAKEN_M, "cm")}
+        case Lifted():
+            return {(100 * (STABBED_M if kind == "stabbed" else TAKEN_M), "cm")}
         case Poured():
             return {(100 * condition.share, "%")}
         case Swept():
@@ -64,7 +62,7 @@ def test_a_row_of_the_table_says_what_the_task_says(name):
     task = make_scene_task(name)
     steps, wrong, time, varies = dict(ROW.findall(PAGE))[name].split("|")
     begun = [task.begin(choice, np.random.default_rng(0)) for choice in range(len(task.choices))]
-    done = [figures_of(step.done) for one in begun for step in one.steps]
+    done = [figures_of(step.done, step.kind) for one in begun for step in one.steps]
     failures = [fails for one in begun for fails in one.failures]
     assert stated(steps) <= rounded(set.union(*done))
     assert stated(wrong) <= set.union(*(figures_of(fails) for fails in failures))

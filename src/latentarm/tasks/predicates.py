@@ -43,14 +43,14 @@ class Taken:
 
 @final
 @dataclass(frozen=True)
-class Stabbed:
-    """A thing is on the tines, and has left its place."""
+class Lifted:
+    """A thing is between the fingers or on the tines, and has left its place."""
 
     thing: str
-    above_m: float  # least height of its middle in the base frame, m
+    above_m: float  # least height of its frame in the base frame, m
 
     def __call__(self, state: SceneState) -> bool:
-        return self.thing in state.stabbed and state.poses[self.thing].position[2] >= self.above_m
+        return Taken(self.thing)(state) and state.poses[self.thing].position[2] >= self.above_m
 
 
 @final
@@ -65,18 +65,6 @@ class CarriedOver:
     def __call__(self, state: SceneState) -> bool:
         away = state.poses[self.thing].position - state.poses[self.over].position
         return bool(Taken(self.thing)(state) and np.hypot(away[0], away[1]) <= self.aside_m)
-
-
-@final
-@dataclass(frozen=True)
-class Holding:
-    """A thing is between the fingers, and has left its place."""
-
-    thing: str
-    above_m: float  # least height of its frame in the base frame, m
-
-    def __call__(self, state: SceneState) -> bool:
-        return self.thing in state.gripped and state.poses[self.thing].position[2] >= self.above_m
 
 
 @final

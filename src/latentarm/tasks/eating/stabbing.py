@@ -8,7 +8,7 @@ import numpy as np
 from latentarm.core.types import FloatArray, Pose
 from latentarm.robots.scene.scene import SceneState
 from latentarm.tasks.eating.table import MARSHMALLOW_HALF_M, STAND_M, fork
-from latentarm.tasks.predicates import Above, Stabbed, Taken
+from latentarm.tasks.predicates import Above, Lifted, Taken
 from latentarm.tasks.steps import TaskStep, Waypoint
 
 HOVER_M: Final = 0.10  # height of a reach's end over the middle of the food
@@ -31,7 +31,7 @@ def stab(thing: str, turn_rad: float | None = None, half_m: float = MARSHMALLOW_
         partial(above_it, height_m=-INTO_M), within_m=0.008, wait_s=0.1, speed=0.4, until=Taken(thing)
     )
     lifted = Waypoint(partial(_over_plate, thing=thing, height_m=lying_m + HOVER_M, turn_rad=turn_rad))
-    done = Stabbed(thing, lying_m + LIFTED_M)
+    done = Lifted(thing, lying_m + LIFTED_M)
     return TaskStep("stabbed", thing, f"the {thing} on the fork", done, (near, into, lifted))
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from latentarm.core.types import FloatArray, Pose
 from latentarm.robots.scene.scene import SceneState
 from latentarm.robots.scene.thing import Interior
-from latentarm.tasks.predicates import CarriedOver, Holding, Poured, Taken
+from latentarm.tasks.predicates import CarriedOver, Lifted, Poured, Taken
 from latentarm.tasks.serving.counter import GRIP_M, TOP_M, bearing_of, hand, pouring
 from latentarm.tasks.steps import TaskStep, Waypoint
 
@@ -35,7 +35,7 @@ def take(cup: str, stands_m: float = TOP_M, grip_m: float = GRIP_M) -> tuple[Tas
     return (
         TaskStep("reached", cup, f"at the {cup}", before.reached, (before,)),
         TaskStep(
-            "holding", cup, f"holding the {cup}", Holding(cup, stands_m + LIFTED_M), (before, about, lifted)
+            "holding", cup, f"holding the {cup}", Lifted(cup, stands_m + LIFTED_M), (before, about, lifted)
         ),
     )
 
@@ -72,16 +72,13 @@ def _at(state: SceneState, cup: str, back_m: float, up_m: float) -> Pose:
     """The hand at a cup, or a little before it."""
     pose = state.poses[cup]
     # Along its own axis: a spoon leans in its holder.
-    place = pose.position + up_m * pose.rotation[:, 2]
-    bearing = bearing_of(place)
-    out = np.array([np.cos(bearing), np.sin(bearing), 0.0])
-    return hand(place - back_m * out + np.array([0.0, 0.0, 0.5 * back_m]), bearing)
+    return at_place(state, pose.position + up_m * pose.rotation[:, 2], back_m)
 
 
 def _lifted(state: SceneState, cup: str, height_m: float) -> Pose:
     place = state.poses[cup].position.copy()
     place[2] = height_m
-    return hand(place, bearing_of(place))
+    return at_place(state, place)
 
 
 def _over(state: SceneState, bowl: str, tilt_rad: float) -> Pose:
@@ -90,8 +87,7 @@ def _over(state: SceneState, bowl: str, tilt_rad: float) -> Pose:
 
 def over(state: SceneState, thing: str, height_m: float) -> Pose:
     """The hand upright over a thing that stands on the counter."""
-    place = state.poses[thing].position + np.array([0.0, 0.0, height_m])
-    return hand(place, bearing_of(place))
+    return at_place(state, state.poses[thing].position + np.array([0.0, 0.0, height_m]))
 
 
 def at_place(state: SceneState, place: FloatArray, back_m: float = 0.0) -> Pose:
