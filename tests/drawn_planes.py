@@ -17,6 +17,12 @@ LENS = Lens((640, 480), np.array([[580.0, 0.0, 319.5], [0.0, 580.0, 239.5], [0.0
 _FINER = 4  # each pixel is the mean of so many squared
 
 
+def projected(points: FloatArray) -> FloatArray:
+    """Pixels (N, 2) of points (N, 3) in the frame of a camera with `LENS`, m."""
+    pixels, _ = cv2.projectPoints(points, np.zeros(3), np.zeros(3), LENS.matrix, LENS.distortion)
+    return np.asarray(pixels, np.float64)[:, 0]
+
+
 def looking(eye: FloatArray, at: FloatArray) -> FloatArray:
     """The pose (4, 4) of a camera at a point that looks at another, m."""
     ahead = (at - eye) / np.linalg.norm(at - eye)
@@ -33,7 +39,7 @@ def drawn(planes: list[tuple[NDArray[np.uint8], FloatArray]]) -> NDArray[np.uint
     width, height = LENS.size_px
     canvas = np.full((height * _FINER, width * _FINER), 90, np.uint8)
     for image, corners in planes:
-        pixels = (LENS.project(corners) + 0.5) * _FINER - 0.5
+        pixels = (projected(corners) + 0.5) * _FINER - 0.5
         high, wide = image.shape
         ends = np.array([(-0.5, -0.5), (wide - 0.5, -0.5), (wide - 0.5, high - 0.5), (-0.5, high - 0.5)])
         warp = cv2.getPerspectiveTransform(ends.astype(np.float32), pixels.astype(np.float32))

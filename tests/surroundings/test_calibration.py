@@ -10,7 +10,7 @@ import pytest
 from rosbridge_server import RosbridgeServer
 from scipy.spatial.transform import Rotation
 
-from drawn_planes import LENS, drawn, looking, write_video
+from drawn_planes import LENS, drawn, looking, projected, write_video
 from latentarm.cli import main
 from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray
@@ -46,7 +46,7 @@ def view_of(board: FloatArray, rng: np.random.Generator) -> BoardView | None:
     at = moved(board, POINTS)
     if board[2, 2] < 0.3 or np.abs(at[:, :2] / at[:, 2:]).max() > 0.8:
         return None
-    pixels = LENS.project(at)
+    pixels = projected(at)
     if pixels.min() < 5 or (pixels > np.array(LENS.size_px) - 5).any():
         return None
     return BoardView(POINTS, pixels + rng.normal(0, NOISE_PX, pixels.shape))

@@ -13,7 +13,7 @@ import pytest
 
 from latentarm.core.errors import UserError
 from latentarm.surroundings.catalogue import open_source
-from latentarm.surroundings.http import MOST_BYTES, HttpSource
+from latentarm.surroundings.http import MOST_BYTES
 from latentarm.surroundings.process import Inbox, SourceProcess
 
 BOWL = {"name": "bowl", "position_m": [0.5, -0.1, 0.28], "position_sd_m": 0.004, "age_s": 0.2}
@@ -21,7 +21,7 @@ BOWL = {"name": "bowl", "position_m": [0.5, -0.1, 0.28], "position_sd_m": 0.004,
 
 @pytest.fixture(scope="module")
 def source():
-    made = HttpSource(0, ["bowl", "cup"])
+    made = open_source("http:0", ["bowl", "cup"])
     yield made
     made.close()
 
@@ -112,9 +112,9 @@ def test_sightings_reach_the_loop_on_its_own_clock_and_a_taken_port_is_refused(s
         assert post(port, {"things": [BOWL]})[0] == 204
         while not found and time.monotonic() < end_s:
             found = inbox.read(1000.0)
-        assert found[0].source == f"http:{port}?hold_s=3"
-        assert found[0].hold_s == 3.0
-        assert 998.0 < found[0].sighting.time_s <= 999.8
+        sighting, named, hold_s = found[0]
+        assert (named, hold_s) == (f"http:{port}?hold_s=3", 3.0)
+        assert 998.0 < sighting.time_s <= 999.8
     finally:
         sources.end()
     assert inbox.read(1001.0) == []

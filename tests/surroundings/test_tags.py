@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from documentation import ROOT, blocks
-from drawn_planes import LENS, drawn, looking, tag_image, write_video
+from drawn_planes import LENS, drawn, looking, projected, tag_image, write_video
 from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray
 from latentarm.surroundings.catalogue import open_source
@@ -28,7 +28,7 @@ PLATE = [frame(np.eye(3), np.array([x, y, 0.0])) for x, y in ((0.08, 0.08), (-0.
 
 
 def seen(pose: FloatArray, camera: FloatArray, on_thing: FloatArray, off_px: object = 0.0) -> SeenTag:
-    corners = LENS.project(moved(inverse(camera) @ pose @ on_thing, corners_on_tag(SIZE_M)))
+    corners = projected(moved(inverse(camera) @ pose @ on_thing, corners_on_tag(SIZE_M)))
     return SeenTag(corners + off_px, LENS, camera, SIZE_M, on_thing)
 
 

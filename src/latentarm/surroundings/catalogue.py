@@ -1,22 +1,15 @@
 """Sources of where things are, by name: ours, and those that other distributions register."""
 
-from collections.abc import Sequence
-from typing import Final, Protocol, cast
+from collections.abc import Callable, Sequence
+from typing import Final, cast
 
 from latentarm.core.errors import UserError
 from latentarm.core.plugins import Catalogue
 from latentarm.surroundings.contract import Source
 
-
-class SourceFactory(Protocol):
-    """Opens a source."""
-
-    def __call__(self, rest: str, names: Sequence[str]) -> Source:
-        """Open a source for the things of these names; ``rest`` is what follows ``NAME:`` in ``--objects``.
-
-        Raises UserError where ``rest`` is malformed, or what it names cannot be opened.
-        """
-        ...
+SourceFactory = Callable[[str, Sequence[str]], Source]
+"""Opens a source by the text that follows ``NAME:`` in ``--objects``, for the things of these names. Raises
+UserError where the text is malformed, or what it names cannot be opened."""
 
 
 def _factory(name: str, thing: object) -> SourceFactory:

@@ -1,8 +1,9 @@
 """The contract of a source that says where things are: a camera with tags, a detector elsewhere."""
 
 import math
+import threading
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Final, final
 
@@ -23,23 +24,16 @@ _SKEW: Final = 1e-3  # largest error of a rotation matrix
 class Sighting:
     """One detection of a thing by a source.
 
-    Attributes:
-        name: of the thing, as the task and the model name it.
-        pose: of its own frame (see `latentarm.robots.scene.thing.Thing`) in the arm's base frame: position
-            (3,), m, and rotation (3, 3).
-        time_s: when the picture was taken, by ``time.monotonic()`` of this machine, s.
-        position_sd_m: standard deviation of each coordinate of the position, m.
-        orientation_sd_rad: standard deviation of the turn about each axis, rad; ``math.pi`` where the source
-            cannot tell how the thing is turned.
-
-    Raises:
-        UserError: a figure is missing, not finite, or out of range; the rotation is none.
+    Raises UserError where a figure is missing, not finite, or out of range, or the rotation is none.
     """
 
-    name: str
+    name: str  # of the thing, as the task and the model name it
+    # of its own frame (see `latentarm.robots.scene.thing.Thing`) in the arm's base frame: position (3,), m,
+    # and rotation (3, 3)
     pose: Pose
-    time_s: float
-    position_sd_m: float
+    time_s: float  # when the picture was taken, by ``time.monotonic()`` of this machine
+    position_sd_m: float  # standard deviation of each coordinate of the position
+    # standard deviation of the turn about each axis; ``math.pi`` where the source cannot tell the turn
     orientation_sd_rad: float
 
     def __post_init__(self) -> None:
@@ -73,10 +67,8 @@ class Source(ABC):
     raises UserError where that fails.
     """
 
-    @property
-    @abstractmethod
-    def hold_s(self) -> float:
-        """For how long a sighting counts when no newer one comes, s; at most `MOST_HOLD_S`."""
+    hold_s: float
+    """For how long a sighting counts when no newer one comes, s; at most `MOST_HOLD_S`."""
 
     @abstractmethod
     def read(self) -> Sequence[Sighting]:
@@ -88,3 +80,23 @@ class Source(ABC):
     @abstractmethod
     def close(self) -> None:
         """Let go of what was opened; closing twice is harmless."""
+
+
+@final
+class Newest:
+    """The newest sighting of each thing, from a source's own threads to its `Source.read`."""
+
+    def __init__(self) -> None:
+        self._seen: dict[str, Sighting] = {}
+        self._lock = threading.Lock()
+
+    def put(self, seen: Iterable[Sighting]) -> None:
+        """Add sightings."""
+        with self._lock:
+            self._seen |= {one.name: one for one in seen}
+
+    def take(self) -> tuple[Sighting, ...]:
+        """Those since the last call."""
+        with self._lock:
+            seen, self._seen = self._seen, {}
+        return tuple(seen.values())

@@ -20,7 +20,7 @@ from scipy.spatial.transform import Rotation
 
 from latentarm.core.errors import UserError
 from latentarm.core.types import Pose
-from latentarm.surroundings.contract import MOST_HOLD_S, Sighting, Source
+from latentarm.surroundings.contract import MOST_HOLD_S, Newest, Sighting, Source
 
 PATH: Final = "/things"
 MOST_BYTES: Final = 1 << 16
@@ -69,10 +69,9 @@ class HttpSource(Source):
     Raises UserError if the port is taken.
     """
 
-    def __init__(self, port: int, names: Sequence[str], hold_s: float = USUAL_HOLD_S) -> None:
-        self._names, self._hold_s = tuple(names), hold_s
-        self._newest: dict[str, Sighting] = {}
-        self._lock = threading.Lock()
+    def __init__(self, port: int, names: Sequence[str], hold_s: float) -> None:
+        self._names, self.hold_s = tuple(names), hold_s
+        self._newest = Newest()
         source = self
 
         @final
@@ -105,14 +104,8 @@ class HttpSource(Source):
         self.port = int(self._server.server_address[1])
         threading.Thread(target=self._server.serve_forever, name="objects by http", daemon=True).start()
 
-    @property
-    def hold_s(self) -> float:
-        return self._hold_s
-
     def read(self) -> Sequence[Sighting]:
-        with self._lock:
-            found, self._newest = self._newest, {}
-        return tuple(found.values())
+        return self._newest.take()
 
     def close(self) -> None:
         with suppress(OSError):
@@ -143,8 +136,7 @@ class HttpSource(Source):
             ) from error
         except UserError as error:
             raise _RefusedError(422, str(error)) from error
-        with self._lock:
-            self._newest |= {one.name: one for one in seen}
+        self._newest.put(seen)
 
     def _sighting(self, thing: PostedThing, now_s: float) -> Sighting:
         if thing.name not in self._names:

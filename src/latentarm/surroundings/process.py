@@ -12,7 +12,6 @@ import sys
 import time
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
 from multiprocessing.connection import Connection
 from typing import Any, Final, final
 
@@ -103,38 +102,28 @@ class SourceProcess:
 
 
 @final
-@dataclass(frozen=True, eq=False)
-class Received:
-    """A sighting with the text that named its source, and how long it counts, s."""
-
-    sighting: Sighting
-    source: str
-    hold_s: float
-
-
-@final
 class Inbox:
     """Sightings as they come from a `SourceProcess`, for the loop; it never waits."""
 
     def __init__(self, sightings: Connection) -> None:
         self._sightings: Connection | None = sightings
 
-    def read(self, now_s: float) -> list[Received]:
-        """New ones, oldest first, at most `_MOST_AT_ONCE`; times are on the clock that reads ``now_s``."""
-        found: list[Received] = []
+    def read(self, now_s: float) -> list[tuple[Sighting, str, float]]:
+        """New ones, oldest first, at most `_MOST_AT_ONCE`; times are on the clock that reads ``now_s``.
+
+        Each is with the text that named its source, and how long it counts, s.
+        """
+        found: list[tuple[Sighting, str, float]] = []
         ahead_s = now_s - time.monotonic()
         while self._sightings is not None and len(found) < _MOST_AT_ONCE:
             try:
                 if not self._sightings.poll(0):
                     break
-                one = _parsed(json.loads(self._sightings.recv_bytes(_LONGEST)))
+                found.append(_parsed(json.loads(self._sightings.recv_bytes(_LONGEST)), ahead_s))
             except (OSError, EOFError):
                 self._sightings = None  # its process has ended: what it saw grows old
             except (ValueError, KeyError, TypeError, UserError):
                 continue
-            else:
-                sighting = replace(one.sighting, time_s=one.sighting.time_s + ahead_s)
-                found.append(replace(one, sighting=sighting))
         return found
 
 
@@ -153,10 +142,11 @@ def as_message(sighting: Sighting, source: str, hold_s: float) -> bytes:
     return json.dumps(message).encode()
 
 
-def _parsed(message: dict[str, Any]) -> Received:
+def _parsed(message: dict[str, Any], ahead_s: float) -> tuple[Sighting, str, float]:
     pose = Pose(
         np.array(message["position"], dtype=np.float64),
         Rotation.from_quat(message["rotation"]).as_matrix(),
     )
-    sighting = Sighting(str(message["name"]), pose, message["time_s"], message["sd_m"], message["sd_rad"])
-    return Received(sighting, str(message["source"]), float(message["hold_s"]))
+    time_s = message["time_s"] + ahead_s
+    sighting = Sighting(str(message["name"]), pose, time_s, message["sd_m"], message["sd_rad"])
+    return sighting, str(message["source"]), float(message["hold_s"])

@@ -21,9 +21,8 @@ from latentarm.arms.ros2.transforms import MOST_FRAMES, TOPICS, frame_name, plac
 from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray, Pose
 from latentarm.core.untrusted.terminal import one_line
-from latentarm.surroundings.contract import FARTHEST_M, LEAST_SD_M, LEAST_SD_RAD, Sighting, Source
+from latentarm.surroundings.contract import FARTHEST_M, LEAST_SD_M, LEAST_SD_RAD, Newest, Sighting, Source
 
-HOLD_S: Final = 2.0
 OLDEST_S: Final = 5.0  # a stamp that is older, or lies ahead by `AHEAD_S`, is from another clock
 AHEAD_S: Final = 0.05
 _OWN: Final = {"base": "base_link", "detections": "", "sd_m": "0.01", "sd_rad": "0.1"}  # options, not things
@@ -37,13 +36,15 @@ class Ros2Source(Source):
     Raises UserError where ``rest`` is malformed or nothing answers there.
     """
 
+    hold_s = 2.0
+
     def __init__(self, rest: str, names: Sequence[str]) -> None:
         host, port, given = _parsed(rest)
         self._base = frame_name(given["base"])
         self._usual_sd = tuple(_figure(key, given[key]) for key in ("sd_m", "sd_rad"))
         self._names = frozenset(names)
         self._lock = threading.Lock()
-        self._newest: dict[str, Sighting] = {}
+        self._newest = Newest()
         self._frames: dict[str, tuple[str, FloatArray]] = {}
         self._said: set[str] = set()
         things = {name: topic for name, topic in given.items() if name not in _OWN}
@@ -66,17 +67,11 @@ class Ros2Source(Source):
         if given["detections"]:
             self._listen(given["detections"], "vision_msgs/msg/Detection3DArray", self._detected)
 
-    @property
-    def hold_s(self) -> float:
-        return HOLD_S
-
     def read(self) -> Sequence[Sighting]:
         """The newest sighting of each thing since the last call; UserError once the connection is lost."""
         if not self._link.connected:
             raise UserError("the connection to rosbridge is lost")
-        with self._lock:
-            found, self._newest = self._newest, {}
-        return tuple(found.values())
+        return self._newest.take()
 
     def close(self) -> None:
         self._link.close()
@@ -134,8 +129,7 @@ class Ros2Source(Source):
             min(max(sd[0], LEAST_SD_M), FARTHEST_M),
             min(max(sd[1], LEAST_SD_RAD), math.pi),
         )
-        with self._lock:
-            self._newest[name] = seen
+        self._newest.put([seen])
 
     def _age_s(self, stamp_s: float) -> float:
         """The age of what is stamped, s; none is known where ROS has another clock."""

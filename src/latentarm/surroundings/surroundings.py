@@ -34,8 +34,8 @@ class Surroundings:
         """Take what is new, once a tick; ``tool`` is None where the joints could not be read."""
         self._tool = tool
         if self._inbox is not None:
-            for one in self._inbox.read(now_s):
-                self.tracker.saw(one.sighting, one.source, one.hold_s, now_s)
+            for sighting, source, hold_s in self._inbox.read(now_s):
+                self.tracker.saw(sighting, source, hold_s, now_s)
         self.tracker.update(tool, now_s)
         if tool is not None:
             self._grasp.update(self.tracker, tool, gripper, now_s)

@@ -30,9 +30,3 @@ class Lens:
         criteria = (cv2.TERM_CRITERIA_COUNT + cv2.TERM_CRITERIA_EPS, 40, 1e-9)
         found = cv2.undistortPointsIter(flat, self.matrix, self.distortion, np.eye(3), np.eye(3), criteria)
         return np.asarray(found, np.float64).reshape(pixels.shape)
-
-    def project(self, points: FloatArray) -> FloatArray:
-        """Pixels (..., 2) of points (..., 3) in the camera's frame (x right, y down, z ahead), m."""
-        flat = np.ascontiguousarray(points, np.float64).reshape(-1, 1, 3)
-        found, _ = cv2.projectPoints(flat, np.zeros(3), np.zeros(3), self.matrix, self.distortion)
-        return np.asarray(found, np.float64).reshape(*points.shape[:-1], 2)

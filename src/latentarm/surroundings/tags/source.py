@@ -11,7 +11,7 @@ import numpy as np
 from latentarm.cameras.newest import NewestPicture, brightness_of
 from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray, Pose
-from latentarm.surroundings.contract import LEAST_SD_M, LEAST_SD_RAD, Sighting, Source
+from latentarm.surroundings.contract import LEAST_SD_M, LEAST_SD_RAD, Newest, Sighting, Source
 from latentarm.surroundings.tags.detecting import Detector
 from latentarm.surroundings.tags.files import CameraEntry, TagEntry, read_cameras, read_tags
 from latentarm.surroundings.tags.solving import SeenTag, solve
@@ -30,7 +30,7 @@ class TagSource(Source):
 
     def __init__(self, path: Path, names: Sequence[str]) -> None:
         stated = read_tags(path)
-        self._hold_s = stated.hold_s
+        self.hold_s = stated.hold_s
         self._tags = {tag.id: tag for tag in stated.tags if tag.thing in names}
         if not self._tags:
             known = ", ".join(sorted({tag.thing for tag in stated.tags}))
@@ -46,8 +46,7 @@ class TagSource(Source):
                     f" calibrate hand-eye {name}, or leave it out."
                 )
         self._detector = Detector(stated.family)
-        self._lock = threading.Lock()
-        self._newest: dict[str, Sighting] = {}
+        self._newest = Newest()
         self._closing = threading.Event()
         self._placed = placed
         self._cameras = {
@@ -68,15 +67,8 @@ class TagSource(Source):
         cv2.setNumThreads(1)  # the other cores are the arm's
         self._thread.start()
 
-    @property
-    def hold_s(self) -> float:
-        return self._hold_s
-
     def read(self) -> Sequence[Sighting]:
-        """The newest sighting of each thing that was seen since the last call."""
-        with self._lock:
-            found, self._newest = self._newest, {}
-        return tuple(found.values())
+        return self._newest.take()
 
     def close(self) -> None:
         self._closing.set()
@@ -103,9 +95,7 @@ class TagSource(Source):
             together = {name: one for name, one in seen.items() if newest_s - one[0] <= TOGETHER_S}
             oldest_s = min(taken_s for taken_s, _ in together.values())
             tags = {name: found for name, (_, found) in together.items()}
-            found = sightings(self._placed, tags, self._tags, oldest_s)
-            with self._lock:
-                self._newest |= {one.name: one for one in found}
+            self._newest.put(sightings(self._placed, tags, self._tags, oldest_s))
 
 
 def sightings(
