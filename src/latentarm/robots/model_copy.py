@@ -31,7 +31,7 @@ def copy_model(robot: Robot, folder: Path) -> str:
     visual geometry.
     """
     source = Path(str(robot.model_path))
-    root = read_model_xml(source).root
+    root, _ = read_model_xml(source)
     if root.tag == "robot":
         prepare_urdf(source, root)
         for element in list(root):

@@ -55,14 +55,14 @@ def load_model_file(path: Path, end_effector: str | None = None) -> Robot:
     ``end_effector`` is the name of a site or body, needed where `choose_end_effector` chooses none. Joints
     that do not move it stay still, see `Robot.still_joints`.
     """
-    source = read_model_xml(path)
-    if source.root.tag not in ("robot", "mujoco"):
+    root, size = read_model_xml(path)
+    if root.tag not in ("robot", "mujoco"):
         raise UserError(
-            f"{path} is neither MJCF nor URDF: its outermost element is <{source.root.tag}>,"
+            f"{path} is neither MJCF nor URDF: its outermost element is <{root.tag}>,"
             " not <mujoco> or <robot>."
         )
-    urdf = prepare_urdf(path, source.root) if source.root.tag == "robot" else None
-    with bounded_memory(str(path), source.size + (0 if urdf is None else urdf.mesh_bytes)):
+    urdf = prepare_urdf(path, root) if root.tag == "robot" else None
+    with bounded_memory(str(path), size + (0 if urdf is None else urdf.mesh_bytes)):
         return _loaded(path, urdf, end_effector)
 
 

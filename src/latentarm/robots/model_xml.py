@@ -5,10 +5,9 @@ model that attaches itself. `latentarm.core.untrusted.memory` bounds its memory.
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from math import prod
 from pathlib import Path
-from typing import Final, final
+from typing import Final
 from xml.etree import ElementTree as Xml
 from xml.parsers import expat
 
@@ -28,24 +27,18 @@ _COUNTS: Final = frozenset({"count", "nkey", "nuserdata", "njmax", "nconmax", "n
 FOLDERS: Final = ("meshdir", "texturedir", "assetdir")
 
 
-@final
-@dataclass(frozen=True)
-class ModelXml:
-    """A model's XML, and the bytes of its file and of all files that it names."""
+def read_model_xml(path: Path) -> tuple[Xml.Element, int]:
+    """Read a URDF or MJCF file, and check every file that an MJCF names.
 
-    root: Xml.Element
-    size: int
-
-
-def read_model_xml(path: Path) -> ModelXml:
-    """Read a URDF or MJCF file, and check every file that an MJCF names."""
+    Returns the outermost element, and the bytes of all these files.
+    """
     root, size = read_xml(path)
     if root.tag == "mujoco":
         for found, file in enumerate(_named(path, root, (path.resolve(),))):
             if found >= MOST_FILES:
                 raise UserError(f"{path} names more than {MOST_FILES:,} files.")
             size += file.stat().st_size
-    return ModelXml(root, size)
+    return root, size
 
 
 def read_xml(path: Path) -> tuple[Xml.Element, int]:

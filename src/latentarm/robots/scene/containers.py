@@ -14,8 +14,6 @@ Colour = tuple[float, float, float, float]
 WALL_M: Final = 0.003  # of walls and floors: no grain passes through one within a time step
 SIDES: Final = 12  # walls of a round container; four of them stand across x and y, where a gripper takes hold
 _CHINA: Final = (0.92, 0.93, 0.95, 1.0)
-_WOOD: Final = (0.76, 0.60, 0.42, 1.0)
-_ROOM_ABOVE_PLATE_M: Final = 0.06
 _APART: Final = 1.02
 
 
@@ -42,23 +40,6 @@ def cup(
 def bowl(radius_m: float = 0.06, height_m: float = 0.05, colour: Colour = _CHINA) -> Container:
     """A bowl, wider at its rim; ``radius_m`` is the floor's."""
     return _round(radius_m, height_m, np.deg2rad(20.0), colour)
-
-
-def plate(radius_m: float = 0.1, colour: Colour = _CHINA) -> Container:
-    """A plate with a low rim; its interior is the room above it."""
-    made = _round(radius_m, 0.012, np.deg2rad(50.0), colour)
-    return Container(made.parts, Interior(radius_m, 0.0, WALL_M + _ROOM_ABOVE_PLATE_M))
-
-
-def box(half_m: tuple[float, float, float], colour: Colour = _WOOD) -> Container:
-    """A box without a lid, of half lengths outside; its interior is the widest upright cylinder in it."""
-    x, y, z = half_m
-    half = WALL_M / 2.0
-    walls = [Part("box", (x, y, half), (0.0, 0.0, half), colour=colour)]
-    for sign in (-1.0, 1.0):
-        walls.append(Part("box", (half, y, z), (sign * (x - half), 0.0, z), colour=colour))
-        walls.append(Part("box", (x, half, z), (0.0, sign * (y - half), z), colour=colour))
-    return Container(tuple(walls), Interior(min(x, y) - WALL_M, WALL_M, 2.0 * z))
 
 
 def _round(
