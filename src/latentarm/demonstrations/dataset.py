@@ -76,14 +76,9 @@ def write_dataset(demonstrations: Demonstrations, path: StrPath) -> None:
         episodes=len(samples),
         frames=frames,
         tasks=len(tasks),
-        rate_hz=demonstrations.rate_hz,
-        robot=demonstrations.robot,
         features=features,
-        goals=demonstrations.goals,
-        import_record=demonstrations.import_record,
+        about=replace(demonstrations, episodes=()),
         provenance=tuple(episode.provenance for episode in demonstrations.episodes),
-        end_effector=demonstrations.end_effector,
-        limits=demonstrations.limits,
     )
     with staged_folder(path) as staging:
         for place in sorted(set(places)):
@@ -102,7 +97,7 @@ def append_episode(path: StrPath, episode: Episode) -> None:
     path = Path(path)
     with locked(path, path / LOCK_FILE):
         info = _native_info(path)
-        validate_episode(episode, info.episodes, info.joint_names, str(path))
+        validate_episode(episode, info.episodes, info.about.joint_names, str(path))
         _check_features(path, info, episode)
         rows = committed_episodes(path, info)
         _remove_uncommitted(path, rows)
@@ -142,7 +137,7 @@ def read_dataset(path: StrPath) -> Demonstrations:
     """
     path = Path(path)
     info = _native_info(path)
-    demonstrations = info.demonstrations(read_episodes(path, info))
+    demonstrations = replace(info.about, episodes=read_episodes(path, info))
     validate(demonstrations, str(path))
     return demonstrations
 

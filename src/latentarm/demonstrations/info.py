@@ -5,14 +5,14 @@ The ``latentarm`` key holds data that the layout has no place for, such as goals
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final, TypeVar, cast, final
 
 import numpy as np
 
 from latentarm.core.errors import UserError
-from latentarm.core.types import Demonstrations, Episode, Goal, Pose, Provenance, StatedLimits
+from latentarm.core.types import Demonstrations, Goal, Pose, Provenance
 from latentarm.core.untrusted.documents import read_object
 from latentarm.core.untrusted.opening import is_missing
 from latentarm.demonstrations.bounds import check_values
@@ -55,45 +55,14 @@ class Info:
     episodes: int  # number of whole episodes
     frames: int  # samples in them
     tasks: int  # number of distinct task texts
-    rate_hz: float  # nominal
-    robot: str  # name, or ""
     features: tuple[Feature, ...]  # float vectors; pictures, text and integers of other writers are omitted
-    goals: tuple[Goal, ...] = ()
-    end_effector: str | None = None  # site, body or link of the robot's model file
-    limits: StatedLimits | None = None  # as stated
+    about: Demonstrations  # all that is the same for every episode; it has none itself
     version: str = CODEBASE_VERSION  # of the layout, such as ``v3.0``
     native: bool = True  # whether this package wrote the dataset (its actions are joint velocities then)
     chunk_files: int = CHUNK_FILES  # files in one chunk folder
     data_file_mb: int = DATA_FILE_MB  # size at which the next data file begins
-    # decisions of the import, see `Demonstrations`
-    import_record: Mapping[str, str] = field(default_factory=dict)
     # of each episode, as far as known: one entry each, or fewer
     provenance: tuple[Provenance | None, ...] = ()
-
-    @property
-    def joint_names(self) -> tuple[str, ...]:
-        """Names of the joints, generated if the writer gave none."""
-        state = next(feature for feature in self.features if feature.name == STATE)
-        return state.names or default_joint_names(state.width)
-
-    @property
-    def objects(self) -> tuple[str, ...]:
-        """Names of the things with poses in the dataset; empty if the entries' names do not tell."""
-        return next((object_names(one.names or ()) for one in self.features if one.name == ENVIRONMENT), ())
-
-    def demonstrations(self, episodes: tuple[Episode, ...]) -> Demonstrations:
-        """The dataset with these episodes."""
-        return Demonstrations(
-            episodes=episodes,
-            rate_hz=self.rate_hz,
-            joint_names=self.joint_names,
-            robot=self.robot,
-            goals=self.goals,
-            import_record=self.import_record,
-            end_effector=self.end_effector,
-            limits=self.limits,
-            objects=self.objects,
-        )
 
     def provenance_of(self, episode: int) -> Provenance | None:
         """Provenance of an episode; None where unknown, as after another program's append."""
@@ -128,17 +97,18 @@ def info_json(info: Info) -> str:
         for feature in info.features
     }
     features |= {name: {"dtype": dtype, "shape": [1], "names": None} for name, dtype in INDEX_DTYPES.items()}
-    whole = float(info.rate_hz).is_integer()
+    about = info.about
+    rate_hz = float(about.rate_hz)
     document = {
         "codebase_version": CODEBASE_VERSION,
-        "robot_type": info.robot or None,
+        "robot_type": about.robot or None,
         "total_episodes": info.episodes,
         "total_frames": info.frames,
         "total_tasks": info.tasks,
         "chunks_size": info.chunk_files,
         "data_files_size_in_mb": info.data_file_mb,
         "video_files_size_in_mb": VIDEO_FILE_MB,
-        "fps": int(info.rate_hz) if whole else float(info.rate_hz),
+        "fps": int(rate_hz) if rate_hz.is_integer() else rate_hz,
         "splits": {"train": f"0:{info.episodes}"},
         "data_path": DATA_PATTERN,
         "video_path": None,
@@ -146,10 +116,10 @@ def info_json(info: Info) -> str:
         "latentarm": {
             "format": 1,
             "action": "joint velocity, rad/s",
-            "end_effector": info.end_effector,
-            "limits": None if info.limits is None else limits_document(info.limits),
-            "goals": goals_document(info.goals),
-            "import": dict(info.import_record),
+            "end_effector": about.end_effector,
+            "limits": None if about.limits is None else limits_document(about.limits),
+            "goals": goals_document(about.goals),
+            "import": dict(about.import_record),
             "provenance": [None if one is None else provenance_json(one) for one in info.provenance],
         },
     }
@@ -186,17 +156,22 @@ def read_info(root: Path) -> Info:
         episodes=episodes,
         frames=frames,
         tasks=_count(mapping, "total_tasks", path),
-        rate_hz=float(rate),
-        robot=robot if isinstance(robot, str) else "",
         features=features,
-        goals=parse_goals(ours.get("goals", []), str(path)),
-        end_effector=_read_end_effector(ours, path),
-        limits=None if stated is None else parse_limits(stated, f"{path}, limits"),
+        about=Demonstrations(
+            episodes=(),
+            rate_hz=float(rate),
+            joint_names=state.names or default_joint_names(state.width),
+            robot=robot if isinstance(robot, str) else "",
+            goals=parse_goals(ours.get("goals", []), str(path)),
+            import_record=_read_import_record(ours, path),
+            end_effector=_read_end_effector(ours, path),
+            limits=None if stated is None else parse_limits(stated, f"{path}, limits"),
+            objects=next((object_names(one.names or ()) for one in features if one.name == ENVIRONMENT), ()),
+        ),
         version=version,
         native=isinstance(entry, dict) and version not in OLDER_VERSIONS,
         chunk_files=max(_count(mapping, "chunks_size", path), 1),
         data_file_mb=0 if version in OLDER_VERSIONS else _count(mapping, "data_files_size_in_mb", path),
-        import_record=_read_import_record(ours, path),
         provenance=_read_provenance(ours, path),
     )
 

@@ -22,13 +22,12 @@ def read_lerobot(source: Path) -> SourceData:
     """
     info = read_info(source)
     episodes = (read_episodes_v2 if info.version in OLDER_VERSIONS else read_episodes)(source, info)
-    by_plugin = info.robot == PLUGIN
+    by_plugin = info.about.robot == PLUGIN
     kind = None if by_plugin else _actions(info)
     if kind is None:
         episodes = tuple(replace(episode, action=None) for episode in episodes)
-    read = info.demonstrations(episodes)
     return SourceData(
-        replace(read, robot="") if by_plugin else read,
+        replace(info.about, episodes=episodes, robot="" if by_plugin else info.about.robot),
         layout=_layout(info),
         in_rad=info.native or by_plugin,
         actions=kind or "unknown",
@@ -38,7 +37,7 @@ def read_lerobot(source: Path) -> SourceData:
 def _layout(info: Info) -> str:
     if info.native:
         return "dataset of this package"
-    return f"LeRobot {info.version}{', recorded through latentarm' if info.robot == PLUGIN else ''}"
+    return f"LeRobot {info.version}{', recorded through latentarm' if info.about.robot == PLUGIN else ''}"
 
 
 def _actions(info: Info) -> ActionKind | None:
