@@ -171,7 +171,7 @@ class TestMalformed:
     def test_no_run_with_all_morsels(self, tmp_path):
         run = make_run(tmp_path / "001", morsels={"morsel0": None})
         with pytest.raises(UserError, match="no run has the poses"):
-            read_harmonic([run])
+            read_harmonic([run], ImportOptions())
 
     def test_any_other_folder_is_still_taken_for_a_lerobot_dataset(self, run, tmp_path):
         shutil.rmtree(run / "text_data")

@@ -86,7 +86,7 @@ def test_a_state_may_pass_a_limit_by_no_more_than_the_tolerance(panda_limits: Jo
 def test_toggles_of_a_gripper_become_its_state(tmp_path: Path, toggles: list[int], state: list[int]) -> None:
     q = np.linspace(0.0, 0.1, 70).reshape(10, 7) + panda().home
     np.savez(tmp_path / "a.npz", q=q, episode_ends=[6, 10], rate_hz=10.0, gripper_toggles=toggles)
-    episodes = read_npz(tmp_path / "a.npz").episodes
+    episodes = read_npz(tmp_path / "a.npz", ImportOptions()).episodes
     found = np.concatenate([episode.extras["observation.gripper_toggled"] for episode in episodes])
     assert found.ravel().tolist() == state
 

@@ -15,6 +15,7 @@ from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations, Episode
 from latentarm.demonstrations.bounds import check_values
 from latentarm.demonstrations.importers.hdf5_tables import group, member, opened_hdf5, table
+from latentarm.demonstrations.importers.options import ImportOptions
 from latentarm.demonstrations.importers.source import SourceData
 from latentarm.demonstrations.info import default_joint_names
 
@@ -30,8 +31,9 @@ def is_aloha(source: Path) -> bool:
         return isinstance(observations, h5py.Group) and "qpos" in observations
 
 
-def read_aloha(source: Path, rate_hz: float | None = None, task: str | None = None) -> SourceData:
-    """Read one episode; ``task`` is the folder's name by default."""
+def read_aloha(source: Path, options: ImportOptions) -> SourceData:
+    """Read one episode; the task is the folder's name by default."""
+    rate_hz, task = options.rate_hz, options.instruction or source.parent.name
     if rate_hz is None:
         raise UserError(f"{source} is of ALOHA and does not say its rate: pass --rate-hz 50, ALOHA's own.")
     with opened_hdf5(source) as file:
@@ -41,9 +43,7 @@ def read_aloha(source: Path, rate_hz: float | None = None, task: str | None = No
         state, action = table(observations, "qpos", source), table(file, "action", source)
     if state is None:
         raise UserError(f"{source}: observations/qpos is no table of joint positions.")
-    episode = Episode(
-        state, np.arange(len(state)) / rate_hz, action, source.parent.name if task is None else task
-    )
+    episode = Episode(state, np.arange(len(state)) / rate_hz, action, task)
     width = state.shape[1]
     names = COLUMNS if width == len(COLUMNS) else default_joint_names(width)
     return SourceData(Demonstrations((episode,), rate_hz, names), "ALOHA HDF5", True, "position")

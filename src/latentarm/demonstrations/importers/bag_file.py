@@ -16,6 +16,7 @@ from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations, Episode, FloatArray
 from latentarm.core.untrusted.opening import check_file
 from latentarm.demonstrations.bounds import MAX_COLUMNS, MAX_FILE_BYTES, check_values
+from latentarm.demonstrations.importers.options import ImportOptions
 from latentarm.demonstrations.importers.source import SourceData
 from latentarm.demonstrations.timing import typical_rate_hz
 
@@ -26,18 +27,15 @@ _DAMAGE: Final = (ArithmeticError, AssertionError, EOFError, LookupError, OSErro
 """Raised by damaged files, besides `TypeError`, `ValueError` and the errors of the libraries."""
 
 
-def read_bag(
-    files: Sequence[Path], topic: str | None = None, rate_hz: float | None = None, task: str | None = None
-) -> SourceData:
+def read_bag(files: Sequence[Path], options: ImportOptions) -> SourceData:
     """Read the joints' positions from the files of one recording, in order.
 
     A topic may report some joints in some messages and others in others, as where arm and gripper have their
     own drivers. Every message of the largest kind is a sample, completed with the latest values of the other
-    joints. ``topic`` is needed if several report joints; ``rate_hz`` is the timestamps' and ``task`` the
-    file's name by default.
+    joints. By default the rate is the timestamps' and the task the file's name.
     """
     source = files[0]
-    messages = [message for file in files for message in _messages(file, topic)]
+    messages = [message for file in files for message in _messages(file, options.topic)]
     names = list(dict.fromkeys(name for _, positions in messages for name in positions))
     if not names or len(names) > MAX_COLUMNS:
         raise UserError(f"{source} tells of {len(names)} joints; there must be 1 to {MAX_COLUMNS:,}.")
@@ -54,8 +52,8 @@ def read_bag(
     if not rows:
         raise UserError(f"{source} never tells of all of {', '.join(names[:20])}.")
     stamps: FloatArray = np.array(times)
-    episode = Episode(np.array(rows), stamps - stamps[0], task=source.stem if task is None else task)
-    rate = typical_rate_hz([episode]) if rate_hz is None else rate_hz
+    episode = Episode(np.array(rows), stamps - stamps[0], task=options.instruction or source.stem)
+    rate = options.rate_hz or typical_rate_hz([episode])
     return SourceData(Demonstrations((episode,), rate, tuple(names)), "bag of ROS", in_rad=True)
 
 

@@ -14,7 +14,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import chain
 from pathlib import Path
-from typing import Final, Literal, final
+from typing import Final, final
 
 import numpy as np
 
@@ -23,12 +23,12 @@ from latentarm.core.types import Demonstrations, Episode, FloatArray
 from latentarm.demonstrations.bounds import MAX_COLUMNS, MAX_EPISODES
 from latentarm.demonstrations.importers.columns import is_gripper
 from latentarm.demonstrations.importers.csv_lines import CsvTable
+from latentarm.demonstrations.importers.options import ImportOptions
 from latentarm.demonstrations.importers.source import SourceData
 from latentarm.demonstrations.timing import typical_rate_hz
 
 ACTION_PREFIX: Final = "action."
 RESERVED_COLUMNS: Final = frozenset({"episode", "timestamp", "task", "robot"})
-TimeUnit = Literal["s", "ms", "us", "ns"]
 SECONDS: Final[dict[str, float]] = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
 _LEAST_STEP: Final[dict[str, float]] = {"ns": 1e6, "us": 1e3, "ms": 5.0}
 """No recording has so few samples a second that its timestamps would advance by this in any longer unit."""
@@ -49,13 +49,7 @@ class _Run:
     numbers: "array[float]" = field(default_factory=lambda: array("d"))
 
 
-def read_csv(
-    source: Path,
-    joint_names: Sequence[str] = (),
-    rate_hz: float | None = None,
-    task: str | None = None,
-    time_unit: TimeUnit | None = None,
-) -> SourceData:
+def read_csv(source: Path, joint_names: Sequence[str], options: ImportOptions) -> SourceData:
     """Read demonstrations from a CSV file.
 
     ``joint_names`` are the robot's, where it is known. By default the rate is the timestamps', the task of a
@@ -69,14 +63,14 @@ def read_csv(
     actions = [f"{ACTION_PREFIX}{joint}" for joint in joints]
     recorded = all(action in header for action in actions)
     columns = ["timestamp", *joints, *(actions if recorded else [])]
-    runs = _runs(table, header, rows, columns, source.name.split(".")[0] if task is None else task)
+    runs = _runs(table, header, rows, columns, options.instruction or source.name.split(".")[0])
     robots = sorted({run.robot for run in runs})
     if len(robots) > 1:
         raise UserError(f"{source} holds episodes of different robots ({', '.join(robots)}): split the file.")
     tables: list[FloatArray] = [np.frombuffer(run.numbers).reshape(-1, len(columns)) for run in runs]
     steps = np.concatenate([np.diff(one[:, 0]) for one in tables])
     step = float(np.median(steps)) if len(steps) else 0.0
-    unit = time_unit or next((unit for unit, least in _LEAST_STEP.items() if step >= least), "s")
+    unit = options.time_unit or next((unit for unit, least in _LEAST_STEP.items() if step >= least), "s")
     record = {"timestamps": f"taken for {unit}, as they advance by {step:.6g}"}
     width = 1 + len(joints)
     episodes = tuple(
@@ -91,14 +85,14 @@ def read_csv(
     return SourceData(
         Demonstrations(
             episodes=episodes,
-            rate_hz=typical_rate_hz(episodes) if rate_hz is None else rate_hz,
+            rate_hz=options.rate_hz or typical_rate_hz(episodes),
             joint_names=joints,
             robot=robots[0],
         ),
         layout="CSV",
         in_rad=True,
         names=tuple(run.label for run in runs),
-        record=record if unit != "s" and time_unit is None else {},
+        record=record if unit != "s" and options.time_unit is None else {},
     )
 
 

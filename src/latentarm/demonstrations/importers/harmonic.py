@@ -25,6 +25,7 @@ from latentarm.core.untrusted.opening import is_missing, read_bytes
 from latentarm.core.untrusted.yaml_file import parse_yaml
 from latentarm.demonstrations.bounds import MAX_EPISODES, check_values
 from latentarm.demonstrations.importers.csv_lines import CsvTable
+from latentarm.demonstrations.importers.options import ImportOptions
 from latentarm.demonstrations.importers.source import SourceData
 from latentarm.demonstrations.things import ENVIRONMENT
 from latentarm.demonstrations.timing import typical_rate_hz
@@ -58,8 +59,8 @@ def harmonic_runs(source: Path) -> tuple[Path, ...]:
     return tuple(runs)
 
 
-def read_harmonic(runs: Sequence[Path], rate_hz: float | None = None, task: str | None = None) -> SourceData:
-    """Read runs of HARMONIC, each as an episode of six joints; ``task`` is the stated goal by default.
+def read_harmonic(runs: Sequence[Path], options: ImportOptions) -> SourceData:
+    """Read runs of HARMONIC, each as an episode of six joints; the task is the stated goal by default.
 
     Further features are the belief, the stick as ``input.u``, the poses of the morsels, which are the goals,
     and success at an episode's last sample: ``next.success`` at the stated goal, ``next.any_success`` at any.
@@ -73,18 +74,18 @@ def read_harmonic(runs: Sequence[Path], rate_hz: float | None = None, task: str 
         if any(morsels.get(name) is None for name in MORSELS):
             unseen += 1
             continue
-        episodes.append(_episode(run, morsels, task))
+        episodes.append(_episode(run, morsels, options.instruction))
         count += sum(values.size for values in (episodes[-1].state, *episodes[-1].extras.values()))
         check_values(run, "with the runs before it", count)
     if not episodes:
         raise UserError(f"{runs[0]}: no run has the poses of all three morsels.")
-    typical_hz = typical_rate_hz(episodes)
-    if rate_hz is None and not typical_hz:
+    rate_hz = options.rate_hz or typical_rate_hz(episodes)
+    if not rate_hz:
         raise UserError(f"{runs[0]}: its timestamps do not grow; say the sampling rate.")
     return SourceData(
         Demonstrations(
             episodes=tuple(episodes),
-            rate_hz=typical_hz if rate_hz is None else rate_hz,
+            rate_hz=rate_hz,
             joint_names=JOINTS,
             robot="mico",
             objects=MORSELS,
@@ -120,7 +121,7 @@ def _episode(run: Path, morsels: Mapping[str, object], task: str | None) -> Epis
     return Episode(
         state=state,
         timestamp=time_s - time_s[0],
-        task=f"the fork over morsel {_goal(morsels, path)}" if task is None else task,
+        task=task or f"the fork over morsel {_goal(morsels, path)}",
         extras=extras,
     )
 

@@ -122,20 +122,19 @@ def _read(source: Path, robot: Robot | None, options: ImportOptions) -> SourceDa
 
 
 def _read_file(source: Path, start: bytes, robot: Robot | None, options: ImportOptions) -> SourceData:
-    rate_hz, task = options.rate_hz, options.instruction
     if start.startswith((ROS1, MCAP)) or source.suffix == ".db3":
-        return read_bag([source], options.topic, rate_hz, task)
+        return read_bag([source], options)
     for magic, what in FOREIGN.items():
         if start.startswith(magic):
             raise UserError(f"{source} is {what}.")
     if start.startswith(b"PK"):
-        return SourceData(read_npz(source, rate_hz, task), "NumPy archive", in_rad=True)
+        return SourceData(read_npz(source, options), "NumPy archive", in_rad=True)
     if start.startswith(b"\x89HDF\r\n\x1a\n"):
         return _read_hdf5(source, options)
     if source.suffix.lower() in {".npz", ".hdf5", ".h5"}:
         raise UserError(f"{source} does not hold what its name says; it is truncated or damaged.")
     names = () if robot is None or options.joints else robot.joint_names
-    return read_csv(source, names, rate_hz, task, options.time_unit)
+    return read_csv(source, names, options)
 
 
 def _read_hdf5(source: Path, options: ImportOptions) -> SourceData:
@@ -144,25 +143,21 @@ def _read_hdf5(source: Path, options: ImportOptions) -> SourceData:
         from latentarm.demonstrations.importers.robomimic import read_robomimic
     except ModuleNotFoundError as error:
         raise UserError(f"{source} is an HDF5 file: pip install 'latentarm[hdf5]' to read it.") from error
-    if is_aloha(source):
-        return read_aloha(source, options.rate_hz, options.instruction)
-    known = "joint_velocity" if options.actions == "joint_velocity" else "known"
-    return read_robomimic(source, options.rate_hz, options.instruction, known)
+    return (read_aloha if is_aloha(source) else read_robomimic)(source, options)
 
 
 def _read_folder(source: Path, robot: Robot | None, options: ImportOptions) -> SourceData:
-    rate_hz, task = options.rate_hz, options.instruction
     if not is_missing(source / INFO_PATH):
         data = read_lerobot(source)
-        given = data.demonstrations
-        return data if rate_hz is None else replace(data, demonstrations=replace(given, rate_hz=rate_hz))
+        rate_hz = options.rate_hz or data.demonstrations.rate_hz
+        return replace(data, demonstrations=replace(data.demonstrations, rate_hz=rate_hz))
     if runs := harmonic_runs(source):
-        return read_harmonic(runs, rate_hz, task)
+        return read_harmonic(runs, options)
     entries = sorted(source.iterdir(), key=lambda entry: (len(entry.name), entry.name))  # 2 before 10
     files = [entry for entry in entries if entry.name.lower().endswith(FILES)]
     if files and not is_missing(source / BAG_INFO):
         with bounded_memory(str(source), sum(file.stat().st_size for file in files)):
-            return read_bag(files, options.topic, rate_hz, task)
+            return read_bag(files, options)
     files += [entry for entry in entries if not is_missing(entry / BAG_INFO)]
     if not files:
         return read_lerobot(source)  # which says what is missing

@@ -25,6 +25,7 @@ from latentarm.core.types import Demonstrations, Episode, FloatArray, IntArray
 from latentarm.core.untrusted.opening import opened
 from latentarm.demonstrations.bounds import MAX_FILE_BYTES, check_values
 from latentarm.demonstrations.gripper import GRIPPER_TOGGLED
+from latentarm.demonstrations.importers.options import ImportOptions
 from latentarm.demonstrations.info import default_joint_names
 
 FEATURES: Final = {"dq": "observation.velocity", "tau": "observation.effort"}
@@ -33,8 +34,8 @@ _DAMAGED: Final = (zipfile.BadZipFile, zlib.error, lzma.LZMAError, struct.error)
 TEXTS: Final = ("joint_names", "robot")
 
 
-def read_npz(source: Path, rate_hz: float | None = None, task: str | None = None) -> Demonstrations:
-    """Read demonstrations from a NumPy archive; ``task`` is the file's name by default."""
+def read_npz(source: Path, options: ImportOptions) -> Demonstrations:
+    """Read demonstrations from a NumPy archive; the task is the file's name by default."""
     arrays = _read_arrays(source)
     for key in ("q", "episode_ends"):
         if key not in arrays:
@@ -45,7 +46,7 @@ def read_npz(source: Path, rate_hz: float | None = None, task: str | None = None
     if q.ndim != 2:
         raise UserError(f"{source}: the array 'q' has the shape {q.shape}, not (samples, joints).")
     ends = _episode_ends(arrays["episode_ends"], len(q), source)
-    rate = _rate(arrays, source) if rate_hz is None else rate_hz
+    rate = options.rate_hz or _rate(arrays, source)
     by_sample = {key: arrays[key].astype(np.float64) for key in ("action", *FEATURES) if key in arrays}
     timestamp = arrays["timestamp"].astype(np.float64) if "timestamp" in arrays else None
     for key, values in (by_sample if timestamp is None else by_sample | {"timestamp": timestamp}).items():
@@ -63,7 +64,7 @@ def read_npz(source: Path, rate_hz: float | None = None, task: str | None = None
             if timestamp is None
             else timestamp[start:end] - timestamp[start],
             action=by_sample["action"][start:end] if "action" in by_sample else None,
-            task=source.stem if task is None else task,
+            task=options.instruction or source.stem,
             extras={name: values[start:end] for name, values in extras.items()},
         )
         for start, end in zip([0, *ends[:-1]], ends, strict=True)

@@ -6,9 +6,9 @@ from typing import Annotated, Literal, final
 from tyro.conf import arg
 
 from latentarm.demonstrations.gripper import GripperStart
-from latentarm.demonstrations.importers.csv_file import TimeUnit
 from latentarm.demonstrations.timing import Gaps
 
+TimeUnit = Literal["s", "ms", "us", "ns"]
 ActionChoice = Literal["known", "joint_velocity", "joint_position"]
 
 

@@ -15,7 +15,7 @@ import math
 import re
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, Final, Literal, cast
+from typing import Any, Final, cast
 
 import h5py
 import numpy as np
@@ -26,6 +26,7 @@ from latentarm.core.untrusted.documents import parse_object
 from latentarm.demonstrations.bounds import check_values
 from latentarm.demonstrations.gripper import ACTION_GRIPPER, GRIPPER, GRIPPER_WIDTH, going_to
 from latentarm.demonstrations.importers.hdf5_tables import group, member, opened_hdf5, path_in, table
+from latentarm.demonstrations.importers.options import ImportOptions
 from latentarm.demonstrations.importers.source import SourceData
 from latentarm.demonstrations.info import MAX_RATE_HZ, default_joint_names
 
@@ -37,17 +38,11 @@ _PANDA_GRIPPERS: Final = (None, "default", "PandaGripper")
 _PANDA_OPEN_M: Final = 0.08
 
 
-def read_robomimic(
-    source: Path,
-    rate_hz: float | None = None,
-    task: str | None = None,
-    actions: Literal["known", "joint_velocity"] = "known",
-) -> SourceData:
+def read_robomimic(source: Path, options: ImportOptions) -> SourceData:
     """Read demonstrations from a robomimic HDF5 file.
 
-    ``rate_hz`` is for environments whose arguments lack it or are wrong; the task is the environment's name
-    by default, else the file's. ``"known"`` actions are kept as described above; ``"joint_velocity"`` states
-    that the first n entries are joint velocities in rad/s.
+    The task is the environment's name by default, else the file's. Actions are kept as described above, or
+    their first n entries where these are stated to be joint velocities in rad/s.
     """
     with opened_hdf5(source) as file:
         data = group(file, "data", source)
@@ -63,9 +58,9 @@ def read_robomimic(
                 f"{source} was recorded by robosuite and holds the simulator's states, not the robot's: add"
                 " observations with robomimic's script dataset_states_to_obs.py, then import its file."
             )
-        rate = _rate(arguments, source) if rate_hz is None else rate_hz
-        scale = 1.0 if actions == "joint_velocity" else _velocity_scale(arguments)
-        what = task or str(arguments.get("env_name", source.stem))
+        rate = options.rate_hz or _rate(arguments, source)
+        scale = 1.0 if options.actions == "joint_velocity" else _velocity_scale(arguments)
+        what = options.instruction or str(arguments.get("env_name", source.stem))
         panda = _has_panda_gripper(arguments)
         episodes = tuple(
             _episode(demo, index, rate, what, scale, panda, source) for index, demo in enumerate(demonstrated)

@@ -22,7 +22,6 @@ FULL_TURN: Final = "wrist_roll"
 class Conversion:
     """Converts recorded positions v to ``scale * v + offset``, each (n,), in rad (m where prismatic)."""
 
-    units: tuple[Unit, ...]
     scale: FloatArray
     offset: FloatArray
 
@@ -71,4 +70,4 @@ def conversion(
         elif unit == "normalized":
             scale[index] = (limits.upper[index] - limits.lower[index]) / 200.0
             offset[index] = 0.5 * (limits.upper[index] + limits.lower[index])
-    return Conversion(tuple(units), scale, offset)
+    return Conversion(scale, offset)
