@@ -9,9 +9,10 @@ import numpy as np
 from latentarm.core.types import Pose
 from latentarm.robots.robot import Robot
 from latentarm.robots.scene.scene import Scene, SceneState
+from latentarm.tasks.replay import Replay
 from latentarm.tasks.scene_task import Beginning, SceneTask
 from latentarm.tasks.steps import StepKind, TaskStep, Waypoint
-from latentarm.tasks.task import GripperTask, Task, check_not_done
+from latentarm.tasks.task import Task, check_not_done
 
 
 @final
@@ -41,7 +42,7 @@ class GoalTask(SceneTask):
             goals=task.goals,
             objects=(),
             text=f"{manner} {goal}",
-            asks=task.asks(choice, manner) if isinstance(task, GripperTask) else (),
+            asks=task.asks(choice, manner) if isinstance(task, Replay) else (),
             patient=True,
         )
 

@@ -21,7 +21,7 @@ from latentarm.robots.kinematics.rotations import angle_between
 from latentarm.robots.kinematics.stillness import moving_range
 from latentarm.robots.robot import Robot
 from latentarm.tasks.demonstrator import demonstrate_goals
-from latentarm.tasks.task import REACHED_ANGLE, REACHED_DISTANCE, GripperTask, within
+from latentarm.tasks.task import REACHED_ANGLE, REACHED_DISTANCE, Task, within
 
 WAYPOINT_SPACING = 0.25  # way of the tool between two waypoints, m
 RADIAN = 0.2  # equivalent way of a radian of turning, m
@@ -58,7 +58,7 @@ def routes_of(robot: Robot, demonstrations: Demonstrations) -> tuple[FloatArray,
 
 
 @final
-class Replay(GripperTask):
+class Replay(Task):
     """Drive the ways of demonstrations (see `routes_of`), from their starts through poses along them.
 
     A goal is the end of an episode. Episodes that training never saw make this the honest test of a model on
@@ -100,7 +100,7 @@ class Replay(GripperTask):
         return tuple(Pose(*pose) for pose in zip(poses.position, poses.rotation, strict=True))
 
     def asks(self, goal: int, manner: str) -> tuple[GripperAsk, ...]:
-        """The person's requests to the gripper on the goal's way."""
+        """The person's requests to the gripper: at the start, and from each waypoint on; () for none."""
         self._check(manner)
         self._route(goal)
         if not self._open_at:

@@ -7,7 +7,7 @@ from typing import ClassVar
 import numpy as np
 
 from latentarm.core.errors import UserError
-from latentarm.core.types import Demonstrations, FloatArray, Goal, GripperAsk, Pose
+from latentarm.core.types import Demonstrations, FloatArray, Goal, Pose
 from latentarm.robots.kinematics.obstacles import Obstacle
 from latentarm.robots.kinematics.rotations import angle_between
 from latentarm.robots.robot import Robot
@@ -62,17 +62,6 @@ class Task(ABC):
     @abstractmethod
     def demonstrate(self, episodes: int, rng: np.random.Generator) -> Demonstrations:
         """Episodes by a simulated person, spread over goals and manners; UserError for fewer than one."""
-
-
-class GripperTask(Task, ABC):
-    """A task in which a gripper may open and close on the way."""
-
-    @abstractmethod
-    def asks(self, goal: int, manner: str) -> tuple[GripperAsk, ...]:
-        """Requests to the gripper at the start, and from each of the `waypoints` on; () for none.
-
-        Raises UserError where there is no such goal or manner.
-        """
 
 
 def check_not_done(task: Task, start: FloatArray, waypoints: Sequence[Pose]) -> None:
