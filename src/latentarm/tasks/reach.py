@@ -10,6 +10,7 @@ from latentarm.robots.robot import Robot
 from latentarm.tasks.demonstrator import demonstrate_goals
 from latentarm.tasks.task import Task, within
 
+GOALS = 3
 SPREAD = 0.5  # of a goal's joints about home, rad
 START_SPREAD = 0.1  # of a start's joints about home, rad
 TRIES = 100  # draws of a start or goal before giving up
@@ -18,19 +19,17 @@ MARGIN = 0.15  # of starts and goals to joint limits, rad
 
 @final
 class Reach(Task):
-    """Bring the tool of any arm to poses about its home configuration, drawn by ``seed``, in free space."""
+    """Bring the tool of any arm to poses about its home configuration, always the same, in free space."""
 
     any_robot = True
     name = "reach"
     manners = ("reach",)
     obstacles = ()  # the place is unknown
 
-    def __init__(self, robot: Robot, goals: int = 3, seed: int = 0) -> None:
-        if goals < 1:
-            raise UserError(f"Reaching needs at least one goal, not {goals}.")
+    def __init__(self, robot: Robot) -> None:
         self._robot = robot
-        rng = np.random.default_rng(seed)
-        self._goals = tuple(self._goal(f"goal {index + 1}", rng) for index in range(goals))
+        rng = np.random.default_rng(0)
+        self._goals = tuple(self._goal(f"goal {index + 1}", rng) for index in range(GOALS))
 
     @property
     def robot(self) -> Robot:
