@@ -7,7 +7,7 @@ import pytest
 
 from latentarm.recordings.journal_reader import read_journal
 from latentarm.robots.kinematics.obstacles import HalfSpace, Sphere
-from latentarm.tasks.place import ScenePlace
+from latentarm.tasks.place import Place
 from latentarm.web.arm_process.pose_motion import ARRIVED_RAD
 from latentarm.web.protocol.orders import ChooseMode, Enable, Paced, Record, Return
 
@@ -170,7 +170,7 @@ def test_a_way_back_with_something_in_it_is_not_begun(setup, desk_of):
     velocity = setup.controller.action(setup.controller.latent(u, context, 0), context, 0)
     leaves = (chain.jacobian_at(chain.link_transforms(setup.start), pose) @ velocity)[:3]
     ball = Sphere("ball", pose.position - 0.02 * leaves / np.linalg.norm(leaves), 0.015)
-    place = ScenePlace(setup.task.robot, setup.task.goals, (*setup.task.obstacles, ball))
+    place = Place(setup.task.robot, setup.task.goals, (*setup.task.obstacles, ball))
     with desk_of(replace(setup, task=place)) as desk:
         Away(desk)
         desk.run(AWAY_S + 1.5)

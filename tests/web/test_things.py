@@ -24,7 +24,7 @@ from latentarm.robots.scene.scene import Scene, SceneState
 from latentarm.robots.scene.thing import Grains, Part, Thing
 from latentarm.tasks.eating import dessert
 from latentarm.tasks.inverse_kinematics import solve
-from latentarm.tasks.place import ScenePlace
+from latentarm.tasks.place import Place
 from latentarm.web.arm_process.drive import Drive
 from latentarm.web.arm_process.drive_setup import Spec, load_setup
 from latentarm.web.arm_process.episode_writer import EpisodeWriter
@@ -114,7 +114,7 @@ def test_a_page_is_sent_what_has_moved_since_it_was_last_sent_something():
 
 def test_the_fingers_of_a_gripper_open_away_from_each_other():
     robot = load_robot("panda")
-    scene = drawable(ScenePlace(robot, (), ()), (), None).description
+    scene = drawable(Place(robot, (), ()), (), None).description
     first, second = scene["fingers"]
     np.testing.assert_allclose(np.add(first["opens"], second["opens"]), 0.0, atol=1e-5)
     assert first["body"] == second["body"] == robot.dof
@@ -143,7 +143,7 @@ def test_a_recording_says_where_things_went_and_a_model_can_see_them(tmp_path):
     assert begun.objects == ("left marshmallow", "middle marshmallow", "right marshmallow")
     setup = replace(
         begun,
-        task=ScenePlace(begun.task.robot, (), (), objects=("ball",)),
+        task=Place(begun.task.robot, (), (), objects=("ball",)),
         todo=replace(begun.todo, steps=(), failures=()),
         scene=Scene((cup, ball)),
     )
@@ -196,7 +196,7 @@ def test_a_cup_is_picked_up_as_part_of_the_arm_and_put_down_upright_where_it_sto
     scene = Scene((Thing("cup", cup().parts, 0.2, Pose(np.array([0.5, 0.0, 0.0]), UPRIGHT)),))
     setup = replace(
         begun,
-        task=ScenePlace(robot, (), (scene.table,)),
+        task=Place(robot, (), (scene.table,)),
         todo=replace(begun.todo, steps=(), failures=()),
         scene=scene,
         start=solve(robot, above, robot.home),

@@ -90,7 +90,7 @@ class Driven:
             ),
             goals=self.task.goals,
             dt_s=PERIOD_S,
-            surroundings=surroundings_of(self.task, self.controller.objects),
+            surroundings=surroundings_of(self.task.goals, self.controller.objects),
         )
 
 

@@ -33,7 +33,7 @@ from latentarm.runs.options import EvaluateOptions, TrainOptions
 from latentarm.runs.results_folder import vacant_name
 from latentarm.runs.training import train_run
 from latentarm.tasks.eating.marshmallows import Marshmallows
-from latentarm.tasks.place import ScenePlace
+from latentarm.tasks.place import Place
 from latentarm_research.commands.demo_page import FILM, film, held_in_words, page
 from latentarm_research.drives.arm_figure import draw_task
 from latentarm_research.drives.demonstrate import demonstrate
@@ -137,10 +137,10 @@ def run_demo(config: "DemoOptions", sizes: Sizes = USUAL) -> Shown:
     return Shown(rows, (held, filmed.said))
 
 
-def _place(task: Marshmallows, seed: int) -> ScenePlace:
+def _place(task: Marshmallows, seed: int) -> Place:
     """The task with the marshmallows where they lie in one run."""
     begun = task.begin(0, np.random.default_rng(seed))
-    return ScenePlace(task.robot, begun.goals, task.obstacles)
+    return Place(task.robot, begun.goals, task.obstacles)
 
 
 def _draw(shown: Mapping[str, Sequence[Trace]], out: Path) -> None:

@@ -17,7 +17,7 @@ from latentarm.core.untrusted.documents import read_object
 from latentarm.models.decoder import Decoder
 from latentarm.runs.results_folder import write_json
 from latentarm.surroundings.catalogue import TOUCH as BY_TOUCH
-from latentarm.tasks.place import ScenePlace
+from latentarm.tasks.place import Place
 from latentarm.web.arm_process.drive_setup import DriveSetup, Spec
 from latentarm.web.arm_process.help import Help
 from latentarm.web.arm_process.task_run import things_to_do
@@ -112,7 +112,7 @@ def drive(cell: DriveCell) -> dict[str, float]:
     setup = DriveSetup(
         spec=Spec(objects=() if cell.source == TRUE else (BY_TOUCH,), incidents=False),
         arm="mujoco",
-        task=ScenePlace(task.robot, begun.goals, task.obstacles, begun.objects),
+        task=Place(task.robot, begun.goals, task.obstacles, begun.objects),
         controller=JoinedController([latent, straight]),
         latent_dim=latent.input_dim,
         axes=straight.modes,

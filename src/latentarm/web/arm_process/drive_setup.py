@@ -37,8 +37,7 @@ from latentarm.safety.config import SafetyConfig
 from latentarm.safety.zones import Zone
 from latentarm.surroundings.catalogue import SCENE, TOUCH, check_source
 from latentarm.tasks.catalogue import HELD_OUT
-from latentarm.tasks.place import Place, ScenePlace, surroundings_of, watched
-from latentarm.tasks.task import Task
+from latentarm.tasks.place import Place, surroundings_of, watched
 from latentarm.web.arm_process.fixed_drive import FixedDrive
 from latentarm.web.arm_process.help import Help
 from latentarm.web.arm_process.idle_limit import USUAL_MINUTES, idle_s_of
@@ -169,7 +168,7 @@ class DriveSetup:
     @property
     def objects(self) -> tuple[str, ...]:
         """Names of the things that matter for the task; empty if it does not say."""
-        return self.task.objects if isinstance(self.task, ScenePlace) else ()
+        return self.task.objects
 
     @property
     def tracked(self) -> tuple[Thing, ...]:
@@ -187,7 +186,7 @@ class DriveSetup:
     def shown(self) -> Scene | None:
         """The scene that pages draw: the one about the arm, else the task's."""
         if self.scene is None:
-            return self.task.shown if isinstance(self.task, Task) else None
+            return self.task.shown
         # What is followed may be anywhere, whatever a task fixes.
         followed = {thing.name for thing in self.tracked}
         things = (replace(one, fixed=one.fixed and one.name not in followed) for one in self.scene.things)
@@ -261,7 +260,7 @@ class DriveSetup:
         """Where the things are that the controller uses; None for ``arm`` takes their initial poses."""
         objects = self.controller.objects
         if self.scene is None:
-            return surroundings_of(self.task, objects)
+            return surroundings_of(self.task.goals, objects)
         if (seen := self.with_things(arm)) is not None:
             return watched(lambda: seen.scene_state().poses, objects)
         begun = {thing.name: thing.pose for thing in self.scene.things}

@@ -18,7 +18,7 @@ from latentarm.robots.scene.scene import Scene
 from latentarm.runs.folder import Run
 from latentarm.runs.tasks import task_of_run, task_without_run
 from latentarm.tasks.catalogue import SCENE_TASKS, make_scene_task
-from latentarm.tasks.place import Place, ScenePlace
+from latentarm.tasks.place import Place
 from latentarm.tasks.scene_task import Beginning, SceneTask
 from latentarm.web.arm_process.task_run import Todo, goal_to_reach, things_to_do
 
@@ -69,7 +69,8 @@ def begin(
     named = (robot.robot, robot.end_effector, robot.stated)
     made = task_without_run(task, *named) if run is None else task_of_run(run, task, *named, option=False)
     _check_choice(choice, made.goals)
-    return InitialState(made, made.sample_start(choice, rng), goal_to_reach(made, choice))
+    place = Place(made.robot, made.goals, tuple(made.obstacles), shown=made.shown)
+    return InitialState(place, made.sample_start(choice, rng), goal_to_reach(made, choice))
 
 
 def with_scene(task: SceneTask, choice: int, begun: Beginning, arm: str) -> InitialState:
@@ -77,7 +78,7 @@ def with_scene(task: SceneTask, choice: int, begun: Beginning, arm: str) -> Init
     _check_things(task.name, begun.scene)
     # Made here too, so that an arm that can touch nothing is refused where the command was typed.
     make_scene_arm(arm, task.robot, begun.state, lambda: 0.0, begun.scene)
-    place = ScenePlace(task.robot, begun.goals, task.obstacles, begun.objects)
+    place = Place(task.robot, begun.goals, task.obstacles, begun.objects)
     return InitialState(place, begun.state, things_to_do(task, choice, begun), begun.scene)
 
 
@@ -102,14 +103,14 @@ def begin_real(run: Run | None, task: str | None, choice: int, robot: RobotOptio
         # The places that are drawn here are none of this room's: only shapes, heights and tilts count.
         begun = with_things.begin(choice, np.random.default_rng(0))
         scene = Scene(tuple(begun.scene.thing(name) for name in begun.objects), table_m=begun.scene.table_m)
-        return _free(arm, ScenePlace(arm, (), tuple(with_things.obstacles), begun.objects), scene)
+        return _free(arm, Place(arm, (), tuple(with_things.obstacles), begun.objects), scene)
     if run is None and task is None and robot.robot is not None:
         arm = load_robot(robot.robot, robot.end_effector, robot.stated)
-        return _free(arm, ScenePlace(arm, (), ()))
+        return _free(arm, Place(arm, (), ()))
     named = (robot.robot, robot.end_effector, robot.stated)
     made = task_without_run(task, *named) if run is None else task_of_run(run, task, *named, option=False)
     _check_choice(choice, made.goals)
-    place = ScenePlace(made.robot, made.goals, tuple(made.obstacles))
+    place = Place(made.robot, made.goals, tuple(made.obstacles))
     return InitialState(place, made.robot.home, goal_to_reach(made, choice))
 
 
