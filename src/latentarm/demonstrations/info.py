@@ -141,7 +141,7 @@ def read_info(root: Path) -> Info:
         )
     entry = mapping.get("latentarm")
     ours = cast(Mapping[str, Any], entry) if isinstance(entry, dict) else {}
-    stated = ours.get("limits")
+    stated, end_effector = ours.get("limits"), ours.get("end_effector")
     robot = mapping.get("robot_type")
     features = _read_features(_field(mapping, "features", dict, path), path)
     state = next((feature for feature in features if feature.name == STATE), None)
@@ -164,7 +164,7 @@ def read_info(root: Path) -> Info:
             robot=robot if isinstance(robot, str) else "",
             goals=parse_goals(ours.get("goals", []), str(path)),
             import_record=_read_import_record(ours, path),
-            end_effector=_read_end_effector(ours, path),
+            end_effector=None if end_effector is None else _field(ours, "end_effector", str, path),
             limits=None if stated is None else parse_limits(stated, f"{path}, limits"),
             objects=next((object_names(one.names or ()) for one in features if one.name == ENVIRONMENT), ()),
         ),
@@ -242,13 +242,6 @@ def _entry_names(names: object, width: int) -> tuple[str, ...] | None:
     if isinstance(names, list) and len(names) == width and all(isinstance(name, str) for name in names):
         return tuple(cast(Sequence[str], names))
     return None
-
-
-def _read_end_effector(ours: Mapping[str, Any], path: Path) -> str | None:
-    name: object = ours.get("end_effector")
-    if name is not None and not isinstance(name, str):
-        raise UserError(f"{path}: the entry 'end_effector' is not a name.")
-    return name
 
 
 def _read_import_record(ours: Mapping[str, Any], path: Path) -> Mapping[str, str]:

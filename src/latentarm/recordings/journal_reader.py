@@ -25,8 +25,8 @@ from latentarm.recordings.journal_samples import (
     thing_poses,
     unpacked,
 )
-from latentarm.recordings.journal_writer import LIMITS, EpisodeHeader, check_is_journal
-from latentarm.robots.limits import JointLimits
+from latentarm.recordings.journal_writer import EpisodeHeader, check_is_journal
+from latentarm.robots.limits import LIMIT_NAMES, JointLimits
 from latentarm.robots.limits_file import parse_limits
 
 _EARLIER = (math.nan, 1.0, 0.0)
@@ -205,7 +205,7 @@ def _joint_limits(limits: dict[str, Any] | None) -> JointLimits | None:
     """Limits of the joints; None in journals from before they were kept."""
     if limits is None:
         return None
-    lower, upper, velocity, acceleration, jerk = (np.array(limits[name]) for name in LIMITS)
+    lower, upper, velocity, acceleration, jerk = (np.array(limits[name]) for name in LIMIT_NAMES)
     try:
         return JointLimits(lower, upper, velocity, acceleration, jerk)
     except UserError as error:

@@ -19,10 +19,9 @@ from latentarm.demonstrations.info import goals_document
 from latentarm.demonstrations.provenance import provenance_json
 from latentarm.recordings.journal_samples import ALWAYS, figures_of, packed, without_things
 from latentarm.robots.kinematics.pose_rows import STORED
-from latentarm.robots.limits import JointLimits
+from latentarm.robots.limits import LIMIT_NAMES, JointLimits
 from latentarm.robots.limits_file import limits_document
 
-LIMITS = ("lower", "upper", "velocity", "acceleration", "jerk")  # the fields of a header's joint limits
 SCHEMA_VERSION = 6
 """Version 2 made samples compact, version 3 gave them a gripper, version 4 things, version 5 a co-pilot's
 pace, version 6 the source and the age of a thing's pose. All older versions can still be read and appended
@@ -294,7 +293,7 @@ class Recorder:
 
 
 def _limits_as_json(limits: JointLimits) -> dict[str, list[float]]:
-    return {name: getattr(limits, name).tolist() for name in LIMITS}
+    return {name: getattr(limits, name).tolist() for name in LIMIT_NAMES}
 
 
 def check_is_journal(database: sqlite3.Connection, path: Path, *, may_be_empty: bool) -> None:

@@ -11,7 +11,7 @@ from latentarm.core.types import FloatArray
 Source = Literal["model", "manufacturer", "limits_file", "assumed"]  # source of a limit
 Quantity = Literal["position", "velocity", "acceleration", "jerk"]
 QUANTITIES: Final[tuple[Quantity, ...]] = ("position", "velocity", "acceleration", "jerk")
-_FIGURES: Final = ("lower", "upper", "velocity", "acceleration", "jerk")
+LIMIT_NAMES: Final = ("lower", "upper", "velocity", "acceleration", "jerk")
 
 
 @final
@@ -49,7 +49,7 @@ class JointLimits:
     sources: LimitSources = field(default_factory=LimitSources)
 
     def __post_init__(self) -> None:
-        for name in _FIGURES:
+        for name in LIMIT_NAMES:
             given = np.asarray(getattr(self, name))
             if given.dtype.kind not in "iuf":
                 raise UserError(f"The joint limits' {name} must be numbers.")

@@ -36,7 +36,7 @@ from latentarm.robots.limits import JointLimits, LimitSources, Quantity, Source
 TOOL_SPEED: Final = "tool_speed_m_per_s"
 GRIPPER: Final = "gripper"
 _GRIPPER_FIGURES: Final = {"width_m": "width", "speed_m_per_s": "speed", "force_n": "force"}
-_FIGURES: Final = {
+PER_TIME: Final = {
     "lower": "",
     "upper": "",
     "velocity": "_per_s",
@@ -67,7 +67,7 @@ def read_limits(path: Path) -> StatedLimits:
 
 def _check_not_degrees(figures: Mapping[str, object], where: str) -> None:
     """Refuse figures in degrees under a key in rad: the arm would be too fast to stop in time."""
-    for figure, per in _FIGURES.items():
+    for figure, per in PER_TIME.items():
         value = figures.get(f"{figure}_rad{per}", 0.0)
         if figure in _MOST_RAD and isinstance(value, int | float) and abs(value) > _MOST_RAD[figure]:
             raise UserError(
@@ -98,12 +98,12 @@ def limits_document(stated: StatedLimits) -> dict[str, object]:
     """The document that `parse_limits` reads, in rad or m."""
     joints: dict[str, dict[str, float]] = {}
     for name, one in stated.joints.items():
-        figures = {name: getattr(one, name) for name in _FIGURES if name not in ("lower", "upper")}
+        figures = {name: getattr(one, name) for name in PER_TIME if name not in ("lower", "upper")}
         if one.position is not None:
             figures |= {"lower": one.position[0], "upper": one.position[1]}
         unit = "m" if one.sliding else "rad"
         joints[name] = {
-            f"{figure}_{unit}{_FIGURES[figure]}": value
+            f"{figure}_{unit}{PER_TIME[figure]}": value
             for figure, value in figures.items()
             if value is not None
         }
@@ -150,7 +150,7 @@ _SAID_BY: Final[Mapping[Quantity, tuple[str, ...]]] = {
 
 def _joint(entry: object, where: str, key: str) -> StatedJointLimits:
     given = table_of(entry, where, key)
-    spelt = {f"{figure}_{unit}{per}": (figure, unit) for figure, per in _FIGURES.items() for unit in _UNITS}
+    spelt = {f"{figure}_{unit}{per}": (figure, unit) for figure, per in PER_TIME.items() for unit in _UNITS}
     check_keys(given, tuple(spelt), where, f"{key}.")
     values: dict[str, float] = {}
     sliding: set[bool] = set()
@@ -169,7 +169,7 @@ def _joint(entry: object, where: str, key: str) -> StatedJointLimits:
     position = (values["lower"], values["upper"]) if "lower" in values else None
     if position is not None and position[0] >= position[1]:
         raise UserError(f"{where}: {key} has a lower limit that is not below its upper one.")
-    others = {name: values.get(name) for name in _FIGURES if name not in ("lower", "upper")}
+    others = {name: values.get(name) for name in PER_TIME if name not in ("lower", "upper")}
     return StatedJointLimits(position=position, sliding=next(iter(sliding), None), **others)
 
 

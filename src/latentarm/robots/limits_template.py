@@ -5,16 +5,11 @@ import re
 from collections.abc import Iterator
 from typing import Final, cast
 
-from latentarm.robots.limits import Quantity
-from latentarm.robots.limits_file import GRIPPER, TOOL_SPEED, limits_document
+from latentarm.robots.limits import QUANTITIES
+from latentarm.robots.limits_file import GRIPPER, PER_TIME, TOOL_SPEED, limits_document
 from latentarm.robots.robot import Robot
 
 _PLAIN: Final = re.compile(r"[A-Za-z0-9_-]+")
-_RATES: Final[tuple[tuple[Quantity, str], ...]] = (
-    ("velocity", "_per_s"),
-    ("acceleration", "_per_s2"),
-    ("jerk", "_per_s3"),
-)
 
 
 def limits_template(robot: Robot) -> str:
@@ -35,10 +30,10 @@ def _lines(robot: Robot) -> Iterator[str]:
         known = limits.sources.position[joint] != "assumed"
         yield _line(f"lower_{unit}", float(limits.lower[joint]), known=known)
         yield _line(f"upper_{unit}", float(limits.upper[joint]), known=known)
-        for quantity, per in _RATES:
+        for quantity in QUANTITIES[1:]:
             figure = float(getattr(limits, quantity)[joint])
             known = limits.sources.of(quantity)[joint] != "assumed"
-            yield _line(f"{quantity}_{unit}{per}", figure, known=known)
+            yield _line(f"{quantity}_{unit}{PER_TIME[quantity]}", figure, known=known)
     if robot.stated_limits is not None and robot.stated_limits.gripper is not None:
         yield ""
         yield "[gripper]"

@@ -1,13 +1,11 @@
 """Notices about a robot, shown before it moves."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from latentarm.robots.robot import Robot
+from latentarm.robots.robot import Robot
 
 
-def assumed_limits(robot: "Robot") -> str:
+def assumed_limits(robot: Robot) -> str:
     """Assumed limits in words, such as "acceleration and jerk of all joints"; "" without any."""
     joints: dict[tuple[int, ...], list[str]] = {}
     for quantity, indices in robot.limits.assumed.items():
@@ -18,7 +16,7 @@ def assumed_limits(robot: "Robot") -> str:
     return "; ".join(parts)
 
 
-def notices(robot: "Robot") -> list[str]:
+def notices(robot: Robot) -> list[str]:
     """Notices for the person who is about to drive or record a robot."""
     said: list[str] = []
     tool = robot.chain.tools[0].name
@@ -48,7 +46,7 @@ def notices(robot: "Robot") -> list[str]:
     return said
 
 
-def _joints(robot: "Robot", indices: Sequence[int]) -> str:
+def _joints(robot: Robot, indices: Sequence[int]) -> str:
     if len(indices) == robot.dof:
         return "all joints"
     names = [robot.joint_names[joint] for joint in indices]
