@@ -765,7 +765,6 @@ CLOSE, LET_GO = GripperCommand(0.0, 0.05, 20.0), GripperCommand(0.08, 0.05, 20.0
 
 
 def test_a_gripper_s_life_goes_into_the_dataset(tmp_path, arm):
-    from latentarm.demonstrations.dataset import read_dataset, write_dataset
     from latentarm.demonstrations.summary import summarise
 
     steps = [(OPEN, None), (OPEN, CLOSE), (HELD, None), (HELD, None), (GripperReading(-1e-5), LET_GO)]
