@@ -36,7 +36,7 @@ from latentarm.robots.limits import JointLimits, LimitSources, Quantity, Source
 TOOL_SPEED: Final = "tool_speed_m_per_s"
 GRIPPER: Final = "gripper"
 _GRIPPER_FIGURES: Final = {"width_m": "width", "speed_m_per_s": "speed", "force_n": "force"}
-PER_TIME: Final = {
+PER_TIME: Final = {  # what follows the unit in a key
     "lower": "",
     "upper": "",
     "velocity": "_per_s",
