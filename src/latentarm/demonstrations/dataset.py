@@ -16,7 +16,7 @@ import pyarrow.parquet as pq
 from latentarm.core.errors import UserError
 from latentarm.core.files import write_text, written_whole
 from latentarm.core.types import Demonstrations, Episode, StrPath
-from latentarm.demonstrations.folders import locked, remove_files, remove_parts, staged_folder
+from latentarm.demonstrations.folders import locked, remove_files, staged_folder
 from latentarm.demonstrations.info import (
     ACTION,
     CHUNK_FILES,
@@ -173,7 +173,7 @@ def _data_places(rows: Table) -> list[tuple[int, int]]:
 
 def _remove_uncommitted(path: Path, rows: Table) -> None:
     """Delete leftovers of a killed writer: temporary files, and data files without episodes."""
-    remove_parts(path)
+    remove_files(path.rglob(".*.part"))
     committed = {path / _place(DATA_PATTERN, place) for place in _data_places(rows)}
     remove_files(set((path / "data").glob("*/*.parquet")) - committed)
 

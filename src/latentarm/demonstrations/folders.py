@@ -72,11 +72,6 @@ def staged_folder(destination: Path) -> Generator[Path]:
         raise UserError(f"{destination} cannot be written: {error.strerror or error}.") from error
 
 
-def remove_parts(folder: Path) -> None:
-    """Delete temporary files of killed writers in ``folder``."""
-    remove_files(folder.rglob(".*.part"))
-
-
 def remove_files(paths: Iterable[Path]) -> None:
     """Delete files, or say which one cannot be deleted."""
     for path in paths:
