@@ -18,7 +18,7 @@ from latentarm.control.shared_autonomy import Choices
 from latentarm.control.step import Step
 from latentarm.core.errors import UserError
 from latentarm.core.types import Context, Goal, Input
-from latentarm.recordings.dataset_export import demonstrations_of, export_journal
+from latentarm.recordings.dataset_export import demonstrations_of
 from latentarm.recordings.journal_reader import read_journal
 from latentarm.recordings.journal_writer import EpisodeHeader, Recorder
 from latentarm.safety.config import SafetyConfig
@@ -356,7 +356,7 @@ class TestBound:
         assert without.calls == with_help.calls == 20
 
     def test_recorded_read_back_and_exported(self, make, arm, tmp_path):
-        from latentarm.demonstrations.dataset import read_dataset
+        from latentarm.demonstrations.dataset import read_dataset, write_dataset
 
         step, path = make(FixedAlpha(0.4)), tmp_path / "drive.sqlite"
         records, state = run(step, PUSH, arm.home, 20)
@@ -370,7 +370,7 @@ class TestBound:
         bounds = np.array([record.bound_rad for record in records])
         (episode,) = read_journal(path)
         np.testing.assert_array_equal([record.bound_rad for record in episode.records], bounds)
-        export_journal(path, tmp_path / "dataset")
+        write_dataset(demonstrations_of(read_journal(path), source="drive"), tmp_path / "dataset")
         (found,) = read_dataset(tmp_path / "dataset").episodes
         np.testing.assert_allclose(found.extras["assist.bound"][:20, 0], bounds[:20], rtol=1e-6)
         assert (found.extras["assist.bound"][20:] == -1.0).all()
