@@ -25,11 +25,8 @@ class Place:
 
 def surroundings_of(goals: Sequence[Goal], objects: Sequence[str]) -> Callable[[], FloatArray] | None:
     """A source of the poses (K, 9) of goals as things that never move; None without objects."""
-    if not objects:
-        return None
-    rows = object_rows({goal.name: goal.pose for goal in goals}, objects)
-    rows.flags.writeable = False
-    return lambda: rows
+    poses = {goal.name: goal.pose for goal in goals}
+    return watched(lambda: poses, objects)
 
 
 def watched(
