@@ -38,8 +38,11 @@ SCENE: Final = "scene"
 
 def check_source(text: str) -> None:
     """Check what ``--objects`` names, without opening it."""
+    if text == TOUCH:
+        return
     name, colon, _ = text.partition(":")
-    if text != TOUCH and SOURCES.find(name, "--objects") and not colon:
+    SOURCES.find(name, "--objects")
+    if not colon:
         raise UserError(f"--objects {text} does not say where: write {name}:..., see docs/objects.md.")
 
 
