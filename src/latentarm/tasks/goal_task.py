@@ -21,7 +21,7 @@ class GoalTask(SceneTask):
 
     def __init__(self, task: Task, manner: str, time_limit_s: float) -> None:
         self._task, self._manner, self.time_limit_s = task, manner, time_limit_s
-        self.name, self.goals, self.obstacles = task.name, task.goals, tuple(task.obstacles)
+        self.name, self.goals, self.obstacles = task.name, task.goals, task.obstacles
         self.choices = tuple(goal.name for goal in task.goals)
 
     @property

@@ -26,7 +26,7 @@ class Task(ABC):
     manners: tuple[str, ...]
     """Names of the acts that are possible at a goal, at least one."""
 
-    obstacles: Sequence[Obstacle]
+    obstacles: tuple[Obstacle, ...]
     """Shapes that the arm must keep clear of."""
 
     @property

@@ -191,7 +191,7 @@ def _loop(inbox: Inbox, seconds: float) -> tuple[float, list[float]]:
     for tick in range(1, ticks + 1):
         due_s = began_s + tick * PERIOD_S
         time.sleep(max(0.0, due_s - time.monotonic()))
-        ages_s += [time.monotonic() - one.sighting.time_s for one in inbox.read(time.monotonic())]
+        ages_s += [time.monotonic() - seen.time_s for seen, _, _ in inbox.read(time.monotonic())]
         while time.monotonic() < due_s + WORK_S:
             pass
         late += time.monotonic() > due_s + PERIOD_S
