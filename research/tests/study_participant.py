@@ -192,8 +192,13 @@ class Participant:
                 enabled = self.state.get("phase") in ("ready", "moving")
                 if self.state:
                     sent += 1
-                    given = {"seq": sent, "nonce": self.state["nonce"], "u": u if enabled else [0.0, 0.0]}
-                    socket.send(json.dumps({"type": "input", "source": "pointer", "latched": False, **given}))
+                    given = {
+                        "seq": sent,
+                        "nonce": self.state["nonce"],
+                        "u": u if enabled else [0.0, 0.0],
+                        "latched": False,
+                    }
+                    socket.send(json.dumps({"type": "input", "source": "pointer", "name": "mouse", **given}))
                     if not enabled and sent % 10 == 0:
                         socket.send(json.dumps({"type": "enable"}))
                 time.sleep(0.02)

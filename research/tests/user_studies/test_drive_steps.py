@@ -48,12 +48,14 @@ def plain(value: Any) -> Any:
 def test_steps_are_read_as_they_were_written(tmp_path: Path) -> None:
     rng, log = np.random.default_rng(43), StepLog()
     steps = [a_step(rng, number) for number in range(8)]
-    for state, record in steps:
-        log.add(state, record)
+    for number, (state, record) in enumerate(steps):
+        log.add(state, record, "keyboard" if number > 4 else "")
     log.write(tmp_path / "drive.safetensors", 5)
     seed, found = read_steps(tmp_path / "drive.safetensors")
     assert seed == 5
-    assert plain([list(map(plain, step)) for step in found]) == [list(map(plain, step)) for step in steps]
+    read = list(found)
+    assert [plain(list(map(plain, step[:2]))) for step in read] == [list(map(plain, step)) for step in steps]
+    assert [device for *_, device in read] == [""] * 5 + ["keyboard"] * 3
 
 
 def test_a_figure_that_one_drive_of_a_trial_lacks_is_left_out() -> None:

@@ -46,7 +46,7 @@ def a_drive(
             action_human=np.full(7, 0.1), action_assist=np.zeros(7), alpha=0.0,
             belief=np.full(len(begun.goals), 0.5), mode=0, command=Command(np.full(7, 0.1), 0.0), added=added,
         )  # fmt: skip
-        log.add(state, record)
+        log.add(state, record, "")
     path = folder / f"{person}-{task}.safetensors"
     if kept:
         log.write(path, person)

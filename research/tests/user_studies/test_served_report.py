@@ -21,6 +21,7 @@ from latentarm_research.user_studies.trace import BINS, Trace
 from study_participant import MODES, TWIST, definition
 
 CONSENT, LATER = "ab" * 32, "cd" * 32  # texts
+DEVICES = "gamepad Pad (a: 1);pointer touch;keyboard"
 
 
 def a_drive(number: int, order: int, condition: str, task: str) -> DriveRecord:
@@ -30,6 +31,7 @@ def a_drive(number: int, order: int, condition: str, task: str) -> DriveRecord:
     return DriveRecord(
         people_are="real", person=number, condition=condition, order=order, task=task, trial=0, choice=0,
         attempt=0, ending="time_limit", measures=measures, trace=trace,
+        input_s={"gamepad Pad (a: 1)": 3.0, "pointer touch": 2.0 + order, "keyboard": 0.1},
     )  # fmt: skip
 
 
@@ -90,6 +92,7 @@ def test_the_report_says_what_people_did(served: Path) -> None:
     assert "Input: each person's own choice on the page" in page
     assert "one stick" not in page
     assert "Practice: up to 5 minutes at Marshmallows, before the first condition only." in page
+    assert "| 0 | Retargeting, Modes | gamepad Pad (a: 1), pointer touch, keyboard |" in page
     assert "2 consented (2026-01-02 to 2026-01-03; text abababababab, cdcdcdcdcdcd), and 1 of them" in page
 
 
@@ -110,8 +113,11 @@ def test_the_dataset_has_everybody_who_consented_and_only_drives_of_people_who_f
         for name in ("people", "drives")
     )
     assert [list(one.values()) for one in people] == [
-        ["0", "Retargeting;Modes", LATER, "2026-01-03", "2", "1"],
-        ["", "Modes", CONSENT, "2026-01-02", "1", "0"],
+        ["0", "Retargeting;Modes", LATER, "2026-01-03", "2", DEVICES, "1"],
+        ["", "Modes", CONSENT, "2026-01-02", "1", DEVICES, "0"],
     ]
     # The place of the person who was away is that of the one who finished: their drives do not mix.
     assert [(one["person"], one["condition"]) for one in drives] == [("0", "Retargeting"), ("0", "Modes")]
+    assert [one["devices"] for one in drives] == [DEVICES] * 2
+    codebook = (data.parent / "documentation" / "codebook.csv").read_text()
+    assert '\ndevices,"input devices that were pushed' in codebook

@@ -49,6 +49,7 @@ def test_a_participant_goes_through_a_study_with_a_learned_model_and_is_reported
         assert trial.measures["time_s"] == pytest.approx(1.0, abs=0.05)
         assert 0.2 < trial.measures["input_magnitude"] <= 1.0
         assert trial.measures["path_length"] > 0.01
+    assert recorded.participants[0].devices == ("pointer mouse",)
     assert len(recorded.answers) == 8
     # Of the person who has left no byte remains, and nobody's address was kept.
     content = b"".join(path.read_bytes() for path in out.rglob("*") if path.is_file())

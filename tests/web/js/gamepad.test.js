@@ -65,6 +65,14 @@ test("the stick moves the arm; up is up", () => {
   assert.deepEqual([input.x, input.y, input.source], [0.5, 0.75, "gamepad"]);
 });
 
+test("the input has the gamepad's id, in the letters and the length that the server takes", () => {
+  const pad = appear(0, `Pad\u2122; [${"9".repeat(99)}]`);
+  poll();
+  pad.axes = [1, 0];
+  poll();
+  assert.equal(input.name, `Pad    ${"9".repeat(73)}`);
+});
+
 test("a stick that rests a little off its middle is at rest", () => {
   const pad = plug();
   pad.axes = [0.05, -0.05];

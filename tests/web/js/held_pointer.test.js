@@ -66,8 +66,8 @@ test("a direction button lets go when its pointer moves with no button down", ()
   const input = Object.assign(new Deflection(), { live: true });
   elementsOf({ group: "dpad", help: "dpad-help" }).group.querySelectorAll = () => [button];
   attachDpad(input, new Settings());
-  button.dispatchEvent(pointer("pointerdown"));
-  assert.equal(input.source, "dpad");
+  button.dispatchEvent(pointer("pointerdown", { pointerType: "touch" }));
+  assert.deepEqual([input.source, input.name], ["dpad", "touch"]);
   moves({ buttons: 0 });
   assert.equal(input.source, null);
 });

@@ -54,6 +54,12 @@ class DriveRecord(BaseModel):
         description="figures by name; what has no value is absent. input_delay_s, on the page: from a state"
         " of the arm to the input that answered it, mean over the drive, s"
     )
+    input_s: Mapping[str, float] = Field(
+        default_factory=dict,
+        description="on the page: how long each input device was pushed, s. `pointer` is the stick on the"
+        " page and `dpad` its buttons, each with mouse, touch or pen; `keyboard`; `gamepad`"
+        " with its id; `switch`",
+    )
     trace: Trace = Field(description="the tool's path and the stick, thinned out for figures")
 
 
@@ -66,6 +72,7 @@ def record_of(
     trial: int,
     attempt: int,
     driven: drives.Trace,
+    input_s: Mapping[str, float] | None = None,
 ) -> DriveRecord:
     """The record of a drive from its trace."""
     return DriveRecord(
@@ -79,6 +86,7 @@ def record_of(
         attempt=attempt,
         ending=driven.ending.reason,
         measures=_measured(task, driven),
+        input_s=input_s or {},
         trace=trace_of(person, condition, task, trial, driven),
     )
 

@@ -22,9 +22,9 @@ from latentarm.core.untrusted.opening import check_file
 from latentarm.robots.scene.scene import SceneState
 from latentarm.tasks.scene_task import Beginning, SceneTask
 from latentarm_research.drives.following import Following
-from latentarm_research.drives.trace import Trace
 from latentarm_research.user_studies.definition import StudyTask
 from latentarm_research.user_studies.drive_record import DriveRecord, record_of
+from latentarm_research.user_studies.record import PeopleAre
 from latentarm_research.user_studies.scenes import scene_of
 
 MOST_BYTES: Final = 1 << 29  # of a file
@@ -41,9 +41,9 @@ class StepLog:
     # by name: from which step on, and what
     labels: dict[str, list[tuple[int, Any]]] = field(default_factory=dict)
 
-    def add(self, state: SceneState, record: StepRecord) -> None:
-        """Add a step: how things stood, and what was decided."""
-        for name, value in _labels(state, record).items():
+    def add(self, state: SceneState, record: StepRecord, device: str) -> None:
+        """Add a step: how things stood, what was decided, and the pushed input device, "" for none."""
+        for name, value in {**_labels(state, record), "device": device}.items():
             changes = self.labels.setdefault(name, [])
             if not changes or changes[-1][1] != value:
                 changes.append((len(self.rows), value))
@@ -69,8 +69,9 @@ class Measuring:
         self._follow = Following(begun)
         self._stops = 0
         self._enabled = False
+        self._input_s: dict[str, float] = {}
 
-    def sees(self, state: SceneState, record: StepRecord) -> bool:
+    def sees(self, state: SceneState, record: StepRecord, device: str) -> bool:
         """Take a step. True if the drive has ended with it."""
         enabled = record.command.stop is None
         self._stops += self._enabled and not enabled
@@ -78,13 +79,26 @@ class Measuring:
         records = self._follow.records
         self._follow.sees(state)
         if self._follow.ending is None:
+            if device and enabled and records:
+                span_s = record.time_s - records[-1].time_s
+                self._input_s[device] = self._input_s.get(device, 0.0) + span_s
             records.append(record)
         over = self._follow.ending is not None or record.time_s - records[0].time_s >= self._limit_s
         return bool(records) and over
 
-    def driven(self) -> Trace:
-        """The drive so far."""
-        return self._follow.trace(self._choice, self._chain, self._stops)
+    def record(
+        self,
+        people_are: PeopleAre,
+        person: int,
+        condition: str,
+        order: int,
+        task: StudyTask,
+        trial: int,
+        attempt: int,
+    ) -> DriveRecord:
+        """The record of the drive so far."""
+        driven = self._follow.trace(self._choice, self._chain, self._stops)
+        return record_of(people_are, person, condition, order, task, trial, attempt, driven, self._input_s)
 
 
 def begin(scene: SceneTask, choice: int, seed: int) -> Beginning:
@@ -97,16 +111,16 @@ def measured_again(path: Path, kept: DriveRecord, task: StudyTask) -> DriveRecor
     seed, steps = read_steps(path)
     measuring = Measuring(scene_of(task.scene), kept.choice, seed, float("inf"))
     try:
-        for state, record in steps:
-            measuring.sees(state, record)
+        for state, record, device in steps:
+            measuring.sees(state, record, device)
     except (ValueError, LookupError, TypeError, AttributeError) as error:
         raise UserError(f"{path} does not hold the steps of a drive.") from error
     where = (kept.condition, kept.order, task, kept.trial, kept.attempt)
-    return record_of(kept.people_are, kept.person, *where, measuring.driven())
+    return measuring.record(kept.people_are, kept.person, *where)
 
 
-def read_steps(path: Path) -> tuple[int, Iterator[tuple[SceneState, StepRecord]]]:
-    """The seed of a drive's start, and its steps."""
+def read_steps(path: Path) -> tuple[int, Iterator[tuple[SceneState, StepRecord, str]]]:
+    """The seed of a drive's start, and its steps with the input device that was pushed, "" for none."""
     check_file(path, MOST_BYTES)
     try:
         with safe_open(path, framework="numpy") as file:
@@ -153,18 +167,18 @@ def _parts(state: SceneState, record: StepRecord) -> Iterator[Any]:
 
 def _steps(
     values: FloatArray, labels: Mapping[str, Sequence[tuple[int, Any]]], count: int
-) -> Iterator[tuple[SceneState, StepRecord]]:
+) -> Iterator[tuple[SceneState, StepRecord, str]]:
     at = 0
-    now: dict[str, Any] = {}
+    now: dict[str, Any] = {"device": ""}  # files of earlier versions do not have it
     changes: dict[int, dict[str, Any]] = {}
     for name, theirs in labels.items():
         for index, value in theirs:
             changes.setdefault(index, {})[name] = value
     for index in range(count):
         now.update(changes.get(index, {}))
-        step, used = _step(values[at:], now)
+        (state, record), used = _step(values[at:], now)
         at += used
-        yield step
+        yield state, record, now["device"]
 
 
 def _step(values: FloatArray, labels: Mapping[str, Any]) -> tuple[tuple[SceneState, StepRecord], int]:

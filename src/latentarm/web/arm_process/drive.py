@@ -116,6 +116,12 @@ class Drive:
         self.change: Change | None = None  # the order that ended the loop to restart it
         self._choose(steering.mode, steering.axes, steering.help)
 
+    @property
+    def device(self) -> str:
+        """The deflected input device, such as ``keyboard`` or ``pointer mouse``; "" for none."""
+        kind, _, name = self._inputs.held_by or ("", 0, "")
+        return f"{kind} {name}".strip()
+
     def run(self, ticks: int | None = None) -> Change | None:
         """Drive until `change` is due or the process ends; ``ticks`` limits it."""
         # The loop begins anew, and would begin in the first mode.

@@ -46,5 +46,8 @@ class FixedDrive(ABC):
         """How the robot helps; None never helps."""
 
     @abstractmethod
-    def watch(self, arm: SceneArm) -> Callable[[StepRecord], None]:
-        """Begin to measure the drive: the arm's process calls the result after every step of the loop."""
+    def watch(self, arm: SceneArm, device: Callable[[], str]) -> Callable[[StepRecord], None]:
+        """Begin to measure the drive: the arm's process calls the result after every step of the loop.
+
+        ``device`` tells the input device that is deflected in this step, "" for none.
+        """

@@ -16,7 +16,7 @@ class NeutralInterlock(InputSource):
 
     def __init__(self, inputs: PageInputs) -> None:
         self._inputs = inputs
-        self._held_by: tuple[str, int] | None = None
+        self._held_by: tuple[str, int, str] | None = None
         self.waiting = False  # whether the stick has yet to be let go
 
     def demand(self) -> None:

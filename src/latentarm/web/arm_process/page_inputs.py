@@ -50,7 +50,8 @@ class PageInputs(InputSource):
         self.driver = -1  # number of the driver; -1 before the first
         self.fresh = False  # whether the newest input still counts
         self.deflected = False  # whether it is outside the dead zone
-        self.held_by: tuple[str, int] | None = None  # kind and number of the deflected device; None for none
+        # kind, number and name of the deflected device; None for none
+        self.held_by: tuple[str, int, str] | None = None
         # kinds of device that have moved the arm or its gripper since this was last emptied
         self.devices: set[str] = set()
         self._was_used = False
@@ -113,7 +114,7 @@ class PageInputs(InputSource):
 
     def _note(self, given: Given) -> None:
         self.deflected = math.hypot(*given.u) > self._dead_zone
-        self.held_by = (given.source, given.device) if self.deflected else None
+        self.held_by = (given.source, given.device, given.name) if self.deflected else None
         raw, before = given.u if given.raw is None else given.raw, self._raw
         self._raw = raw
         if not self.deflected:

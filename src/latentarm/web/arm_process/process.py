@@ -8,6 +8,7 @@ import multiprocessing
 import os
 import signal
 import sys
+from collections.abc import Callable
 from multiprocessing.connection import Connection
 from types import FrameType
 from typing import Final, final
@@ -19,6 +20,7 @@ from latentarm.control.clock import MonotonicClock
 from latentarm.core.errors import UserError
 from latentarm.core.logs import LogSettings, log_settings, logging_as
 from latentarm.core.punctuality import HANG_UPS, ask_for_priority, short_collections
+from latentarm.core.types import StepRecord
 from latentarm.core.untrusted.terminal import one_line
 from latentarm.web.arm_process.arm_lifecycle import first_arm, from_where_it_stands
 from latentarm.web.arm_process.drive import Drive
@@ -71,9 +73,12 @@ def run_control(spec: Spec, channel: Channel, server: int, logs: LogSettings) ->
             calls = begin_incident(driven.setup)
             given = (driven.setup, driven.arm, channel, clock, writer, orphaned, driven.steering, note)
             fixed, arm = driven.setup.spec.fixed, driven.arm
-            observers = [fixed.watch(arm)] if fixed is not None and isinstance(arm, SceneArm) else []
+            observers: list[Callable[[StepRecord], None]] = []
+            if fixed is not None and isinstance(arm, SceneArm):
+                observers.append(fixed.watch(arm, lambda: begun.device))
+            begun = Drive(*given, observers=observers, calls=calls)
             try:
-                return Drive(*given, observers=observers, calls=calls).run()
+                return begun.run()
             finally:
                 if calls is not None:
                     calls.close()

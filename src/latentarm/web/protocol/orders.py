@@ -52,6 +52,8 @@ class PersonInput(Message):
     source: Literal["pointer", "keyboard", "dpad", "gamepad", "switch"]
     latched: bool  # continues without being held, for at most `Welcome.latch_max_s`
     device: Annotated[int, Field(ge=0, le=255)] = 0  # number among devices of that kind
+    # the browser's id of a gamepad; mouse, touch or pen for a pointer
+    name: Annotated[str, Field(max_length=80, pattern=r"^[A-Za-z0-9_ ()./:-]*$")] = ""
     # right and up from the device, before shaping and smoothing; null where they are ``u``
     raw: tuple[Deflection, Deflection] | None = None
     # whether the control is held down that opens the gripper of an arm that is not enabled

@@ -16,6 +16,7 @@ from latentarm_research.user_studies.definition import Definition
 from latentarm_research.user_studies.drive_record import DriveRecord
 from latentarm_research.user_studies.exclusion import counted
 from latentarm_research.user_studies.export.drives import write_drives
+from latentarm_research.user_studies.participant import devices_of
 from latentarm_research.user_studies.record import Trial
 from latentarm_research.user_studies.recorded import Recorded
 
@@ -64,6 +65,9 @@ VARIABLES: Final = (
              " information-HASH.md, named by the first 12 digits"),
     Variable("consented", "day of the consent, UTC"),
     Variable("practised", "number of conditions that the person practised"),
+    Variable("devices", "input devices that were pushed, the longest first, separated by ;: pointer (the"
+             " stick on the page) or dpad (its buttons) with mouse, touch or pen; keyboard; gamepad with its"
+             " id; switch"),
     Variable("finished", "1 for a person who finished, else 0: without a number, and without trials"),
     Variable("factor", "factor of a 2 x 2 design"),
     Variable("level", "level of the factor, 1 or 2"),
@@ -82,7 +86,7 @@ def write_dataset(folder: Path, recorded: Recorded, drives: Sequence[tuple[Drive
             _trials(definition, recorded.trials),
         ),
         "people": (
-            ("person", "conditions", "consent", "consented", "practised", "finished"),
+            ("person", "conditions", "consent", "consented", "practised", "devices", "finished"),
             _people(recorded),
         ),
         "answers": (
@@ -98,7 +102,7 @@ def write_dataset(folder: Path, recorded: Recorded, drives: Sequence[tuple[Drive
     }
     if drives:
         columns = ("person", "condition", "task", "order", "trial", "choice", "attempt", "ending")
-        tables["drives"] = ((*columns, "episode"), _drives(folder, definition, drives, columns))
+        tables["drives"] = ((*columns, "devices", "episode"), _drives(folder, definition, drives, columns))
     named = "".join(letter for letter in definition.name.title() if letter.isascii() and letter.isalnum())
     for name, (head, rows) in tables.items():
         path = folder / "data" / f"study-{named or 'own'}_description-{name}_data.csv"
@@ -151,12 +155,12 @@ def _people(recorded: Recorded) -> Iterable[Sequence[Cell]]:
     for one in recorded.participants:
         person = one.number if one.finished else None
         conditions, day = ";".join(one.conditions), one.consented[:10]
-        yield person, conditions, one.consent, day, one.practised, int(one.finished)
+        yield person, conditions, one.consent, day, one.practised, ";".join(one.devices), int(one.finished)
     if not recorded.participants:
         in_order = sorted(recorded.trials, key=lambda trial: trial.order)
         for person in sorted(recorded.met):
             theirs = dict.fromkeys(trial.condition for trial in in_order if trial.person == person)
-            yield person, ";".join(theirs), None, None, None, None
+            yield person, ";".join(theirs), None, None, None, None, None
 
 
 def _answers(definition: Definition, answers: Sequence[Answer]) -> Iterable[Sequence[Cell]]:
@@ -181,7 +185,8 @@ def _drives(
             write_drives(folder, task, with_steps)
         episodes = {path: number for number, (_, path) in enumerate(with_steps)}
         for record, path in theirs:
-            yield *(getattr(record, name) for name in columns), episodes.get(path)
+            devices = ";".join(devices_of([record]))
+            yield *(getattr(record, name) for name in columns), devices, episodes.get(path)
 
 
 def _claims(definition: Definition) -> Iterable[Sequence[Cell]]:

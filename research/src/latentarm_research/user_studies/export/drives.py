@@ -39,7 +39,7 @@ def _demonstrations(scene: SceneTask, record: DriveRecord, path: Path) -> Demons
     seed, steps = read_steps(path)
     begun = begin(scene, record.choice, seed)
     things = tuple(sorted(begun.scene.names))
-    records = tuple(replace(step, things=thing_rows(state.poses, things)) for state, step in steps)
+    records = tuple(replace(step, things=thing_rows(state.poses, things)) for state, step, _ in steps)
     robot = scene.robot
     header = EpisodeHeader(
         robot=robot.name,

@@ -20,7 +20,12 @@ from latentarm_research.user_studies.hypothesis import WRONG
 from latentarm_research.user_studies.record import Trial
 from latentarm_research.user_studies.recorded import Recorded
 from latentarm_research.user_studies.report.figures import Drawn, draw
-from latentarm_research.user_studies.report.people import consent_words, input_words, practice_words
+from latentarm_research.user_studies.report.people import (
+    consent_words,
+    input_words,
+    participant_lines,
+    practice_words,
+)
 from latentarm_research.user_studies.report.words import (
     DESIGN_WORDS,
     PEOPLE_HEAD,
@@ -78,6 +83,7 @@ def report_page(content: Content) -> str:
         input=input_words(recorded),
         practice=practice_words(recorded),
         consent=consent_words(recorded),
+        participant_lines=participant_lines(recorded),
         order_words=order_words(definition),
         verdict_table=columns_table(verdict_columns(analysis.verdicts)),
         condition_lines=[(one.name, one.about, *condition_parts(one)) for one in definition.conditions],

@@ -1,14 +1,13 @@
 """People's input, practice and consent in words, as they were in the run that is reported."""
 
+from latentarm.evaluation.table import ABSENT
 from latentarm_research.user_studies.recorded import Recorded
 
 
 def input_words(recorded: Recorded) -> str:
     """The devices that people held; as planned where that is not recorded."""
     if recorded.participants:
-        return (
-            "each person's own choice on the page, made in the first practice; the devices are not recorded"
-        )
+        return "each person's own choice on the page, made in the first practice"
     planned = recorded.definition.input
     return planned if recorded.people_are == "simulated" else f"planned: {planned}"
 
@@ -25,6 +24,15 @@ def practice_words(recorded: Recorded) -> str:
     task = recorded.definition.tasks[0].label
     when = "before each condition" if minutes else "before the first condition only"
     return f"up to {minutes or FIRST_PRACTICE_S / 60.0:g} minutes at {task}, {when}"
+
+
+def participant_lines(recorded: Recorded) -> list[tuple[str, str, str]]:
+    """Everybody who has finished a served study: number, conditions in order, input devices."""
+    return [
+        (str(one.number), ", ".join(one.conditions), ", ".join(one.devices) or ABSENT)
+        for one in recorded.participants
+        if one.finished
+    ]
 
 
 def consent_words(recorded: Recorded) -> str:

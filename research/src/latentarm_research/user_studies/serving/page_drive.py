@@ -21,7 +21,6 @@ from latentarm.tasks.scene_task import Beginning, SceneTask
 from latentarm.web.arm_process.fixed_drive import FixedDrive
 from latentarm_research.user_studies.conditions import assistance_of, belief_of, controller_of
 from latentarm_research.user_studies.definition import Condition, Definition, StudyTask
-from latentarm_research.user_studies.drive_record import record_of
 from latentarm_research.user_studies.drive_steps import Measuring, StepLog, begin
 from latentarm_research.user_studies.scenes import scene_of
 
@@ -98,19 +97,20 @@ class PageDrive(FixedDrive):
         """That of the condition."""
         return assistance_of(self.due.condition, self.task.robot)
 
-    def watch(self, arm: SceneArm) -> Callable[[StepRecord], None]:
+    def watch(self, arm: SceneArm, device: Callable[[], str]) -> Callable[[StepRecord], None]:
         """Measure the drive as a simulated one is measured, and write its record when it ends."""
-        return _Watch(self, arm)
+        return _Watch(self, arm, device)
 
 
 @final
 class _Watch:
     """Follows a drive from when the arm is first enabled until it has ended or its time is over."""
 
-    def __init__(self, drive: PageDrive, arm: SceneArm) -> None:
+    def __init__(self, drive: PageDrive, arm: SceneArm, device: Callable[[], str]) -> None:
         due = drive.due
         self._drive = drive
         self._arm = arm
+        self._device = device
         limit_s = min(due.limit_s, drive.task.time_limit_s)
         self._measuring = Measuring(drive.task, due.choice, due.seed, limit_s)
         self._log = StepLog()
@@ -120,14 +120,15 @@ class _Watch:
         if self._over or not (self._log.rows or record.command.stop is None):
             return
         state = replace(self._arm.scene_state(), time_s=record.time_s)
-        self._log.add(state, record)
-        self._over = self._measuring.sees(state, record)
+        device = self._device()
+        self._log.add(state, record, device)
+        self._over = self._measuring.sees(state, record, device)
         if self._over:
             self._write()
 
     def _write(self) -> None:
         due, person, folder = self._drive.due, self._drive.person, self._drive.folder
         where = (due.condition.name, due.order, due.task, due.trial, due.attempt)
-        found = record_of("real", person, *where, self._measuring.driven())
+        found = self._measuring.record("real", person, *where)
         self._log.write(folder / STEPS, due.seed)
         write_text(folder / RECORD, found.model_dump_json())

@@ -99,6 +99,7 @@ export interface DriverInput {
   source: "pointer" | "keyboard" | "dpad" | "gamepad" | "switch";
   latched: boolean;
   device?: number;
+  name?: string;
   raw?: [number, number] | null;
   opens?: boolean;
   type: "input";

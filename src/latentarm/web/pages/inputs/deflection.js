@@ -26,6 +26,8 @@ export class Deflection extends EventTarget {
   source = null;
   /** Which one of several of that kind. */
   device = 0;
+  /** As the browser calls it: a gamepad by its id, a pointer by its kind. */
+  name = "";
   /** Devices that count for nothing until they were let go. @type {Set<string>} */
   _waiting = new Set();
 
@@ -42,7 +44,7 @@ export class Deflection extends EventTarget {
    * A device is deflected, or back at rest with (0, 0). While one is deflected the others wait, and a device that was
    * deflected meanwhile counts only once it was let go. @param {Source} source @param {number} x @param {number} y
    */
-  hold(source, x, y, latched = false, device = 0) {
+  hold(source, x, y, latched = false, device = 0, name = "") {
     const rests = x === 0 && y === 0;
     const holds = this._holds(source, device);
     if (rests) this._waiting.delete(nameOf(source, device));
@@ -54,6 +56,7 @@ export class Deflection extends EventTarget {
     this.latched = latched;
     this.source = rests ? null : source;
     this.device = device;
+    this.name = name;
     if (turned) this.dispatchEvent(new CustomEvent("turned", { detail: source }));
     this.dispatchEvent(new Event("change"));
   }

@@ -12,6 +12,8 @@ export function attachDpad(inputs, settings, refused = () => {}) {
   /** @type {HTMLButtonElement | null} */
   let latched = null;
   let timer = 0;
+  /** The kind of pointer that presses; none of a click by other means. */
+  let pointer = "";
 
   const show = (/** @type {HTMLButtonElement | null} */ pressed) => {
     for (const button of buttons) {
@@ -29,7 +31,7 @@ export function attachDpad(inputs, settings, refused = () => {}) {
   };
   const begin = (/** @type {HTMLButtonElement} */ button, stays = false) => {
     const [x, y] = DIRECTIONS[/** @type {Direction} */ (button.dataset.direction)];
-    inputs.hold("dpad", x, y, stays);
+    inputs.hold("dpad", x, y, stays, 0, pointer);
     show(button);
   };
   const step = (/** @type {HTMLButtonElement} */ button) => {
@@ -47,8 +49,9 @@ export function attachDpad(inputs, settings, refused = () => {}) {
 
   for (const button of buttons) {
     const forget = attachHeldPointer(button, {
-      begins: () => {
+      begins: ({ pointerType }) => {
         if (holding) return false;
+        pointer = pointerType;
         if (!inputs.live) refused();
         else if (settings.values.press === "step") step(button);
         else if (settings.values.press === "latch") toggle(button);
@@ -69,6 +72,7 @@ export function attachDpad(inputs, settings, refused = () => {}) {
     // A click without a pointer comes from Enter or from a switch or a screen reader: there is nothing to hold.
     button.addEventListener("click", (event) => {
       if (event.detail !== 0) return;
+      pointer = "";
       if (!inputs.live) refused();
       else if (settings.values.press === "latch") toggle(button);
       else step(button);

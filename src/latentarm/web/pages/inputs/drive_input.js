@@ -132,7 +132,7 @@ export class DriveInput extends Deflection {
 
   /** @param {Source} source */
   _held(source) {
-    return { source, device: this.device, raw: /** @type {[number, number]} */ ([this.x, this.y]), latched: this.latched };
+    return { source, device: this.device, name: this.name, raw: /** @type {[number, number]} */ ([this.x, this.y]), latched: this.latched };
   }
 
   _meant() {

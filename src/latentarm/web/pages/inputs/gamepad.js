@@ -14,6 +14,8 @@ import { padLives } from "./pad_life.js";
 /** @import {Mapping} from "../settings/pads.js" */
 
 const IDLE_MS = 100;
+/** In the letters and the length that the server takes. */
+const sentName = (/** @type {string} */ id) => id.replace(/[^\w ()./:-]/g, " ").slice(0, 80);
 
 /** @param {PersonInput} input @param {Settings} settings @param {Pick<Scanner, "press">} scanner takes a button as a switch @param {Actions & {stop: () => void}} actions */
 export function attachGamepad(input, settings, scanner, actions) {
@@ -62,7 +64,7 @@ export function attachGamepad(input, settings, scanner, actions) {
     const [x, y] = stickOf(mapping, pad.axes);
     const rests = Math.hypot(x, y) <= Math.max(mapping.dead, settings.values.deadZone);
     if (before?.drives !== drives || Number.isNaN(x + y)) input.distrust("gamepad", index);
-    if (!Number.isNaN(x + y)) input.hold("gamepad", rests ? 0 : x, rests ? 0 : y, false, index);
+    if (!Number.isNaN(x + y)) input.hold("gamepad", rests ? 0 : x, rests ? 0 : y, false, index, sentName(id));
     return input.waits("gamepad", index);
   };
   const act = (/** @type {Mapping} */ { uses }, /** @type {number} */ number, /** @type {boolean} */ isDown) => {

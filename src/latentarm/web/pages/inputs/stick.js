@@ -18,7 +18,7 @@ export function attachStick(inputs, settings) {
     const unit = (REACH / SIZE) * box.width;
     const pushed = [event.clientX - box.left - box.width / 2, box.top + box.height / 2 - event.clientY];
     const [x, y] = pushed.map((px) => Math.min(Math.max(px / unit, -1), 1));
-    inputs.hold("pointer", x, y, settings.values.press === "latch");
+    inputs.hold("pointer", x, y, settings.values.press === "latch", 0, event.pointerType);
   };
   const letGo = () => inputs.release("pointer");
 
