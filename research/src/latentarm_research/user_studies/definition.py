@@ -2,8 +2,9 @@
 
 import hashlib
 import json
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
-from typing import ClassVar, Final, Literal, final
+from typing import Any, ClassVar, Final, Literal, final
 
 from latentarm.core.errors import UserError
 from latentarm.evaluation.measures import label_of
@@ -16,6 +17,9 @@ Controls = Literal["modes", "two_sticks", "retargeting", "latent"]
 Assists = Literal["none", "interpolation", "blending"]
 Design = Literal["within", "between"]
 Aligns = Literal["none", "no_priors", "all_priors"]
+PUBLIC_TITLE: Final = "Driving a robot arm"
+_LATER: Final[Mapping[str, object]] = {"public_title": PUBLIC_TITLE}
+"""Defaults of fields that older definitions do not have, whose digests must stay."""
 PREFIX: Final = "user study "  # before a study's name, in what a folder of its results says that it is
 
 
@@ -111,7 +115,7 @@ class Definition:
     name: str
     """Name on the command line: at most 40 of a to z, 0 to 9 and _, a letter first."""
     title: str
-    """Title of its page."""
+    """Title of its report."""
     section: str
     """Section of the paper; empty for other studies."""
     about: str
@@ -147,6 +151,9 @@ class Definition:
     """Differences from what the paper did, each a sentence."""
     design: Design = "within"
     """`within`: each person meets every condition, in an order of their own; `between`: one alone."""
+    public_title: str = PUBLIC_TITLE
+    """Title that participants read until they have finished: it must tell neither conditions nor
+    hypotheses."""
 
     def __post_init__(self) -> None:
         in_order = [condition.name for condition in self.conditions]
@@ -212,11 +219,15 @@ class Definition:
         return next((task.label for task in self.tasks if task.name == name), name)
 
     def as_json(self) -> dict[str, object]:
-        """Plain mapping of every field."""
-        return json.loads(json.dumps(asdict(self)))
+        """Plain mapping of every field; those of `_LATER` where they differ from it."""
+        return json.loads(json.dumps(asdict(self, dict_factory=_fields)))
 
     @property
     def digest(self) -> str:
         """SHA-256 of every field, in hexadecimal."""
         canonical = json.dumps(self.as_json(), sort_keys=True, separators=(",", ":"), ensure_ascii=False)
         return hashlib.sha256(canonical.encode()).hexdigest()
+
+
+def _fields(named: list[tuple[str, Any]]) -> dict[str, Any]:
+    return {name: value for name, value in named if name not in _LATER or value != _LATER[name]}

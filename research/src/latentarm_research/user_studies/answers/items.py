@@ -1,6 +1,7 @@
 """Items of a questionnaire in each person's order: sheets to fill in or print, and answers, read strictly."""
 
 import csv
+from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from io import StringIO
@@ -91,9 +92,11 @@ def _csv(definition: Definition, asked: Sequence[Asked]) -> str:
 def _markdown(definition: Definition, asked: Sequence[Asked]) -> str:
     points = definition.questionnaire[0].points
     scale = [str(point) for point in range(1, points + 1)]
-    parts = [f"# {definition.title}\n"]
-    for (person, condition), lines in groupby(asked, lambda one: (one.person, one.condition)):
-        parts.append(f"## Person {person}, after {condition}\n")
+    parts = [f"# {definition.public_title}\n"]
+    places: Counter[int] = Counter()
+    for (person, _), lines in groupby(asked, lambda one: (one.person, one.condition)):
+        places[person] += 1
+        parts.append(f"## Person {person}, way of driving {places[person]}\n")
         parts.append(f"1: I strongly disagree. {points}: I strongly agree. Mark one number on each line.\n")
         parts.append(
             markdown_table(

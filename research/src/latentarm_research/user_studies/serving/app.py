@@ -33,6 +33,7 @@ from latentarm_research.user_studies.serving.participant_pages import (
     HOME,
     ParticipantPages,
     answer_file,
+    own_data,
 )
 from latentarm_research.user_studies.serving.queue import Queue
 from latentarm_research.user_studies.serving.request_limit import RequestLimit
@@ -261,8 +262,8 @@ class StudyServer:
         return _onward(HOME)
 
     async def data(self, _: Request, key: str) -> Response:
-        """Everything that is kept of them, with the addresses of the steps of their drives."""
-        kept = await asyncio.to_thread(self._store.everything, key)
+        """See `own_data`; with the addresses of the steps of their drives."""
+        kept = own_data(await asyncio.to_thread(self._store.everything, key))
         steps = [f"{HOME}/steps/{path.name}" for path in steps_of(self._serving.out, key)]
         answer = json_answer({**kept, "steps": steps})
         answer.headers["content-disposition"] = 'attachment; filename="my-data.json"'

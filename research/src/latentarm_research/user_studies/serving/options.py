@@ -44,4 +44,4 @@ def general_information(definition: Definition, away_hours: float) -> str:
     texts = Environment(loader=FileSystemLoader(PAGES), undefined=StrictUndefined, trim_blocks=True)  # noqa: S701
     met = 1 if definition.design == "between" else len(definition.conditions)
     template = texts.get_template("information.md")
-    return template.render(definition=definition, conditions=met, hours=f"{away_hours:g}")
+    return template.render(conditions=met, hours=f"{away_hours:g}")

@@ -1,7 +1,9 @@
 """The pages of a study itself: information, practice, trials, questions, and the code."""
 
+import json
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, Final, final
+from typing import Any, Final, cast, final
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markdown_it import MarkdownIt
@@ -63,6 +65,25 @@ class ParticipantPages:
             return self.page("questions", **shown, order=due.order, asked=asked)
         failed = due.attempt > 0 and not standing.drives[-1].trace.success
         return self.page(due.kind, **shown, due=due, running=running, failed=failed)
+
+
+def own_data(kept: Mapping[str, list[dict[str, Any]]]) -> dict[str, Any]:
+    """A person's rows of all tables, for them: with their conditions only once they have finished."""
+    read = {
+        table: [{**row, "record": json.loads(row["record"])} if "record" in row else row for row in rows]
+        for table, rows in kept.items()
+    }
+    finished = all(row["completion"] is not None for row in kept["people"])
+    return read if finished else _without_conditions(read)
+
+
+def _without_conditions(value: Any) -> Any:
+    if isinstance(value, list):
+        return [_without_conditions(one) for one in cast(list[Any], value)]
+    if isinstance(value, dict):
+        named = cast(dict[str, Any], value)
+        return {name: _without_conditions(one) for name, one in named.items() if name != "condition"}
+    return value
 
 
 async def answer_file(request: Request) -> Response:

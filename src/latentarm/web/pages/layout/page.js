@@ -54,7 +54,10 @@ export function attachPage({ drop = () => {}, repaint = () => {}, runChanged = (
     const { run, latch_max_s, profiles, real } = connection.welcome;
     setHidden(byId("shadow"), !real?.shadow);
     const robot = robotWords(connection.welcome.robot);
-    setText(byId("about"), run ? say("layout.about_run", { robot, run }) : say("layout.about_no_run", { robot }));
+    // In a study nobody may read how they drive.
+    const fixed = document.documentElement.hasAttribute("data-fixed");
+    const learned = run ? say("layout.about_run", { robot, run }) : say("layout.about_no_run", { robot });
+    setText(byId("about"), fixed ? robot : learned);
     /** @type {HTMLInputElement | null} */ (document.querySelector("input[name=latchS]"))?.setAttribute("max", String(latch_max_s));
     offerProfiles(profiles);
   });
