@@ -19,6 +19,7 @@ from websockets.sync.client import ClientConnection, connect
 from latentarm_research.user_studies.catalogue import load_definition
 from study_line import Line
 
+CONTACT = "Ann Lee, ann@uni.example"
 SCALE = {
     "name": "ease",
     "label": "Ease",
@@ -67,7 +68,7 @@ LATENT = {
 def serving(study: str, *options: str) -> Generator[tuple[str, "subprocess.Popen[str]"]]:
     """`latentarm study serve` as long as the block lasts: its first link, and its process."""
     command = [sys.executable, "-m", "latentarm", "study", "serve", study, "--port", "0", "--json"]
-    command += ["--preset", "smoke", *options]
+    command += ["--preset", "smoke", "--contact", CONTACT, *options]
     server = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
     assert server.stdout is not None
     try:
@@ -111,7 +112,7 @@ class Participant:
         items = re.findall(r'name="(\w+_\d+)" value="1"', page)
         order = int(re.search(r'data-order="(\d)"', page)[1])  # type: ignore[index]
         assert len(items) >= 4
-        self.post("answers", order=order, points=dict.fromkeys(items, 6))
+        self.post("answers", order=order, answers=dict.fromkeys(items, 6))
 
     def take_part(self) -> None:
         """Do what is due until the study is over."""

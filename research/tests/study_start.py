@@ -8,7 +8,7 @@ import pytest
 
 from latentarm.cli import main
 from latentarm_research.user_studies.serving import serve as serving
-from study_participant import MODES, TWIST, definition
+from study_participant import CONTACT, MODES, TWIST, definition
 
 
 @final
@@ -26,7 +26,8 @@ class Starts:
     def __call__(self, *options: str) -> int:
         """Start it with these options; its exit code."""
         given = ["study", "serve", str(self._study), "--port", "0", "--out", str(self.out), *options]
-        return main(given)
+        is_first = not (self.out / "config.json").exists()
+        return main([*given, "--contact", CONTACT] if is_first else given)
 
     @property
     def output(self) -> str:

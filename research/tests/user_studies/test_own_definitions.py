@@ -102,7 +102,7 @@ FAULTS: list[tuple[Callable[[dict[str, Any]], object], str]] = [
     (lambda one: one["measures"].append("ease"), "twice"),
     (lambda one: one["exclusions"][0].update(measure="stops"), "exclusion of the study .* is by stops"),
     (lambda one: one["hypotheses"][0]["claims"][0].update(subject=["R"]), "does not have"),
-    (lambda one: one["questionnaire"][0]["items"].pop(), "4 items"),
+    (lambda one: one["questionnaire"][0]["items"].clear(), "one item or more"),
     (lambda one: one.update(factors=[{"name": "a", "low": ["b", []], "high": ["c", []]}]), "two or none"),
 ]  # fmt: skip
 

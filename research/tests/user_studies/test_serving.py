@@ -12,7 +12,7 @@ import pytest
 from latentarm.cli import main
 from latentarm.demonstrations.dataset import read_dataset
 from latentarm_research.user_studies.recorded import read_recorded
-from study_participant import LATENT, MODES, definition, next_link, participant, serving
+from study_participant import CONTACT, LATENT, MODES, definition, next_link, participant, serving
 
 
 @pytest.mark.slow
@@ -72,5 +72,5 @@ def test_a_participant_goes_through_a_study_with_a_learned_model_and_is_reported
 
 
 def test_a_condition_that_the_page_lacks_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["study", "serve", "apple_pie", "--port", "0"]) == 2
+    assert main(["study", "serve", "apple_pie", "--port", "0", "--contact", CONTACT]) == 2
     assert "two sticks" in capsys.readouterr().err

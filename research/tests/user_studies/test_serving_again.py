@@ -8,6 +8,7 @@ import pytest
 
 from latentarm.cli import main
 from latentarm_research.user_studies.serving.store import Store
+from study_participant import CONTACT
 from study_start import Starts
 
 FIRST = ("--prolific", "5" * 24, "--completion-code", "C0DE", "--away-hours", "2.3", "--preset", "smoke")
@@ -30,8 +31,8 @@ def test_options_that_are_left_out_are_those_of_the_first_start(start: Starts) -
     assert start() == 0
     said = start.output
     assert (
-        f"As at the first start: with --prolific {FIRST[1]}, with --completion-code C0DE, with --away-hours"
-        " 2.3, with --preset smoke." in said
+        f"As at the first start: with --contact {CONTACT}, with --prolific {FIRST[1]}, with"
+        " --completion-code C0DE, with --away-hours 2.3, with --preset smoke." in said
     )
     assert "{{%SESSION_ID%}}" in said
     assert start(*FIRST) == 0
@@ -39,9 +40,28 @@ def test_options_that_are_left_out_are_those_of_the_first_start(start: Starts) -
     assert start.codes == sent
 
 
+@pytest.mark.parametrize("contact", [[], ["--contact", " "], ["--contact", "a\nb"], ["--contact", "a" * 201]])
+def test_a_study_without_anybody_to_ask_is_not_served(start: Starts, contact: list[str]) -> None:
+    assert main(["study", "serve", "eating", "--out", str(start.out), "--port", "0", *contact]) == 2
+    assert "Name with --contact whom participants can ask" in start.output
+    assert not start.out.exists()
+
+
+def test_a_folder_of_an_earlier_version_takes_a_contact(start: Starts) -> None:
+    assert start() == 0
+    config = json.loads((start.out / "config.json").read_text())
+    del config["served"]["contact"]
+    (start.out / "config.json").write_text(json.dumps(config))
+    assert start() == 2
+    assert start("--contact", "Bo") == 0
+    assert start() == 0
+    assert "As at the first start: with --contact Bo" in start.output
+
+
 @pytest.mark.parametrize(
     ("option", "value", "said"),
     [
+        ("--contact", "Bo", f"began with --contact {CONTACT}, and this start is with --contact Bo"),
         ("--prolific", "6" * 24, f"began with --prolific {'5' * 24}, and this start is with --prolific 666"),
         ("--completion-code", "OTHER", "began with --completion-code C0DE"),
         ("--away-hours", "3", "with --away-hours 2.3, and this start is with --away-hours 3.0"),

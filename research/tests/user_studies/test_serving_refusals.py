@@ -105,7 +105,7 @@ def test_what_was_sent_before_changes_nothing_when_it_is_sent_again(
 ) -> None:
     person.ready()
     person.drive()
-    first = {"order": 0, "points": {"ease_1": 6}}
+    first = {"order": 0, "answers": {"ease_1": 6}}
     assert person.post("answers", **first).status_code == 200
     person.drive()
     person.answer()
@@ -125,13 +125,13 @@ def test_what_was_sent_before_changes_nothing_when_it_is_sent_again(
 
 
 WRONG_ANSWERS: list[Any] = [
-    {"order": 0, "points": {"ease_1": 8}},
-    {"order": 0, "points": {"ease_1": 0}},
-    {"order": 0, "points": {"ease_1": 2.5}},
-    {"order": 0, "points": {"ease_9": 1}},
-    {"order": 0, "points": {"ease_1": 1}, "completion": "mine"},
-    {"order": 0, "points": []},
-    {"order": -1, "points": {}},
+    {"order": 0, "answers": {"ease_1": 8}},
+    {"order": 0, "answers": {"ease_1": 0}},
+    {"order": 0, "answers": {"ease_1": 2.5}},
+    {"order": 0, "answers": {"ease_9": 1}},
+    {"order": 0, "answers": {"ease_1": 1}, "completion": "mine"},
+    {"order": 0, "answers": []},
+    {"order": -1, "answers": {}},
     [],
     "DROP TABLE answers",
 ]
@@ -198,9 +198,9 @@ def test_sql_in_any_field_is_text(address: str, out: Path, person: Participant, 
         assert is_refused(guesser.post("withdraw"), 403)
     contents: list[tuple[str, dict[str, Any]]] = [
         ("consent", {"digest": sql}),
-        ("answers", {"order": sql, "points": {}}),
-        ("answers", {"order": 0, "points": {sql: 1}}),
-        ("answers", {"order": 0, "points": {"ease_1": sql}}),
+        ("answers", {"order": sql, "answers": {}}),
+        ("answers", {"order": 0, "answers": {sql: 1}}),
+        ("answers", {"order": 0, "answers": {"ease_1": sql}}),
     ]
     for to, content in contents:
         assert person.post(to, **content).status_code in (200, 400, 409)

@@ -23,5 +23,5 @@ def drive_trial(page: Page) -> None:
 def assert_recorded(folder: Path) -> None:
     """Check a study of two conditions in which each of the four items was answered by 6."""
     recorded = read_recorded(folder)
-    assert [one.points for one in recorded.answers] == [6] * 8
+    assert [one.answer for one in recorded.answers] == [6] * 8
     assert all(one.measures["path_length"] > 0.0 for one in recorded.trials)

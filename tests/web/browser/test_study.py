@@ -77,4 +77,4 @@ def test_a_participant_takes_a_study_on_the_page(
     assert recorded.who == "1 real person"
     assert {one.condition for one in recorded.trials} == {"Modes", "Retargeting"}
     assert all(one.measures["path_length"] > 0.0 for one in recorded.trials)
-    assert [one.points for one in recorded.answers] == [6] * 8
+    assert [one.answer for one in recorded.answers] == [6] * 8

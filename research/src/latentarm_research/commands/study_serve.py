@@ -32,6 +32,10 @@ def serve_study(
             help="The address that people open where a proxy serves the page; see docs/deploy.md.",
         ),
     ] = None,
+    contact: Annotated[
+        str | None,
+        arg(metavar="TEXT", help="Whom participants can ask; every page says it. The first start needs it."),
+    ] = None,
     information: Annotated[
         Path | None,
         arg(metavar="FILE", help="Markdown that people read and consent to; without it, a general text."),
@@ -63,11 +67,11 @@ def serve_study(
     """Take real people through a study on the page: consent, practice, trials, questions, completion code.
 
     Prints the links for participants; Ctrl-C ends it, and the same command goes on with it. The folder keeps
-    --information, --prolific, --completion-code, --away-hours, --database, --preset and --seed of the first
-    start. A later start may leave them out, except for the database's password; one that names others is
-    refused.
+    --contact, --information, --prolific, --completion-code, --away-hours, --database, --preset and --seed of
+    the first start. A later start may leave them out, except for the database's password; one that names
+    others is refused.
 
-    For example: latentarm study serve eating
+    For example: latentarm study serve eating --contact "Ann Lee, ann@uni.example"
     """
     from latentarm.web.arm_process.drive_setup import Spec
     from latentarm.web.server.config import TeleopConfig
@@ -100,6 +104,7 @@ def serve_study(
     else:
         text = general_information(definition, AWAY_HOURS if away_hours is None else away_hours)
     given = {
+        "contact": contact,
         "information": digest_of(text),
         "prolific": prolific,
         "completion_code": completion_code,

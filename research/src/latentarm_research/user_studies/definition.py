@@ -11,14 +11,16 @@ from latentarm.evaluation.measures import label_of
 from latentarm_research.studies.claims import Claim, Hypothesis
 from latentarm_research.user_studies.exclusion import Exclusion
 from latentarm_research.user_studies.hypothesis import Printed
-from latentarm_research.user_studies.questionnaire import Scale
+from latentarm_research.user_studies.questionnaire import HIGH, LOW, Question, Scale
 
 Controls = Literal["modes", "two_sticks", "retargeting", "latent"]
 Assists = Literal["none", "interpolation", "blending"]
 Design = Literal["within", "between"]
 Aligns = Literal["none", "no_priors", "all_priors"]
 PUBLIC_TITLE: Final = "Driving a robot arm"
-_LATER: Final[Mapping[str, object]] = {"public_title": PUBLIC_TITLE}
+_LATER: Final[Mapping[str, object]] = {
+    "public_title": PUBLIC_TITLE, "in_words": (), "low": LOW, "high": HIGH
+}  # fmt: skip
 """Defaults of fields that older definitions do not have, whose digests must stay."""
 PREFIX: Final = "user study "  # before a study's name, in what a folder of its results says that it is
 
@@ -154,6 +156,8 @@ class Definition:
     public_title: str = PUBLIC_TITLE
     """Title that participants read until they have finished: it must tell neither conditions nor
     hypotheses."""
+    in_words: tuple[Question, ...] = ()
+    """Questions after each condition, after the scales, that people answer in their own words."""
 
     def __post_init__(self) -> None:
         in_order = [condition.name for condition in self.conditions]
@@ -205,6 +209,11 @@ class Definition:
     def scales(self) -> tuple[str, ...]:
         """Names of the questionnaire's scales."""
         return tuple(scale.name for scale in self.questionnaire)
+
+    @property
+    def asks(self) -> bool:
+        """True if people are asked anything after a condition."""
+        return bool(self.questionnaire or self.in_words)
 
     def condition(self, name: str) -> Condition:
         """The condition of that name."""

@@ -1,11 +1,12 @@
-"""What people are asked after a condition: scales of several items each, in our own words."""
+"""The questions after a condition: scales of one item or more, and questions answered in words."""
 
 from dataclasses import dataclass
 from typing import Final, final
 
 from latentarm.core.errors import UserError
 
-FEWEST_ITEMS: Final = 4  # items of a scale, at least (Schrum et al., ACM THRI 12:1, 2023)
+LONGEST_TEXT: Final = 2000  # characters of an answer in words
+LOW, HIGH = "strongly disagree", "strongly agree"
 
 
 @final
@@ -29,21 +30,34 @@ class Scale:
     label: str
     """Name in tables and figures."""
     items: tuple[Item, ...]
-    """Statements, four or more."""
+    """Statements, one or more. Four or more make the score reliable (Schrum et al., ACM THRI 12:1, 2023)."""
     points: int = 7
-    """Points of the answer, from "strongly disagree" to "strongly agree", two or more."""
+    """Points of the answer, two or more."""
+    low: str = LOW
+    """Meaning of the answer 1."""
+    high: str = HIGH
+    """Meaning of the highest answer."""
 
     def __post_init__(self) -> None:
-        if len(self.items) < FEWEST_ITEMS:
-            raise UserError(
-                f"The scale {self.name} needs {FEWEST_ITEMS} items or more, not {len(self.items)}."
-            )
+        if not self.items:
+            raise UserError(f"The scale {self.name} needs one item or more.")
         if self.points < 2:
             raise UserError(f"The scale {self.name} needs two points or more, not {self.points}.")
 
 
+@final
+@dataclass(frozen=True)
+class Question:
+    """One question that people answer in their own words."""
+
+    name: str
+    """Name in records: at most 40 of a to z, 0 to 9 and _, a letter first."""
+    text: str
+    """The question."""
+
+
 def scale(name: str, label: str, agree: tuple[str, ...], disagree: tuple[str, ...]) -> Scale:
-    """A scale of statements for and against. Raises a `UserError` where there are too few items."""
+    """A scale of statements for and against."""
     return Scale(name, label, (*map(Item, agree), *(Item(text, True) for text in disagree)))
 
 

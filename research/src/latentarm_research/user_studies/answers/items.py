@@ -18,7 +18,7 @@ from latentarm_research.studies.streams import generator
 from latentarm_research.studies.tables import markdown_table
 from latentarm_research.user_studies.definition import Definition
 from latentarm_research.user_studies.designs import design_of
-from latentarm_research.user_studies.questionnaire import Item, Scale
+from latentarm_research.user_studies.questionnaire import LONGEST_TEXT, Item, Scale
 from latentarm_research.user_studies.sizes import Stream
 
 
@@ -29,8 +29,8 @@ class Asked:
 
     person: int  # their number, from 0
     condition: str  # after which they are asked
-    item: str  # its name
-    text: str  # the statement
+    item: str  # name of the item, or of the question in words
+    text: str  # the statement or question
 
 
 def items_of(definition: Definition) -> dict[str, tuple[Scale, Item]]:
@@ -43,19 +43,21 @@ def items_of(definition: Definition) -> dict[str, tuple[Scale, Item]]:
 
 
 def sheet(definition: Definition, people: int, seed: int) -> list[Asked]:
-    """What everybody is asked: after each condition that they meet all items, in an order of their own."""
+    """Everybody's questions: after each condition all items in an order of their own, then those in words."""
     items = items_of(definition)
-    if not items:
-        raise UserError(f"The study {definition.name} has no questionnaire with scales.")
+    in_words = {one.name: one.text for one in definition.in_words}
+    if not (items or in_words):
+        raise UserError(f"The study {definition.name} has no questionnaire.")
+    texts = {**{name: item.text for name, (_, item) in items.items()}, **in_words}
     rng = generator(seed, definition.name, Stream.ORDER)
     met = design_of(definition).orders(definition, people, rng)
     rng = generator(seed, f"{definition.name} items", Stream.QUESTIONS)
     return [
-        Asked(person, condition, name, items[name][1].text)
+        Asked(person, condition, name, texts[name])
         for person, order in enumerate(met)
         for names in [_shuffled(list(items), rng)]
         for condition in order
-        for name in names
+        for name in (*names, *in_words)
     ]
 
 
@@ -90,19 +92,25 @@ def _csv(definition: Definition, asked: Sequence[Asked]) -> str:
 
 
 def _markdown(definition: Definition, asked: Sequence[Asked]) -> str:
-    points = definition.questionnaire[0].points
-    scale = [str(point) for point in range(1, points + 1)]
+    items = items_of(definition)
+    most = max((scale.points for scale in definition.questionnaire), default=0)
+    head = ["statement", "1 means", *map(str, range(1, most + 1)), "the highest means", "item"]
     parts = [f"# {definition.public_title}\n"]
     places: Counter[int] = Counter()
     for (person, _), lines in groupby(asked, lambda one: (one.person, one.condition)):
         places[person] += 1
         parts.append(f"## Person {person}, way of driving {places[person]}\n")
-        parts.append(f"1: I strongly disagree. {points}: I strongly agree. Mark one number on each line.\n")
-        parts.append(
-            markdown_table(
-                ["statement", *scale, "item"], [[one.text, *("☐" for _ in scale), one.item] for one in lines]
-            )
-        )
+        asked_now = list(lines)
+        rows: list[list[str]] = []
+        for one in asked_now:
+            if one.item in items:
+                scale = items[one.item][0]
+                boxes = ["☐"] * scale.points + [""] * (most - scale.points)
+                rows.append([one.text, scale.low, *boxes, scale.high, one.item])
+        if rows:
+            parts.append("Mark one number on each line.\n")
+            parts.append(markdown_table(head, rows))
+        parts.extend(f"{one.text} ({one.item})\n\n" for one in asked_now if one.item not in items)
     return "\n".join(parts)
 
 
@@ -119,8 +127,8 @@ class Answer:
 
     person: int  # their number, from 0
     condition: str  # name of the condition
-    item: str  # name of the item
-    points: int  # 1, strongly disagree, to the points of its scale
+    item: str  # name of the item, or of the question in words
+    answer: int | str  # 1 to the points of the item's scale; or words
 
 
 def read_answers(
@@ -161,18 +169,33 @@ def _answer(
     given: Mapping[str, str], definition: Definition, met: Mapping[int, Collection[str]], where: str
 ) -> Answer | None:
     person, condition, item = given["person"], given["condition"], given["item"]
-    items = items_of(definition)
-    if item not in items:
+    scale = items_of(definition).get(item, (None,))[0]
+    if scale is None and item not in {one.name for one in definition.in_words}:
         raise UserError(f"{where}: the study {definition.name} has no item {item!r}.")
     if not (person.isascii() and person.isdigit() and len(person) < 10 and int(person) in met):
         raise UserError(f"{where}: there is no person {person!r} in the study.")
     if condition not in met[int(person)]:
         raise UserError(f"{where}: person {person} has not met the condition {condition!r}.")
-    points = items[item][0].points
     if not given["answer"]:
         return None
-    if given["answer"] not in {str(point) for point in range(1, points + 1)}:
-        raise UserError(
-            f"{where}: the answer must be a whole number from 1 to {points}, not {given['answer']!r}."
-        )
-    return Answer(int(person), condition, item, int(given["answer"]))
+    is_whole = scale is not None and given["answer"].isascii() and given["answer"].isdigit()
+    answer = int(given["answer"]) if is_whole and len(given["answer"]) < 10 else given["answer"]
+    if wrong := wrong_answer(definition, item, answer):
+        raise UserError(f"{where}: the answer must be {wrong}, not {given['answer']!r}.")
+    return Answer(int(person), condition, item, answer)
+
+
+def wrong_answer(definition: Definition, item: str, answer: int | str) -> str:
+    """The kind of answer that an item takes, where this is none; else ""."""
+    scale = items_of(definition).get(item, (None,))[0]
+    if scale is not None:
+        right = isinstance(answer, int) and 1 <= answer <= scale.points
+        return "" if right else f"a whole number from 1 to {scale.points}"
+    right = (
+        isinstance(answer, str)
+        and item in {one.name for one in definition.in_words}
+        and len(answer) <= LONGEST_TEXT
+        and bool(answer.strip())
+        and not any(letter < " " and letter not in "\t\n\r" for letter in answer)
+    )
+    return "" if right else f"words, of at most {LONGEST_TEXT} characters"

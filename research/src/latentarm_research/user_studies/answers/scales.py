@@ -31,7 +31,7 @@ class Rated:
     alpha: float | None  # Cronbach's; None for fewer than two people, or without spread
     alpha_low: float | None  # lower end of its 95 % interval (Feldt 1965); None with alpha
     alpha_high: float | None  # upper end
-    # answers for each point, reversed items turned, from "strongly disagree" on; of everybody
+    # answers for each point from 1 on, reversed items turned; of everybody
     counts: tuple[int, ...]
 
 
@@ -42,7 +42,7 @@ class Ratings:
 
     rated: tuple[Rated, ...]  # every scale in every condition
     scores: tuple[Trial, ...]  # a record for each person and condition, with the scales as measures
-    answers: int  # how many there are
+    answers: int  # number of those on a scale
 
     def as_json(self) -> dict[str, object]:
         """Plain mapping."""
@@ -61,7 +61,9 @@ def rate(definition: Definition, answers: Sequence[Answer], trials: Sequence[Tri
 
     A person who left out an item of a scale has no score of it in that condition.
     """
-    given = {(one.person, one.condition, one.item): one.points for one in answers}
+    given = {
+        (one.person, one.condition, one.item): one.answer for one in answers if isinstance(one.answer, int)
+    }
     people = sorted({one.person for one in answers})
     items = items_of(definition)
     scores: dict[tuple[int, str], dict[str, float]] = {}
@@ -86,7 +88,7 @@ def rate(definition: Definition, answers: Sequence[Answer], trials: Sequence[Tri
         Trial(person, condition, QUESTIONNAIRE, order[person, condition], 0, measures)
         for (person, condition), measures in sorted(scores.items())
     )
-    return Ratings(tuple(rated), records, len(answers))
+    return Ratings(tuple(rated), records, len(given))
 
 
 def cronbach_alpha(table: FloatArray) -> tuple[float, float, float] | None:

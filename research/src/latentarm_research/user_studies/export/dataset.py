@@ -45,8 +45,10 @@ VARIABLES: Final = (
     Variable("scale", "name of the questionnaire's scale"),
     Variable("item", "name of the questionnaire's item"),
     Variable("reversed", "1 where agreement means less of what the scale measures, else 0"),
-    Variable("points", "points of the answer's scale, from 1, strongly disagree, on"),
+    Variable("points", "points of the answer's scale, from 1 on"),
     Variable("answer", "the answer, from 1 to points"),
+    Variable("question", "a question that people answer in their own words"),
+    Variable("text", "the answer to it"),
     Variable("claim", "number of the claim, from 0"),
     Variable("hypothesis", "name of the hypothesis that the claim belongs to"),
     Variable("measure", "measure or scale that the claim is about"),
@@ -100,6 +102,11 @@ def write_dataset(folder: Path, recorded: Recorded, drives: Sequence[tuple[Drive
         "sides": (("claim", "kind", "name"), _sides(definition)),
         "factors": (("factor", "level", "condition"), _factors(definition)),
     }
+    if definition.in_words:
+        tables["texts"] = (
+            ("person", "condition", "item", "question", "text"),
+            _texts(definition, recorded.answers),
+        )
     if drives:
         columns = ("person", "condition", "task", "order", "trial", "choice", "attempt", "ending")
         tables["drives"] = ((*columns, "devices", "episode"), _drives(folder, definition, drives, columns))
@@ -166,9 +173,17 @@ def _people(recorded: Recorded) -> Iterable[Sequence[Cell]]:
 def _answers(definition: Definition, answers: Sequence[Answer]) -> Iterable[Sequence[Cell]]:
     items = items_of(definition)
     for one in answers:
-        scale, item = items[one.item]
-        turned = int(item.reversed)
-        yield one.person, one.condition, scale.name, one.item, turned, scale.points, one.points
+        if one.item in items and isinstance(one.answer, int):
+            scale, item = items[one.item]
+            turned = int(item.reversed)
+            yield one.person, one.condition, scale.name, one.item, turned, scale.points, one.answer
+
+
+def _texts(definition: Definition, answers: Sequence[Answer]) -> Iterable[Sequence[Cell]]:
+    asked = {one.name: one.text for one in definition.in_words}
+    for one in answers:
+        if one.item in asked:
+            yield one.person, one.condition, one.item, asked[one.item], one.answer
 
 
 def _drives(

@@ -73,7 +73,8 @@ def likert_figure(
     colours = colormaps["PuOr"](np.linspace(0.1, 0.9, most))
     handles = [Patch(facecolor=to_hex(colour)) for colour in colours]
     points = [str(point) for point in range(1, most + 1)]
-    heading = f"{who}: 1 strongly disagree, {most} strongly agree; reversed items turned"
+    ends = {f"1 {scale.low}, {scale.points} {scale.high}" for scale in scales}
+    heading = f"{who}: {ends.pop() if len(ends) == 1 else 'from 1 on'}; reversed items turned"
     legend_below(figure, handles, points, heading=heading)
     return figure
 

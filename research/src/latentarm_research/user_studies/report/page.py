@@ -1,5 +1,6 @@
 """The report of a study that people went through, simulated or real: analysis, rows, figures and page."""
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final, final
@@ -103,6 +104,7 @@ def report_page(content: Content) -> str:
         rated_head=RATED_HEAD,
         rated_lines=_rated_lines(content),
         item_lines=_item_lines(definition),
+        in_words_lines=_in_words_lines(recorded),
         departures=content.departures,
     )
 
@@ -192,10 +194,22 @@ def _rated_lines(content: Content) -> list[tuple[str, ...]]:
     ]
 
 
-def _item_lines(definition: Definition) -> list[tuple[str, str]]:
+def _item_lines(definition: Definition) -> list[tuple[str, str, str]]:
     return [
-        (scale.label, " · ".join(f"{item.text}{' (r)' if item.reversed else ''}" for item in scale.items))
+        (
+            scale.label,
+            f"1: {scale.low}; {scale.points}: {scale.high}",
+            " · ".join(f"{item.text}{' (r)' if item.reversed else ''}" for item in scale.items),
+        )
         for scale in definition.questionnaire
+    ]
+
+
+def _in_words_lines(recorded: Recorded) -> list[str]:
+    counts = Counter(one.item for one in recorded.answers)
+    return [
+        f"Asked in words: {one.text} Answers: {counts[one.name]}; latentarm study export writes them."
+        for one in recorded.definition.in_words
     ]
 
 

@@ -22,7 +22,7 @@ from latentarm.core.errors import UserError
 from latentarm.web.protocol.notice import Message, Notice
 from latentarm.web.server.answers import NO_STORE, body_of, json_answer
 from latentarm.web.server.assets import Assets
-from latentarm_research.user_studies.answers.items import items_of
+from latentarm_research.user_studies.answers.items import wrong_answer
 from latentarm_research.user_studies.drive_record import DriveRecord
 from latentarm_research.user_studies.serving.links import link_of
 from latentarm_research.user_studies.serving.models import Models
@@ -58,7 +58,7 @@ class Answered(Message):
     """Somebody has answered the questions after a condition."""
 
     order: Annotated[int, Field(ge=0)]
-    points: dict[str, int]  # by item; one that is absent was left out
+    answers: dict[str, int | str]  # by item; one that is absent was left out
 
 
 @final
@@ -255,10 +255,10 @@ class StudyServer:
         due, _ = self._due(key)
         if not isinstance(due, ToAnswer) or given.order != due.order:
             return _refused("These questions are not asked now: your answers may be saved already.", 409)
-        most = {name: scale.points for name, (scale, _) in items_of(self._serving.definition).items()}
-        if not all(1 <= points <= most.get(name, 0) for name, points in given.points.items()):
+        definition = self._serving.definition
+        if any(wrong_answer(definition, item, answer) for item, answer in given.answers.items()):
             return _refused("These are not answers to the questions of this study.", 400)
-        await asyncio.to_thread(self._store.keep_answers, key, due.order, due.condition.name, given.points)
+        await asyncio.to_thread(self._store.keep_answers, key, due.order, due.condition.name, given.answers)
         return _onward(HOME)
 
     async def data(self, _: Request, key: str) -> Response:

@@ -17,6 +17,7 @@ from latentarm_research.user_studies.recorded import SERVED
 from latentarm_research.user_studies.sizes import PRESETS
 
 AWAY_HOURS: Final = 2.0
+LONGEST_CONTACT: Final = 200  # characters
 
 
 @final
@@ -26,6 +27,7 @@ class KeptOptions(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
 
     key: str = Field(default_factory=lambda: secrets.token_hex(16))  # the study's; its database has it too
+    contact: str | None = None  # whom participants can ask; None in folders of earlier versions
     information: str  # SHA-256 of the text that people consent to, in hexadecimal
     prolific: str | None = None  # the study at Prolific whose links count; None for none
     completion_code: str | None = None  # that everybody gets; None for one of their own
@@ -57,11 +59,19 @@ def go_on(
 ) -> KeptOptions:
     """The options of a start: those given, and the kept ones for those left out (None), which it says.
 
-    Raises a `UserError` where one differs from that kept.
+    Raises a `UserError` where one differs from that kept, or nobody is named whom participants can ask.
     """
     chosen = {name: value for name, value in given.items() if value is not None}
+    contact = str(chosen.get("contact", "" if kept is None else kept.contact or ""))
+    if not (contact.strip() and contact.isprintable() and len(contact) <= LONGEST_CONTACT):
+        raise UserError(
+            "Name with --contact whom participants can ask, on one line of at most"
+            f' {LONGEST_CONTACT} characters, such as "Ann Lee, ann@uni.example".'
+        )
     if kept is None:
         return KeptOptions.model_validate(chosen)
+    if kept.contact is None:
+        kept = kept.model_copy(update={"contact": contact})
     before = kept.model_dump()
     for name, value in chosen.items():
         if value != before[name]:

@@ -14,6 +14,7 @@ from latentarm.web.server.answers import NO_STORE
 from latentarm.web.server.assets import FOLDER, Assets
 from latentarm.web.words.catalogue import languages
 from latentarm_research.user_studies.answers.items import items_of
+from latentarm_research.user_studies.questionnaire import LONGEST_TEXT
 from latentarm_research.user_studies.serving.options import PAGES, Serving
 from latentarm_research.user_studies.serving.page_drive import ToDrive
 from latentarm_research.user_studies.serving.store import Standing
@@ -39,6 +40,7 @@ class ParticipantPages:
         english = languages()["en"]
         always = {
             "definition": serving.definition,
+            "contact": serving.kept.contact,
             "home": HOME,
             "asset": assets.path,
             "modules": assets.path("layout/words.js").removesuffix("/layout/words.js"),
@@ -61,8 +63,8 @@ class ParticipantPages:
         shown: dict[str, Any] = {"place": due.order + 1, "of": len(self._way.order(standing.number or 0))}
         if isinstance(due, ToAnswer):
             items = items_of(self._serving.definition)
-            asked = [(name, items[name][1].text, items[name][0].points) for name in due.items]
-            return self.page("questions", **shown, order=due.order, asked=asked)
+            asked = [(name, items[name][1].text, items[name][0]) for name in due.items if name in items]
+            return self.page("questions", **shown, order=due.order, asked=asked, longest=LONGEST_TEXT)
         failed = due.attempt > 0 and not standing.drives[-1].trace.success
         return self.page(due.kind, **shown, due=due, running=running, failed=failed)
 

@@ -161,12 +161,12 @@ class Store:
                 session.add(Drive(**given, number=number + 1, record=record.model_dump_json()))
             return True
 
-    def keep_answers(self, key: str, order: int, condition: str, points: Mapping[str, int]) -> None:
+    def keep_answers(self, key: str, order: int, condition: str, answers: Mapping[str, int | str]) -> None:
         """Keep the answers after a condition; the first ones count."""
         with self._change() as session:
             if session.get(Person, key) is None or session.get(Answers, (key, order)) is not None:
                 return
-            session.add(Answers(person=key, order=order, condition=condition, points=dict(points)))
+            session.add(Answers(person=key, order=order, condition=condition, points=dict(answers)))
 
     def finish(self, key: str, code: str) -> str:
         """Give a person their completion code, and return it; the first one stays."""
@@ -254,11 +254,11 @@ class Store:
                 Finished(
                     _drives(session, person.key),
                     tuple(
-                        Answer(person.number or 0, one.condition, item, points)
+                        Answer(person.number or 0, one.condition, item, answer)
                         for one in session.scalars(
                             select(Answers).where(Answers.person == person.key).order_by(Answers.order)
                         )
-                        for item, points in one.points.items()
+                        for item, answer in one.points.items()
                     ),
                 )
                 for person in session.scalars(done)

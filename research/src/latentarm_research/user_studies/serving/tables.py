@@ -70,4 +70,4 @@ class Answers(Table):
     person: Mapped[str] = mapped_column(ForeignKey("people.key", ondelete="CASCADE"), primary_key=True)
     order: Mapped[int] = mapped_column(primary_key=True)
     condition: Mapped[str]
-    points: Mapped[dict[str, int]] = mapped_column(JSON)  # by item
+    points: Mapped[dict[str, int | str]] = mapped_column(JSON)  # by item; words where it asks for them

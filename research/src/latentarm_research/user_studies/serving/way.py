@@ -61,7 +61,7 @@ class Way:
             theirs = [one for one in standing.drives if one.order == place]
             if (trial := self._trial(condition, place, standing.number, theirs)) is not None:
                 return trial
-            if self.definition.questionnaire and place not in standing.answered:
+            if self.definition.asks and place not in standing.answered:
                 asked = sheet(self.definition, standing.number + 1, self.seed)
                 theirs = [one for one in asked if one.person == standing.number]
                 items = tuple(one.item for one in theirs if one.condition == name)

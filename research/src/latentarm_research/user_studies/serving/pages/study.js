@@ -9,8 +9,10 @@ function content(form) {
   const { to, digest, order } = form.dataset;
   if (to === "consent") return { digest };
   if (to !== "answers") return {};
-  const points = Object.fromEntries([...new FormData(form)].map(([name, value]) => [name, Number(value)]));
-  return { order: Number(order), points };
+  const inWords = new Set([...form.querySelectorAll("textarea")].map(({ name }) => name));
+  const given = [...new FormData(form)].filter(([, value]) => String(value).trim());
+  const answers = Object.fromEntries(given.map(([name, value]) => [name, inWords.has(name) ? value : Number(value)]));
+  return { order: Number(order), answers };
 }
 
 /** @param {HTMLFormElement} form @returns {Promise<{to?: string, problem?: string, waits_s?: number}>} */
