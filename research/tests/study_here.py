@@ -83,7 +83,9 @@ class Study:
         self.store.consent(key, "0" * 64, "2026-01-01T00:00:00+00:00")
         self.store.place(key, time.time())
         self.store.practised(key, 2)
-        while isinstance(due := self._due(key), ToDrive) or part == "finished":
+        if part == "trial":
+            return key
+        while isinstance(due := self.due(key), ToDrive) or part == "finished":
             if isinstance(due, ToAnswer):
                 self.store.keep_answers(key, due.order, due.condition.name, dict.fromkeys(due.items, 4))
             elif isinstance(due, ToDrive):
@@ -93,16 +95,16 @@ class Study:
                 break
         return key
 
-    def _due(self, key: str) -> object:
+    def due(self, key: str) -> object:
         standing = self.store.standing(key)
         assert standing is not None
         return self.way.after(standing)
 
 
-def driven(due: ToDrive) -> DriveRecord:
-    trace = Trace(0, due.condition.name, due.task.name, due.trial, due.choice, True, (), (), (), ())
+def driven(due: ToDrive, *, success: bool = True) -> DriveRecord:
+    trace = Trace(0, due.condition.name, due.task.name, due.trial, due.choice, success, (), (), (), ())
     return DriveRecord(
         people_are="real", person=0, condition=due.condition.name, order=due.order, task=due.task.name,
         trial=due.trial, choice=due.choice, attempt=due.attempt, ending="done", trace=trace,
-        measures={"success_rate": 1.0, "steps_done": 1.0, "time_s": 1.0},
+        measures={"success_rate": float(success), "steps_done": 1.0, "time_s": 1.0},
     )  # fmt: skip

@@ -15,8 +15,9 @@ from latentarm_research.user_studies.own.definition_file import read_definition
 from latentarm_research.user_studies.serving import request_limit
 from latentarm_research.user_studies.serving.app import COOKIE, Answered, Consented
 from latentarm_research.user_studies.serving.options import general_information
-from study_here import ORIGIN, PROLIFIC, Study
-from study_participant import CONTACT
+from latentarm_research.user_studies.serving.page_drive import ToDrive
+from study_here import ORIGIN, PROLIFIC, Study, driven
+from study_participant import CONTACT, definition
 
 CASES = int(os.environ.get("LATENTARM_STUDY_CASES", "20"))
 """For each request."""
@@ -66,7 +67,8 @@ def described() -> dict[str, Any]:
 def study(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Study]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(request_limit, "BURST", float("inf"))
-        study = Study(tmp_path_factory.mktemp("study"))
+        (task,) = definition()["tasks"]
+        study = Study(tmp_path_factory.mktemp("study"), tasks=[{**task, "trial_s": 20.0}])
         yield study
         study.close()
 
@@ -82,6 +84,16 @@ def test_a_person_from_prolific_comes_back_in_another_session(study: Study) -> N
     assert first.cookies[COOKIE] == again.cookies[COOKIE]
     assert without.status_code == 404
     assert "it lacks SESSION_ID" in without.text
+
+
+def test_the_page_says_why_a_drive_that_was_too_long_has_ended(study: Study) -> None:
+    key = study.comes("trial")
+    due = study.due(key)
+    assert isinstance(due, ToDrive)
+    failed = driven(due, success=False)
+    changes = {"ending": "record_full", "measures": {"time_s": 0.0}}  # so that another drive is due
+    study.store.keep_drive(key, failed.model_copy(update=changes))
+    assert "it was too long to record" in study.ask(key, "GET").text
 
 
 def test_every_page_says_whom_to_ask(study: Study) -> None:

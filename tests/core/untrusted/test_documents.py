@@ -40,6 +40,13 @@ def test_anything_else_is_one_sentence(content: bytes) -> None:
     assert "\n" not in said
 
 
+def test_a_slip_is_named_with_its_line_and_column() -> None:
+    with pytest.raises(
+        UserError, match=r"^mine\.json is not .*: line 3, column 3: expecting ',' delimiter\.$"
+    ):
+        parse_object('{\n  "people": 12\n  "name": "mine"\n}', "mine.json")
+
+
 HOSTILE = {
     "deep list": (b'{"a":' + b"[" * 10_000 + b"]" * 10_000 + b"}", f"deeper than {MOST_LEVELS}"),
     "deep object": (b'{"a":' * 10_000 + b"1" + b"}" * 10_000, "deeper than"),

@@ -11,7 +11,7 @@ from latentarm.core.types import Pose, StepRecord
 from latentarm.evaluation.contract import PlacesTool
 from latentarm.robots.kinematics.rotations import angle_between
 
-Reason = Literal["done", "mishap", "time_limit", "operator_stuck", "held_back", "safety_stop"]
+Reason = Literal["done", "mishap", "time_limit", "operator_stuck", "held_back", "safety_stop", "record_full"]
 
 STUCK_S: Final = 20.0  # no progress for this long counts as stuck, s; a shorter drive never counts as stuck
 NOT_NEARER: Final = f"no nearer for {STUCK_S:g} s"

@@ -72,7 +72,6 @@ def record_of(
     trial: int,
     attempt: int,
     driven: drives.Trace,
-    input_s: Mapping[str, float] | None = None,
 ) -> DriveRecord:
     """The record of a drive from its trace."""
     return DriveRecord(
@@ -86,7 +85,6 @@ def record_of(
         attempt=attempt,
         ending=driven.ending.reason,
         measures=_measured(task, driven),
-        input_s=input_s or {},
         trace=trace_of(person, condition, task, trial, driven),
     )
 

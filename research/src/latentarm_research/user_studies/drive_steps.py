@@ -28,6 +28,8 @@ from latentarm_research.user_studies.record import PeopleAre
 from latentarm_research.user_studies.scenes import scene_of
 
 MOST_BYTES: Final = 1 << 29  # of a file
+FULL_BYTES: Final = 1 << 28  # of figures: a drive with so many ends
+FULL_MARKS: Final = 1 << 19  # commas and brackets of labels: likewise; `parse_object` takes twice as many
 _VALUES: Final = "values"
 _ARRAYS: Final = ("state", "input", "latent", "action_human", "action_assist", "belief")  # of a `StepRecord`
 
@@ -40,6 +42,13 @@ class StepLog:
     rows: list[FloatArray] = field(default_factory=list)
     # by name: from which step on, and what
     labels: dict[str, list[tuple[int, Any]]] = field(default_factory=dict)
+    bytes: int = 0  # of the figures
+    marks: int = 0  # of the labels in JSON
+
+    @property
+    def full(self) -> bool:
+        """True if the file must get no longer: the drive ends."""
+        return self.bytes >= FULL_BYTES or self.marks >= FULL_MARKS
 
     def add(self, state: SceneState, record: StepRecord, device: str) -> None:
         """Add a step: how things stood, what was decided, and the pushed input device, "" for none."""
@@ -47,7 +56,9 @@ class StepLog:
             changes = self.labels.setdefault(name, [])
             if not changes or changes[-1][1] != value:
                 changes.append((len(self.rows), value))
+                self.marks += sum(map(json.dumps(changes[-1]).count, ",[{"))
         self.rows.append(np.concatenate([np.ravel(part) for part in _parts(state, record)]))
+        self.bytes += self.rows[-1].nbytes
 
     def write(self, path: Path, seed: int) -> None:
         """Write the file; ``seed`` is that of the scene and the start."""
@@ -95,10 +106,14 @@ class Measuring:
         task: StudyTask,
         trial: int,
         attempt: int,
+        *,
+        full: bool,
     ) -> DriveRecord:
-        """The record of the drive so far."""
+        """The record of the drive so far; ``full``: it ends because its file must get no longer."""
         driven = self._follow.trace(self._choice, self._chain, self._stops)
-        return record_of(people_are, person, condition, order, task, trial, attempt, driven, self._input_s)
+        found = record_of(people_are, person, condition, order, task, trial, attempt, driven)
+        ending = {"ending": "record_full"} if full and self._follow.ending is None else {}
+        return found.model_copy(update={"input_s": self._input_s, **ending})
 
 
 def begin(scene: SceneTask, choice: int, seed: int) -> Beginning:
@@ -116,7 +131,7 @@ def measured_again(path: Path, kept: DriveRecord, task: StudyTask) -> DriveRecor
     except (ValueError, LookupError, TypeError, AttributeError) as error:
         raise UserError(f"{path} does not hold the steps of a drive.") from error
     where = (kept.condition, kept.order, task, kept.trial, kept.attempt)
-    return measuring.record(kept.people_are, kept.person, *where)
+    return measuring.record(kept.people_are, kept.person, *where, full=kept.ending == "record_full")
 
 
 def read_steps(path: Path) -> tuple[int, Iterator[tuple[SceneState, StepRecord, str]]]:

@@ -50,6 +50,11 @@ def parse_object(document: bytes | str, where: str) -> dict[str, Any]:
             _check_texts(value)
     except _FaultError as error:
         raise UserError(f"{where} cannot be used: it {error}.") from error
+    except json.JSONDecodeError as error:
+        said = f"{error.msg[:1].lower()}{error.msg[1:]}"
+        raise UserError(
+            f"{where} is not a JSON document: line {error.lineno}, column {error.colno}: {said}."
+        ) from error
     except (ValueError, RecursionError) as error:
         raise UserError(f"{where} is not a JSON document in UTF-8; it is truncated or damaged.") from error
     if not isinstance(value, dict):

@@ -122,13 +122,13 @@ class _Watch:
         state = replace(self._arm.scene_state(), time_s=record.time_s)
         device = self._device()
         self._log.add(state, record, device)
-        self._over = self._measuring.sees(state, record, device)
+        self._over = self._measuring.sees(state, record, device) or self._log.full
         if self._over:
             self._write()
 
     def _write(self) -> None:
         due, person, folder = self._drive.due, self._drive.person, self._drive.folder
         where = (due.condition.name, due.order, due.task, due.trial, due.attempt)
-        found = self._measuring.record("real", person, *where)
+        found = self._measuring.record("real", person, *where, full=self._log.full)
         self._log.write(folder / STEPS, due.seed)
         write_text(folder / RECORD, found.model_dump_json())

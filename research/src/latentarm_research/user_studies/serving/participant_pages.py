@@ -65,8 +65,10 @@ class ParticipantPages:
             items = items_of(self._serving.definition)
             asked = [(name, items[name][1].text, items[name][0]) for name in due.items if name in items]
             return self.page("questions", **shown, order=due.order, asked=asked, longest=LONGEST_TEXT)
-        failed = due.attempt > 0 and not standing.drives[-1].trace.success
-        return self.page(due.kind, **shown, due=due, running=running, failed=failed)
+        before = standing.drives[-1] if due.attempt else None
+        failed = before is not None and not before.trace.success
+        full = before is not None and before.ending == "record_full"
+        return self.page(due.kind, **shown, due=due, running=running, failed=failed, full=full)
 
 
 def own_data(kept: Mapping[str, list[dict[str, Any]]]) -> dict[str, Any]:
