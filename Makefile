@@ -98,9 +98,9 @@ lock: $(VENV)/installed ## Pin the newest version of every package, direct or no
 		--constraint .torch --output-file .lock pyproject.toml research/pyproject.toml
 	{ grep '^#' constraints.txt; sed '/^-e /d; s/+[a-z0-9.]*$$//' .lock; } > .torch && mv .torch constraints.txt && rm .lock
 
-dist: $(VENV)/installed-dev ## Build the wheel and the sdist in dist/.
+dist: $(VENV)/installed-dev ## Build the wheels and the sdists of latentarm and its research in dist/.
 	rm -rf dist
-	$(UV) build --quiet --python $(BIN)/python --out-dir dist
+	$(UV) build --quiet --all-packages --python $(BIN)/python --out-dir dist
 
 format: $(VENV)/installed-dev ## Format and fix what can be fixed by machine.
 	$(BIN)/ruff check --fix .

@@ -17,7 +17,8 @@ SHARED = ROOT.parent / "shared" / "demonstrations"
 NOT_RUN = {
     "make demo": "tests/simulation runs it in its smallest size",
     "make test": "this is it",
-    "make dist": "tests/packaging builds both files",
+    "make dist": "tests/packaging builds these files",
+    'pip install "latentarm[research]"': "tests/packaging builds the wheel",
     'pip install "latentarm[train]"': "tests/packaging installs the wheel",
 }
 """Lines of shell blocks that no test runs, each with the reason."""

@@ -29,7 +29,7 @@ Preset = Annotated[
     str,
     arg(
         metavar="{" + ",".join(PRESETS) + "}",
-        help="paper: whole sizes; smoke: trials that end after a second, which only shows that it runs.",
+        help="paper: whole sizes; smoke: one trial of a second at each task, which only shows that it runs.",
     ),
 ]
 

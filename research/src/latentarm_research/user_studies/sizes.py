@@ -63,7 +63,7 @@ PRESETS: Final[Mapping[str, Sizes]] = {
         alignment_steps=4,
     ),
 }
-"""``paper`` is the whole study. ``smoke`` only shows that it runs: its trials end after a second."""
+"""``paper`` is the whole study. ``smoke`` only shows that it runs: one trial of a second at each task."""
 
 FEWEST_PEOPLE: Final = 2
 
