@@ -1,4 +1,4 @@
-from dataclasses import fields, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 
 from latentarm.core.errors import UserError
 from latentarm_research.user_studies.catalogue import load_definition
-from latentarm_research.user_studies.exclusion import Exclusion, counted
-from latentarm_research.user_studies.record import Trial, UnlabelledTrial, read_trial
+from latentarm_research.user_studies.exclusion import counted
+from latentarm_research.user_studies.record import Trial, read_trial
 
 HARMONIC = load_definition("harmonic")
 CONDITIONS = [condition.name for condition in HARMONIC.conditions]
@@ -28,12 +28,6 @@ TRIALS = st.lists(
 )
 
 
-def test_a_rule_is_given_nothing_that_tells_the_condition() -> None:
-    seen = {field.name for field in fields(UnlabelledTrial)}
-    assert seen == {"person", "task", "measures"}
-    assert set(Exclusion.excludes.__annotations__["trial"].__dataclass_fields__) == seen
-
-
 @settings(max_examples=30)
 @given(TRIALS, st.randoms())
 def test_other_conditions_exclude_the_same_trials_and_people(trials: list[Trial], random) -> None:
@@ -50,7 +44,7 @@ def test_other_conditions_exclude_the_same_trials_and_people(trials: list[Trial]
 @given(TRIALS)
 def test_what_counts_keeps_the_rules(trials: list[Trial]) -> None:
     kept, out = counted(RULES, trials)
-    assert not any(rule.excludes(one.unlabelled()) for rule in RULES for one in kept)
+    assert not any(rule.excludes(one.measures) for rule in RULES for one in kept)
     assert not {one.person for one in kept} & set(out.people)
     assert all(why for _, why in out.trials)
     for person in {one.person for one in trials} - set(out.people):

@@ -11,6 +11,7 @@ import pytest
 
 from latentarm.cli import main
 from latentarm.demonstrations.dataset import read_dataset
+from latentarm_research.user_studies.drive_record import devices_of
 from latentarm_research.user_studies.recorded import read_recorded
 from study_participant import CONTACT, LATENT, MODES, definition, next_link, participant, serving
 
@@ -49,7 +50,7 @@ def test_a_participant_goes_through_a_study_with_a_learned_model_and_is_reported
         assert trial.measures["time_s"] == pytest.approx(1.0, abs=0.05)
         assert 0.2 < trial.measures["input_magnitude"] <= 1.0
         assert trial.measures["path_length"] > 0.01
-    assert recorded.participants[0].devices == ("pointer mouse",)
+    assert devices_of(recorded.participants[0].drives) == ("pointer mouse",)
     assert len(recorded.answers) == 8
     # Of the person who has left no byte remains, and nobody's address was kept.
     content = b"".join(path.read_bytes() for path in out.rglob("*") if path.is_file())

@@ -105,7 +105,7 @@ def test_a_code_that_nobody_has_is_refused(folder: Path, capsys: pytest.CaptureF
         store.finish(str(store.arrive(link, "", 0.0)), "SAME")
     assert main(["study", "delete", str(folder), "--code", "SAME"]) == 2
     assert "2 people have the code SAME" in capsys.readouterr().err
-    assert len(store.drives()) == 5
+    assert len(store.people()) == 5
     store.close()
 
 
@@ -143,8 +143,7 @@ def test_no_byte_stays_of_a_person_who_leaves(tmp_path: Path) -> None:
 def kept_in(out: Path) -> list[bytes]:
     """Drives of the person who has not left, of which some slices are alike."""
     store = Store(out / "study.sqlite")
-    drives = store.drives()
+    person = next(one for one in store.people() if one.drives[0].person == 0)
     store.close()
-    key = next(key for key, theirs in drives.items() if theirs[0].person == 0)
-    records = [drive.model_dump_json().encode() for drive in drives[key]]
-    return [*records, *(path.read_bytes() for path in steps_of(out, key))]
+    records = [drive.model_dump_json().encode() for drive in person.drives]
+    return [*records, *(path.read_bytes() for path in steps_of(out, person.key))]

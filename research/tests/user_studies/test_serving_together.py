@@ -39,7 +39,7 @@ def test_participants_far_away_take_part_at_once(tmp_path: Path, capsys: pytest.
     driven = [one for one in recorded.trials if one.measures["input_magnitude"] > 0.0]
     assert driven
     store = Store(out / DATABASE)
-    delays_s = [one.measures["input_delay_s"] for kept in store.drives().values() for one in kept]
+    delays_s = [one.measures["input_delay_s"] for person in store.people() for one in person.drives]
     store.close()
     assert len(delays_s) == 8 * PEOPLE
     assert all(2.0 * EACH_WAY_S <= delay_s < SIMULATED_INPUT_BUDGET_S for delay_s in delays_s)

@@ -89,8 +89,8 @@ def _drives(folder: Path, database: str | None) -> "dict[str, list[tuple[DriveRe
     from latentarm_research.user_studies.serving.study_files import steps_path
 
     with served_store(folder, database) as store:
-        kept = store.drives().items()
-    return {key: [(drive, steps_path(folder, key, drive)) for drive in theirs] for key, theirs in kept}
+        people = store.people()
+    return {one.key: [(drive, steps_path(folder, one.key, drive)) for drive in one.drives] for one in people}
 
 
 def export_study(

@@ -59,7 +59,10 @@ def serve_study(
     database: Database = None,
     preset: Annotated[
         str | None,
-        arg(metavar="{" + ",".join(PRESETS) + "}", help="smoke: one trial of a second at each task; by default paper."),
+        arg(
+            metavar="{" + ",".join(PRESETS) + "}",
+            help="smoke: one trial of a second at each task; by default paper.",
+        ),
     ] = None,
     seed: Annotated[int | None, arg(help="Seed of all randomness; by default 0.")] = None,
     json: Json = False,

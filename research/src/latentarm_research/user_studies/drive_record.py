@@ -1,8 +1,9 @@
 """The record of one drive of a trial, the same for simulated and real people, and trials of such drives."""
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from itertools import groupby
-from typing import Annotated, Final, Literal, final
+from typing import Annotated, Final, Literal, NamedTuple, final
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
@@ -63,29 +64,27 @@ class DriveRecord(BaseModel):
     trace: Trace = Field(description="the tool's path and the stick, thinned out for figures")
 
 
-def record_of(
-    people_are: PeopleAre,
-    person: int,
-    condition: str,
-    order: int,
-    task: StudyTask,
-    trial: int,
-    attempt: int,
-    driven: drives.Trace,
-) -> DriveRecord:
+@final
+class Where(NamedTuple):
+    """The place of a drive in a study; see `DriveRecord`."""
+
+    people_are: PeopleAre
+    person: int
+    condition: str
+    order: int
+    trial: int
+    attempt: int
+
+
+def record_of(where: Where, task: StudyTask, driven: drives.Trace) -> DriveRecord:
     """The record of a drive from its trace."""
     return DriveRecord(
-        people_are=people_are,
-        person=person,
-        condition=condition,
-        order=order,
+        **where._asdict(),
         task=task.name,
-        trial=trial,
         choice=driven.choice,
-        attempt=attempt,
         ending=driven.ending.reason,
         measures=_measured(task, driven),
-        trace=trace_of(person, condition, task, trial, driven),
+        trace=trace_of(where.person, where.condition, task, where.trial, driven),
     )
 
 
@@ -96,6 +95,14 @@ def trial_of(measures: Sequence[str], driven: Sequence[DriveRecord]) -> Trial:
     found = together([in_the_end([drive.measures for drive in attempts]) for attempts in by_choice])
     kept = {name: found[name] for name in measures if name in found}
     return Trial(one.person, one.condition, one.task, one.order, one.trial, kept)
+
+
+def devices_of(driven: Sequence[DriveRecord]) -> tuple[str, ...]:
+    """The input devices of drives, the longest pushed first."""
+    pushed_s: Counter[str] = Counter()
+    for drive in driven:
+        pushed_s.update(drive.input_s)
+    return tuple(name for name, _ in pushed_s.most_common())
 
 
 def in_the_end(attempts: Sequence[Mapping[str, float]]) -> dict[str, float]:

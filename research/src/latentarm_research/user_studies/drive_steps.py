@@ -23,8 +23,7 @@ from latentarm.robots.scene.scene import SceneState
 from latentarm.tasks.scene_task import Beginning, SceneTask
 from latentarm_research.drives.following import Following
 from latentarm_research.user_studies.definition import StudyTask
-from latentarm_research.user_studies.drive_record import DriveRecord, record_of
-from latentarm_research.user_studies.record import PeopleAre
+from latentarm_research.user_studies.drive_record import DriveRecord, Where, record_of
 from latentarm_research.user_studies.scenes import scene_of
 
 MOST_BYTES: Final = 1 << 29  # of a file
@@ -97,21 +96,9 @@ class Measuring:
         over = self._follow.ending is not None or record.time_s - records[0].time_s >= self._limit_s
         return bool(records) and over
 
-    def record(
-        self,
-        people_are: PeopleAre,
-        person: int,
-        condition: str,
-        order: int,
-        task: StudyTask,
-        trial: int,
-        attempt: int,
-        *,
-        full: bool,
-    ) -> DriveRecord:
+    def record(self, where: Where, task: StudyTask, *, full: bool) -> DriveRecord:
         """The record of the drive so far; ``full``: it ends because its file must get no longer."""
-        driven = self._follow.trace(self._choice, self._chain, self._stops)
-        found = record_of(people_are, person, condition, order, task, trial, attempt, driven)
+        found = record_of(where, task, self._follow.trace(self._choice, self._chain, self._stops))
         ending = {"ending": "record_full"} if full and self._follow.ending is None else {}
         return found.model_copy(update={"input_s": self._input_s, **ending})
 
@@ -130,8 +117,8 @@ def measured_again(path: Path, kept: DriveRecord, task: StudyTask) -> DriveRecor
             measuring.sees(state, record, device)
     except (ValueError, LookupError, TypeError, AttributeError) as error:
         raise UserError(f"{path} does not hold the steps of a drive.") from error
-    where = (kept.condition, kept.order, task, kept.trial, kept.attempt)
-    return measuring.record(kept.people_are, kept.person, *where, full=kept.ending == "record_full")
+    where = Where(*(getattr(kept, name) for name in Where._fields))
+    return measuring.record(where, task, full=kept.ending == "record_full")
 
 
 def read_steps(path: Path) -> tuple[int, Iterator[tuple[SceneState, StepRecord, str]]]:

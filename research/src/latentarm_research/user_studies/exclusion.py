@@ -1,12 +1,12 @@
 """Which trials and people do not count, by rules that cannot see the condition."""
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final, Literal, final
 
 from latentarm.core.errors import UserError
-from latentarm_research.user_studies.record import Trial, UnlabelledTrial
+from latentarm_research.user_studies.record import Trial
 
 MOST_TRIALS: Final = 0.5  # a person of whom a larger share of trials is excluded is excluded
 
@@ -14,10 +14,7 @@ MOST_TRIALS: Final = 0.5  # a person of whom a larger share of trials is exclude
 @final
 @dataclass(frozen=True)
 class Exclusion:
-    """A rule that excludes a trial by one of its figures.
-
-    It is given an `UnlabelledTrial`, which has no condition.
-    """
+    """A rule that excludes a trial by one of its figures: it is not given the condition."""
 
     measure: str
     """Measure of the study; a trial without it stays."""
@@ -32,9 +29,9 @@ class Exclusion:
         if not abs(self.limit) < float("inf"):
             raise UserError(f"The limit of the exclusion by {self.measure} must be finite, not {self.limit}.")
 
-    def excludes(self, trial: UnlabelledTrial) -> bool:
-        """Whether the trial does not count."""
-        value = trial.measures.get(self.measure)
+    def excludes(self, measures: Mapping[str, float]) -> bool:
+        """True if a trial with these figures does not count."""
+        value = measures.get(self.measure)
         if value is None:
             return False
         return value < self.limit if self.side == "less" else value > self.limit
@@ -49,24 +46,15 @@ class Excluded:
     people: tuple[int, ...]  # numbers of the people who do not count at all
 
 
-def excluded(rules: Sequence[Exclusion], trials: Sequence[UnlabelledTrial]) -> Excluded:
-    """Apply rules to all trials of a study."""
-    found = [
-        (index, next(rule.why for rule in rules if rule.excludes(trial)))
-        for index, trial in enumerate(trials)
-        if any(rule.excludes(trial) for rule in rules)
-    ]
-    had = Counter(trial.person for trial in trials)
-    lost = Counter(trials[index].person for index, _ in found)
-    people = tuple(sorted(person for person, count in lost.items() if count > MOST_TRIALS * had[person]))
-    return Excluded(tuple(found), people)
-
-
 def counted(rules: Sequence[Exclusion], trials: Sequence[Trial]) -> tuple[list[Trial], Excluded]:
     """The trials that count, and what does not."""
-    out = excluded(rules, [trial.unlabelled() for trial in trials])
-    gone = {index for index, _ in out.trials}
-    kept = [
-        trial for index, trial in enumerate(trials) if index not in gone and trial.person not in out.people
-    ]
-    return kept, out
+    gone = {
+        index: next(rule.why for rule in rules if rule.excludes(trial.measures))
+        for index, trial in enumerate(trials)
+        if any(rule.excludes(trial.measures) for rule in rules)
+    }
+    had = Counter(trial.person for trial in trials)
+    lost = Counter(trials[index].person for index in gone)
+    people = tuple(sorted(person for person, count in lost.items() if count > MOST_TRIALS * had[person]))
+    kept = [trial for index, trial in enumerate(trials) if index not in gone and trial.person not in people]
+    return kept, Excluded(tuple(gone.items()), people)

@@ -24,24 +24,10 @@ class Trial:
     trial: int  # number of the trial in this condition, from 0
     measures: Mapping[str, float]  # figures by name; what was not measured is absent
 
-    def unlabelled(self) -> "UnlabelledTrial":
-        """The same without anything that tells the condition."""
-        return UnlabelledTrial(self.person, self.task, dict(self.measures))
-
     def as_json(self) -> dict[str, object]:
         """Plain mapping; figures that are not finite are None."""
         known = {name: value if isfinite(value) else None for name, value in self.measures.items()}
         return {**asdict(self), "measures": known}
-
-
-@final
-@dataclass(frozen=True)
-class UnlabelledTrial:
-    """A trial as exclusion rules see it: without condition, order and number."""
-
-    person: int  # their number
-    task: str  # what was to be done
-    measures: Mapping[str, float]  # figures by name
 
 
 def read_trial(entry: object, where: str) -> Trial:

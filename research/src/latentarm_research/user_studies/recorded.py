@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Final, cast, final
+from typing import TYPE_CHECKING, Any, Final, cast, final
 
 from latentarm.core.errors import UserError
 from latentarm.core.untrusted.documents import read_object
@@ -14,10 +14,12 @@ from latentarm_research.user_studies.answers.items import Answer, read_answers
 from latentarm_research.user_studies.catalogue import NAMES, load_definition
 from latentarm_research.user_studies.definition import PREFIX, Definition
 from latentarm_research.user_studies.own.definition_file import read_definition
-from latentarm_research.user_studies.participant import Participant, participants_of
 from latentarm_research.user_studies.record import PeopleAre, Trial, read_trials
 from latentarm_research.user_studies.sizes import PRESETS, Sizes
 from latentarm_research.user_studies.trace import Trace, read_traces
+
+if TYPE_CHECKING:
+    from latentarm_research.user_studies.serving.store import Standing
 
 DEFINITION: Final = "definition.json"
 TRIALS: Final = "trials.json"
@@ -42,7 +44,8 @@ class Recorded:
     simulated: tuple[Traits, ...]  # what the simulated people are like; empty for real people
     sizes: Sizes  # of the run
     answers: tuple[Answer, ...] = ()  # on the page of a served study, or from a file
-    participants: tuple[Participant, ...] = ()  # of a served study, everybody who has consented
+    # of a served study: everybody who has consented, those who have finished first
+    participants: "tuple[Standing, ...]" = ()
 
     @property
     def documents(self) -> dict[str, object]:
@@ -141,7 +144,8 @@ def _served(definition: Definition, folder: Path, database: str | None, sizes: S
     from latentarm_research.user_studies.serving.served_store import served_store  # SQLAlchemy
 
     with served_store(folder, database) as store:
-        finished, participants = store.finished(), participants_of(store)
+        people = [one for one in store.people() if one.consented]
+    finished = sorted((one for one in people if one.finished), key=lambda one: one.number or 0)
     if not finished:
         raise UserError(f"Nobody has finished the study in {folder} yet.")
     trials: list[Trial] = []
@@ -152,7 +156,8 @@ def _served(definition: Definition, folder: Path, database: str | None, sizes: S
             trials.append(trial_of(definition.measures, theirs))
     traces = tuple(drive.trace for one in finished for drive in one.drives)
     answers = tuple(answer for one in finished for answer in one.answers)
-    return Recorded(definition, "real", tuple(trials), traces, (), sizes, answers, participants)
+    everybody = (*finished, *(one for one in people if not one.finished))
+    return Recorded(definition, "real", tuple(trials), traces, (), sizes, answers, everybody)
 
 
 def read_definition_of(folder: Path) -> Definition:

@@ -13,10 +13,9 @@ from latentarm.evaluation.measures import MEASURES
 from latentarm.runs.results_folder import write_json
 from latentarm_research.user_studies.answers.items import Answer, items_of
 from latentarm_research.user_studies.definition import Definition
-from latentarm_research.user_studies.drive_record import DriveRecord
+from latentarm_research.user_studies.drive_record import DriveRecord, devices_of
 from latentarm_research.user_studies.exclusion import counted
 from latentarm_research.user_studies.export.drives import write_drives
-from latentarm_research.user_studies.participant import devices_of
 from latentarm_research.user_studies.record import Trial
 from latentarm_research.user_studies.recorded import Recorded
 
@@ -162,7 +161,15 @@ def _people(recorded: Recorded) -> Iterable[Sequence[Cell]]:
     for one in recorded.participants:
         person = one.number if one.finished else None
         conditions, day = ";".join(one.conditions), one.consented[:10]
-        yield person, conditions, one.consent, day, one.practised, ";".join(one.devices), int(one.finished)
+        yield (
+            person,
+            conditions,
+            one.consent,
+            day,
+            one.practised,
+            ";".join(devices_of(one.drives)),
+            int(one.finished),
+        )
     if not recorded.participants:
         in_order = sorted(recorded.trials, key=lambda trial: trial.order)
         for person in sorted(recorded.met):

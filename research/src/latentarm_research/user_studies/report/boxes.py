@@ -1,4 +1,4 @@
-"""Box plots of people's means, times with the idle part shaded, and what each person took."""
+"""Box plots of people's means, and what each person took."""
 
 from collections.abc import Collection, Sequence
 from typing import TYPE_CHECKING, Final
@@ -74,34 +74,6 @@ def box_figure(
     return figure
 
 
-def idle_figure(definition: Definition, trials: Sequence[Trial], who: str) -> "Figure":
-    """Mean time of each condition at each task, its part without input in a lighter shade."""
-    from matplotlib.patches import Patch
-
-    figure = new_figure(60.0, TWO_COLUMNS_MM)
-    panels = figure.subplots(1, len(definition.tasks), squeeze=False)[0]
-    looks = colours(definition)
-    for axes, task in zip(panels, definition.tasks, strict=True):
-        for place, condition in enumerate(definition.conditions):
-            total, idle = (means_of(trials, condition.name, task, name) for name in ("time_s", "idle_s"))
-            if not len(total):
-                continue
-            busy, colour = float((total - idle).mean()), looks[condition.name]
-            axes.bar(place, busy, color=colour, width=0.7)
-            axes.bar(place, float(idle.mean()), bottom=busy, color=colour, alpha=0.35, width=0.7)
-            axes.plot(np.full(len(total), place), total, "o", color="black", markersize=1.6, alpha=0.6)
-        axes.set_title(task.label)
-        _name_conditions(axes, definition)
-        axes.set_ylabel("time (s)")
-        axes.set_ylim(bottom=0.0)
-        tidy(axes)
-        axes.grid(False, axis="x")
-    parts = [Patch(facecolor="#555555"), Patch(facecolor="#555555", alpha=0.35)]
-    heading = f"{who}: means; dots are people's total times"
-    legend_below(figure, parts, ["with input", "idle"], heading=heading)
-    return figure
-
-
 def _boxes(axes: "Axes", definition: Definition, trials: Sequence[Trial], measure: str) -> None:
     looks, count = colours(definition), len(definition.conditions)
     done = {one.task for one in trials if measure in one.measures}
@@ -136,11 +108,6 @@ def _boxes(axes: "Axes", definition: Definition, trials: Sequence[Trial], measur
     axes.set_title(definition.label(measure) + ("" if unit == "1" else f" ({unit.replace(' ', '·')})"))
     tidy(axes)
     axes.grid(False, axis="x")
-
-
-def _name_conditions(axes: "Axes", definition: Definition) -> None:
-    names = [literal(one.name).replace(" ", "\n").replace("-", "-\n") for one in definition.conditions]
-    axes.set_xticks(range(len(names)), names, fontsize=SMALL_FONT_SIZE - 1.0)
 
 
 SHOWN: Final = ("time_s", "goal_error_m_s")  # what the paper shows of each person (section 10)

@@ -32,7 +32,6 @@ def figure_names(definition: Definition) -> tuple[str, ...]:
     return (
         "measures",
         "ratings",
-        "idle",
         "plates",
         "steps",
         "people",
@@ -61,9 +60,6 @@ def draw(
             f"Answers to the questionnaire's scales, {who}: shares of all answers; agreement to the right."
         )
         found.append(Drawn("ratings", likert_figure(definition, ratings.rated, who), caption))
-    if {"time_s", "idle_s"} <= measured:
-        caption = f"Time taken, and in the lighter shade the part of it without input, {who}."
-        found.append(Drawn("idle", boxes.idle_figure(definition, trials, who), caption))
     if any(trace.plate_m for trace in traces):
         caption = f"Goal error: distance of the tool from the closest plate in the course of a trial, {who}."
         found.append(Drawn("plates", plate_figure(definition, traces, who), caption))

@@ -2,8 +2,7 @@
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Final, final
+from typing import Final
 
 from latentarm.core.types import Row
 from latentarm.evaluation.summary import Subject, summarise
@@ -33,7 +32,6 @@ from latentarm_research.user_studies.report.words import (
     QUOTED,
     REAL,
     SIMULATED,
-    PeopleWords,
     claim_table,
     condition_parts,
     exclusion_words,
@@ -46,40 +44,24 @@ from latentarm_research.user_studies.report.words import (
 RATED_HEAD: Final = ("scale", "condition", "people", "score, mean ± SD", "Cronbach's α [95 %]")
 
 
-@final
-@dataclass(frozen=True, eq=False)
-class Content:
-    """What a report is about."""
-
-    recorded: Recorded  # the trials, and whose they are
-    analysis: Analysis  # of the trials
-    rows: Sequence[Row]  # of `results.json`
-    figures: Sequence[Drawn]  # to show
-    command: str  # that repeats the run
-    ratings: Ratings | None = None  # of people's answers, if there are any
-    departures: Sequence[str] | None = None  # from the preregistration; None without one
-
-    @property
-    def definition(self) -> Definition:
-        """Of the study."""
-        return self.recorded.definition
-
-    @property
-    def words(self) -> PeopleWords:
-        """Of the people."""
-        return SIMULATED if self.recorded.people_are == "simulated" else REAL
-
-
-def report_page(content: Content) -> str:
+def _page(
+    recorded: Recorded,
+    analysis: Analysis,
+    rows: Sequence[Row],
+    figures: Sequence[Drawn],
+    command: str,  # that repeats the run
+    ratings: Ratings | None,
+    departures: Sequence[str] | None,
+) -> str:
     """The page, Markdown."""
-    definition, analysis, recorded = content.definition, content.analysis, content.recorded
+    definition, words = recorded.definition, SIMULATED if recorded.people_are == "simulated" else REAL
     return render_page(
         "user_studies/report/page.md",
         recorded.sizes,
         definition=definition,
         who=recorded.who,
-        command=content.command,
-        notice=f"{content.words.notice} {QUOTED}" if definition.printed else content.words.notice,
+        command=command,
+        notice=f"{words.notice} {QUOTED}" if definition.printed else words.notice,
         design=DESIGN_WORDS[definition.design],
         input=input_words(recorded),
         practice=practice_words(recorded),
@@ -94,18 +76,18 @@ def report_page(content: Content) -> str:
         people_head=PEOPLE_HEAD,
         people_lines=people_lines(recorded.simulated) if recorded.simulated else [],
         result_head=["task", "measure", *(one.name for one in definition.conditions)],
-        result_lines=_result_lines(definition, content.rows),
-        figures=content.figures,
+        result_lines=_result_lines(definition, rows),
+        figures=figures,
         claim_table=claim_table(definition, analysis.claims),
         anova_lines=_anova_lines(definition, analysis),
         printed_lines=_printed_lines(definition, analysis),
         wrong_lines=_wrong_lines(analysis),
-        questionnaire_words=_questionnaire_words(content),
+        questionnaire_words=words.unasked if ratings is None else _questionnaire_words(ratings),
         rated_head=RATED_HEAD,
-        rated_lines=_rated_lines(content),
+        rated_lines=_rated_lines(definition, ratings),
         item_lines=_item_lines(definition),
         in_words_lines=_in_words_lines(recorded),
-        departures=content.departures,
+        departures=departures,
     )
 
 
@@ -169,28 +151,24 @@ def _wrong_lines(analysis: Analysis) -> list[str]:
     return [f"{listed(printed)}: {wrong}" for wrong, printed in texts.items()]
 
 
-def _questionnaire_words(content: Content) -> str:
-    if content.ratings is None:
-        return content.words.unasked
+def _questionnaire_words(ratings: Ratings) -> str:
     return (
-        f"{content.ratings.answers} answers. A score is the mean of a scale's items, reversed ones turned; a"
+        f"{ratings.answers} answers. A score is the mean of a scale's items, reversed ones turned; a"
         " person who left out an item of a scale has no score of it. Alpha is computed over the people of one"
         " condition, its interval is that of Feldt (1965)."
     )
 
 
-def _rated_lines(content: Content) -> list[tuple[str, ...]]:
-    if content.ratings is None:
-        return []
+def _rated_lines(definition: Definition, ratings: Ratings | None) -> list[tuple[str, ...]]:
     return [
         (
-            content.definition.label(one.scale),
+            definition.label(one.scale),
             one.condition,
             str(one.n),
             format_figure(one.mean, one.sd),
             ABSENT if one.alpha is None else f"{one.alpha:.2f} [{one.alpha_low:.2f}, {one.alpha_high:.2f}]",
         )
-        for one in content.ratings.rated
+        for one in (() if ratings is None else ratings.rated)
     ]
 
 
@@ -231,7 +209,7 @@ def report_of(
     figures = draw(definition, analysis.trials, recorded.traces, recorded.who, ratings)
     return Report(
         rows=rows,
-        page=report_page(Content(recorded, analysis, rows, figures, command, ratings, departures)),
+        page=_page(recorded, analysis, rows, figures, command, ratings, departures),
         figures={one.name: one.figure for one in figures},
         tests=analysis.claims,
         documents={

@@ -1,6 +1,7 @@
 """People's input, practice and consent in words, as they were in the run that is reported."""
 
 from latentarm.evaluation.table import ABSENT
+from latentarm_research.user_studies.drive_record import devices_of
 from latentarm_research.user_studies.recorded import Recorded
 
 
@@ -29,7 +30,7 @@ def practice_words(recorded: Recorded) -> str:
 def participant_lines(recorded: Recorded) -> list[tuple[str, str, str]]:
     """Everybody who has finished a served study: number, conditions in order, input devices."""
     return [
-        (str(one.number), ", ".join(one.conditions), ", ".join(one.devices) or ABSENT)
+        (str(one.number), ", ".join(one.conditions), ", ".join(devices_of(one.drives)) or ABSENT)
         for one in recorded.participants
         if one.finished
     ]

@@ -27,16 +27,29 @@ KEY_BYTES: Final = 16  # of random keys
 @final
 @dataclass(frozen=True)
 class Standing:
-    """How far a person has come."""
+    """A person, and how far they have come. Nothing else about a person is stored."""
 
-    key: str
+    key: str  # random; their steps are kept under it
     number: int | None  # of their place; None where they have none, any more or yet
     lapsed: bool  # whether their place went to somebody else, because they were away for too long
-    consented: bool
+    consent: str  # SHA-256 of the text that they consented to; "" before
+    consented: str  # when, ISO 8601; "" before
     practised: int  # conditions that they have practised
     drives: tuple[DriveRecord, ...]  # in their order
     answered: frozenset[int]  # places in the order of the conditions after which they have answered
+    answers: tuple[Answer, ...]  # in the order of the conditions
     completion: str | None  # their code, once everything is saved
+
+    @property
+    def finished(self) -> bool:
+        """True once everything is saved."""
+        return self.completion is not None
+
+    @property
+    def conditions(self) -> tuple[str, ...]:
+        """Those of their trials so far, in order."""
+        in_order = sorted(self.drives, key=lambda drive: drive.order)
+        return tuple(dict.fromkeys(drive.condition for drive in in_order))
 
 
 @final
@@ -47,15 +60,6 @@ class Deleted:
     key: str
     link: str  # code of their link, or their id at a recruiting site
     next_code: str  # of the link in place of theirs, where it was one of ours
-
-
-@final
-@dataclass(frozen=True)
-class Finished:
-    """All drives and answers of a person who has finished, in order."""
-
-    drives: tuple[DriveRecord, ...]
-    answers: tuple[Answer, ...]
 
 
 @final
@@ -214,20 +218,7 @@ class Store:
         """How far a person has come; None for nobody who is known."""
         with self._change() as session:
             person = session.get(Person, key)
-            if person is None:
-                return None
-            held = session.scalar(select(Place.number).where(Place.person == key))
-            answered = session.scalars(select(Answers.order).where(Answers.person == key))
-            return Standing(
-                key,
-                held,
-                person.number is not None and held is None,
-                person.consent is not None,
-                person.practised,
-                _drives(session, key),
-                frozenset(answered),
-                person.completion,
-            )
+            return None if person is None else _standing(session, person)
 
     def everything(self, key: str) -> dict[str, list[dict[str, Any]]]:
         """All rows about a person, as JSON, by table."""
@@ -241,28 +232,10 @@ class Store:
                 for table, whose in of.items()
             }
 
-    def drives(self) -> dict[str, tuple[DriveRecord, ...]]:
-        """All drives in their order, by the person's key."""
+    def people(self) -> list[Standing]:
+        """Everybody, by key."""
         with self._change() as session:
-            return {key: _drives(session, key) for key in session.scalars(select(Person.key))}
-
-    def finished(self) -> list[Finished]:
-        """Everybody who has finished, by number."""
-        with self._change() as session:
-            done = select(Person).where(Person.completion.is_not(None)).order_by(Person.number)
-            return [
-                Finished(
-                    _drives(session, person.key),
-                    tuple(
-                        Answer(person.number or 0, one.condition, item, answer)
-                        for one in session.scalars(
-                            select(Answers).where(Answers.person == person.key).order_by(Answers.order)
-                        )
-                        for item, answer in one.points.items()
-                    ),
-                )
-                for person in session.scalars(done)
-            ]
+            return [_standing(session, one) for one in session.scalars(select(Person).order_by(Person.key))]
 
     @contextmanager
     def _change(self) -> Generator[Session]:
@@ -275,9 +248,29 @@ def _random() -> str:
     return secrets.token_urlsafe(KEY_BYTES)
 
 
-def _drives(session: Session, key: str) -> tuple[DriveRecord, ...]:
-    kept = session.scalars(select(Drive.record).where(Drive.person == key).order_by(Drive.number))
+def _standing(session: Session, person: Person) -> Standing:
+    held = session.scalar(select(Place.number).where(Place.person == person.key))
+    kept = session.scalars(select(Drive.record).where(Drive.person == person.key).order_by(Drive.number))
+    answers = session.scalars(
+        select(Answers).where(Answers.person == person.key).order_by(Answers.order)
+    ).all()
     try:
-        return tuple(DriveRecord.model_validate_json(one) for one in kept)
+        drives = tuple(DriveRecord.model_validate_json(one) for one in kept)
     except ValueError as error:
         raise UserError("The study's database holds a drive that is not one.") from error
+    return Standing(
+        key=person.key,
+        number=held,
+        lapsed=person.number is not None and held is None,
+        consent=person.consent or "",
+        consented=person.consented or "",
+        practised=person.practised,
+        drives=drives,
+        answered=frozenset(one.order for one in answers),
+        answers=tuple(
+            Answer(-1 if held is None else held, one.condition, item, answer)
+            for one in answers
+            for item, answer in one.points.items()
+        ),
+        completion=person.completion,
+    )
