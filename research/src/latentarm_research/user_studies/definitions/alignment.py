@@ -106,9 +106,8 @@ DEFINITION: Final = Definition(
     hypotheses=(
         Hypothesis(
             "H1",
-            "An alignment model learned from user-specific feedback and generalized through intuitive"
-            " priors will"
-            " make it easier for humans to control the robot and perform assistive manipulation tasks.",
+            "An alignment model learned from user-specific feedback and generalized through intuitive priors"
+            " will make it easier for humans to control the robot and perform assistive manipulation tasks.",
             tuple(claim for name in MEASURED for claim in below(name, ALL_PRIORS, *BASELINES)),
         ),
     ),
@@ -123,11 +122,10 @@ DEFINITION: Final = Definition(
     ),
     departures=(
         AGAIN,
-        "The paper does not say from how much its models learned: here 7 minutes of demonstrations of"
-        " each task.",
+        "The paper does not say from how much its models learned: here 7 minutes of demonstrations of each"
+        " task.",
         "The paper's text says that All Priors outperforms both baselines across tasks and measures, and"
-        " leaves"
-        " which comparisons are significant to the stars of a figure.",
+        " leaves which comparisons are significant to the stars of a figure.",
         "The paper's items are not published: all items are ours.",
     ),
 )

@@ -100,9 +100,8 @@ DEFINITION: Final = Definition(
     hypotheses=(
         Hypothesis(
             "H1",
-            "Users controlling the robot arm with low-DoF latent actions will complete the cooking task"
-            " more quickly"
-            " and with less overall effort.",
+            "Users controlling the robot arm with low-DoF latent actions will complete the cooking task more"
+            " quickly and with less overall effort.",
             (
                 *below("time_s", LATENT, DIRECT, tasks=("whole",)),
                 *below("input_magnitude", LATENT, DIRECT, tasks=("whole",)),
@@ -111,8 +110,7 @@ DEFINITION: Final = Definition(
         Hypothesis(
             "H2",
             "Participants will perceive the robot as easier to work with in the cVAE condition, and will"
-            " prefer the"
-            " cVAE over End-Effector teleoperation.",
+            " prefer the cVAE over End-Effector teleoperation.",
             tuple(
                 claim
                 for name in ("ease", "easier", "natural", "prefer")
@@ -148,8 +146,7 @@ DEFINITION: Final = Definition(
     departures=(
         AGAIN,
         "The arm goes back to its home between the three parts, in the whole recipe too: the whole is the"
-        " three parts"
-        " in one arrangement, their figures summed. The paper's whole has no breaks.",
+        " three parts in one arrangement, their figures summed. The paper's whole has no breaks.",
         "Things stand at new places in every trial; the paper moved shelf, bowl and bin now and then.",
         "The two sticks move three axes at once, linear or angular; the paper's have four axes for three.",
         "The paper's people saw a video of the task and a sheet that labels the inputs; here is neither.",

@@ -46,9 +46,8 @@ DEFINITION: Final = Definition(
     hypotheses=(
         Hypothesis(
             "H1",
-            "Disabled users will complete the eating tasks more quickly and accurately with our"
-            " combination of latent"
-            " actions and shared autonomy.",
+            "Disabled users will complete the eating tasks more quickly and accurately with our combination"
+            " of latent actions and shared autonomy.",
             (*below("time_s", LA_SA, DIRECT), *below("goal_error_m_s", LA_SA, DIRECT)),
         ),
         Hypothesis(
@@ -70,9 +69,8 @@ DEFINITION: Final = Definition(
     departures=(
         AGAIN,
         "The help of LA+SA is that of Algorithm 1, as in section 9.3 here.",
-        "The paper's two people are described one by one and nothing is tested. Twelve simulated people"
-        " take turns"
-        " with the two orders, and are tested; they stand for nobody with a disability.",
+        "The paper's two people are described one by one and nothing is tested. Twelve simulated people take"
+        " turns with the two orders, and are tested; they stand for nobody with a disability.",
         "The paper's Dessert ends in sprinkles; here it ends in rice, as in section 9.3.",
         "The paper's people answered an open questionnaire: H2 has no figure and cannot be tested.",
     ),

@@ -54,8 +54,7 @@ DEFINITION: Final = Definition(
         Hypothesis(
             "H1",
             "Compared to the baselines, latent actions will improve task success while reducing the"
-            " completion"
-            " time, joystick inputs, and trajectory length.",
+            " completion time, joystick inputs, and trajectory length.",
             (
                 *above("success_rate", LATENT, *ASSISTED),
                 *(
@@ -80,18 +79,15 @@ DEFINITION: Final = Definition(
     ),
     departures=(
         "The paper compares two groups of people: its own ten with cVAE, and HARMONIC's 24 with the other"
-        " four"
-        " conditions. Here the same people have all conditions.",
+        " four conditions. Here the same people have all conditions.",
         "Retargeting (R, of section 9.3) is a condition here, so that the same people drive with every level"
         " of help, with retargeting and with latent actions. No hypothesis is about it.",
-        "The paper says that High Assist gives assistance twice the weight of the person. The weights 0,"
-        " 1/3 and 1"
-        " of the other levels are read from that.",
+        "The paper says that High Assist gives assistance twice the weight of the person. The weights 0, 1/3"
+        " and 1 of the other levels are read from that.",
         "The paper's model learned from HARMONIC, which is not available offline. Here it learns from"
-        " demonstrations"
-        " of the same task.",
-        "The paper's trials end when the person says that the fork is above the marshmallow. Here they"
-        " end when it"
-        " is, and fail after the task's limit; the fork is over the right marshmallow or the trial goes on.",
+        " demonstrations of the same task.",
+        "The paper's trials end when the person says that the fork is above the marshmallow. Here they end"
+        " when it is, and fail after the task's limit; the fork is over the right marshmallow or the trial"
+        " goes on.",
     ),
 )
