@@ -110,7 +110,7 @@ def test_each_person_counts_on_one_side() -> None:
     rated = next(one.tested for one in analysis.claims if one.tested.claim.measure == "ease")
     assert rated.why_not == "nobody has a figure for it"
     # A single trial of a person does not tell the person from chance.
-    assert analysis.claims[0].modelled.mixed is None
+    assert analysis.claims[0].mixed is None
 
 
 def recorded(trials: list[Trial], people_are: PeopleAre, preset: str) -> Recorded:

@@ -2,11 +2,9 @@ from collections import Counter
 from itertools import pairwise
 
 import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from latentarm.core.errors import UserError
 from latentarm_research.user_studies.designs import orders, williams
 
 
@@ -34,8 +32,3 @@ def test_orders_are_balanced_as_far_as_the_people_go(count: int, people: int, se
     whole = found[: people - people % rows]
     first = Counter(order[0] for order in whole)
     assert len(set(first.values())) <= 1
-
-
-def test_an_order_of_nothing_is_refused() -> None:
-    with pytest.raises(UserError, match="one condition"):
-        williams(0)

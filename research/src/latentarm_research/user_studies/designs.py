@@ -7,7 +7,6 @@ from typing import Final, final
 
 import numpy as np
 
-from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray, IntArray
 from latentarm_research.studies.claims import Claim
 from latentarm_research.studies.statistics import MeansTest, one_sample_test, welch_test
@@ -58,8 +57,6 @@ def williams(count: int) -> list[list[int]]:
     Every condition stands at every place equally often, and follows every other one equally often. There are
     as many orders as conditions where their number is even, else twice as many.
     """
-    if count < 1:
-        raise UserError(f"An order needs one condition or more, not {count}.")
     zigzag = [place // 2 + 1 if place % 2 else (count - place // 2) % count for place in range(count)]
     square = [[(entry + shift) % count for entry in zigzag] for shift in range(count)]
     return square if count % 2 == 0 else square + [row[::-1] for row in square]
@@ -70,8 +67,6 @@ def assigned(conditions: Sequence[str], people: int, rng: np.random.Generator) -
 
     At any time the numbers of people differ by one at most; they are equal after whole blocks.
     """
-    if not conditions:
-        raise UserError("People cannot be assigned: there is no condition.")
     blocks = -(-people // len(conditions))
     places = [place for _ in range(blocks) for place in rng.permutation(len(conditions))]
     return [str(conditions[place]) for place in places[:people]]

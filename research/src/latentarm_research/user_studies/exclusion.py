@@ -5,7 +5,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final, Literal, final
 
-from latentarm.core.errors import UserError
 from latentarm_research.user_studies.record import Trial
 
 MOST_TRIALS: Final = 0.5  # a person of whom a larger share of trials is excluded is excluded
@@ -24,10 +23,6 @@ class Exclusion:
     """Limit in the measure's unit."""
     why: str
     """The reason, in words."""
-
-    def __post_init__(self) -> None:
-        if not abs(self.limit) < float("inf"):
-            raise UserError(f"The limit of the exclusion by {self.measure} must be finite, not {self.limit}.")
 
     def excludes(self, measures: Mapping[str, float]) -> bool:
         """True if a trial with these figures does not count."""

@@ -138,26 +138,19 @@ def _standard_error(design: FloatArray, person: IntArray, person_variance: float
 
 @final
 @dataclass(frozen=True)
-class Modelled:
-    """A claim in a model of all trials."""
-
-    mixed: Mixed | None  # the linear mixed model; None where it could not be fitted
-    p: float | None  # of the randomisation test; None where it could not be made
-
-
-@final
-@dataclass(frozen=True)
 class TestedClaim:
     """A claim, tested on people's means and in a model of all trials."""
 
     tested: Tested  # on people's means
-    modelled: Modelled  # in a model of all trials
+    mixed: Mixed | None  # the linear mixed model; None where it could not be fitted
+    p: float | None  # of the randomisation test; None where it could not be made
 
     def as_json(self) -> dict[str, object]:
         """Plain mapping."""
         test = self.tested.test
         low, high = (None, None) if test is None else test.effect_interval
-        model = {**asdict(self.modelled), "d_low": low, "d_high": high}
+        mixed = None if self.mixed is None else asdict(self.mixed)
+        model = {"mixed": mixed, "p": self.p, "d_low": low, "d_high": high}
         return {**self.tested.as_json(), "model": model}
 
 
@@ -207,19 +200,16 @@ def analyse(
     return Analysis(
         trials=tuple(kept),
         excluded=out,
-        claims=tuple(
-            TestedClaim(one, _modelled(design, one, sides, every))
-            for one, sides in zip(tested, both, strict=True)
-        ),
+        claims=tuple(_modelled(design, one, sides, every) for one, sides in zip(tested, both, strict=True)),
         verdicts=tuple(verdicts(definition, tested)),
         effects={} if not_judged else _effects(definition, every),
         as_printed=() if not_judged else tuple(as_printed(one, every) for one in definition.printed),
     )
 
 
-def _modelled(design: StudyDesign, tested: Tested, both: Sides, trials: Sequence[Trial]) -> Modelled:
+def _modelled(design: StudyDesign, tested: Tested, both: Sides, trials: Sequence[Trial]) -> TestedClaim:
     table = design.table(trials, tested.claim)
-    return Modelled(mixed_model(table), design.randomisation_p(both, table))
+    return TestedClaim(tested, mixed_model(table), design.randomisation_p(both, table))
 
 
 def _effects(definition: Definition, trials: Sequence[Trial]) -> dict[str, list[Effect]]:

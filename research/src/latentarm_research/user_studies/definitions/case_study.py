@@ -5,6 +5,7 @@ from typing import Final
 
 from latentarm_research.studies.claims import Hypothesis
 from latentarm_research.user_studies.definition import Condition, Definition
+from latentarm_research.user_studies.definitions.eating import DEFINITION as EATING
 from latentarm_research.user_studies.definitions.eating import DESSERT, ENTREE, LA_SA, LATENT_HELPED
 from latentarm_research.user_studies.definitions.shared import AGAIN, NO_INPUT
 from latentarm_research.user_studies.hypothesis import Printed, below
@@ -31,17 +32,7 @@ DEFINITION: Final = Definition(
     orders=((DIRECT, LA_SA), (LA_SA, DIRECT)),
     practice_min=5.0,
     input="a virtual stick on a page, drawn over a grid, next to two live views of the arm",
-    measures=(
-        "success_rate",
-        "attempts",
-        "steps_done",
-        "time_s",
-        "idle_s",
-        "goal_error_m_s",
-        "goal_error_m",
-        "input_magnitude",
-        "path_length",
-    ),
+    measures=tuple(name for name in EATING.measures if name != "preference_alignment"),
     questionnaire=(),
     hypotheses=(
         Hypothesis(

@@ -46,13 +46,6 @@ ROW_MM: Final = 52.0
 LEGEND_MM: Final = 9.0
 
 
-def means_of(trials: Sequence[Trial], condition: str, task: StudyTask, measure: str) -> FloatArray:
-    """Means (n,) of all people who have any."""
-    people = sorted({trial.person for trial in trials})
-    means = np.array([person_mean(trials, one, measure, (condition,), (task.name,)) for one in people])
-    return means[np.isfinite(means)]
-
-
 def box_figure(
     definition: Definition, trials: Sequence[Trial], measures: Sequence[str], who: str
 ) -> "Figure":
@@ -76,11 +69,13 @@ def box_figure(
 
 def _boxes(axes: "Axes", definition: Definition, trials: Sequence[Trial], measure: str) -> None:
     looks, count = colours(definition), len(definition.conditions)
+    people = sorted({trial.person for trial in trials})
     done = {one.task for one in trials if measure in one.measures}
     with_figures = [task for task in definition.tasks if task.name in done]
     for block, task in enumerate(with_figures):
         for place, condition in enumerate(definition.conditions):
-            means = means_of(trials, condition.name, task, measure)
+            means = _of_each(trials, people, measure, condition.name, task)
+            means = means[np.isfinite(means)]
             if not len(means):
                 continue
             at = block * (count + 1) + place

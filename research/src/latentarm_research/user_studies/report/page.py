@@ -28,10 +28,10 @@ from latentarm_research.user_studies.report.people import (
 )
 from latentarm_research.user_studies.report.words import (
     DESIGN_WORDS,
+    NOTICE,
     PEOPLE_HEAD,
     QUOTED,
-    REAL,
-    SIMULATED,
+    UNASKED,
     claim_table,
     condition_parts,
     exclusion_words,
@@ -54,14 +54,14 @@ def _page(
     departures: Sequence[str] | None,
 ) -> str:
     """The page, Markdown."""
-    definition, words = recorded.definition, SIMULATED if recorded.people_are == "simulated" else REAL
+    definition, notice = recorded.definition, NOTICE[recorded.people_are]
     return render_page(
         "user_studies/report/page.md",
         recorded.sizes,
         definition=definition,
         who=recorded.who,
         command=command,
-        notice=f"{words.notice} {QUOTED}" if definition.printed else words.notice,
+        notice=f"{notice} {QUOTED}" if definition.printed else notice,
         design=DESIGN_WORDS[definition.design],
         input=input_words(recorded),
         practice=practice_words(recorded),
@@ -82,7 +82,9 @@ def _page(
         anova_lines=_anova_lines(definition, analysis),
         printed_lines=_printed_lines(definition, analysis),
         wrong_lines=_wrong_lines(analysis),
-        questionnaire_words=words.unasked if ratings is None else _questionnaire_words(ratings),
+        questionnaire_words=UNASKED[recorded.people_are]
+        if ratings is None
+        else _questionnaire_words(ratings),
         rated_head=RATED_HEAD,
         rated_lines=_rated_lines(definition, ratings),
         item_lines=_item_lines(definition),

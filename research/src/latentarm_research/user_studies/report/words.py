@@ -12,6 +12,7 @@ from latentarm_research.studies.statistics import CONFIDENCE, MeansTest, format_
 from latentarm_research.studies.tables import listed
 from latentarm_research.user_studies.analysis.analysis import TestedClaim
 from latentarm_research.user_studies.definition import Condition, Definition, Design, StudyTask
+from latentarm_research.user_studies.record import PeopleAre
 
 PEOPLE_HEAD: Final = ("trait", "mean (range)", "where it comes from")
 
@@ -41,26 +42,19 @@ def _spans(values: Sequence[float]) -> str:
     return f"{mean} ({low} to {high})"
 
 
-@final
-@dataclass(frozen=True)
-class PeopleWords:
-    """People in words."""
+NOTICE: Final[Mapping[PeopleAre, str]] = {
+    "simulated": "Everything here is simulated: the arm, the things, the demonstrator and the people who"
+    " drive. No person took part.",
+    "real": "The trials are those of real people.",
+}
+"""Stands over everything."""
 
-    notice: str  # over everything
-    unasked: str  # of a questionnaire without answers
-
-
-SIMULATED: Final = PeopleWords(
-    notice="Everything here is simulated: the arm, the things, the demonstrator and the people who drive. No"
-    " person took part.",
-    unasked="Simulated people have no opinions: nobody was asked, and every claim about ratings could not be"
-    " tested.",
-)
-
-REAL: Final = PeopleWords(
-    notice="The trials are those of real people.",
-    unasked="No answers were given to this analysis: every claim about ratings could not be tested.",
-)
+UNASKED: Final[Mapping[PeopleAre, str]] = {
+    "simulated": "Simulated people have no opinions: nobody was asked, and every claim about ratings could"
+    " not be tested.",
+    "real": "No answers were given to this analysis: every claim about ratings could not be tested.",
+}
+"""Of a questionnaire without answers."""
 
 QUOTED: Final = "Figures of the paper are quoted as the paper's and come from the paper's own people."
 
@@ -185,11 +179,11 @@ def claim_table(definition: Definition, claims: Sequence[TestedClaim]) -> str:
         "p, randomisation": [],
     }
     for one in claims:
-        test, mixed = one.tested.test, one.modelled.mixed
+        test, mixed = one.tested.test, one.mixed
         cells = (
             _effect_words(test) if test is not None else ABSENT,
             ABSENT if test is None or mixed is None else f"{mixed.estimate:.3g} ± {mixed.se:.2g}",
-            ABSENT if test is None else format_p(one.modelled.p),
+            ABSENT if test is None else format_p(one.p),
         )
         for column, cell in zip(further.values(), cells, strict=True):
             column.append(cell)

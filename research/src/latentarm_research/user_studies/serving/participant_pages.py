@@ -1,9 +1,8 @@
 """The pages of a study itself: information, practice, trials, questions, and the code."""
 
 import json
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, Final, cast, final
+from typing import Any, Final, final
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markdown_it import MarkdownIt
@@ -71,23 +70,16 @@ class ParticipantPages:
         return self.page(due.kind, **shown, due=due, running=running, failed=failed, full=full)
 
 
-def own_data(kept: Mapping[str, list[dict[str, Any]]]) -> dict[str, Any]:
+def own_data(kept: dict[str, list[dict[str, Any]]]) -> dict[str, list[dict[str, Any]]]:
     """A person's rows of all tables, for them: with their conditions only once they have finished."""
-    read = {
-        table: [{**row, "record": json.loads(row["record"])} if "record" in row else row for row in rows]
-        for table, rows in kept.items()
-    }
-    finished = all(row["completion"] is not None for row in kept["people"])
-    return read if finished else _without_conditions(read)
-
-
-def _without_conditions(value: Any) -> Any:
-    if isinstance(value, list):
-        return [_without_conditions(one) for one in cast(list[Any], value)]
-    if isinstance(value, dict):
-        named = cast(dict[str, Any], value)
-        return {name: _without_conditions(one) for name, one in named.items() if name != "condition"}
-    return value
+    for row in kept["drives"]:
+        row["record"] = json.loads(row["record"])
+    if any(row["completion"] is None for row in kept["people"]):
+        for row in kept["drives"]:
+            del row["record"]["condition"], row["record"]["trace"]["condition"]
+        for row in kept["answers"]:
+            del row["condition"]
+    return kept
 
 
 async def answer_file(request: Request) -> Response:
