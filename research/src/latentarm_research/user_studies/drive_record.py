@@ -65,7 +65,7 @@ class DriveRecord(BaseModel):
 
 
 @final
-class Where(NamedTuple):
+class DriveContext(NamedTuple):
     """The place of a drive in a study; see `DriveRecord`."""
 
     people_are: PeopleAre
@@ -76,7 +76,7 @@ class Where(NamedTuple):
     attempt: int
 
 
-def record_of(where: Where, task: StudyTask, driven: drives.Trace) -> DriveRecord:
+def record_of(where: DriveContext, task: StudyTask, driven: drives.Trace) -> DriveRecord:
     """The record of a drive from its trace."""
     return DriveRecord(
         **where._asdict(),

@@ -23,7 +23,7 @@ from latentarm.robots.scene.scene import SceneState
 from latentarm.tasks.scene_task import Beginning, SceneTask
 from latentarm_research.drives.following import Following
 from latentarm_research.user_studies.definition import StudyTask
-from latentarm_research.user_studies.drive_record import DriveRecord, Where, record_of
+from latentarm_research.user_studies.drive_record import DriveContext, DriveRecord, record_of
 from latentarm_research.user_studies.scenes import scene_of
 
 MOST_BYTES: Final = 1 << 29  # of a file
@@ -96,7 +96,7 @@ class Measuring:
         over = self._follow.ending is not None or record.time_s - records[0].time_s >= self._limit_s
         return bool(records) and over
 
-    def record(self, where: Where, task: StudyTask, *, full: bool) -> DriveRecord:
+    def record(self, where: DriveContext, task: StudyTask, *, full: bool) -> DriveRecord:
         """The record of the drive so far; ``full``: it ends because its file must get no longer."""
         found = record_of(where, task, self._follow.trace(self._choice, self._chain, self._stops))
         ending = {"ending": "record_full"} if full and self._follow.ending is None else {}
@@ -117,7 +117,7 @@ def measured_again(path: Path, kept: DriveRecord, task: StudyTask) -> DriveRecor
             measuring.sees(state, record, device)
     except (ValueError, LookupError, TypeError, AttributeError) as error:
         raise UserError(f"{path} does not hold the steps of a drive.") from error
-    where = Where(*(getattr(kept, name) for name in Where._fields))
+    where = DriveContext(*(getattr(kept, name) for name in DriveContext._fields))
     return measuring.record(where, task, full=kept.ending == "record_full")
 
 

@@ -14,7 +14,7 @@ from latentarm_research.people.traits import Traits
 from latentarm_research.studies.streams import generator
 from latentarm_research.user_studies.conditions import assistance_of, belief_of, controller_of
 from latentarm_research.user_studies.definition import Condition, Definition, StudyTask
-from latentarm_research.user_studies.drive_record import DriveRecord, Where, record_of, trial_of
+from latentarm_research.user_studies.drive_record import DriveContext, DriveRecord, record_of, trial_of
 from latentarm_research.user_studies.record import Trial
 from latentarm_research.user_studies.scenes import scene_of
 from latentarm_research.user_studies.sizes import Sizes, Stream
@@ -110,7 +110,7 @@ def _drive(
     use = (Stream.TRIALS, person, number, attempt)
     rng = generator(cell.seed, f"{cell.definition.name} {cell.task.name}", *use)
     driven = drive(setup, choice, rng, time_limit_s=left_s)
-    where = Where("simulated", person, condition.name, cell.order, number, attempt)
+    where = DriveContext("simulated", person, condition.name, cell.order, number, attempt)
     return record_of(where, cell.task, driven)
 
 

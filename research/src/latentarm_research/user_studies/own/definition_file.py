@@ -100,7 +100,6 @@ def _check_labels(definition: Definition) -> None:
                 f"{field} must have at most 40 of a to z, 0 to 9 and _, a letter first, not {name!r}."
             )
     labels = [
-        ("public_title", definition.public_title),
         *(("conditions: name", one.name) for one in definition.conditions),
         *(("tasks: label", one.label) for one in definition.tasks),
         *(("questionnaire: name", one.name) for one in definition.questionnaire),

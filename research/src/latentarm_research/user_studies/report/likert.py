@@ -74,7 +74,8 @@ def likert_figure(
     handles = [Patch(facecolor=to_hex(colour)) for colour in colours]
     points = [str(point) for point in range(1, most + 1)]
     ends = {f"1 {scale.low}, {scale.points} {scale.high}" for scale in scales}
-    heading = f"{who}: {ends.pop() if len(ends) == 1 else 'from 1 on'}; reversed items turned"
+    points_words = literal(ends.pop()) if len(ends) == 1 else "from 1 on"
+    heading = f"{who}: {points_words}; reversed items turned"
     legend_below(figure, handles, points, heading=heading)
     return figure
 

@@ -21,7 +21,7 @@ from latentarm.tasks.scene_task import Beginning, SceneTask
 from latentarm.web.arm_process.fixed_drive import FixedDrive
 from latentarm_research.user_studies.conditions import assistance_of, belief_of, controller_of
 from latentarm_research.user_studies.definition import Condition, Definition, StudyTask
-from latentarm_research.user_studies.drive_record import Where
+from latentarm_research.user_studies.drive_record import DriveContext
 from latentarm_research.user_studies.drive_steps import Measuring, StepLog, begin
 from latentarm_research.user_studies.scenes import scene_of
 
@@ -129,7 +129,9 @@ class _Watch:
 
     def _write(self) -> None:
         due, folder = self._drive.due, self._drive.folder
-        where = Where("real", self._drive.person, due.condition.name, due.order, due.trial, due.attempt)
+        where = DriveContext(
+            "real", self._drive.person, due.condition.name, due.order, due.trial, due.attempt
+        )
         found = self._measuring.record(where, due.task, full=self._log.full)
         self._log.write(folder / STEPS, due.seed)
         write_text(folder / RECORD, found.model_dump_json())
