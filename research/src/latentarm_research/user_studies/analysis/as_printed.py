@@ -1,6 +1,6 @@
 """The paper's own analysis, as printed, on our trials, so that its statistics can be compared with ours."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Final, final
 
@@ -10,7 +10,7 @@ from latentarm.core.types import FloatArray
 from latentarm_research.studies.claims import Claim
 from latentarm_research.studies.statistics import LEVEL, format_p, spreads
 from latentarm_research.user_studies.analysis.means import sides, tasks_of
-from latentarm_research.user_studies.hypothesis import Printed, PrintedTest
+from latentarm_research.user_studies.hypothesis import Printed
 from latentarm_research.user_studies.record import Trial
 
 NOT_MEASURED: Final = "not measured"
@@ -60,11 +60,7 @@ def as_printed(printed: Printed, trials: Sequence[Trial]) -> AsPrinted:
         return AsPrinted(printed, NOT_MEASURED)
     if not printed.against:
         return AsPrinted(printed, _described(printed, trials))
-    return _TESTS[printed.test](printed, trials)
-
-
-def _claim(printed: Printed) -> Claim:
-    return Claim(printed.measure, printed.subject, printed.against, "less", printed.tasks)
+    return (_trials_t if printed.test == "trials t" else _of_people)(printed, trials)
 
 
 def _values(printed: Printed, trials: Sequence[Trial], conditions: Sequence[str]) -> FloatArray:
@@ -100,41 +96,20 @@ def _trials_t(printed: Printed, trials: Sequence[Trial]) -> AsPrinted:
     return _said(printed, text, float(subject.mean() - against.mean()), float(result.pvalue))
 
 
-def _between_f(printed: Printed, trials: Sequence[Trial]) -> AsPrinted:
-    from scipy.stats import f_oneway
+def _of_people(printed: Printed, trials: Sequence[Trial]) -> AsPrinted:
+    """The two sides of the same people, in pairs, or as if they were different people."""
+    from scipy.stats import f_oneway, ttest_rel
 
-    both = sides(trials, _claim(printed))
-    n = len(both.people)
+    both = sides(trials, Claim(printed.measure, printed.subject, printed.against, "less", printed.tasks))
+    n, apart = len(both.people), printed.test == "between F"
     if not n:
         return AsPrinted(printed, NOBODY_BOTH)
-    if n < 2 or not spreads(np.concatenate([both.subject, both.against])):
-        return AsPrinted(printed, "too few people")
-    result = f_oneway(both.subject, both.against)
-    text = f"F(1, {2 * n - 2}) = {result.statistic:.1f}, {_p(result.pvalue)}"
-    return _said(printed, text, float(both.differences.mean()), float(result.pvalue))
-
-
-def _paired(printed: Printed, trials: Sequence[Trial]) -> AsPrinted:
-    from scipy.stats import ttest_rel
-
-    both = sides(trials, _claim(printed))
-    n = len(both.people)
-    if not n:
-        return AsPrinted(printed, NOBODY_BOTH)
-    if n < 2 or not spreads(both.differences):
+    if n < 2 or not spreads(np.concatenate([both.subject, both.against]) if apart else both.differences):
         return AsPrinted(printed, "too few people, or no spread")
-    result = ttest_rel(both.subject, both.against)
-    text = f"t({n - 1}) = {result.statistic:.1f}, {_p(result.pvalue)}"
+    result: Any = (f_oneway if apart else ttest_rel)(both.subject, both.against)
+    statistic = f"F(1, {2 * n - 2})" if apart else f"t({n - 1})"
+    text = f"{statistic} = {result.statistic:.1f}, {_p(result.pvalue)}"
     return _said(printed, text, float(both.differences.mean()), float(result.pvalue))
-
-
-_TESTS: Final[Mapping[PrintedTest, Callable[[Printed, Sequence[Trial]], AsPrinted]]] = {
-    "trials t": _trials_t,
-    "between F": _between_f,
-    "paired t": _paired,
-    "paired p": _paired,
-    "stars": _paired,
-}
 
 
 def _said(printed: Printed, text: str, difference: float, p: float) -> AsPrinted:
