@@ -1,8 +1,13 @@
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from drawn_trials import drawn_trials
+from latentarm.cli import main
 from latentarm.core.errors import UserError
+from latentarm.core.untrusted.documents import read_object
+from latentarm.runs.results_folder import write_json
 from latentarm_research.user_studies.catalogue import load_definition
 from latentarm_research.user_studies.power import NUMBERS, Power, power_of
 
@@ -33,3 +38,17 @@ def test_power_without_people_is_refused() -> None:
         power_of(ALIGNMENT, trials, 10, seed=0)
     with pytest.raises(UserError, match="draws"):
         power_of(ALIGNMENT, trials, 0, seed=0)
+
+
+def test_the_command_draws_from_the_people_of_a_folder(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    about = {"study": ALIGNMENT.study, "definition": ALIGNMENT.digest, "people_are": "real"}
+    trials = [one.as_json() for one in drawn_trials(ALIGNMENT, 4, np.random.default_rng(4))]
+    write_json(tmp_path / "run" / "config.json", about)
+    write_json(tmp_path / "run" / "trials.json", {**about, "trials": trials})
+    given = ["--results", str(tmp_path / "run"), "--draws", "1", "--out", str(tmp_path / "power")]
+    assert main(["study", "power", "alignment", *given]) == 0
+    assert read_object(tmp_path / "power" / "power.json")["drawn_from_people"] == 4
+    assert main(["study", "power", "harmonic", *given]) == 2
+    assert "holds a run of the study alignment" in capsys.readouterr().err

@@ -3,23 +3,19 @@
 import json as json_format
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 from rich.table import Table
 from tyro.conf import Positional, arg
 
 from latentarm.commands.output import print_renderables, say
 from latentarm.core.errors import UserError
-from latentarm.runs.options import Json
+from latentarm.runs.options import Json, Seed
 from latentarm_research.commands.study_options import StudyName, StudyOptions, run_and_show
 from latentarm_research.user_studies.catalogue import NAMES, load_definition
 from latentarm_research.user_studies.definition import Definition
 from latentarm_research.user_studies.own.definition_file import find_definition
 from latentarm_research.user_studies.sizes import PRESETS
-
-if TYPE_CHECKING:
-    from latentarm_research.studies.study import Request
-    from latentarm_research.user_studies.sizes import Sizes
 
 Simulated = Annotated[
     int | None,
@@ -89,29 +85,25 @@ def run_study(
     For example: latentarm study run harmonic --simulated 2 --preset smoke
     """
     from latentarm_research.user_studies.run import study_of
+    from latentarm_research.user_studies.sizes import sizes_of
 
     definition = find_definition(name)
     folder = Path("studies", definition.name) if out is None else out
-    request = _request(definition, options, simulated, preset, folder)
+    sizes = sizes_of(preset, definition.people if simulated is None else simulated)
+    request = options.request(folder, sizes, tuple(task.name for task in definition.tasks))
     run_and_show(study_of(definition, name), request, "study run", page="report.html")
     return 0
 
 
 def power_of_study(
     name: Positional[StudyName],
-    options: StudyOptions,
-    results: Annotated[
-        Path | None,
-        arg(
-            metavar="DIR", help="Folder of a run of this study; without it, people are sent through it first."
-        ),
-    ] = None,
-    simulated: Simulated = None,
-    preset: Preset = "paper",
+    results: Annotated[Path, arg(metavar="DIR", help="Folder of a run of this study.")],
     draws: Annotated[int, arg(help="Studies drawn for each number of people.")] = 200,
+    seed: Seed = 0,
     out: Annotated[
         Path | None, arg(metavar="DIR", help="Folder for power.json; by default studies/NAME-power.")
     ] = None,
+    json: Json = False,
 ) -> int:
     """Find how many people a study needs: studies drawn from simulated people, through its own analysis.
 
@@ -119,32 +111,24 @@ def power_of_study(
     """
     from latentarm.runs.results_folder import write_json
     from latentarm_research.studies.results_folder import ResultsFolder
-    from latentarm_research.studies.study import Grid
     from latentarm_research.user_studies.power import TARGETS, power_of
     from latentarm_research.user_studies.recorded import read_recorded
-    from latentarm_research.user_studies.run import SESSIONS, study_of
 
     definition = find_definition(name)
     folder = Path("studies", f"{definition.name}-power") if out is None else out
-    study = study_of(definition, name)
-    claimed = ResultsFolder(f"power of {study.name}", ("power.json",), (SESSIONS,))
-    about = {"study": claimed.name, "definition": definition.digest, "draws": draws, "seed": options.seed}
-    if results is None:
-        request = _request(definition, options, simulated, preset, folder)
-        claimed.claim(folder, {**about, "drawn_from": study.about(request)})
-        recorded = study.measure(request, Grid(request))
-    else:
-        recorded = read_recorded(results)
-        found = recorded.definition
-        if found != definition:
-            raise UserError(
-                f"{results} holds a run of the study {found.name}, definition {found.digest[:12]}: name a"
-                f" run of {definition.name}, definition {definition.digest[:12]}."
-            )
-        claimed.claim(folder, {**about, "drawn_from": str(results)})
-    power = power_of(definition, recorded.trials, draws, options.seed)
+    claimed = ResultsFolder(f"power of {definition.study}", ("power.json",))
+    recorded = read_recorded(results)
+    found = recorded.definition
+    if found != definition:
+        raise UserError(
+            f"{results} holds a run of the study {found.name}, definition {found.digest[:12]}: name a run of"
+            f" {definition.name}, definition {definition.digest[:12]}."
+        )
+    about = {"study": claimed.name, "definition": definition.digest, "draws": draws, "seed": seed}
+    claimed.claim(folder, {**about, "drawn_from": str(results)})
+    power = power_of(definition, recorded.trials, draws, seed)
     write_json(folder / "power.json", power.as_json())
-    if options.json:
+    if json:
         print(json_format.dumps(power.as_json(), indent=2))
         return 0
     table = Table("", "80 %", "90 %", title=f"People needed, drawn from {power.people} simulated people")
@@ -154,7 +138,7 @@ def power_of_study(
             what, *(f"more than {power.numbers[-1]}" if one is None else str(one) for one in needed)
         )
     print_renderables(table)
-    say(f"How often each claim holds with how many people is in {folder}/power.json.", options.json)
+    say(f"How often each claim holds with how many people is in {folder}/power.json.", json)
     return 0
 
 
@@ -185,16 +169,6 @@ def preregister_study(
     if json:
         print(json_format.dumps({"file": str(path), "digest": document["digest"]}))
     return 0
-
-
-def _request(
-    definition: Definition, options: StudyOptions, simulated: int | None, preset: str, out: Path
-) -> "Request[Sizes]":
-    """Build the request. Raises a `UserError` where an option is out of its range."""
-    from latentarm_research.user_studies.sizes import sizes_of
-
-    sizes = sizes_of(preset, definition.people if simulated is None else simulated)
-    return options.request(out, sizes, tuple(task.name for task in definition.tasks))
 
 
 def _titled(definition: Definition) -> str:
