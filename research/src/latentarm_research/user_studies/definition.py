@@ -210,11 +210,6 @@ class Definition:
         """Names of the questionnaire's scales."""
         return tuple(scale.name for scale in self.questionnaire)
 
-    @property
-    def asks(self) -> bool:
-        """True if people are asked anything after a condition."""
-        return bool(self.questionnaire or self.in_words)
-
     def condition(self, name: str) -> Condition:
         """The condition of that name."""
         return next(condition for condition in self.conditions if condition.name == name)

@@ -61,7 +61,8 @@ class Way:
             theirs = [one for one in standing.drives if one.order == place]
             if (trial := self._trial(condition, place, standing.number, theirs)) is not None:
                 return trial
-            if self.definition.asks and place not in standing.answered:
+            asks = self.definition.questionnaire or self.definition.in_words
+            if asks and place not in standing.answered:
                 asked = sheet(self.definition, standing.number + 1, self.seed)
                 theirs = [one for one in asked if one.person == standing.number]
                 items = tuple(one.item for one in theirs if one.condition == name)
