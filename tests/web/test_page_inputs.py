@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from pydantic import ValidationError
 
 from latentarm.arms.contract import INPUT_BUDGET_S
 from latentarm.control.clock import SimulatedClock
@@ -31,7 +32,7 @@ class Way:
         self.give((0.0, 0.0))
         self.stops.clear()
 
-    def give(self, u, raw=None, source="gamepad", device=0, latched=False):
+    def give(self, u, raw=None, source="gamepad", device=0, latched=False, name=""):
         """An input, and what the loop makes of it in the next tick."""
         self.sequence += 1
         told = Given(
@@ -42,6 +43,7 @@ class Way:
             raw=raw,
             source=source,
             device=device,
+            name=name,
             latched=latched,
         )
         self.slot.write(told.model_dump_json().encode())
@@ -124,6 +126,16 @@ def test_a_dead_gamepad_stops_the_arm_after_ten_seconds(desk):
     assert moving[-1] - moving[0] < LATCH_MAX_S + 0.15
     assert desk.reports[-1].reason.code == "latch_ended"
     assert desk.reports[-1].phase == "neutral_needed"
+
+
+def test_the_pushed_device_is_known_by_its_kind_and_name():
+    way = Way()
+    way.give((0.7, 0.0), source="pointer", name="touch")
+    assert way.inputs.held_by == ("pointer", 0, "touch")
+    way.give((0.0, 0.0), source="pointer", name="touch")
+    assert way.inputs.held_by is None
+    with pytest.raises(ValidationError):
+        way.give((0.7, 0.0), name="Pad\n; 2")
 
 
 def test_a_device_that_takes_over_a_push_moves_nothing_until_it_was_let_go(desk):
