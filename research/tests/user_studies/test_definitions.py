@@ -119,8 +119,10 @@ def test_a_definition_that_contradicts_itself_is_refused() -> None:
         dataclasses.replace(definition, hypotheses=DEFINITIONS["eating"].hypotheses)
     with pytest.raises(UserError, match="is by stops"):
         dataclasses.replace(definition, exclusions=(Exclusion("stops", "more", 9.0, "the arm stopped"),))
-    with pytest.raises(UserError, match="4 items"):
-        Scale("ease", "Ease", (Item("It was easy."),))
+    with pytest.raises(UserError, match="one item or more"):
+        Scale("ease", "Ease", ())
+    with pytest.raises(UserError, match="two points or more"):
+        Scale("ease", "Ease", (Item("It was easy."),), points=1)
     with pytest.raises(UserError, match="margin"):
         Claim("time_s", ("a",), ("b",), "equal")
     with pytest.raises(UserError, match="compare some"):

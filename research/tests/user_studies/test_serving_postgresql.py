@@ -14,6 +14,7 @@ from latentarm_research.user_studies.serving.database import postgresql
 from latentarm_research.user_studies.serving.models import Models
 from latentarm_research.user_studies.serving.store import Store
 from postgres import postgres
+from study_participant import CONTACT
 from study_start import Starts
 
 SECRET = "s3cret"  # noqa: S105 - nobody's
@@ -48,7 +49,7 @@ def test_a_start_without_the_database_goes_on_in_it(start: Starts, url: str) -> 
     assert f"latentarm study analyse {start.out} --database {url}" in start.output
     sent = start.codes
     assert start() == 0
-    assert f"As at the first start: with --database {url}." in start.output
+    assert f"As at the first start: with --contact {CONTACT}, with --database {url}." in start.output
     assert start.codes == sent
     assert not (start.out / "study.sqlite").exists()
     assert all(SECRET.encode() not in path.read_bytes() for path in start.out.rglob("*") if path.is_file())

@@ -1,6 +1,5 @@
 """The pages of a study itself: information, practice, trials, questions, and the code."""
 
-import json
 from pathlib import Path
 from typing import Any, Final, final
 
@@ -9,6 +8,7 @@ from markdown_it import MarkdownIt
 from starlette.requests import Request
 from starlette.responses import FileResponse, HTMLResponse, Response
 
+from latentarm.core.untrusted.documents import parse_object
 from latentarm.web.server.answers import NO_STORE
 from latentarm.web.server.assets import FOLDER, Assets
 from latentarm.web.words.catalogue import languages
@@ -73,7 +73,7 @@ class ParticipantPages:
 def own_data(kept: dict[str, list[dict[str, Any]]]) -> dict[str, list[dict[str, Any]]]:
     """A person's rows of all tables, for them: with their conditions only once they have finished."""
     for row in kept["drives"]:
-        row["record"] = json.loads(row["record"])
+        row["record"] = parse_object(row["record"], "A drive")
     if any(row["completion"] is None for row in kept["people"]):
         for row in kept["drives"]:
             del row["record"]["condition"], row["record"]["trace"]["condition"]
