@@ -81,7 +81,7 @@ def write_dataset(folder: Path, recorded: Recorded, drives: Sequence[tuple[Drive
     Raises a `UserError` where one of these files holds no steps of a drive.
     """
     definition = recorded.definition
-    tables = {
+    tables: dict[str, tuple[Sequence[str], Iterable[Sequence[Cell]]]] = {
         "trials": (
             ("person", "condition", "task", "order", "trial", "excluded", *definition.measures),
             _trials(definition, recorded.trials),
