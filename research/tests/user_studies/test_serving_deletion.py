@@ -127,7 +127,8 @@ def test_no_byte_stays_of_a_person_who_leaves(tmp_path: Path) -> None:
             # Nobody else gets them.
             with participant(link, link) as another:
                 assert another.client.get(copy["steps"][0]).content != steps[0]
-            looked_for = [*steps, *(one["record"].encode() for one in copy["drives"])]
+            records = [DriveRecord.model_validate(one["record"]) for one in copy["drives"]]
+            looked_for = [*steps, *(one.model_dump_json().encode() for one in records)]
             looked_for += [text.encode() for text in (own["key"], own["completion"], left.split("=")[1])]
             assert len(traces_of(looked_for, kept_in(out), content_of(out))) > 100
             other.post("withdraw")
