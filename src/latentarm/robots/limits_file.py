@@ -22,7 +22,7 @@ An example in TOML::
 import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Final, cast
+from typing import Any, Final, cast
 
 import numpy as np
 
@@ -36,7 +36,7 @@ from latentarm.robots.limits import JointLimits, LimitSources, Quantity, Source
 TOOL_SPEED: Final = "tool_speed_m_per_s"
 GRIPPER: Final = "gripper"
 _GRIPPER_FIGURES: Final = {"width_m": "width", "speed_m_per_s": "speed", "force_n": "force"}
-PER_TIME: Final = {  # what follows the unit in a key
+PER_TIME: Final = {
     "lower": "",
     "upper": "",
     "velocity": "_per_s",
@@ -45,8 +45,11 @@ PER_TIME: Final = {  # what follows the unit in a key
     "margin": "",
 }
 _UNITS: Final = {"rad": 1.0, "deg": math.pi / 180.0, "m": 1.0}
-_MOST_RAD: Final = {"lower": 50.0, "upper": 50.0, "velocity": 30.0, "acceleration": 100.0, "jerk": 20_000.0}
-"""No joint of an arm has more, in rad and s: a larger figure is in degrees."""
+_SPELT: Final = {
+    f"{figure}_{unit}{per}": (figure, unit) for figure, per in PER_TIME.items() for unit in _UNITS
+}
+_MOST: Final = {"lower": 50.0, "upper": 50.0, "velocity": 30.0, "acceleration": 100.0, "jerk": 20_000.0}
+"""No joint of an arm has more, in rad or m, and s: a larger figure is in another unit than its key says."""
 
 
 def read_limits(path: Path) -> StatedLimits:
@@ -58,22 +61,22 @@ def read_limits(path: Path) -> StatedLimits:
     else:
         raise UserError(f"The limits file {path} must be TOML or YAML: name it .toml, .yaml or .yml.")
     stated = parse_limits(document, str(path))
-    for joint, figures in table_of(
-        table_of(document, str(path), "").get("joints", {}), str(path), ""
-    ).items():
-        _check_not_degrees(table_of(figures, str(path), joint), f"{path}: joints.{joint}")
+    for joint, figures in cast("Mapping[str, Any]", document).get("joints", {}).items():
+        for key, value in figures.items():
+            _check_size(key, value, f"{path}: joints.{joint}.{key}")
     return stated
 
 
-def _check_not_degrees(figures: Mapping[str, object], where: str) -> None:
-    """Refuse figures in degrees under a key in rad: the arm would be too fast to stop in time."""
-    for figure, per in PER_TIME.items():
-        value = figures.get(f"{figure}_rad{per}", 0.0)
-        if figure in _MOST_RAD and isinstance(value, int | float) and abs(value) > _MOST_RAD[figure]:
-            raise UserError(
-                f"{where}.{figure}_rad{per} is {value:g}, more than a joint of an arm has: if it is in"
-                f" degrees, name it {figure}_deg{per}."
-            )
+def _check_size(key: str, value: float, where: str) -> None:
+    """Refuse a figure in another unit than its key says: the arm would be too fast to stop in time."""
+    figure, unit = _SPELT[key]
+    if abs(value) * _UNITS[unit] > _MOST.get(figure, math.inf):
+        other = "deg" if unit == "rad" else "rad"
+        hint = "give it in m" if unit == "m" else f"if it is in {other}, name it {key.replace(unit, other)}"
+        raise UserError(
+            f"{where} is {value}, and no joint of an arm has more than {_MOST[figure] / _UNITS[unit]:.6g}:"
+            f" {hint}."
+        )
 
 
 def parse_limits(document: object, where: str) -> StatedLimits:
@@ -150,12 +153,11 @@ _SAID_BY: Final[Mapping[Quantity, tuple[str, ...]]] = {
 
 def _joint(entry: object, where: str, key: str) -> StatedJointLimits:
     given = table_of(entry, where, key)
-    spelt = {f"{figure}_{unit}{per}": (figure, unit) for figure, per in PER_TIME.items() for unit in _UNITS}
-    check_keys(given, tuple(spelt), where, f"{key}.")
+    check_keys(given, tuple(_SPELT), where, f"{key}.")
     values: dict[str, float] = {}
     sliding: set[bool] = set()
     for name, value in given.items():
-        figure, unit = spelt[name]
+        figure, unit = _SPELT[name]
         if figure in values:
             raise UserError(f"{where}: {key} gives {figure} twice, in different units: keep one of them.")
         values[figure] = number_of(value, where, f"{key}.{name}") * _UNITS[unit]
