@@ -78,6 +78,24 @@ def test_limits_beyond_those_of_the_arm_are_refused(server, capsys, tmp_path):
     )
 
 
+def test_limits_that_the_arm_does_not_confirm_are_told_in_figures(server, capsys, tmp_path):
+    limits = tmp_path / "limits.toml"
+    limits.write_text("[joints.joint1]\njerk_rad_per_s3 = 2000\nvelocity_rad_per_s = 1.5\n")
+    words = ["arms", "check", server.address, "--robot", "panda", "--limits", str(limits)]
+    words += ["--joint-speed", "0.2", "--json"]
+    assert main(words) == 0
+    found = json.loads(capsys.readouterr().out)
+    facts = {fact["name"]: fact["value"] for fact in found["facts"]}
+    assert facts["velocity limits"].startswith("85.9°/s, 124.6°/s,")
+    assert "; the arm's own: 124.6°/s, 124.6°/s," in facts["velocity limits"]
+    assert facts["jerk limits"].startswith("2000.0 rad/s³, 3750.0 rad/s³,")
+    assert "by the limits file and its maker's documents; the arm states none" in facts["jerk limits"]
+    (notice,) = found["notices"]
+    assert notice.startswith("The arm itself does not confirm the limits of acceleration, jerk")
+    assert main(words[:-1]) == 0
+    assert notice in capsys.readouterr().out
+
+
 @pytest.mark.parametrize("words", [("arms", "check", "mujoco"), ("drive", "--arm", "wooden://127.0.0.1:1")])
 def test_real_and_simulated_arms_are_told_apart(words, capsys):
     assert main(list(words)) == 2

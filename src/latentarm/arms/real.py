@@ -20,11 +20,14 @@ class Fact:
 @final
 @dataclass(frozen=True, eq=False)
 class FoundLimits:
-    """Limits that an arm reports and keeps by itself, each (n,), rad and rad/s."""
+    """Limits that an arm reports and keeps by itself, each (n,); infinite or None where it states none."""
 
-    lower: FloatArray
-    upper: FloatArray
-    velocity: FloatArray
+    lower: FloatArray  # rad
+    upper: FloatArray  # rad
+    velocity: FloatArray  # rad/s
+    acceleration: FloatArray | None = None  # rad/s²
+    jerk: FloatArray | None = None  # rad/s³
+    rounding: float = 1e-3  # the robot's limits may exceed these by so much
 
 
 @final
@@ -36,6 +39,7 @@ class Findings:
     facts: tuple[Fact, ...]
     refusals: tuple[str, ...] = ()  # reasons not to drive it, each one sentence that says what to do
     limits: FoundLimits | None = None  # its own, if it reports them
+    notices: tuple[str, ...] = ()  # to be known before driving, each one sentence
 
 
 class RealArm(Arm, ABC):

@@ -2,6 +2,7 @@
 
 import json as json_format
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from shlex import join
 from typing import TYPE_CHECKING, Annotated, Final
@@ -58,12 +59,12 @@ def check_arm_at(
         found = look_at(arm, driven, PERIOD_S)
         if guide is not None and not found.refusals:
             by_hand = look_guided(address, driven, guide)
-            found = Findings((*found.facts, *by_hand.facts), by_hand.refusals)
+            found = replace(found, facts=(*found.facts, *by_hand.facts), refusals=by_hand.refusals)
     except UserError as error:
         found = Findings((), (str(error),))
     finally:
         arm.close()
-    return Findings((*found.facts, *facts), (*refusals, *found.refusals))
+    return replace(found, facts=(*found.facts, *facts), refusals=(*refusals, *found.refusals))
 
 
 def _ask(what: str) -> None:
@@ -104,12 +105,15 @@ def check(
     found = check_arm_at(address, run, named, speeds, _ask if guided else None)
     if json:
         facts = [{"name": fact.name, "value": fact.value} for fact in found.facts]
-        print(json_format.dumps({"address": address, "facts": facts, "refusals": found.refusals}, indent=2))
+        told = {"address": address, "facts": facts, "notices": found.notices, "refusals": found.refusals}
+        print(json_format.dumps(told, indent=2))
     elif found.facts:
         table = Table("what", "found", title=address)
         for fact in found.facts:
             table.add_row(fact.name, fact.value)
         print_renderables(table)
+    for notice in found.notices:
+        say(notice, json)
     if found.refusals:
         refuse(found.refusals)
         return 2

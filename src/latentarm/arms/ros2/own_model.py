@@ -145,17 +145,16 @@ class Description:
     def limits(self) -> FoundLimits:
         """Limits of the joints, in the robot's order; infinite where it states none."""
         found = [self._limit(name) for name in self._options.joints]
-        lower, upper, velocity = (np.array(column) for column in zip(*found, strict=True))
-        return FoundLimits(lower, upper, velocity)
+        return FoundLimits(*(np.array(column) for column in zip(*found, strict=True)))
 
-    def _limit(self, name: str) -> tuple[float, float, float]:
+    def _limit(self, name: str) -> tuple[float, ...]:
         joint = self._joints[name]
         limit = joint.find("limit")
         figures = {} if limit is None else {key: _number(value) for key, value in limit.items()}
         ends = joint.get("type") != "continuous" and {"lower", "upper"} <= set(figures)
         lower, upper = (figures["lower"], figures["upper"]) if ends else (-math.inf, math.inf)
         # Exporters write zero where they do not know the speed.
-        return lower, upper, figures.get("velocity") or math.inf
+        return lower, upper, *(figures.get(one) or math.inf for one in ("velocity", "acceleration", "jerk"))
 
     def _movers(self, frame: str) -> set[str]:
         model = self._model

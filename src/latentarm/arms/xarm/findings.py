@@ -6,6 +6,7 @@ from typing import Final
 
 import numpy as np
 
+from latentarm.arms.own_limits import beyond
 from latentarm.arms.own_pose import OwnPose, compared, kind_misfit, misfits
 from latentarm.arms.real import Fact, Findings
 from latentarm.arms.xarm.controller import ANSWER_S
@@ -21,7 +22,7 @@ _SLOW_S: Final = 0.02  # an arm with a longer median answer cannot be driven at 
 _OUTSIDE_RAD: Final = 0.1
 _APART_RAD: Final = 0.02
 _RATE_OVER_S: Final = 0.1
-_SINGLE: Final = 1e-3  # rounding of the controller's limits, in single precision
+_SINGLE: Final = 1e-3  # rounding of the controller's figures, in single precision, mm or rad
 
 
 def basic_facts(identity: Identity) -> tuple[Fact, ...]:
@@ -75,10 +76,11 @@ def find_out(sdk: Sdk, session: Session, robot: Robot, *, bare: bool) -> Finding
         refusals = (*refusals, "The controller's joint angles do not change their time: restart it.")
     # An arm that moves is elsewhere in every report.
     poses = own_poses(session, robot) if _rests(session) else ()
-    refusals = (*refusals, *misfits(poses, robot))
+    limits = own_limits(sdk, session, robot)
+    refusals = (*refusals, *beyond(limits, robot), *misfits(poses, robot))
     facts = (*_facts(sdk, session, robot), *_tool_facts(session, robot, poses))
     facts = (*facts, *_timing(session, median_s, worst_s, rate_hz))
-    return Findings(facts, refusals, own_limits(sdk, session, robot))
+    return Findings(facts, refusals, limits, _notices(session, robot))
 
 
 def unfit(sdk: Sdk, session: Session, robot: Robot) -> str:
@@ -139,16 +141,6 @@ def _setting_refusals(session: Session, robot: Robot, *, bare: bool) -> tuple[st
         refusals.append(
             "The arm's collision detection is off: set a sensitivity of 1 or more in UFACTORY Studio."
         )
-    slack = 1.0 + _SINGLE
-    for what, own, limit, unit in (
-        ("speed", robot.limits.velocity, status.speed_rad_s, "rad/s"),
-        ("acceleration", robot.limits.acceleration, status.acceleration_rad_s2, "rad/s²"),
-    ):
-        if not float(own.max()) - limit * slack <= 0.0:
-            refusals.append(
-                f"The controller limits the {what} of joints to {limit:.3g} {unit}, less than {robot.name}"
-                f" states: lower the robot's {what} limits with --limits FILE."
-            )
     return tuple(refusals)
 
 
@@ -158,7 +150,6 @@ def _facts(sdk: Sdk, session: Session, robot: Robot) -> tuple[Fact, ...]:
     down = np.array(status.gravity)
     tilt = math.degrees(math.acos(float(np.clip(-down[2] / max(np.linalg.norm(down), 1e-9), -1.0, 1.0))))
     named = ", ".join(robot.joint_names)
-    limits = f"{status.speed_rad_s:.2f} rad/s, {status.acceleration_rad_s2:.1f} rad/s²"
     facts = [
         Fact("arm", f"{identity.name}, {status.axes} joints (type {status.kind})"),
         Fact("firmware", identity.version),
@@ -168,9 +159,7 @@ def _facts(sdk: Sdk, session: Session, robot: Robot) -> tuple[Fact, ...]:
         Fact("joints", f"{robot.name} by order: {named} are taken for J1 to J{robot.dof}"),
         Fact("payload", f"{status.load_kg:.2f} kg, centre ({centre}) mm"),
         Fact("mounting", "upright" if tilt < 1.0 else f"tilted by {tilt:.0f}°"),
-        Fact(
-            "limits", limits + ", reduced mode on" * status.reduced + ", safety boundary on" * status.fenced
-        ),
+        Fact("safety boundary", "on" if status.fenced else "off"),
         Fact("collision sensitivity", f"{status.collision_sensitivity} of 5"),
         Fact("warning", "none" if not status.warning else f"{status.warning}"),
         Fact("state", f"mode {status.mode}, state {status.state}"),
@@ -182,6 +171,21 @@ def _facts(sdk: Sdk, session: Session, robot: Robot) -> tuple[Fact, ...]:
         opened = f"{width_mm:.0f} of {most_mm:.0f} mm open"
         facts.append(Fact("gripper", f"{opened}; how hard it presses cannot be set"))
     return tuple(facts)
+
+
+def _notices(session: Session, robot: Robot) -> tuple[str, ...]:
+    status, jerk = session.status, float(robot.limits.jerk.max())
+    found: list[str] = []
+    if status.reduced:
+        found.append(
+            "The arm's reduced mode is on and lowers its limits: end it in UFACTORY Studio if not meant."
+        )
+    if jerk > status.jerk_rad_s3:
+        found.append(
+            f"The limits state a jerk of up to {jerk:g} rad/s³, and the arm's own motions of its joints have"
+            f" {status.jerk_rad_s3:g} rad/s³: it may follow more softly than it is commanded."
+        )
+    return tuple(found)
 
 
 def _tool_facts(session: Session, robot: Robot, poses: tuple[OwnPose, ...]) -> tuple[Fact, ...]:

@@ -32,14 +32,19 @@ def own_poses(session: Session, robot: Robot) -> tuple[OwnPose, ...]:
     return (OwnPose(q, here, offset), *elsewhere)
 
 
-def own_limits(sdk: Sdk, session: Session, robot: Robot) -> FoundLimits | None:
-    """The positions that the manufacturer's library allows; None for an arm that it does not know."""
+def own_limits(sdk: Sdk, session: Session, robot: Robot) -> FoundLimits:
+    """The positions that the manufacturer's library allows, infinite for an arm that it does not know.
+
+    Speed and acceleration are the controller's, for all joints alike.
+    """
     status = session.status
-    known = sdk.joint_limits.get(status.axes, {}).get(status.kind)
-    if known is None or len(known) != robot.dof:
-        return None
-    lower, upper = np.array(known).T
-    return FoundLimits(lower, upper, np.full(robot.dof, np.inf))
+    known = sdk.joint_limits.get(status.axes, {}).get(status.kind, [])
+    bounds = np.array(known if len(known) == robot.dof else [(-np.inf, np.inf)] * robot.dof)
+    speed, acceleration = (
+        np.full(robot.dof, one if one >= 0.0 else 0.0)  # what is no number allows nothing
+        for one in (status.speed_rad_s, status.acceleration_rad_s2)
+    )
+    return FoundLimits(bounds[:, 0], bounds[:, 1], speed, acceleration)
 
 
 def _frame(pose: FloatArray | tuple[float, ...]) -> FloatArray:

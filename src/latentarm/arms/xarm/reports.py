@@ -111,6 +111,7 @@ class StatusReport:
     gravity: tuple[float, ...]  # its direction in the base frame
     speed_rad_s: float  # largest of the joints
     acceleration_rad_s2: float  # largest of the joints
+    jerk_rad_s3: float  # of the motions that the controller plans for the joints; a setting
     reduced: bool  # whether the reduced mode limits speeds
     fenced: bool  # whether a safety boundary is set
     simulated: bool  # whether the controller simulates its arm
@@ -269,6 +270,7 @@ class StatusReports:
             gravity=tuple(float(figure) for figure in report.gravity_direction),
             speed_rad_s=float(report.joint_max_speed),
             acceleration_rad_s2=float(report.joint_max_acc),
+            jerk_rad_s3=float(report.joint_jerk),
             reduced=bool(report.is_reduced_mode),
             fenced=bool(report.is_fence_mode),
             simulated=bool(report.is_simulation_robot),

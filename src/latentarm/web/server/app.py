@@ -203,6 +203,8 @@ def _looked_at(
     say(f"A real arm is at {setup.arm}. It says of itself:")
     for fact in found.facts:
         say(f"  {fact.name}: {fact.value}")
+    for notice in found.notices:
+        say(notice)
     if setup.spec.shadow:
         say("Shadow mode: nothing is sent to the arm.")
     if not setup.obstacles:
