@@ -1,6 +1,7 @@
 """The driver of a Franka against franky-sim, over the arm's own protocol."""
 
 import dataclasses
+import re
 import time
 
 import numpy as np
@@ -90,7 +91,7 @@ def test_it_says_what_it_found_and_moves_nothing(new_arm, stand_in):
     names = {fact.name: fact.value for fact in found.facts}
     assert names["arm"] == "Franka Research 3"
     assert names["mode"] == "Idle"
-    assert {"largest speed", "payload", "clock", "round trip", "hand"} <= set(names)
+    assert {"payload", "clock", "round trip", "hand"} <= set(names)
     np.testing.assert_allclose(stand_in.positions(), before, atol=TREMBLE_RAD)
     assert new_arm.status().phase == "off"
 
@@ -98,7 +99,7 @@ def test_it_says_what_it_found_and_moves_nothing(new_arm, stand_in):
 @pytest.mark.parametrize(
     ("address", "robot", "said"),
     [
-        (ADDRESS, "panda", "choose --robot fr3"),
+        (ADDRESS, "panda", "name the arm's own model with --robot"),
         (f"franka://{HOST}", "fr3", "no realtime kernel"),
         ("franka://127.0.7.250?realtime=ignore", "fr3", "There is no Franka at 127.0.7.250"),
     ],
@@ -145,6 +146,25 @@ def test_the_hand_goes_where_it_is_told_and_can_be_told_otherwise(arm, stand_in)
         drive(arm, stand_in, still, 0.05, GripperCommand(0.06, 0.1, 20.0))
     assert not arm.read().gripper.holding
     assert arm.status().takes_commands
+
+
+def test_a_clock_that_is_not_ours_is_refused_and_stops_the_arm(new_arm, stand_in):
+    new_arm.connect()
+    new_arm.enable()
+    becomes(new_arm, "ready")
+    stand_in.pace(0.179)
+    try:
+        status = becomes(new_arm, "fault", within_s=20.0)
+        assert re.match(r"The arm's clock passes 0\.\d+ s in each second of this computer", status.reason)
+        at_rest(stand_in)
+        new_arm.close()
+        (sentence,) = (one for one in new_arm.look().refusals if "clock" in one)
+        assert "would end late" in sentence
+        with pytest.raises(UserError, match="The arm's clock passes"):
+            new_arm.connect()
+    finally:
+        stand_in.pace(1.0)
+    new_arm.connect()
 
 
 class Served(StandIn):

@@ -7,7 +7,9 @@ from hypothesis.extra.numpy import arrays
 from latentarm.arms.address import parse_address
 from latentarm.arms.franka.limits import FR3, PANDA, SHARE, limits_of
 from latentarm.arms.franka.options import FrankaOptions, read_options
+from latentarm.arms.franka.pace import Pace
 from latentarm.arms.franka.words import fault
+from latentarm.arms.own_limits import beyond
 from latentarm.core.errors import UserError
 from latentarm.robots.panda import fr3, panda
 
@@ -46,10 +48,13 @@ def test_no_speed_is_left_towards_an_end(limits):
 
 
 def test_each_robot_fits_its_arm_and_a_panda_does_not_fit_an_fr3():
-    assert FR3.excess(fr3()) == ""
-    assert PANDA.excess(panda()) == ""
-    assert "joint1 is -2.8973 rad" in FR3.excess(panda())
-    assert "speed" in PANDA.excess(fr3())
+    assert beyond(FR3.found, fr3()) == ()
+    assert beyond(PANDA.found, panda()) == ()
+    assert (
+        "The lower limit of joint1 is -166.0° for panda and -157.6° for the arm"
+        in beyond(FR3.found, panda())[0]
+    )
+    assert any("velocity limit" in sentence for sentence in beyond(PANDA.found, fr3()))
 
 
 @pytest.mark.parametrize(
@@ -110,3 +115,12 @@ def test_an_error_of_the_arm_becomes_a_sentence():
     assert fault(["joint_reflex"], "x") == "It felt a collision: see what it touches."
     assert fault(["instability_detected"], "x") == "Instability detected."
     assert fault([], "Move command rejected") == "Move command rejected."
+
+
+def test_clocks_are_compared_over_spans_in_which_this_computer_was_not_late():
+    for rate, said in ((1.0, ""), (0.179, "passes 0.179 s"), (3.0, "passes 3.000 s")):
+        pace = Pace()
+        told = [pace.strange(now_s, rate * now_s) for now_s in np.arange(0.0, 2.5, 0.004)]
+        assert sum(said in one for one in told if one) == (2 if said else 0)
+        late = [pace.strange(now_s, rate * now_s) for now_s in np.arange(10.0, 20.0, 0.2)]
+        assert not any(late)

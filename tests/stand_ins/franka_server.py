@@ -23,6 +23,9 @@ from latentarm.core.punctuality import short_collections
 START = (0.0, -0.785398, 0.0, -2.356194, 0.0, 1.570796, 0.785398)
 """Where the joints are at first, rad."""
 
+MOST_BEHIND_S = 0.2
+"""The stand-in catches up with so much real time at most."""
+
 LOST_CYCLES = 20
 """The real arm stops after so many cycles of 1 ms without a message."""
 
@@ -122,6 +125,10 @@ class FrankaStandIn:
     def cut(self) -> None:
         self.ask("cut")
 
+    def pace(self, rate: float) -> None:
+        """Let so many seconds pass on the arm's own clock in each of ours."""
+        self.ask(f"pace {rate}")
+
     def repair(self) -> None:
         self.ask("repair")
 
@@ -163,6 +170,8 @@ def _servers():
             self.errors = ()
             self.pressed = self.is_cut = False
             self.silent = 0
+            self.steps = 1  # of 1 ms, in this cycle
+            self.pace, self._owed = 1.0, 0.0
             self._heard = False
             super().__init__(robot, hostname_candidates)
             self._FrankaServer__command_class_map[RobotCommand.kAutomaticErrorRecovery] = Recovery
@@ -187,6 +196,7 @@ def _servers():
             motion = self.current_motion_id
             self.stop_motion(send_preemption_signal=False)
             if motion:
+                self.steps = 1
                 self.send_state()
                 BaseCommand.send_response(self._tcp_socket, RobotCommand.kMove, motion, status)
                 self.reset_current_motion_id()
@@ -204,12 +214,18 @@ def _servers():
                 super().process_commands()
             if not self.current_motion_id or not self._heard:
                 return
-            self.silent += 1
+            self.silent += self.steps
             if self.is_cut and self.silent > LOST_CYCLES:
                 self.errors = (_COMMUNICATION,)
                 self.abort(MoveStatus.kReflexAborted)
 
         def send_state(self):
+            self._owed += self.pace * self.steps
+            if self._owed < 1.0:
+                return
+            # The number of a state is its time in ms.
+            self._FrankaServer__message_id += int(self._owed) - 1
+            self._owed %= 1.0
             if not self.is_cut:
                 super().send_state()
 
@@ -279,6 +295,8 @@ def _obey(order, server, robot, hand, cycle) -> dict:
         hand.goal = np.array(rest, dtype=float) if rest else None
     elif name == "cut":
         arm.is_cut = True
+    elif name == "pace":
+        arm.pace = float(rest[0])
     elif name == "repair":
         arm.is_cut = False
     return answer
@@ -311,15 +329,19 @@ def _serve(host: str) -> None:
                     if order == "end":
                         return
                     print(json.dumps(_obey(order, server, robot, hand, cycle)), flush=True)  # noqa: T201
-                # As franky-sim's run_once, which gives its processor away in each cycle.
+                # As franky-sim's run_once, which gives its processor away in each cycle. On a busy machine a
+                # cycle takes several steps, as on an arm whose messages are lost: its time and motion go on.
+                late_s = min(max(time.monotonic() - due_s, 0.0), MOST_BEHIND_S)
+                steps = 1 + int(1e3 * late_s)
                 for arm in server.robot_servers:
+                    arm.steps = steps
                     arm.process_commands()
-                simulator.step()
+                for _ in range(steps):
+                    simulator.step()
                 for arm in server.robot_servers:
                     arm.send_state()
-                cycle += 1
-                # A late cycle shifts all later ones.
-                due_s = max(due_s + 1e-3, time.monotonic())
+                cycle += steps
+                due_s = max(due_s + 1e-3 * steps, time.monotonic() - MOST_BEHIND_S)
                 if (ahead_s := due_s - time.monotonic()) > 0.0:
                     time.sleep(ahead_s)
 

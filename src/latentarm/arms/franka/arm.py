@@ -9,6 +9,7 @@ from latentarm.arms.contract import REASONS, ArmSpec, ArmStatus, finite_velocity
 from latentarm.arms.franka.hand import Hand
 from latentarm.arms.franka.link import Link, findings, library, open_link, refusals, set_up
 from latentarm.arms.franka.options import read_options
+from latentarm.arms.franka.pace import measured_rate
 from latentarm.arms.franka.worker import Order, Trouble, Worker
 from latentarm.arms.real import Findings, GuidableArm
 from latentarm.core.errors import UserError
@@ -185,7 +186,7 @@ class FrankaArm(GuidableArm):
         """A link to an arm that can be driven; ``ready`` sets the arm up for that."""
         link = open_link(self._host, self._options, self._robot)
         try:
-            for reason in refusals(link, self._options, self._robot):
+            for reason in refusals(link, self._options, self._robot, measured_rate(link.arm)):
                 raise UserError(reason)
             if ready:
                 set_up(link, self._options, self._robot)

@@ -6,9 +6,9 @@ from typing import Final, final
 
 import numpy as np
 
+from latentarm.arms.real import FoundLimits
 from latentarm.core.types import FloatArray
 from latentarm.robots.panda import LIMITS as PANDA_LIMITS
-from latentarm.robots.robot import Robot
 
 SHARE: Final = 0.99  # used share of a limit; a share of 1 exceeds some by rounding
 _AHEAD_S: Final = 0.1  # speeds also keep the limits of the position after this time
@@ -52,22 +52,10 @@ class FrankaLimits:
         least, most = self.speeds(q)
         return bool(((velocity > most) | (velocity < least)).any())
 
-    def excess(self, robot: Robot) -> str:
-        """A limit of the robot that the arm cannot reach, in words, or ""."""
-        theirs = robot.limits
-        for joint in range(robot.dof):
-            for what, asked, can, unit in (
-                ("lowest position", -theirs.lower[joint], -self.lower[joint], "rad"),
-                ("highest position", theirs.upper[joint], self.upper[joint], "rad"),
-                ("speed", theirs.velocity[joint], self.velocity[joint], "rad/s"),
-                ("acceleration", theirs.acceleration[joint], self.acceleration[joint], "rad/s²"),
-                ("jerk", theirs.jerk[joint], self.jerk[joint], "rad/s³"),
-            ):
-                if asked > can + 1e-9:
-                    sign = -1.0 if what == "lowest position" else 1.0
-                    name = robot.joint_names[joint]
-                    return f"the {what} of {name} is {sign * asked:g} {unit}, the arm's {sign * can:g}"
-        return ""
+    @property
+    def found(self) -> FoundLimits:
+        """What a robot's limits are compared with."""
+        return FoundLimits(self.lower, self.upper, self.velocity, self.acceleration, self.jerk, rounding=1e-9)
 
 
 FR3: Final = FrankaLimits(

@@ -11,7 +11,9 @@ import numpy as np
 
 from latentarm.arms.franka.limits import SHARE, FrankaLimits, limits_of
 from latentarm.arms.franka.options import FrankaOptions
+from latentarm.arms.franka.pace import measured_rate, strange
 from latentarm.arms.franka.words import plain
+from latentarm.arms.own_limits import beyond
 from latentarm.arms.own_pose import OwnPose, compared, kind_misfit, misfits
 from latentarm.arms.real import Fact, Findings
 from latentarm.core.errors import UserError
@@ -24,7 +26,6 @@ _CONNECT_S: Final = 8.0  # an arm that has not answered by then is absent
 _AXIS_RAD: Final = 0.01
 _AXIS_M: Final = 0.003  # tolerance of a joint's axis in the robot's model
 _REALTIME_FILE: Final = Path("/sys/kernel/realtime")
-_CLOCK_S: Final = 0.3
 _ROUND_TRIPS: Final = 9
 
 
@@ -126,19 +127,14 @@ def set_up(link: Link, options: FrankaOptions, robot: Robot) -> None:
         ) from error
 
 
-def refusals(link: Link, options: FrankaOptions, robot: Robot) -> tuple[str, ...]:
-    """Reasons not to drive this arm as this robot."""
+def refusals(link: Link, options: FrankaOptions, robot: Robot, rate: float) -> tuple[str, ...]:
+    """Reasons not to drive this arm as this robot; ``rate`` is its `measured_rate`."""
     found: list[str] = []
     if link.limits is None:
         found.append("The arm says it is neither an FR3 nor a Panda: it is not known what it can do.")
-    elif excess := link.limits.excess(robot):
-        name = "fr3" if link.limits.kind == "Franka Research 3" else "panda"
-        found.append(
-            f"The arm is a {link.limits.kind}, and {robot.name} may do more than it ({excess}): choose"
-            f" --robot {name}, or state lower limits with --limits FILE."
-        )
-    if link.limits is not None:
-        found += kind_misfit(link.limits.kind, robot)
+    else:
+        # Limits of another kind of arm differ, and lower ones would not make it this one.
+        found += kind_misfit(link.limits.kind, robot) or beyond(link.limits.found, robot)
     if distance := _axes_apart(link, robot):
         found.append(
             f"The joints of {robot.name} are not where the arm's are ({distance}): choose the robot that the"
@@ -151,6 +147,8 @@ def refusals(link: Link, options: FrankaOptions, robot: Robot) -> tuple[str, ...
             "This computer has no realtime kernel: install one, or add ?realtime=ignore to the address and"
             " expect the arm to stop when the computer is busy."
         )
+    if late := strange(rate):
+        found.append(late)
     widest_m = 0.0 if robot.gripper is None else robot.gripper.width_m
     if link.hand is not None and link.hand.state.max_width < 0.5 * widest_m:
         found.append(
@@ -161,8 +159,7 @@ def refusals(link: Link, options: FrankaOptions, robot: Robot) -> tuple[str, ...
 
 def findings(link: Link, options: FrankaOptions, robot: Robot) -> Findings:
     """The arm's facts, and reasons not to drive it."""
-    state = link.arm.state
-    limits = link.limits
+    state, limits, rate = link.arm.state, link.limits, measured_rate(link.arm)
     facts = [
         Fact("arm", "not known" if limits is None else limits.kind),
         Fact("mode", str(state.robot_mode.name)),
@@ -172,20 +169,15 @@ def findings(link: Link, options: FrankaOptions, robot: Robot) -> Findings:
         Fact("payload", f"{state.m_load:.2f} kg now, {options.payload_kg:g} kg when connected"),
         Fact("collision thresholds", _thresholds(options)),
     ]
-    if limits is not None:
-        for name, values, unit in (
-            ("speed", limits.velocity, "rad/s"),
-            ("acceleration", limits.acceleration, "rad/s²"),
-            ("jerk", limits.jerk, "rad/s³"),
-        ):
-            facts.append(Fact(f"largest {name}", ", ".join(f"{value:g}" for value in values) + f" {unit}"))
     if link.hand is not None:
         hand = link.hand.state
         opened = f"{1000 * hand.width:.0f} of {1000 * hand.max_width:.0f} mm open"
         facts.append(Fact("hand", f"version {link.hand.server_version}, {opened}, {hand.temperature} °C"))
     facts.append(compared((_own_pose(link, options),), robot))
-    facts += [Fact("clock", _clock(link)), Fact("round trip", _round_trip(link, options))]
-    return Findings(tuple(facts), refusals(link, options, robot))
+    clock = f"{rate:.3f} s of the arm in one of this computer"
+    facts += [Fact("clock", clock), Fact("round trip", _round_trip(link, options))]
+    own = None if limits is None or kind_misfit(limits.kind, robot) else limits.found
+    return Findings(tuple(facts), refusals(link, options, robot, rate), own)
 
 
 def _set_thresholds(link: Link, options: FrankaOptions) -> None:
@@ -223,13 +215,6 @@ def _own_pose(link: Link, options: FrankaOptions) -> OwnPose:
         tip[:3, 3] = options.attachment_tip_m
         offset = np.asarray(state.F_T_NE.matrix) @ tip
     return OwnPose(np.asarray(state.q, dtype=np.float64), flange @ offset, offset)
-
-
-def _clock(link: Link) -> str:
-    began_s, arm_s = time.monotonic(), link.arm.state.time.to_sec()
-    time.sleep(_CLOCK_S)
-    passed_s, arms_s = time.monotonic() - began_s, link.arm.state.time.to_sec() - arm_s
-    return f"{arms_s / passed_s:.3f} s of the arm in one of this computer"
 
 
 def _round_trip(link: Link, options: FrankaOptions) -> str:

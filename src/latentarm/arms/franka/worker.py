@@ -11,6 +11,7 @@ import numpy as np
 from latentarm.arms.contract import ArmPhase
 from latentarm.arms.franka.guiding import Guiding
 from latentarm.arms.franka.link import Link, library
+from latentarm.arms.franka.pace import Pace
 from latentarm.arms.franka.words import fault, plain
 from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray
@@ -91,6 +92,7 @@ class Worker:
         self._driven: Order | None = None
         self._guide = False
         self._guiding = Guiding(self._franky, link.limits)
+        self._pace = Pace()
         self.measured = self._state()  # the newest
         self._thread = threading.Thread(target=self._run, name="franka-arm", daemon=True)
         self._thread.start()
@@ -223,6 +225,9 @@ class Worker:
         elif state.arm_s > before.arm_s:
             # A state that repeats is not new, and stays as old as it is.
             self.measured = state
+        if reason := self._pace.strange(state.time_s, state.arm_s):
+            self._halt()
+            self._fault(reason)
 
     def _guard(self) -> None:
         """Stop an order that ran out before its motion began, or that comes too near the end of a joint."""
@@ -288,7 +293,7 @@ class Worker:
                 self._lose(str(error))
                 return
             # The clock of a controller that has restarted begins again.
-            self.measured = self._state()
+            self.measured, self._pace = self._state(), Pace()
         elif not (self._link.arm.recover_from_errors() or self._recovered()):
             reason = "The arm did not recover from its error: recover it in Desk."
             self._set(Trouble("fault", reason, recoverable=True))
