@@ -96,6 +96,50 @@ def test_limits_that_the_arm_does_not_confirm_are_told_in_figures(server, capsys
     assert notice in capsys.readouterr().out
 
 
+ZONES = """
+[zones.face]
+shape = "sphere"
+centre_m = [2.0, 0.0, {tool_z}]
+radius_m = 0.2
+speed_m_per_s = 0.05
+
+[keep_out.wall]
+shape = "half_space"
+point_m = [{wall_x}, 0.0, 0.0]
+normal = [-1.0, 0.0, 0.0]
+clearance_m = 0.08
+"""
+
+
+@pytest.mark.parametrize(("before_m", "said"), [(0.3, False), (0.05, True)])
+def test_the_check_tells_how_far_zones_and_solids_are(server, capsys, tmp_path, before_m, said):
+    robot = panda()
+    q = server.positions()
+    tool = robot.chain.forward(q).position
+    zones = tmp_path / "zones.toml"
+    zones.write_text(ZONES.format(tool_z=tool[2], wall_x=tool[0] + before_m))
+    words = ["arms", "check", server.address, "--robot", "panda", "--zones", str(zones)]
+    assert main([*words, "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    facts = {fact["name"]: fact["value"] for fact in found["facts"]}
+    to_face, to_wall = (
+        float(facts[name].split(" mm away from ")[0]) for name in ("zone face", "keep out of wall")
+    )
+    assert 1000 * (2.0 - tool[0] - 0.2) - 100 < to_face <= 1000 * (2.0 - tool[0] - 0.2) + 0.5
+    assert 1000 * before_m - 100 < to_wall <= 1000 * before_m + 0.5
+    assert any("80 mm are kept" in notice for notice in found["notices"]) == said
+    assert main(words) == 0
+    assert f"--zones {zones}" in capsys.readouterr().out.replace("\n", " ")
+
+
+def test_zones_that_allow_too_much_are_refused_as_by_teleop(server, capsys, tmp_path):
+    zones = tmp_path / "zones.toml"
+    zones.write_text(ZONES.replace("0.05", "0.3").format(tool_z=0.5, wall_x=1.0))
+    for words in (["arms", "check", server.address], ["teleop", "--arm", server.address]):
+        assert main([*words, "--robot", "panda", "--zones", str(zones)]) == 2
+        assert "the zone 'face' allows 0.3 m/s" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize("words", [("arms", "check", "mujoco"), ("drive", "--arm", "wooden://127.0.0.1:1")])
 def test_real_and_simulated_arms_are_told_apart(words, capsys):
     assert main(list(words)) == 2

@@ -14,7 +14,7 @@ from latentarm.arms.address import is_address
 from latentarm.arms.catalogue import ARMS, REAL_ARMS, address_form, make_real_arm
 from latentarm.arms.checking import look_at
 from latentarm.arms.real import Findings
-from latentarm.commands.options import JointSpeed, LimitsFile, LinkSpeed
+from latentarm.commands.options import JointSpeed, LimitsFile, LinkSpeed, ZonesFile
 from latentarm.commands.output import print_renderables, refuse, say
 from latentarm.control.clock import MonotonicClock
 from latentarm.core.errors import UserError
@@ -34,21 +34,25 @@ def check_arm_at(
     robot: "RobotOptions",
     speeds: Speeds,
     guide: Callable[[str], None] | None = None,
+    zones: Path | None = None,
 ) -> Findings:
     """Check a real arm, such as ``franka://172.16.0.2``, before it is driven from the page; nothing moves.
 
     ``robot`` describes the arm where there is no run. ``guide`` compares its tool pose at three more poses,
-    see `latentarm.commands.guided_check.look_guided`. Raises UserError where the address, the run or the
-    robot cannot be used; a refusal by the arm is among the findings instead.
+    see `latentarm.commands.guided_check.look_guided`. ``zones`` is a file to tell the distances from. Raises
+    UserError where the address, the run, the robot or the zones cannot be used; a refusal by the arm is among
+    the findings instead.
     """
     from latentarm.commands.abilities import abilities
     from latentarm.commands.guided_check import look_guided
+    from latentarm.commands.zone_check import with_distances, zones_for
     from latentarm.runs.folder import read_run
     from latentarm.web.arm_process.drive_setup import PERIOD_S, Spec, load_setup
     from latentarm.web.arm_process.initial_state import begin_real
 
     if not is_address(address):
         raise UserError(f"{address} is not the address of a real arm: write SCHEME://HOST.")
+    stated = zones_for(zones, speeds)
     trained = None if run is None else read_run(run)
     driven = begin_real(trained, None if trained is None else trained.task, 0, robot).place.robot
     facts, refusals = abilities(driven, speeds)
@@ -60,6 +64,9 @@ def check_arm_at(
         if guide is not None and not found.refusals:
             by_hand = look_guided(address, driven, guide)
             found = replace(found, facts=(*found.facts, *by_hand.facts), refusals=by_hand.refusals)
+        if zones is not None and not found.refusals:
+            arm.watch()
+            found = with_distances(found, stated, driven, arm.read().q)
     except UserError as error:
         found = Findings((), (str(error),))
     finally:
@@ -86,6 +93,7 @@ def check(
     ] = None,
     end_effector: EndEffector = None,
     limits: LimitsFile = None,
+    zones: ZonesFile = None,
     joint_speed: JointSpeed = None,
     link_speed: LinkSpeed = None,
     guided: Annotated[
@@ -102,7 +110,7 @@ def check(
 
     speeds = Speeds.asked(joint_speed, link_speed)
     named = RobotOptions(robot, end_effector, limits)
-    found = check_arm_at(address, run, named, speeds, _ask if guided else None)
+    found = check_arm_at(address, run, named, speeds, _ask if guided else None, zones)
     if json:
         facts = [{"name": fact.name, "value": fact.value} for fact in found.facts]
         told = {"address": address, "facts": facts, "notices": found.notices, "refusals": found.refusals}
@@ -123,6 +131,7 @@ def check(
         "--robot": robot,
         "--end-effector": end_effector,
         "--limits": limits,
+        "--zones": zones,
         "--joint-speed": FIRST_RAD_S if slowly else joint_speed,
         "--link-speed": FIRST_M_PER_S if slowly else link_speed,
     }

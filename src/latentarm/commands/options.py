@@ -38,6 +38,14 @@ LimitsFile = Annotated[
     Path | None,
     arg(metavar="FILE", help="TOML or YAML file that states the robot's limits, see docs/arms.md."),
 ]
+ZonesFile = Annotated[
+    Path | None,
+    arg(
+        metavar="FILE",
+        help="TOML file of zones in which the arm is slow, such as about a face, of what it keeps out of,"
+        " such as a table, and of what it grips, such as a cup; see docs/your-arm.md.",
+    ),
+]
 Seated = Annotated[
     Seat | None,
     arg(

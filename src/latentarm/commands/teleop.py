@@ -1,7 +1,6 @@
 """`latentarm teleop`: the web page."""
 
 import json as json_format
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Annotated, Final
@@ -11,9 +10,8 @@ from tyro.conf import Positional, UseAppendAction, arg
 from latentarm.arms.address import is_address
 from latentarm.commands.configuration import write_options
 from latentarm.commands.doctor import lines_of
-from latentarm.commands.options import AnyArm, JointSpeed, LimitsFile, LinkSpeed, Seated
+from latentarm.commands.options import AnyArm, JointSpeed, LimitsFile, LinkSpeed, Seated, ZonesFile
 from latentarm.commands.output import draws_blocks, say
-from latentarm.core.errors import UserError
 from latentarm.core.machine import examine_machine
 from latentarm.runs.options import EndEffector, Json, Seed, TaskName
 
@@ -51,14 +49,7 @@ def teleop(
     ] = None,
     end_effector: EndEffector = None,
     limits: LimitsFile = None,
-    zones: Annotated[
-        Path | None,
-        arg(
-            metavar="FILE",
-            help="TOML file of zones in which the arm is slow, such as about a face, of what it keeps out of,"
-            " such as a table, and of what it grips, such as a cup; see docs/your-arm.md.",
-        ),
-    ] = None,
+    zones: ZonesFile = None,
     joint_speed: JointSpeed = None,
     link_speed: LinkSpeed = None,
     task: Annotated[
@@ -111,8 +102,8 @@ def teleop(
     Prints the page's address; Ctrl-C ends it. For example: latentarm teleop runs/pour-cae
     """
     from latentarm.cameras.sources import kept, parse_cameras
+    from latentarm.commands.zone_check import zones_for
     from latentarm.core.journal_limits import JournalLimits
-    from latentarm.safety.zones_file import StatedZones, read_zones
     from latentarm.web.arm_process.drive_setup import Spec
     from latentarm.web.arm_process.idle_limit import idle_s_of
     from latentarm.web.arm_process.initial_state import RobotOptions
@@ -130,15 +121,7 @@ def teleop(
     room = JournalLimits.of_gigabytes(most_gb, keep_free_gb)
     named = RobotOptions(robot, end_effector, limits)
     speeds = Speeds.asked(joint_speed, link_speed)
-    stated = StatedZones((), ()) if zones is None else read_zones(zones)
-    for zone in stated.slow:
-        if zone.speed > (most := Speeds().link):
-            raise UserError(
-                f"{zones}: the zone {zone.name!r} allows {zone.speed:g} m/s, and the arm may do {most:g} m/s"
-                " anywhere: state at most that."
-            )
-    # With a lower --link-speed, that holds in zones too.
-    slow = tuple(replace(zone, speed=min(zone.speed, speeds.link)) for zone in stated.slow)
+    stated = zones_for(zones, speeds)
     spec = Spec(
         run,
         profile,
@@ -148,7 +131,7 @@ def teleop(
         arm,
         task,
         robot=named,
-        zones=slow,
+        zones=stated.slow,
         keep_out=stated.keep_out,
         gripped=stated.gripped,
         speeds=speeds,

@@ -73,7 +73,7 @@ class Proximity:
         a_link[on_arm] = body.link[a[on_arm]]
         lever, curvature, between, branch = _motion(body, b, a, a_link)
         kept = lever.max(axis=1, initial=0.0) > _STILL_M
-        kept[kind == 1] &= _heights_change(body, planes)[a[kind == 1], b[kind == 1]]
+        kept[kind == 1] &= heights_change(body, planes)[a[kind == 1], b[kind == 1]]
         # curvature: (pairs, n, n), bound of the heights' second derivative, see `Body`
         # lever: (pairs, n), bound of how fast a joint changes the pair's distance, m
         self.lever, self.curvature = lever[kept], curvature[kept]
@@ -248,7 +248,7 @@ def _solid_pairs(body: Body, solids: list[_Solid], clearance: float) -> tuple[In
     return np.stack([b, a]), solids + placed
 
 
-def _heights_change(body: Body, planes: list[HalfSpace]) -> BoolArray:
+def heights_change(body: Body, planes: list[HalfSpace]) -> BoolArray:
     """(planes, capsules), whether any joint changes how high a capsule is above a plane.
 
     A shoulder that turns about the table's normal keeps its height. Heights are analytic in the joint

@@ -53,9 +53,10 @@ _OVER_BASE_M: Final = 0.3  # no half-space holds the place so high over the base
 class StatedZones:
     """A zones file's content."""
 
-    slow: tuple[Zone, ...]  # where the arm is slow
-    keep_out: tuple[Obstacle, ...]  # enlarged by the clearance that they need beyond the usual one
+    slow: tuple[Zone, ...] = ()  # where the arm is slow
+    keep_out: tuple[Obstacle, ...] = ()  # enlarged by the clearance that they need beyond the usual one
     gripped: tuple[Box, ...] = ()  # one thing at most, in the tool's frame
+    clearance: tuple[float, ...] = ()  # from each solid of ``keep_out`` as it is stated, m
 
 
 def read_zones(path: Path) -> StatedZones:
@@ -83,8 +84,9 @@ def parse_zones(document: object, where: str) -> StatedZones:
     try:
         return StatedZones(
             checked_zones([Zone(make(name), speed) for name, (make, speed) in zip(slow, found, strict=True)]),
-            _kept_out([make() for make in solid]),
+            _kept_out([make() for make, _ in solid]),
             cast("tuple[Box, ...]", _kept_out([make() for make in held])),
+            tuple(clearance_m for _, clearance_m in solid),
         )
     except UserError as error:
         raise UserError(f"{where}: {error}") from error
@@ -106,8 +108,8 @@ def _gripped(name: str, entry: object, where: str) -> Callable[[], Obstacle]:
     return lambda: make(name)
 
 
-def _solid(name: str, entry: object, where: str) -> Callable[[], Obstacle]:
-    """A maker of a solid to keep out of, enlarged by the clearance that it states beyond the usual one."""
+def _solid(name: str, entry: object, where: str) -> tuple[Callable[[], Obstacle], float]:
+    """A maker of a solid to keep out of, enlarged by its clearance beyond the usual one; and that, m."""
     key, usual_m = f"{_KEEP_OUT}.{name}", SafetyConfig.clearance
     given = dict(table_of(entry, where, key))
     clearance_m = number_of(given.pop(_CLEARANCE, usual_m), where, f"{key}.{_CLEARANCE}")
@@ -117,7 +119,7 @@ def _solid(name: str, entry: object, where: str) -> Callable[[], Obstacle]:
             f" {_MOST_CLEARANCE_M:g} m."
         )
     make, _ = _entry(key, given, where)
-    return lambda: _grown(_beside_arm(make(name)), clearance_m - usual_m)
+    return lambda: _grown(_beside_arm(make(name)), clearance_m - usual_m), clearance_m
 
 
 def _beside_arm(solid: Obstacle) -> Obstacle:
