@@ -4,10 +4,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from documentation import ROOT, blocks
+from latentarm.commands.abilities import abilities
 from latentarm.core.errors import UserError
 from latentarm.core.types import StatedJointLimits, StatedLimits
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.limits_file import limits_document, parse_limits, read_limits
+from latentarm.robots.notices import assumed_limits
+from latentarm.web.arm_process.speed_limits import Speeds
 
 TOML = """
 tool_speed_m_per_s = 0.8
@@ -52,6 +56,14 @@ def test_limits_of_a_file_that_says_none_are_no_longer_assumed(ur5e_file):
     known = load_robot(str(ur5e_file), limits=StatedLimits(joints, tool_speed=1.0))
     assert known.limits.assumed == {}
     assert known.stated_limits is not None
+
+
+def test_the_example_of_the_docs_is_all_that_a_ur_needs_to_be_driven(ur5e_file, written):
+    text = next(one.code for one in blocks(ROOT / "docs" / "arms.md") if one.language == "toml")
+    robot = load_robot(str(ur5e_file), limits=read_limits(written(text, "limits.toml")))
+    assert assumed_limits(robot) == ""
+    assert robot.gripper is not None
+    assert not abilities(robot, Speeds())[1]
 
 
 @pytest.mark.parametrize(
