@@ -112,9 +112,11 @@ def test_a_port_is_refused():
 
 
 def test_an_error_of_the_arm_becomes_a_sentence():
-    assert fault(["joint_reflex"], "x") == "It felt a collision: see what it touches."
-    assert fault(["instability_detected"], "x") == "Instability detected."
-    assert fault([], "Move command rejected") == "Move command rejected."
+    assert fault(["joint_reflex"], "x", "y") == "It felt a collision: see what it touches."
+    assert fault(["instability_detected"], "x", "y") == "Instability detected."
+    assert fault([], "Move command rejected", "y") == "Move command rejected."
+    late = fault(["communication_constraints_violation"], "x", "use a cable")
+    assert late == "Too many of its messages came late or not at all: use a cable."
 
 
 def test_clocks_are_compared_over_spans_in_which_this_computer_was_not_late():

@@ -3,6 +3,10 @@
 import json
 import subprocess
 import sys
+import threading
+import time
+
+from latentarm.core.punctuality import OwnPauses
 
 BLOCK = """
 import gc, json
@@ -49,3 +53,29 @@ def test_the_web_server_collects_only_what_came_since_it_began_to_serve(tmp_path
     script.write_text(SERVED)
     before, serving = counted(str(script), str(tmp_path))
     assert serving < before / 10
+
+
+class Clock(threading.Event):
+    """Time passes by waiting, and a wait ends later by ``late_s``."""
+
+    now_s = late_s = 0.0
+
+    def wait(self, timeout=None):
+        self.now_s += timeout + self.late_s
+        return False
+
+
+def test_a_program_that_was_held_up_itself_does_not_blame_the_cable(monkeypatch):
+    clock, pauses = Clock(), OwnPauses()
+    monkeypatch.setattr(time, "monotonic", lambda: clock.now_s)
+    clock.late_s = 0.02
+    pauses.wait(clock, 0.01)
+    assert pauses.or_else("check the cable") == "check the cable"
+    clock.late_s = 0.25
+    pauses.wait(clock, 0.01)
+    clock.late_s = 0.0
+    pauses.wait(clock, 0.01)
+    said = pauses.or_else("check the cable")
+    assert said.startswith("this computer held up this program itself for 250 ms")
+    clock.now_s += 3.0
+    assert pauses.or_else("check the cable") == "check the cable"

@@ -176,7 +176,8 @@ class FrankaArm(GuidableArm):
         """Detect faults that the worker cannot: it waits for a silent arm, or the hand is gone."""
         silent_s = self._now_s() - worker.measured.time_s
         if silent_s > _SILENT_S:
-            reason = f"Nothing has come from the arm for {silent_s:.1f} s: check its power and cable."
+            advice = worker.pauses.or_else("check its power and cable")
+            reason = f"Nothing has come from the arm for {silent_s:.1f} s: {advice}."
             worker.fail(Trouble("fault", reason, recoverable=True, lost=True))
         elif self._hand is not None and self._hand.lost:
             reason = f"The connection to the hand was lost ({self._hand.lost}): check its cable."

@@ -3,9 +3,10 @@
 from collections.abc import Sequence
 from typing import Final
 
+NETWORK: Final = "use a network cable to the arm's own port, and a realtime kernel"
+_LATE: Final = "communication_constraints_violation"
 _ERRORS: Final = {
-    "communication_constraints_violation": "too many of its messages came late or not at all: use a network"
-    " cable to the arm's own port, and a realtime kernel",
+    _LATE: "too many of its messages came late or not at all",
     "joint_reflex": "it felt a collision: see what it touches",
     "cartesian_reflex": "it felt a collision: see what it touches",
     "joint_position_limits_violation": "a joint is past its end: move it back by hand in Desk",
@@ -17,11 +18,15 @@ _ERRORS: Final = {
 }
 
 
-def fault(errors: Sequence[str], said: str) -> str:
-    """Why the arm has stopped, from the names of its errors, or else from libfranka's text."""
+def fault(errors: Sequence[str], said: str, network: str) -> str:
+    """Why the arm has stopped, from the names of its errors, or else from libfranka's text.
+
+    ``network`` is the advice where messages came late.
+    """
     if not errors:
         return f"{plain(said)}."
-    reasons = ", and ".join(_ERRORS.get(name, name.replace("_", " ")) for name in errors)
+    known = {**_ERRORS, _LATE: f"{_ERRORS[_LATE]}: {network}"}
+    reasons = ", and ".join(known.get(name, name.replace("_", " ")) for name in errors)
     return f"{reasons[:1].upper()}{reasons[1:]}."
 
 

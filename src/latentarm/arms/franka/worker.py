@@ -12,8 +12,9 @@ from latentarm.arms.contract import ArmPhase
 from latentarm.arms.franka.guiding import Guiding
 from latentarm.arms.franka.link import Link, library
 from latentarm.arms.franka.pace import Pace
-from latentarm.arms.franka.words import fault, plain
+from latentarm.arms.franka.words import NETWORK, fault, plain
 from latentarm.core.errors import UserError
+from latentarm.core.punctuality import OwnPauses
 from latentarm.core.types import FloatArray
 
 if TYPE_CHECKING:
@@ -92,7 +93,7 @@ class Worker:
         self._driven: Order | None = None
         self._guide = False
         self._guiding = Guiding(self._franky, link.limits)
-        self._pace = Pace()
+        self._pace, self.pauses = Pace(), OwnPauses()
         self.measured = self._state()  # the newest
         self._thread = threading.Thread(target=self._run, name="franka-arm", daemon=True)
         self._thread.start()
@@ -151,7 +152,7 @@ class Worker:
 
     def _run(self) -> None:
         while not self._closing.is_set():
-            self._wake.wait(POLL_S)
+            self.pauses.wait(self._wake, POLL_S)
             self._wake.clear()
             self._pass()
         self._end()
@@ -177,7 +178,7 @@ class Worker:
         except self._franky.CommandException as error:
             self._stopped_by_itself(error)
         except Exception as error:  # noqa: BLE001
-            self._lose(f"The connection to the arm was lost ({plain(error)}): check its power and cable.")
+            self._lose_link(error)
 
     def _carry_out(self, order: Order) -> None:
         if self._guiding.phase != "no":
@@ -248,7 +249,9 @@ class Worker:
 
     def _see(self, mode: str, state: "franky.RobotState") -> None:
         if mode == "Reflex":
-            self._fault(fault(_names(state.current_errors) or _names(state.last_motion_errors), "a reflex"))
+            self._fault(
+                self._words(_names(state.current_errors) or _names(state.last_motion_errors), "a reflex")
+            )
         elif mode in _OTHER_MODES:
             phase, reason = _OTHER_MODES[mode]
             self._set(Trouble(phase, reason, recoverable=False))
@@ -263,15 +266,22 @@ class Worker:
         try:
             state = self._link.arm.state
         except Exception as lost:  # noqa: BLE001 - the network, again
-            self._lose(f"The connection to the arm was lost ({plain(lost)}): check its power and cable.")
+            self._lose_link(lost)
             return
         self._see(str(state.robot_mode.name), state)
         if self.trouble is None:
-            self._fault(fault(_names(state.last_motion_errors), plain(error)))
+            self._fault(self._words(_names(state.last_motion_errors), plain(error)))
+
+    def _words(self, errors: list[str], said: str) -> str:
+        return fault(errors, said, self.pauses.or_else(NETWORK))
 
     def _fault(self, reason: str) -> None:
         if self.trouble is None or not self.trouble.recoverable:
             self._set(Trouble("fault", reason, recoverable=True))
+
+    def _lose_link(self, error: Exception) -> None:
+        advice = self.pauses.or_else("check its power and cable")
+        self._lose(f"The connection to the arm was lost ({plain(error)}): {advice}.")
 
     def _lose(self, reason: str) -> None:
         self._running, self._driven, self._guiding.phase = False, None, "no"

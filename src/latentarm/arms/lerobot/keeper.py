@@ -23,7 +23,7 @@ from latentarm.arms.lerobot.jaw import Jaw
 from latentarm.arms.lerobot.options import Options
 from latentarm.arms.lerobot.targets import Targets
 from latentarm.core.errors import UserError
-from latentarm.core.punctuality import ask_for_priority, short_collections
+from latentarm.core.punctuality import OwnPauses, ask_for_priority, short_collections
 from latentarm.core.types import FloatArray
 
 PERIOD_S: Final = 0.01  # of the targets
@@ -55,6 +55,7 @@ class Keeper:
         self._reason = ""
         self._failures = self._rounds = 0
         self._released = self._grips = False
+        self._pauses = OwnPauses()
         self._targets: Targets | None = None
         self._q = np.zeros(len(self._joints))
         self._seen: deque[tuple[float, FloatArray]] = deque(maxlen=_VELOCITY_ROUNDS + 1)
@@ -72,6 +73,7 @@ class Keeper:
                 period_s = PERIOD_S if self._failures < _FAILURES else _SILENT_PERIOD_S
                 due_s = max(due_s + period_s, now_s() - PERIOD_S)
                 time.sleep(max(due_s - now_s(), 0.0))
+                self._pauses.note(now_s() - due_s)
         except EOFError:
             pass
         finally:
@@ -223,7 +225,8 @@ class Keeper:
         except OSError:
             self._failures += 1
             if self._failures >= _FAILURES:
-                self._fail("The arm's bus does not answer: check its cable and its supply.")
+                advice = self._pauses.or_else("check its cable and its supply")
+                self._fail(f"The arm's bus does not answer: {advice}.")
             lost = self._failures >= _FAILURES
             self._port.send({"phase": self._phase, "reason": self._reason, "lost": lost})
             return

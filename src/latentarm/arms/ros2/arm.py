@@ -18,6 +18,7 @@ from latentarm.arms.ros2.link import Link, check_installed
 from latentarm.arms.ros2.options import read_options
 from latentarm.arms.ros2.session import Session
 from latentarm.core.errors import UserError
+from latentarm.core.punctuality import OwnPauses
 from latentarm.core.types import Command, GripperCommand, GripperReading, Reading
 from latentarm.robots.kinematics.stillness import STILL_RAD_S
 from latentarm.robots.robot import Robot
@@ -73,6 +74,7 @@ class Ros2Arm(GuidableArm):
         self._reconnect = threading.Event()
         self._ended = threading.Event()
         self._heart: threading.Thread | None = None
+        self._pauses = OwnPauses()
 
     @property
     def spec(self) -> ArmSpec:
@@ -237,9 +239,11 @@ class Ros2Arm(GuidableArm):
         """Why the arm cannot be reached over this connection, as one sentence, or ""."""
         opened = self._open
         if opened is None or not opened.link.connected:
-            return "The connection to the arm's computer is lost."
+            advice = self._pauses.or_else("check the cable, and that rosbridge runs there")
+            return f"The connection to the arm's computer is lost: {advice}."
         if opened.session.silent:
-            return "Nothing comes from the watchdog next to the arm any more."
+            advice = self._pauses.or_else("check the cable, and that the watchdog runs there")
+            return f"Nothing comes from the watchdog next to the arm any more: {advice}."
         if opened.claimed and not opened.session.ours:
             return "The watchdog has given the arm to somebody else, or was started again."
         return ""
@@ -266,9 +270,10 @@ class Ros2Arm(GuidableArm):
 
     def _beat(self) -> None:
         """The heartbeat thread, until the arm is closed."""
-        while not self._ended.wait(HEARTBEAT_S):
+        while True:
+            self._pauses.wait(self._ended, HEARTBEAT_S)
             opened = self._open
-            if opened is None:
+            if opened is None or self._ended.is_set():
                 return
             lost = self._lost or self._out_of_reach()
             if not lost:

@@ -21,6 +21,7 @@ from latentarm.arms.xarm.state import Condition, Ordered, Request, Shared
 from latentarm.arms.xarm.watch import Watch
 from latentarm.arms.xarm.words import EMERGENCY_STOPS, controller_error, emergency_stop
 from latentarm.core.errors import UserError
+from latentarm.core.punctuality import OwnPauses
 from latentarm.robots.kinematics.stillness import STILL_RAD_S
 from latentarm.robots.robot import Robot
 
@@ -56,7 +57,7 @@ class Driver(threading.Thread):
         self._sdk, self._robot, self._shared = sdk, robot, shared
         self.session = session
         self._reopen, self._clears = reopen, clears
-        self._watch = Watch(robot.joint_names)
+        self._watch, self._pauses = Watch(robot.joint_names), OwnPauses()
         self._drives = False
         self._stopped_s = 0.0
         self._resumed_s: float | None = None
@@ -81,7 +82,7 @@ class Driver(threading.Thread):
         command: Ordered | None = None
         with shared.changed:
             if not self._is_asked():
-                shared.changed.wait(_LOOK_S)
+                self._pauses.wait(shared.changed, _LOOK_S)
             if shared.ending:
                 return False
             request = next((one for one in _ORDER if one in shared.requests), None)
@@ -204,8 +205,8 @@ class Driver(threading.Thread):
             self._halt()
             silent_ms = 1000 * (now_s - report.arrived_s)
             self._lost(
-                f"The arm has reported no new joint angles for {silent_ms:.0f} ms: check its controller"
-                " and the network cable."
+                f"The arm has reported no new joint angles for {silent_ms:.0f} ms:"
+                f" {self._pauses.or_else('check its controller and the network cable')}."
             )
         elif condition == "emergency_stop":
             self._await_release(now_s)
