@@ -171,7 +171,7 @@ def _servers():
             self.pressed = self.is_cut = False
             self.silent = 0
             self.steps = 1  # of 1 ms, in this cycle
-            self.pace, self._owed = 1.0, 0.0
+            self.pace, self._owed, self._sent_s = 1.0, 0.0, time.monotonic()
             self._heard = False
             super().__init__(robot, hostname_candidates)
             self._FrankaServer__command_class_map[RobotCommand.kAutomaticErrorRecovery] = Recovery
@@ -196,7 +196,6 @@ def _servers():
             motion = self.current_motion_id
             self.stop_motion(send_preemption_signal=False)
             if motion:
-                self.steps = 1
                 self.send_state()
                 BaseCommand.send_response(self._tcp_socket, RobotCommand.kMove, motion, status)
                 self.reset_current_motion_id()
@@ -205,11 +204,14 @@ def _servers():
             self.silent, self._heard = 0, True
             super()._handle_udp_command(command_data)
 
+        def go_on(self):
+            """A cycle in which nothing comes in."""
+            self._pre_process_commands()
+            self._post_process_commands()
+
         def process_commands(self):
             if self.is_cut:
-                # Nothing comes in; the arm goes on with what it has.
-                self._pre_process_commands()
-                self._post_process_commands()
+                self.go_on()
             else:
                 super().process_commands()
             if not self.current_motion_id or not self._heard:
@@ -220,10 +222,12 @@ def _servers():
                 self.abort(MoveStatus.kReflexAborted)
 
         def send_state(self):
-            self._owed += self.pace * self.steps
+            # The number of a state is its time in ms, which passes as ours even where the simulation is late.
+            now_s = time.monotonic()
+            self._owed += self.pace * 1e3 * (now_s - self._sent_s)
+            self._sent_s = now_s
             if self._owed < 1.0:
                 return
-            # The number of a state is its time in ms.
             self._FrankaServer__message_id += int(self._owed) - 1
             self._owed %= 1.0
             if not self.is_cut:
@@ -336,7 +340,10 @@ def _serve(host: str) -> None:
                 for arm in server.robot_servers:
                     arm.steps = steps
                     arm.process_commands()
-                for _ in range(steps):
+                simulator.step()
+                for _ in range(steps - 1):
+                    for arm in server.robot_servers:
+                        arm.go_on()
                     simulator.step()
                 for arm in server.robot_servers:
                     arm.send_state()
