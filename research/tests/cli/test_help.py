@@ -35,6 +35,7 @@ COMMANDS = [
     "doctor",
     "arms",
     "calibrate",
+    "guide",
     "robots",
     "demo",
     "compare",

@@ -98,6 +98,7 @@ OWN: Final = CommandSet(
             "calibrate:hand_eye",
             "Find where a camera is, from pictures of the board at 12 or more poses of the arm.",
         ),
+        "guide": _ours("guide:guide", "Print a page about arms, or a file that it names."),
         "robots": _ours("robots:robots", "List the robots, or show one: joints, limits and end-effector."),
     },
     {

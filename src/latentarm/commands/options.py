@@ -21,7 +21,7 @@ AnyArm = Annotated[
     arg(
         metavar=f"{{{_ARMS},URL}}",
         help="What moves; by default kinematic, and mujoco at a task with things, which only physics holds. A"
-        " real arm is named by its address, such as franka://172.16.0.2; see docs/your-arm.md.",
+        " real arm is named by its address, such as franka://172.16.0.2; see `latentarm guide your-arm`.",
     ),
 ]
 RobotName = Annotated[
@@ -36,14 +36,14 @@ LinkSpeed = Annotated[
 ]
 LimitsFile = Annotated[
     Path | None,
-    arg(metavar="FILE", help="TOML or YAML file that states the robot's limits, see docs/arms.md."),
+    arg(metavar="FILE", help="TOML or YAML file that states the robot's limits, see `latentarm guide arms`."),
 ]
 ZonesFile = Annotated[
     Path | None,
     arg(
         metavar="FILE",
         help="TOML file of zones in which the arm is slow, such as about a face, of what it keeps out of,"
-        " such as a table, and of what it grips, such as a cup; see docs/your-arm.md.",
+        " such as a table, and of what it grips, such as a cup; `latentarm guide zones.toml` prints one.",
     ),
 ]
 Seated = Annotated[

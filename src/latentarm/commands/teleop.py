@@ -36,7 +36,7 @@ def teleop(
         arg(
             metavar="URL",
             help="The address that people open where a proxy serves the page, such as https://arm.example;"
-            " see docs/deploy.md.",
+            " see `latentarm guide deploy`.",
         ),
     ] = None,
     arm: AnyArm = None,
@@ -84,7 +84,7 @@ def teleop(
         arg(
             metavar="SOURCE",
             help="Where things are: http:PORT takes what a detector posts, touch what a person shows with the"
-            " tool, the default for a real arm; see docs/objects.md. Several are joined.",
+            " tool, the default for a real arm; see `latentarm guide objects`. Several are joined.",
         ),
     ] = (),
     idle_minutes: Annotated[

@@ -43,7 +43,9 @@ def check_source(text: str) -> None:
     name, colon, _ = text.partition(":")
     SOURCES.find(name, "--objects")
     if not colon:
-        raise UserError(f"--objects {text} does not say where: write {name}:..., see docs/objects.md.")
+        raise UserError(
+            f"--objects {text} does not say where: write {name}:..., see `latentarm guide objects`."
+        )
 
 
 def open_source(text: str, names: Sequence[str]) -> Source:

@@ -94,14 +94,14 @@ def _watchdog_refusals(state: WatchdogState | None, options: Ros2Options) -> Ite
     if state is None:
         yield (
             f"No watchdog answers on {options.watchdog}/state: check the cable to the arm's computer, and"
-            " start latentarm_watchdog.py there; without it nothing would stop the arm when this computer"
-            " fails."
+            " start there what `latentarm guide latentarm_watchdog.py` prints; without it nothing would stop"
+            " the arm when this computer fails."
         )
         return
     if state.version != VERSION:
         yield (
             f"The watchdog has version {state.version}, and this latentarm needs {VERSION}: start the"
-            " latentarm_watchdog.py of this version."
+            " one that `latentarm guide latentarm_watchdog.py` prints."
         )
         return
     if set(state.joints) != set(options.joints) or len(state.joints) != len(options.joints):

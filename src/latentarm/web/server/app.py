@@ -208,7 +208,7 @@ def _looked_at(
     if setup.spec.shadow:
         say("Shadow mode: nothing is sent to the arm.")
     if not setup.obstacles:
-        say("Nothing keeps the arm off a table: state where it is with --zones FILE (see docs/your-arm.md).")
+        say("Nothing keeps the arm off a table: state it with --zones FILE (`latentarm guide zones.toml`).")
     kept_off = ", ".join(one.name for one in setup.obstacles) or "nothing, as nothing is stated"
     facts = [(fact.name, fact.value) for fact in found.facts]
     spec = replace(setup.spec, found=(*facts, ("keeps out of", kept_off)))

@@ -1,0 +1,32 @@
+"""`latentarm guide` prints pages and files, and what our messages point to is there."""
+
+import re
+
+from documentation import ROOT
+from latentarm.cli import main
+
+
+def listed(capsys):
+    assert main(["guide"]) == 0
+    return capsys.readouterr().out.split()
+
+
+def test_a_file_is_printed_as_it_is(capsys):
+    assert {"your-arm", "franka", "zones.toml", "latentarm_watchdog.py", "latentarm@.service"} <= set(
+        listed(capsys)
+    )
+    assert main(["guide", "zones.toml"]) == 0
+    assert capsys.readouterr().out == (ROOT / "docs/your-arm/zones.toml").read_text()
+
+
+def test_another_name_is_refused(capsys):
+    assert main(["guide", "hammer"]) == 2
+    assert "There is no hammer: name one of your-arm, arms," in capsys.readouterr().err
+
+
+def test_every_message_points_to_a_page_that_is_there_without_a_clone(capsys):
+    texts = [path.read_text() for path in (ROOT / "src/latentarm").rglob("*.py")]
+    named = {name for text in texts for name in re.findall(r"`latentarm guide ([^`]+)`", text)}
+    assert len(named) >= 6
+    assert named <= set(listed(capsys))
+    assert not [text for text in texts if re.search(r"see docs/[a-z-]+\.md", text)]
