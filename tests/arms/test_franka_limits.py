@@ -8,7 +8,7 @@ from latentarm.arms.address import parse_address
 from latentarm.arms.franka.limits import FR3, PANDA, SHARE, limits_of
 from latentarm.arms.franka.options import FrankaOptions, read_options
 from latentarm.arms.franka.pace import Pace
-from latentarm.arms.franka.words import fault
+from latentarm.arms.franka.words import _ERRORS, fault
 from latentarm.arms.own_limits import beyond
 from latentarm.core.errors import UserError
 from latentarm.robots.panda import fr3, panda
@@ -115,6 +115,8 @@ def test_an_error_of_the_arm_becomes_a_sentence():
     assert fault(["joint_reflex"], "x", "y") == "It felt a collision: see what it touches."
     assert fault(["instability_detected"], "x", "y") == "Instability detected."
     assert fault([], "Move command rejected", "y") == "Move command rejected."
+    for name in _ERRORS:
+        assert ": " in fault([name], "x", "y"), name
     late = fault(["communication_constraints_violation"], "x", "use a cable")
     assert late == "Too many of its messages came late or not at all: use a cable."
 

@@ -103,7 +103,9 @@ def _tool_misfit(own: OwnPose, robot: Robot) -> str:
         f" {1000 * metres:.0f} mm and {degrees:.1f}° from {name} of {robot.name} ({_tolerance()}): "
     )
     if own.offset is None:
-        return said + "choose the model that the arm is, or another --end-effector."
+        return (
+            said + "choose the model that the arm is, another --end-effector, or the arm's own frame for it."
+        )
     needed = np.linalg.inv(own.tool @ np.linalg.inv(own.offset)) @ ours
     (a, _, _), (b, _, _), (c, d, e) = needed[:3, :3].tolist()
     turn = np.degrees([math.atan2(d, e), math.asin(min(max(-c, -1.0), 1.0)), math.atan2(b, a)])
@@ -196,5 +198,5 @@ def kind_misfit(told: str, robot: Robot) -> tuple[str, ...]:
         return ()
     return (
         f"The arm says that its type is {theirs}, and {robot.name} is {ours} by its name: name the arm's own"
-        " model with --robot.",
+        " model with --robot, or a run that was trained for it.",
     )

@@ -131,7 +131,7 @@ def refusals(link: Link, options: FrankaOptions, robot: Robot, rate: float) -> t
     """Reasons not to drive this arm as this robot; ``rate`` is its `measured_rate`."""
     found: list[str] = []
     if link.limits is None:
-        found.append("The arm says it is neither an FR3 nor a Panda: it is not known what it can do.")
+        found.append("The arm says it is neither an FR3 nor a Panda: no other can be driven.")
     else:
         # Limits of another kind of arm differ, and lower ones would not make it this one.
         found += kind_misfit(link.limits.kind, robot) or beyond(link.limits.found, robot)

@@ -24,7 +24,9 @@ POLL_S: Final = 0.004  # time between two readings, s
 _BACK_S: Final = 0.5  # the arm's clock may seem to go back by so much: states may overtake each other
 _CLOSE_S: Final = 3.0
 _RECOVERS_S: Final = 0.2  # an error is gone so soon after recovery
-_BUTTON: Final = "The stop button of the arm is pressed, or its enabling device is let go: release it."
+_BUTTON: Final = (
+    "The stop button of the arm is pressed (release it), or its enabling device is let go (hold it)."
+)
 _OTHER_MODES: Final[dict[str, tuple[ArmPhase, str]]] = {
     "UserStopped": ("emergency_stop", _BUTTON),
     "Guiding": ("fault", "Somebody is guiding the arm by hand: let go of its buttons."),

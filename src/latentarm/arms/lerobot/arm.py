@@ -175,7 +175,11 @@ class LerobotArm(GuidableArm):
             described = None
         if described is None or "refused" in described:
             self._end()
-            raise UserError("LeRobot does not start." if described is None else described["refused"])
+            raise UserError(
+                "LeRobot does not start: its own message above says why."
+                if described is None
+                else described["refused"]
+            )
         self._described = described
         return process
 
@@ -213,7 +217,9 @@ class LerobotArm(GuidableArm):
                 if "refused" in answer:
                     raise UserError(answer["refused"])
                 return answer
-        raise UserError(f"The process next to {self._options.port} does not answer.")
+        raise UserError(
+            f"The process next to {self._options.port} does not answer: check the cable, and start again."
+        )
 
     def _drain(self) -> None:
         if self._process is None or not self._open:

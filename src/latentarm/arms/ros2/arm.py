@@ -27,6 +27,9 @@ RATE_HZ: Final = 100.0  # of the watchdog's commands to the controller
 STOPS_AFTER_S: Final = 0.09  # largest delay of the watchdog's braking after a command has run out
 LONGEST_S: Final = 0.5  # the watchdog would cut a longer command short
 HEARTBEAT_S: Final = 0.05  # largest gap between messages to the watchdog
+_JUMPED: Final = (
+    "The clock of the joint states has jumped: let nothing set the clock of the arm's computer meanwhile."
+)
 CLAIM_S: Final = 1.0  # for the watchdog to give us the arm
 
 
@@ -134,7 +137,7 @@ class Ros2Arm(GuidableArm):
         if state.stop_pressed:
             return ArmStatus("emergency_stop", "The emergency stop on the arm is pressed.")
         if self._fault or opened.feed.jumped:
-            said = self._fault or "The clock of the joint states has jumped."
+            said = self._fault or _JUMPED
             return ArmStatus("fault", said, recoverable=True)
         if state.phase == "latched":
             return ArmStatus("fault", state.reason, recoverable=True)
@@ -245,7 +248,7 @@ class Ros2Arm(GuidableArm):
             advice = self._pauses.or_else("check the cable, and that the watchdog runs there")
             return f"Nothing comes from the watchdog next to the arm any more: {advice}."
         if opened.claimed and not opened.session.ours:
-            return "The watchdog has given the arm to somebody else, or was started again."
+            return "The watchdog has given the arm to another client, or was started again: connect again."
         return ""
 
     def _take_reading(self) -> None:
@@ -278,7 +281,7 @@ class Ros2Arm(GuidableArm):
             lost = self._lost or self._out_of_reach()
             if not lost:
                 if opened.feed.jumped and not self._fault:
-                    self._fault = "The clock of the joint states has jumped."
+                    self._fault = _JUMPED
                     self._arming = None
                     if opened.claimed:
                         opened.session.tell("disable")

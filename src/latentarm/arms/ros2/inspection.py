@@ -49,7 +49,7 @@ def inspect(link: Link, session: Session, feed: JointFeed, options: Ros2Options,
         refusals = (
             *refusals,
             f"The round trip to {options.where} takes {1e3 * trip_s:.0f} ms, more than"
-            f" {1e3 * LONGEST_TRIP_S:.0f} ms: use a cable or a faster network.",
+            f" {1e3 * LONGEST_TRIP_S:.0f} ms: use a cable, and see `latentarm doctor`.",
         )
     _wait(lambda: own.complete, listens_until_s - time.monotonic())
     own.end()

@@ -134,7 +134,7 @@ class Controller:
         except (IndexError, TypeError, ValueError, OverflowError) as error:
             self.close()
             raise LinkLostError(
-                f"What answers at {self._where} does not speak as an xArm does ({error})."
+                f"What answers at {self._where} is no xArm ({error}): check the address and the port."
             ) from error
         if code == _INVALID:
             raise RefusedError(
@@ -153,7 +153,7 @@ class Controller:
         if code not in _ANSWERED or len(answer) <= figures:
             self.close()
             raise LinkLostError(
-                f"What answers at {self._where} does not speak as an xArm does (code {code})."
+                f"What answers at {self._where} is no xArm (code {code}): check the address and the port."
             )
         self.has_error = code in (1, 2)
         return answer

@@ -70,7 +70,7 @@ def find_out(sdk: Sdk, session: Session, robot: Robot, *, bare: bool) -> Finding
         refusals = (
             *refusals,
             f"The controller takes {1000 * median_s:.0f} ms to answer, and may take {1000 * _SLOW_S:.0f} ms:"
-            " connect it by cable, not by wireless.",
+            " connect it by cable, and see `latentarm doctor` if this computer is busy.",
         )
     if not rate_hz > 0.0:
         refusals = (*refusals, "The controller's joint angles do not change their time: restart it.")

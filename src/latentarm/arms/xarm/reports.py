@@ -158,11 +158,13 @@ class ReportStream:
             except OSError:
                 data = b""
             if not data:
-                self.fault = "The arm's controller has ended the connection."
+                self.fault = (
+                    "The arm's controller has ended the connection: check its power and the network cable."
+                )
                 return
             received += data
             if not self._frames(received):
-                self.fault = "The arm's controller reports in a form that is not known."
+                self.fault = "The arm's controller reports in no known form: check the address and its ports."
                 return
 
     def _frames(self, received: bytearray) -> bool:
