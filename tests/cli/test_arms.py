@@ -86,9 +86,9 @@ def test_limits_that_the_arm_does_not_confirm_are_told_in_figures(server, capsys
     assert main(words) == 0
     found = json.loads(capsys.readouterr().out)
     facts = {fact["name"]: fact["value"] for fact in found["facts"]}
-    assert facts["velocity limits"].startswith("85.9°/s, 124.6°/s,")
-    assert "; the arm's own: 124.6°/s, 124.6°/s," in facts["velocity limits"]
-    assert facts["jerk limits"].startswith("2000.0 rad/s³, 3750.0 rad/s³,")
+    assert facts["velocity limits"].startswith("85.9, 124.6,")
+    assert "; the arm's own: 124.6, 124.6," in facts["velocity limits"]
+    assert facts["jerk limits"].startswith("2000.0, 3750.0,")
     assert "by the limits file and its maker's documents; the arm states none" in facts["jerk limits"]
     (notice,) = found["notices"]
     assert notice.startswith("The arm itself does not confirm the limits of acceleration, jerk")

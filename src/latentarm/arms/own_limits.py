@@ -94,7 +94,11 @@ def _told(quantity: Quantity, own: FoundLimits | None, robot: Robot) -> tuple[Fl
 def _listed(quantity: Quantity, figures: tuple[FloatArray, ...], robot: Robot) -> str:
     columns = zip(*(_figures(quantity, one, robot) for one in figures), strict=True)
     each = [" to ".join(column) for column in columns]
-    return each[0] if len(set(each)) == 1 else ", ".join(each)
+    if len(set(each)) == 1:
+        return each[0]
+    unit = _UNITS[quantity][1]
+    alike = quantity != "position" and not robot.chain.slide.any()
+    return ", ".join(one.removesuffix(unit) for one in each) + unit if alike else ", ".join(each)
 
 
 def _figures(quantity: Quantity, figures: FloatArray, robot: Robot) -> list[str]:

@@ -11,8 +11,8 @@ _ERRORS: Final = {
     "cartesian_reflex": "it felt a collision: see what it touches",
     "joint_position_limits_violation": "a joint is past its end: move it back by hand in Desk",
     "self_collision_avoidance_violation": "it would have hit itself: push the other way",
-    "joint_motion_generator_position_limits_violation": "it was sent to the end of a joint: push the other way",
-    "cartesian_position_limits_violation": "it went past a virtual wall set in Desk: move it or the wall",
+    "joint_motion_generator_position_limits_violation": "it came to the end of a joint: push the other way",
+    "cartesian_position_limits_violation": "it went past a wall set in Desk: move it or the wall",
     "power_limit_violation": "it would have exceeded its power limit: drive it more slowly",
     "tau_j_range_violation": "a torque sensor is out of its range: check payload_kg and what it touches",
 }
