@@ -124,7 +124,7 @@ def test_an_error_of_the_arm_becomes_a_sentence():
 def test_clocks_are_compared_over_spans_in_which_this_computer_was_not_late():
     for rate, said in ((1.0, ""), (0.179, "passes 0.179 s"), (3.0, "passes 3.000 s")):
         pace = Pace()
-        told = [pace.strange(now_s, rate * now_s) for now_s in np.arange(0.0, 2.5, 0.004)]
+        told = [pace.strange(now_s, rate * now_s) for now_s in np.arange(0.0, 4.5, 0.004)]
         assert sum(said in one for one in told if one) == (2 if said else 0)
         late = [pace.strange(now_s, rate * now_s) for now_s in np.arange(10.0, 20.0, 0.2)]
         assert not any(late)

@@ -23,9 +23,6 @@ from latentarm.core.punctuality import short_collections
 START = (0.0, -0.785398, 0.0, -2.356194, 0.0, 1.570796, 0.785398)
 """Where the joints are at first, rad."""
 
-MOST_BEHIND_S = 0.2
-"""The stand-in catches up with so much real time at most."""
-
 LOST_CYCLES = 20
 """The real arm stops after so many cycles of 1 ms without a message."""
 
@@ -125,12 +122,17 @@ class FrankaStandIn:
     def cut(self) -> None:
         self.ask("cut")
 
-    def pace(self, rate: float) -> None:
-        """Let so many seconds pass on the arm's own clock in each of ours."""
-        self.ask(f"pace {rate}")
-
     def repair(self) -> None:
         self.ask("repair")
+
+
+def patient_driver(robot, address, now_s):
+    """The driver, for a stand-in whose clock is slower than ours on a small machine."""
+    from latentarm.arms.franka import pace
+    from latentarm.arms.franka.arm import FrankaArm
+
+    pace._LEAST = 0.02
+    return FrankaArm(robot, address, now_s)
 
 
 def _servers():
@@ -170,8 +172,6 @@ def _servers():
             self.errors = ()
             self.pressed = self.is_cut = False
             self.silent = 0
-            self.steps = 1  # of 1 ms, in this cycle
-            self.pace, self._owed, self._sent_s = 1.0, 0.0, time.monotonic()
             self._heard = False
             super().__init__(robot, hostname_candidates)
             self._FrankaServer__command_class_map[RobotCommand.kAutomaticErrorRecovery] = Recovery
@@ -204,32 +204,21 @@ def _servers():
             self.silent, self._heard = 0, True
             super()._handle_udp_command(command_data)
 
-        def go_on(self):
-            """A cycle in which nothing comes in."""
-            self._pre_process_commands()
-            self._post_process_commands()
-
         def process_commands(self):
             if self.is_cut:
-                self.go_on()
+                # Nothing comes in; the arm goes on with what it has.
+                self._pre_process_commands()
+                self._post_process_commands()
             else:
                 super().process_commands()
             if not self.current_motion_id or not self._heard:
                 return
-            self.silent += self.steps
+            self.silent += 1
             if self.is_cut and self.silent > LOST_CYCLES:
                 self.errors = (_COMMUNICATION,)
                 self.abort(MoveStatus.kReflexAborted)
 
         def send_state(self):
-            # The number of a state is its time in ms, which passes as ours even where the simulation is late.
-            now_s = time.monotonic()
-            self._owed += self.pace * 1e3 * (now_s - self._sent_s)
-            self._sent_s = now_s
-            if self._owed < 1.0:
-                return
-            self._FrankaServer__message_id += int(self._owed) - 1
-            self._owed %= 1.0
             if not self.is_cut:
                 super().send_state()
 
@@ -299,8 +288,6 @@ def _obey(order, server, robot, hand, cycle) -> dict:
         hand.goal = np.array(rest, dtype=float) if rest else None
     elif name == "cut":
         arm.is_cut = True
-    elif name == "pace":
-        arm.pace = float(rest[0])
     elif name == "repair":
         arm.is_cut = False
     return answer
@@ -333,22 +320,15 @@ def _serve(host: str) -> None:
                     if order == "end":
                         return
                     print(json.dumps(_obey(order, server, robot, hand, cycle)), flush=True)  # noqa: T201
-                # As franky-sim's run_once, which gives its processor away in each cycle. On a busy machine a
-                # cycle takes several steps, as on an arm whose messages are lost: its time and motion go on.
-                late_s = min(max(time.monotonic() - due_s, 0.0), MOST_BEHIND_S)
-                steps = 1 + int(1e3 * late_s)
+                # As franky-sim's run_once, which gives its processor away in each cycle.
                 for arm in server.robot_servers:
-                    arm.steps = steps
                     arm.process_commands()
                 simulator.step()
-                for _ in range(steps - 1):
-                    for arm in server.robot_servers:
-                        arm.go_on()
-                    simulator.step()
                 for arm in server.robot_servers:
                     arm.send_state()
-                cycle += steps
-                due_s = max(due_s + 1e-3 * steps, time.monotonic() - MOST_BEHIND_S)
+                cycle += 1
+                # A late cycle shifts all later ones.
+                due_s = max(due_s + 1e-3, time.monotonic())
                 if (ahead_s := due_s - time.monotonic()) > 0.0:
                     time.sleep(ahead_s)
 

@@ -6,9 +6,8 @@ from typing import TYPE_CHECKING, Final, final
 if TYPE_CHECKING:
     import franky
 
-SPAN_S: Final = 1.0  # over which the clocks are compared while the arm is driven
-_LOOK_S: Final = 0.3  # and before
-_LOOKS: Final = 3  # a busy computer may be late itself
+SPAN_S: Final = 2.0  # over which the clocks are compared while the arm is driven
+_LOOKS_S: Final = (0.3, 0.7, 2.0)  # and before: longer and longer, as a busy computer may be late itself
 _LATE_S: Final = 0.1  # a span in which this computer was later than this tells nothing of the arm
 _LEAST, _MOST = 0.8, 1.25  # s of the arm in one of ours
 
@@ -25,13 +24,11 @@ def strange(rate: float) -> str:
 
 
 def measured_rate(arm: "franky.Robot") -> float:
-    """Seconds of the arm in one of ours; the most usual of a few looks."""
-    rate = 0.0
-    for _ in range(_LOOKS):
-        began_s, arm_s = time.monotonic(), arm.state.time.to_sec()
-        time.sleep(_LOOK_S)
-        passed_s, arms_s = time.monotonic() - began_s, arm.state.time.to_sec() - arm_s
-        rate = arms_s / passed_s
+    """Seconds of the arm in one of ours."""
+    rate, began_s, arm_s = 0.0, time.monotonic(), arm.state.time.to_sec()
+    for look_s in _LOOKS_S:
+        time.sleep(look_s)
+        rate = (arm.state.time.to_sec() - arm_s) / (time.monotonic() - began_s)
         if not strange(rate):
             break
     return rate
