@@ -296,17 +296,21 @@ HAND = _along(0.1034, -np.pi / 4)
 """The Franka Hand as Desk sets it."""
 
 
-def franka_says(robot: Robot, kind: FrankaLimits = FR3, tool: FloatArray = HAND, **options: Any) -> str:
+def franka_says(
+    robot: Robot, kind: FrankaLimits = FR3, tool: FloatArray = HAND, rate: float = 1.0, **options: Any
+) -> str:
     pytest.importorskip("franky", reason="franky-control is not installed")
     link = Link(FakeFranka(fr3(), tool), None, kind)  # pyright: ignore[reportArgumentType]
-    return " ".join(refusals(link, FrankaOptions(realtime="ignore", **options), robot))
+    return " ".join(refusals(link, FrankaOptions(realtime="ignore", **options), robot, rate))
 
 
 def test_a_franka_is_accepted_with_its_hand_and_refused_as_another_arm() -> None:
     assert franka_says(fr3()) == ""
     assert "says that its type is Franka Research 3, and panda" in franka_says(panda())
     assert "joint5 is off by" in franka_says(swapped(fr3(), 4, 6))
-    assert "the lowest position of joint2 is" in franka_says(wider(fr3()))
+    assert "--limits" not in franka_says(panda())  # lower ones would not make it a Panda
+    assert "The lower limit of joint2 is" in franka_says(wider(fr3()))
+    assert "The arm's clock passes 0.179 s" in franka_says(fr3(), rate=0.179)
     assert "100 mm and 0.0° from tool of fr3" in franka_says(longer(fr3()))
     assert "set the tool on the arm to (0, 0, 103) mm" in franka_says(fr3(), tool=np.eye(4))
     assert franka_says(longer(fr3()), attachment_tip_m=(0.0, 0.0, 0.1)) == ""

@@ -53,7 +53,7 @@ REFUSED: dict[str, tuple[dict[str, Any], str]] = {
     "unknown load": ({"load_kg": 0.0}, "does not know what the arm carries"),
     "load is no number": ({"load_kg": float("nan")}, "payload is no number"),
     "collision detection off": ({"collision_sensitivity": 0}, "collision detection is off"),
-    "slower than stated": ({"speed": 1.0}, "and 57.3°/s for the arm (and 6 joints more)"),
+    "slower than stated": ({"speed": 1.0}, r"and 57\.3°/s for the arm \(and 6 joints more\)"),
     "outside the limits": ({"q": [0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0]}, "Joint 'joint4' is at -57.3°"),
 }
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 import latentarm
-from latentarm.commands.guide import _files
+from latentarm.commands.guide import guide_files
 
 ROOT = Path(__file__).parents[2]
 # Further interpreters to try the wheel on, for example LATENTARM_PYTHONS="python3.12 python3.13".
@@ -60,7 +60,7 @@ def test_the_wheel_holds_every_file_of_the_package_and_no_other(built: Path) -> 
     packed = {name for name in names if not name.startswith(metadata)}
     guides = {name.removeprefix("latentarm/guides/") for name in packed if "/guides/" in name}
     assert packed == sources() | THREE | {f"latentarm/guides/{name}" for name in guides}
-    assert {str(path.relative_to(ROOT)) for path in _files()} == guides
+    assert {str(path.relative_to(ROOT)) for path in guide_files()} == guides
     assert {"latentarm/py.typed", "latentarm/__init__.pyi"} <= packed
     assert {Path(name).suffix for name in packed} >= {".py", ".html", ".css", ".js"}
     assert {f"{metadata}entry_points.txt", f"{metadata}licenses/LICENSE"} <= names

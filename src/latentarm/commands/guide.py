@@ -23,7 +23,8 @@ _PLACES: Final = (
 """In the clone, and under ``guides`` in the wheel (`pyproject.toml`)."""
 
 
-def _files() -> Iterator[Path]:
+def guide_files() -> Iterator[Path]:
+    """The pages and files, in the clone or, where only the package is installed, in it."""
     packed = _PACKAGE / "guides"
     root = packed if packed.is_dir() else _PACKAGE.parents[1]
     for place in (root / one for one in _PLACES):
@@ -39,7 +40,7 @@ def guide(
 
     For example: latentarm guide zones.toml > zones.toml
     """
-    found = {path.name.removesuffix(".md"): path for path in _files()}
+    found = {path.name.removesuffix(".md"): path for path in guide_files()}
     if name is None:
         for one in found:
             say(one, json=False)

@@ -145,7 +145,8 @@ class Description:
     def limits(self) -> FoundLimits:
         """Limits of the joints, in the robot's order; infinite where it states none."""
         found = [self._limit(name) for name in self._options.joints]
-        return FoundLimits(*(np.array(column) for column in zip(*found, strict=True)))
+        figures = np.array(found).T
+        return FoundLimits(figures[0], figures[1], figures[2], figures[3], figures[4])
 
     def _limit(self, name: str) -> tuple[float, ...]:
         joint = self._joints[name]
