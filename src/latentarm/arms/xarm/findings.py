@@ -22,6 +22,7 @@ _SLOW_S: Final = 0.02  # an arm with a longer median answer cannot be driven at 
 _OUTSIDE_RAD: Final = 0.1
 _APART_RAD: Final = 0.02
 _RATE_OVER_S: Final = 0.1
+_LOOKS: Final = 5  # for reports, as a busy computer may be late itself
 _SINGLE: Final = 1e-3  # rounding of the controller's figures, in single precision, mm or rad
 
 
@@ -59,13 +60,17 @@ def find_out(sdk: Sdk, session: Session, robot: Robot, *, bare: bool) -> Finding
     Raises LinkLostError if the connection is lost meanwhile.
     """
     median_s, worst_s = session.controller.round_trips()
-    number, begun_s = session.report.number, time.monotonic()
-    time.sleep(_RATE_OVER_S)
-    rate_hz = (session.report.number - number) / (time.monotonic() - begun_s)
+    number, begun_s, rate_hz, looks = session.report.number, time.monotonic(), 0.0, 0
+    while not rate_hz > 0.0 and looks < _LOOKS:
+        time.sleep(_RATE_OVER_S)
+        rate_hz = (session.report.number - number) / (time.monotonic() - begun_s)
+        looks += 1
     now = unfit(sdk, session, robot)
     if now and session.status.error:
         now = now.removesuffix(".") + "; an error that stays is cleared in UFACTORY Studio."
-    refusals = (*((now,) if now else ()), *_setting_refusals(session, robot, bare=bare))
+    limits = own_limits(sdk, session, robot)
+    settings = (*_setting_refusals(session, robot, bare=bare), *beyond(limits, robot))
+    refusals = (*((now,) if now else ()), *settings)
     if median_s > _SLOW_S:
         refusals = (
             *refusals,
@@ -76,8 +81,7 @@ def find_out(sdk: Sdk, session: Session, robot: Robot, *, bare: bool) -> Finding
         refusals = (*refusals, "The controller's joint angles do not change their time: restart it.")
     # An arm that moves is elsewhere in every report.
     poses = own_poses(session, robot) if _rests(session) else ()
-    limits = own_limits(sdk, session, robot)
-    refusals = (*refusals, *beyond(limits, robot), *misfits(poses, robot))
+    refusals = (*refusals, *misfits(poses, robot))
     facts = (*_facts(sdk, session, robot), *_tool_facts(session, robot, poses))
     facts = (*facts, *_timing(session, median_s, worst_s, rate_hz))
     return Findings(facts, refusals, limits, _notices(session, robot))
