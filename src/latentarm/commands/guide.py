@@ -1,5 +1,6 @@
 """`latentarm guide`: pages and files about arms, also where only the package is installed."""
 
+import json as json_format
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -8,9 +9,11 @@ from typing import Annotated, Final
 from tyro.conf import Positional, arg
 
 import latentarm
-from latentarm.commands.output import say
 from latentarm.core.errors import UserError
+from latentarm.core.untrusted.opening import read_bytes
+from latentarm.runs.options import Json
 
+_MOST_BYTES: Final = 1 << 20
 _PACKAGE: Final = Path(latentarm.__file__).parent
 _PLACES: Final = (
     "docs/your-arm.md",
@@ -35,17 +38,18 @@ def guide(
     name: Annotated[
         Positional[str | None], arg(metavar="NAME", help="A page or a file; none lists them.")
     ] = None,
+    json: Json = False,
 ) -> int:
-    """Print a page about arms, or a file that it names, such as the watchdog or an example of zones.
+    """Print a page about arms, or a file that it names.
 
-    For example: latentarm guide zones.toml > zones.toml
+    Such files are the watchdog of ROS 2, examples of zones and limits, and the unit of systemd. For example:
+    latentarm guide zones.toml > zones.toml
     """
     found = {path.name.removesuffix(".md"): path for path in guide_files()}
-    if name is None:
-        for one in found:
-            say(one, json=False)
-        return 0
-    if name not in found:
+    if name is not None and name not in found:
         raise UserError(f"There is no {name}: name one of {', '.join(found)}.")
-    sys.stdout.write(found[name].read_text(encoding="utf-8"))
+    text = "\n".join((*found, "")) if name is None else read_bytes(found[name], _MOST_BYTES).decode()
+    if json:
+        text = json_format.dumps({"names": list(found)} if name is None else {name: text}) + "\n"
+    sys.stdout.write(text)
     return 0

@@ -94,8 +94,8 @@ def _watchdog_refusals(state: WatchdogState | None, options: Ros2Options) -> Ite
     if state is None:
         yield (
             f"No watchdog answers on {options.watchdog}/state: check the cable to the arm's computer, and"
-            " start there what `latentarm guide latentarm_watchdog.py` prints; without it nothing would stop"
-            " the arm when this computer fails."
+            " start latentarm_watchdog.py there (`latentarm guide latentarm_watchdog.py` prints it);"
+            " without it nothing would stop the arm when this computer fails."
         )
         return
     if state.version != VERSION:
