@@ -1,15 +1,22 @@
 """Options in the address of a Franka: ``franka://HOST?payload_kg=0.3&realtime=ignore``."""
 
-import math
-from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from typing import Final, Literal, final
+from typing import Any, Final, Literal, final
 
 from latentarm.arms.address import ArmAddress
 from latentarm.core.errors import UserError
 
 Realtime = Literal["enforce", "ignore"]
-_LARGEST_PAYLOAD_KG: Final = 3.0
+_RANGES: Final = {
+    "collision_torque_nm": (7, 1.0, 87.0),
+    "collision_force_n": (3, 1.0, 100.0),
+    "collision_moment_nm": (3, 1.0, 100.0),
+    "payload_kg": (1, 0.0, 3.0),
+    "payload_centre_m": (3, -0.5, 0.5),
+    "payload_inertia_kg_m2": (3, 0.0, 1.0),
+    "attachment_tip_m": (3, -0.5, 0.5),
+}
+"""Of an option: the number of its figures, the least and the most."""
 
 
 @final
@@ -38,20 +45,15 @@ def read_options(address: ArmAddress) -> FrankaOptions:
     if address.port is not None:
         raise UserError("--arm franka takes no port: a Franka always listens on 1337 and 1338.")
     given = address.only(*(field.name for field in fields(FrankaOptions)))
-    default = FrankaOptions()
-    realtime = given.get("realtime", default.realtime)
+    realtime = given.get("realtime", FrankaOptions.realtime)
     if realtime not in ("enforce", "ignore"):
         raise UserError(f"--arm franka: realtime is enforce or ignore, not {realtime!r}.")
-    options = FrankaOptions(
-        _figures(given, "collision_torque_nm", 7, 1.0, 87.0) or default.collision_torque_nm,
-        _figures(given, "collision_force_n", 3, 1.0, 100.0) or default.collision_force_n,
-        _figures(given, "collision_moment_nm", 3, 1.0, 100.0) or default.collision_moment_nm,
-        (_figures(given, "payload_kg", 1, 0.0, _LARGEST_PAYLOAD_KG) or (default.payload_kg,))[0],
-        _figures(given, "payload_centre_m", 3, -0.5, 0.5) or default.payload_centre_m,
-        _figures(given, "payload_inertia_kg_m2", 3, 0.0, 1.0) or default.payload_inertia_kg_m2,
-        _figures(given, "attachment_tip_m", 3, -0.5, 0.5),
-        realtime,
-    )
+    figures: dict[str, Any] = {
+        name: _figures(name, given[name], *_RANGES[name]) for name in _RANGES if name in given
+    }
+    if "payload_kg" in figures:
+        (figures["payload_kg"],) = figures["payload_kg"]
+    options = FrankaOptions(realtime=realtime, **figures)
     about = [name for name in ("payload_centre_m", "payload_inertia_kg_m2") if name in given]
     if about and not options.payload_kg:
         raise UserError(
@@ -60,23 +62,19 @@ def read_options(address: ArmAddress) -> FrankaOptions:
     return options
 
 
-def _figures(
-    given: Mapping[str, str], name: str, count: int, least: float, most: float
-) -> tuple[float, ...] | None:
-    """One figure for all, or ``count`` of them with commas between; None where absent."""
-    if name not in given:
-        return None
+def _figures(name: str, text: str, count: int, least: float, most: float) -> tuple[float, ...]:
+    """``count`` figures with commas between; for thresholds also one for all."""
+    alike = name.startswith("collision_")
     try:
-        values = tuple(float(part) for part in given[name].split(","))
+        values = tuple(float(part) for part in text.split(","))
     except ValueError:
         values = ()
-    one_for_all = len(values) == 1 and name.startswith("collision_")
-    if one_for_all:
+    if alike and len(values) == 1:
         values *= count
-    if len(values) != count or not all(math.isfinite(v) and least <= v <= most for v in values):
+    if len(values) != count or not all(least <= value <= most for value in values):
         several = f"{count} numbers with commas between" if count > 1 else "a number"
-        alike = "a number, or " if name.startswith("collision_") else ""
         raise UserError(
-            f"--arm franka: {name} is {alike}{several}, from {least:g} to {most:g}, not {given[name]!r}."
+            f"--arm franka: {name} is {'a number, or ' if alike else ''}{several}, from {least:g} to"
+            f" {most:g}, not {text!r}."
         )
     return values
