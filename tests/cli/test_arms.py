@@ -191,9 +191,7 @@ def teleop_lines():
 
 @pytest.mark.parametrize("line", teleop_lines())
 def test_the_page_is_served_as_the_page_about_your_arm_says(line, as_tried, workplace, monkeypatch):
-    zones = workplace / "docs" / "your-arm" / "zones.toml"
-    zones.parent.mkdir(parents=True)
-    shutil.copy(PAGE.parent / "your-arm" / zones.name, zones)
+    shutil.copy(PAGE.parent / "your-arm" / "zones.toml", workplace)
     stand_ins = ROOT / "tests" / "stand_ins"
     monkeypatch.setenv("PYTHONPATH", f"{stand_ins}:{os.environ.get('PYTHONPATH', '')}")
     serve(as_tried(line))
