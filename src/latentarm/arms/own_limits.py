@@ -29,7 +29,7 @@ _SOURCES: Final[Mapping[Source, str]] = {
 
 def beyond(own: FoundLimits, robot: Robot) -> tuple[str, ...]:
     """Limits of the robot beyond the arm's own, where the arm would stop with a fault, a sentence each."""
-    if len(own.lower) != robot.dof:
+    if not _fits(own, robot):
         return (
             f"The arm tells limits of {len(own.lower)} joints, and {robot.name} has {robot.dof}: choose the"
             " robot that the arm is.",
@@ -68,6 +68,11 @@ def unconfirmed(own: FoundLimits | None, robot: Robot) -> tuple[str, ...]:
     )
 
 
+def _fits(own: FoundLimits, robot: Robot) -> bool:
+    told = (own.lower, own.upper, own.velocity, own.acceleration, own.jerk)
+    return all(one is None or one.shape == (robot.dof,) for one in told)
+
+
 def _said(quantity: Quantity, own: FoundLimits | None, robot: Robot) -> Iterator[str]:
     limits = robot.limits
     ours = (limits.lower, limits.upper) if quantity == "position" else (getattr(limits, quantity),)
@@ -83,7 +88,7 @@ def _said(quantity: Quantity, own: FoundLimits | None, robot: Robot) -> Iterator
 def _told(quantity: Quantity, own: FoundLimits | None, robot: Robot) -> tuple[FloatArray, ...]:
     """The arm's own figures of a quantity, infinite where it states none."""
     none = np.full(robot.dof, np.inf)
-    if own is None or len(own.lower) != robot.dof:
+    if own is None or not _fits(own, robot):
         return (-none, none) if quantity == "position" else (none,)
     if quantity == "position":
         return own.lower, own.upper

@@ -54,7 +54,7 @@ class FrankaLimits:
 
     @property
     def found(self) -> FoundLimits:
-        """What a robot's limits are compared with."""
+        """The limits that those of a robot are compared with."""
         return FoundLimits(self.lower, self.upper, self.velocity, self.acceleration, self.jerk, rounding=1e-9)
 
 
