@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-import torch
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -95,19 +94,10 @@ def test_every_form_of_the_decoder_gives_the_same(model, tmp_path):
     model.save(tmp_path)
     expected = model.decode(z, context)
     for seed in range(2):
-        decoder = model.torch_decoder(seed, torch.float64)
-        inputs = torch.from_numpy(np.concatenate([z, context], axis=1)).requires_grad_()
-
-        def decoded(both, decoder=decoder):
-            return decoder.decode(both[..., :2], decoder.observe(both[..., 2:]))
-
-        for given_back in (
-            model.decoder(seed).decode(z, context),
-            load_decoder(tmp_path, seed).decode(z, context),
-            decoded(inputs).detach().numpy(),
-        ):
-            np.testing.assert_allclose(given_back, expected[seed], rtol=0, atol=1e-12)
-        assert torch.autograd.gradcheck(decoded, inputs[:4])
+        for decoder in (model.decoder(seed), load_decoder(tmp_path, seed)):
+            np.testing.assert_allclose(decoder.decode(z, context), expected[seed], rtol=0, atol=1e-12)
+    with pytest.raises(UserError, match="has no way back"):
+        model.torch_decoder()
 
 
 def test_a_context_that_is_overwritten_is_seen_anew(model):

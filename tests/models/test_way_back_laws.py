@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-import torch
 
 from latentarm.models.catalogue import KINDS
 from latentarm.models.decoder import Decoder
@@ -69,7 +68,3 @@ def test_the_laws_hold_for_every_model(kind, shown, way_back):
     np.testing.assert_allclose(action[beyond], capped[beyond], rtol=0, atol=1e-12)
     if kind in PROPORTIONAL:
         np.testing.assert_allclose(decoder.decode(0.5 * z, context), 0.5 * action, rtol=1e-3, atol=1e-6)
-    twin = model.torch_decoder(0, torch.float64)
-    with torch.no_grad():
-        other = twin.decode(torch.from_numpy(z), twin.observe(torch.from_numpy(context))).numpy()
-    np.testing.assert_allclose(other, action, rtol=0, atol=1e-9)

@@ -211,7 +211,8 @@ class LatentActionModel(BaseEstimator, ABC):
     def torch_decoder(self, seed: int = 0, dtype: torch.dtype = torch.float32) -> TorchDecoder:
         """The decoder of one seed in torch, differentiable with respect to z and c.
 
-        Raises UserError where the model is not fitted, or has no such seed.
+        Raises UserError where the model is not fitted, has no such seed, sees poses in the tool's frame, or
+        has a way back.
         """
         return TorchDecoder(self._fitted(), self._action, seed, dtype)
 

@@ -51,11 +51,6 @@ def fit_alignments(
     config = config or FitConfig()
     seeds = range(len(answers)) if seeds is None else seeds
     decoder = model.torch_decoder(0)
-    if decoder.layout.sees_tool_frame:
-        raise UserError(
-            "The network f of the paper does not take poses in the tool's frame: align in the space of the"
-            " tool, as `latentarm align` does."
-        )
     trained, held_out = _divided(answers, config.held_out)
     loss = AlignmentLoss(decoder, chain, trained, unlabelled, config.priors)
     kept = _Kept(AlignmentLoss(decoder, chain, held_out, unlabelled, NO_PRIORS)) if held_out else None
