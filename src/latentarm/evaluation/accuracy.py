@@ -7,13 +7,17 @@ works alike for every model. Nobody needs an encoder to drive, so that figure co
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from latentarm.core.types import FloatArray, Pairs
-from latentarm.evaluation.contract import DecodesActions, EncodesActions, decode_all
+from latentarm.evaluation.contract import DecodesActions, decode_all
 from latentarm.evaluation.samples import evenly_spread
 from latentarm.evaluation.search import nearest_latents
+
+if TYPE_CHECKING:
+    from latentarm.models.model import LatentActionModel
 
 
 def reconstruction_error(
@@ -56,9 +60,7 @@ class Accuracy:
     action: FloatArray  # (L, m), the actions there, rad/s
 
 
-def accuracy(
-    model: EncodesActions, train_action: FloatArray, pairs: Pairs, *, learns_encoder: bool, searched: int
-) -> Accuracy:
+def accuracy(model: "LatentActionModel", train_action: FloatArray, pairs: Pairs, searched: int) -> Accuracy:
     """Errors with both ways of encoding, with noise on the states and without.
 
     PCA, the baseline, is fitted to ``train_action`` (M, m), rad/s. All held-out pairs go through an encoder
@@ -83,7 +85,7 @@ def accuracy(
         nearest = nearest_latents(decoders, context[chosen], action, codes[:, chosen])
         expressed = reconstruction_error(decoders, nearest, context[chosen], action)
         encoded = np.full_like(expressed, np.nan)
-        if learns_encoder:
+        if model.learns_encoder:
             encoded = reconstruction_error(decoders, codes, context, pairs.action)
         figures |= {
             f"search_{name}": expressed,

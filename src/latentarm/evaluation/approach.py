@@ -19,7 +19,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from latentarm.core.types import FloatArray, IntArray
-from latentarm.evaluation.contract import DecodesActions, PlacesTool, next_context, zero_latent
+from latentarm.evaluation.contract import DecodesActions, next_context, zero_latent
+from latentarm.robots.kinematics.chain import Chain
 
 DIFFERENCE = 1e-4  # of z, for numeric derivatives: well under an input step, well over rounding
 STEP_LENGTHS = (1.0, 0.5, 0.2)  # of a Gauss-Newton step; the best is kept, and only if it is better
@@ -62,7 +63,7 @@ def approach(
     decoders: Sequence[DecodesActions],
     start: FloatArray,
     target: Target,
-    chain: PlacesTool,
+    chain: Chain,
     step_s: float,
     config: SolverConfig,
     tools: Sequence[int] = (0,),
@@ -73,7 +74,7 @@ def approach(
     return Approach(distance_m=distance, context=context, path_m=path, straight_m=straight, latent=latent)
 
 
-def tool_places(chain: PlacesTool, state: FloatArray, tools: Sequence[int]) -> FloatArray:
+def tool_places(chain: Chain, state: FloatArray, tools: Sequence[int]) -> FloatArray:
     """Places (..., T, 3) of T tools at states (..., n), m."""
     return np.stack([chain.forward(state, tool).position for tool in tools], axis=-2)
 
@@ -89,7 +90,7 @@ class _Problem:
 
     decoder: DecodesActions
     target: Target
-    chain: PlacesTool
+    chain: Chain
     tools: Sequence[int]
     step_s: float
     config: SolverConfig

@@ -1,15 +1,11 @@
-"""The minimal interfaces that the measures need from a model and a robot.
-
-Anything with these methods can be measured: a trained model, a loaded decoder, or a formula whose measures
-are known in closed form.
-"""
+"""The part of a decoder that the measures need: a trained one has it, and so has a formula."""
 
 from collections.abc import Sequence
 from typing import Protocol
 
 import numpy as np
 
-from latentarm.core.types import FloatArray, Pose
+from latentarm.core.types import FloatArray
 
 
 class DecodesActions(Protocol):
@@ -22,26 +18,6 @@ class DecodesActions(Protocol):
 
     def decode(self, z: FloatArray, context: FloatArray) -> FloatArray:
         """Decode z (..., d) in context (..., c) to joint velocities (..., m), rad/s; the two broadcast."""
-        ...
-
-
-class EncodesActions(Protocol):
-    """A fitted model of S seeds: an encoder for all seeds at once, and a decoder for each."""
-
-    def encode(self, context: FloatArray, action: FloatArray) -> FloatArray:
-        """Encode context (N, c) and action (N, m), rad/s, to z (S, N, d) in input units."""
-        ...
-
-    def decoder(self, seed: int = 0) -> DecodesActions:
-        """The decoder of one seed."""
-        ...
-
-
-class PlacesTool(Protocol):
-    """Forward kinematics ``x = Psi(s)``."""
-
-    def forward(self, q: FloatArray, tool: int = 0) -> Pose:
-        """Pose of a tool at joint positions q (..., n), rad."""
         ...
 
 

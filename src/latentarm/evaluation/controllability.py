@@ -12,8 +12,9 @@ import numpy as np
 
 from latentarm.core.types import FloatArray
 from latentarm.evaluation.approach import SolverConfig, Target, approach, mean_distance, tool_places
-from latentarm.evaluation.contract import DecodesActions, PlacesTool
+from latentarm.evaluation.contract import DecodesActions
 from latentarm.evaluation.samples import StartGoalPairs
+from latentarm.robots.kinematics.chain import Chain
 
 
 @dataclass(frozen=True)
@@ -37,7 +38,7 @@ class ReachedGoals:
 def reach_goals(
     decoders: Sequence[DecodesActions],
     pairs: StartGoalPairs,
-    chain: PlacesTool,
+    chain: Chain,
     step_s: float,
     config: SolverConfig,
     tools: Sequence[int] = (0,),

@@ -5,7 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from latentarm.core.types import FloatArray
-from latentarm.evaluation.contract import DecodesActions, PlacesTool, next_context
+from latentarm.evaluation.contract import DecodesActions, next_context
+from latentarm.robots.kinematics.chain import Chain
 from latentarm.robots.kinematics.rotations import rotation_vector
 
 
@@ -18,7 +19,7 @@ def axis_effects(
     decoders: Sequence[DecodesActions],
     context: FloatArray,
     grid: FloatArray,
-    chain: PlacesTool,
+    chain: Chain,
     step_s: float,
 ) -> FloatArray:
     """Displacement Psi(T(s, phi(z, s))) - Psi(s), (S, d, N, K, 3), m, for each latent axis alone.
@@ -38,7 +39,7 @@ def axis_turns(
     decoders: Sequence[DecodesActions],
     context: FloatArray,
     grid: FloatArray,
-    chain: PlacesTool,
+    chain: Chain,
     step_s: float,
     tools: Sequence[int] = (0,),
 ) -> FloatArray:
@@ -76,7 +77,7 @@ def held_paths(
     decoder: DecodesActions,
     context: FloatArray,
     z: FloatArray,
-    chain: PlacesTool,
+    chain: Chain,
     step_s: float,
     steps: int,
 ) -> FloatArray:

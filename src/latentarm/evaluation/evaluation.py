@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Final, Literal, Protocol, final
+from typing import TYPE_CHECKING, Final, final
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from latentarm.demonstrations.pairs import make_pairs
 from latentarm.demonstrations.split import select_episodes
 from latentarm.evaluation.accuracy import Accuracy, accuracy
 from latentarm.evaluation.consistency import consistency, local_consistency
-from latentarm.evaluation.contract import DecodesActions, EncodesActions
+from latentarm.evaluation.contract import DecodesActions
 from latentarm.evaluation.controllability import ReachConfig, reach_goals
 from latentarm.evaluation.disentanglement import disentanglement_deg
 from latentarm.evaluation.drift import drift
@@ -31,45 +31,14 @@ from latentarm.evaluation.summary import Subject, summarise
 from latentarm.evaluation.turning import turning
 from latentarm.robots.robot import Robot
 
+if TYPE_CHECKING:
+    from latentarm.models.model import LatentActionModel
+
 STATES: Final = 25  # for consistency, disentanglement and turning
 GRID: Final = 21  # values of z in [-1, 1] on each axis, at each of these states
 HELD_LATENTS: Final = 300  # held-out pairs for reversal after longer holds
 HOLDS_S: Final = {"reversal_0_5_s": 0.5, "reversal_2_s": 2.0}
 """Measure -> how long z and -z are each held for it, s: longer than any loss looks ahead."""
-
-
-class MeasurableModel(EncodesActions, Protocol):
-    """A fitted model together with the parameters of its training pairs."""
-
-    @property
-    def latent_dim(self) -> int:
-        """Number of latent axes d."""
-        ...
-
-    @property
-    def learns_encoder(self) -> bool:
-        """Whether `encode` is a network that was trained."""
-        ...
-
-    @property
-    def context(self) -> Named:
-        """The features that it sees, see `latentarm.core.context.feature_names`."""
-        ...
-
-    @property
-    def actions(self) -> Literal["displacement", "recorded"]:
-        """Where its training pairs took their actions from."""
-        ...
-
-    @property
-    def window(self) -> int:
-        """Largest distance, in samples, between the two states that an action leads between."""
-        ...
-
-    @property
-    def state_noise_rad(self) -> float:
-        """SD of the noise that the states were given in training, rad."""
-        ...
 
 
 @dataclass(frozen=True)
@@ -94,7 +63,7 @@ class PropertyFigures:
 
 
 def measure(
-    model: MeasurableModel,
+    model: "LatentActionModel",
     demonstrations: Demonstrations,
     held_out: Sequence[int],
     robot: Robot,
@@ -129,7 +98,7 @@ class Probe:
     step_s: float  # dt of s' = s + a dt, and of `reversal`'s holds, s
 
 
-def take_probe(model: MeasurableModel, demonstrations: Demonstrations, held_out: Sequence[int]) -> Probe:
+def take_probe(model: "LatentActionModel", demonstrations: Demonstrations, held_out: Sequence[int]) -> Probe:
     """The samples that `measure` takes by default, for a run to keep.
 
     Raises UserError as `measure` does, and where nothing moves in the held-out episodes.
@@ -199,7 +168,7 @@ def _probe(
 
 
 def _measure_accuracy(
-    model: MeasurableModel,
+    model: "LatentActionModel",
     demonstrations: Demonstrations,
     held_out: Sequence[int],
     rng: np.random.Generator,
@@ -212,6 +181,4 @@ def _measure_accuracy(
     how = (model.context, rng, model.actions)
     training = make_pairs(select_episodes(demonstrations, trained_on), model.window, 0.0, *how)
     pairs = make_pairs(select_episodes(demonstrations, held_out), model.window, model.state_noise_rad, *how)
-    return accuracy(
-        model, training.action, pairs, learns_encoder=model.learns_encoder, searched=config.latents
-    )
+    return accuracy(model, training.action, pairs, config.latents)

@@ -1,19 +1,22 @@
 """Figures: where the tool goes while a latent axis is held, and how far each axis moves it against z."""
 
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from latentarm.core.figure_style import FONT_SIZE, SMALL_FONT_SIZE, legend_below, new_figure, tidy
 from latentarm.core.types import FloatArray
 from latentarm.evaluation.consistency import line_fit, r_squared, signed_distance
-from latentarm.evaluation.contract import DecodesActions, PlacesTool
+from latentarm.evaluation.contract import DecodesActions
 from latentarm.evaluation.effects import held_paths
 from latentarm.evaluation.looks import look_of
+from latentarm.robots.kinematics.chain import Chain
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+    from latentarm.models.way_back.runtime import WayBack
 
 AXIS_COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7")
 HOLD_S = 1.0
@@ -22,22 +25,14 @@ AWAY_M = 0.04  # the way back is drawn from this far off the starts, m
 AROUND = 6  # directions in which the way back is drawn
 
 
-class LeadsBack(Protocol):
-    """A way back to the demonstrations."""
-
-    def leads(self, context: FloatArray, offset: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """See `latentarm.models.way_back.runtime.WayBack.leads`."""
-        ...
-
-
 def latent_effect_figure(
     decoder: DecodesActions,
     context: FloatArray,
-    chain: PlacesTool,
+    chain: Chain,
     step_s: float,
     model: str,
     demonstrated: FloatArray | None = None,
-    way_back: LeadsBack | None = None,
+    way_back: "WayBack | None" = None,
 ) -> "Figure":
     """Paths of the tool over one second of ±1 on each latent axis, from each of a few contexts (N, c).
 
@@ -70,7 +65,7 @@ def latent_effect_figure(
     return figure
 
 
-def _draw_way_back(axes: "Axes", way_back: LeadsBack, context: FloatArray, view: tuple[int, int]) -> None:
+def _draw_way_back(axes: "Axes", way_back: "WayBack", context: FloatArray, view: tuple[int, int]) -> None:
     """Arrows from a ring around the tool's place in each context (N, c), seen along the third axis."""
     turn = 2 * np.pi / AROUND * np.arange(AROUND)
     offset = np.zeros((AROUND, 1, 3))
@@ -103,10 +98,6 @@ def _draw_axis(axes: "Axes", paths: FloatArray, axis: int) -> None:
                 label=f"$z_{axis + 1} = {sign}1$" if index == 0 else None,
             )
 
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 MM_PER_M = 1000.0
 

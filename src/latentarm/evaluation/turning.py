@@ -8,24 +8,17 @@ turns, and by nothing between them.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Final, Protocol
+from typing import Final
 
 import numpy as np
 
 from latentarm.core.types import FloatArray
 from latentarm.evaluation.contract import DecodesActions
+from latentarm.robots.kinematics.chain import Chain
 
 DIRECTIONS: Final = 36
 """K: turns of 10°. The two in which a decoder of one direction turns about are then more than one in twenty,
 so that a 95th percentile shows them."""
-
-
-class MovesTool(Protocol):
-    """Velocities of the tools."""
-
-    def jacobian(self, q: FloatArray) -> FloatArray:
-        """Jacobian (..., 6, n) of the first tool at q (..., n), rad; its first rows are m/s per rad/s."""
-        ...
 
 
 @dataclass(frozen=True)
@@ -39,7 +32,7 @@ class TurnRatios:
 def turning(
     decoders: Sequence[DecodesActions],
     context: FloatArray,
-    chain: MovesTool,
+    chain: Chain,
     directions: int = DIRECTIONS,
 ) -> TurnRatios:
     """Lead a full push of a two-axis stick once around, in every context (N, c)."""

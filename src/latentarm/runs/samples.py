@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final, final
+from typing import TYPE_CHECKING, Any, Final, final
 
 import numpy as np
 
@@ -13,11 +13,14 @@ from latentarm.alignment.demonstrated import shown
 from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations, FloatArray, IntArray
 from latentarm.demonstrations.split import select_episodes
-from latentarm.evaluation.evaluation import MeasurableModel, Probe, take_probe
+from latentarm.evaluation.evaluation import Probe, take_probe
 from latentarm.evaluation.samples import StartGoalPairs
 from latentarm.models.reading import Section
 from latentarm.models.saving import CONFIG_LIMIT, CONFIG_NAME, read_tensors, write_tensors
 from latentarm.robots.kinematics.chain import Chain
+
+if TYPE_CHECKING:
+    from latentarm.models.model import LatentActionModel
 
 SAMPLES_NAME: Final = "samples.safetensors"
 ALIGN_STREAM: Final = 3  # stream of a seed that draws the motions that a person is asked about
@@ -46,7 +49,7 @@ class Samples:
 
 
 def take_samples(
-    model: MeasurableModel,
+    model: "LatentActionModel",
     demonstrations: Demonstrations,
     training: IntArray,
     held_out: IntArray,

@@ -6,7 +6,7 @@ from typing import Final, final
 import numpy as np
 
 from latentarm.core.types import FloatArray, Pose, StepRecord
-from latentarm.evaluation.contract import PlacesTool
+from latentarm.robots.kinematics.chain import Chain
 from latentarm.robots.scene.scene import TABLE, TOOL, Scene, SceneState
 from latentarm.tasks.predicates import Spilled
 from latentarm.tasks.scene_task import Beginning
@@ -68,7 +68,7 @@ class Following:
             if not self._begun.patient and self._stuck(waypoint, state):
                 self.ending = Ending("operator_stuck", NOT_NEARER)
 
-    def trace(self, choice: int, chain: PlacesTool, stops: int) -> Trace:
+    def trace(self, choice: int, chain: Chain, stops: int) -> Trace:
         """The drive so far."""
         begun, records, newest = self._begun, self.records, self._newest
         if begun.scene.names:
@@ -109,7 +109,7 @@ class Following:
             states=tuple(self._states),
         )
 
-    def _timed_out(self, chain: PlacesTool) -> Ending:
+    def _timed_out(self, chain: Chain) -> Ending:
         waypoint = self.progress.waypoint
         if waypoint is None:
             raise ValueError("the drive was done in time")

@@ -8,7 +8,7 @@ from typing import Final, Literal
 import numpy as np
 
 from latentarm.core.types import Pose, StepRecord
-from latentarm.evaluation.contract import PlacesTool
+from latentarm.robots.kinematics.chain import Chain
 from latentarm.robots.kinematics.rotations import angle_between
 
 Reason = Literal["done", "mishap", "time_limit", "operator_stuck", "held_back", "safety_stop", "record_full"]
@@ -33,7 +33,7 @@ class Ending:
 
 def why_it_timed_out(
     records: Sequence[StepRecord],  # every step in order
-    chain: PlacesTool,
+    chain: Chain,
     waypoint: Pose,  # the waypoint that was not reached
     since_s: float,  # when that waypoint became the next one, on the records' clock, s
 ) -> Ending:
@@ -61,7 +61,7 @@ def why_it_timed_out(
     return Ending("operator_stuck", NOT_NEARER)
 
 
-def _progressed(records: Sequence[StepRecord], chain: PlacesTool, waypoint: Pose, since_s: float) -> bool:
+def _progressed(records: Sequence[StepRecord], chain: Chain, waypoint: Pose, since_s: float) -> bool:
     """Whether the tool came nearer in the last `STUCK_S` than it had been before."""
     time_s = np.array([record.time_s for record in records])
     here = time_s >= since_s

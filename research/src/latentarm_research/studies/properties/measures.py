@@ -22,13 +22,14 @@ from latentarm.demonstrations.pairs import make_pairs
 from latentarm.evaluation.accuracy import pca_error, percent_of, reconstruction_error
 from latentarm.evaluation.approach import SolverConfig, Target, approach
 from latentarm.evaluation.consistency import consistency
-from latentarm.evaluation.contract import DecodesActions, EncodesActions
+from latentarm.evaluation.contract import DecodesActions
 from latentarm.evaluation.controllability import ReachedGoals, reach_goals
 from latentarm.evaluation.disentanglement import disentanglement_deg
 from latentarm.evaluation.drift import drift
 from latentarm.evaluation.effects import axis_effects, axis_grid, axis_turns
 from latentarm.evaluation.reversal import reversal
 from latentarm.evaluation.samples import StartGoalPairs, evenly_spread
+from latentarm.models.model import LatentActionModel
 from latentarm_research.studies.properties.preset import Preset
 from latentarm_research.tasks.planar.motion import PlanarMotion
 from latentarm_research.tasks.planar.paths import STEP_S
@@ -59,7 +60,7 @@ def recorded_pairs(
 
 
 def accuracy_figures(
-    model: EncodesActions,
+    model: LatentActionModel,
     decoders: Sequence[DecodesActions],
     fitted: Pairs,
     pairs: Pairs,  # `recorded_pairs` of other demonstrations
@@ -81,7 +82,7 @@ def accuracy_figures(
 
 def latent_figures(
     motion: PlanarMotion,
-    model: EncodesActions,
+    model: LatentActionModel,
     decoders: Sequence[DecodesActions],
     pairs: Pairs,
     preset: Preset,
