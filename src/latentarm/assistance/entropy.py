@@ -1,7 +1,6 @@
 """Training latent actions to keep every goal reachable: the entropy over goals of equations 15 and 16."""
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Final, Literal, final
@@ -85,18 +84,6 @@ class GoalEntropy(LossTerm):
             raise UserError(f"The least progress must be a number or -inf, not {self.least_progress}.")
         if self.per_axis < 2:
             raise UserError(f"The entropy needs at least 2 inputs on each axis, not {self.per_axis}.")
-
-    @property
-    def settings(self) -> Mapping[str, object]:
-        """Name and parameters; ``-inf``, which JSON does not know, as text."""
-        numbers = ("weight", "sharpness", "per_axis", "where")
-        return {
-            **{name: getattr(self, name) for name in numbers},
-            "term": "goal_entropy",
-            "goals": self.goals.tolist(),
-            "least_progress": str(self.least_progress),
-            "sees_tool": self.chain is not None,
-        }
 
     def contexts(self, demonstrated: FloatArray, joints: int, rng: np.random.Generator) -> FloatArray:
         """Contexts (CONTEXTS, c) as ``where`` says; see `LossTerm.contexts`."""

@@ -1,7 +1,7 @@
 """Loss terms on any input a person could give, not only on demonstrated pairs."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import final
 
@@ -26,11 +26,6 @@ class TermContexts:
 
 class LossTerm(ABC):
     """A loss to minimise together with ``‖a - phi(z, c)‖^2``. It needs contexts, but no actions there."""
-
-    @property
-    @abstractmethod
-    def settings(self) -> Mapping[str, object]:
-        """All parameters of the term, as JSON values: a checkpoint of other settings is refused."""
 
     @abstractmethod
     def contexts(self, demonstrated: FloatArray, joints: int, rng: np.random.Generator) -> FloatArray:
