@@ -1,13 +1,11 @@
 import numpy as np
 import pytest
 
-from latentarm.alignment.affine import fit_affine
 from latentarm.alignment.answers import Answers, Motions
 from latentarm.alignment.contract import identity
 from latentarm.alignment.error import lengths, outcome, relative_alignment_error
 from latentarm.alignment.poses import ROTATION_WEIGHT_M, pose_vectors
 from latentarm.core.errors import UserError
-from latentarm.models.encoder import Encoder
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.kinematics.rotations import angle_between
 from latentarm.robots.planar import planar
@@ -110,24 +108,3 @@ def test_a_met_answer_has_no_error_and_an_arm_that_stays_has_one(curved_model, a
         outcome(identity, decoder, arm.chain, motions, np.stack([u, -u]))[0], pose_vectors(arm.chain, led)
     )
     assert lengths(arm.chain, motions).shape == (5,)
-
-
-def test_an_affine_preference_is_found(linear_model, columns):
-    rng = np.random.default_rng(0)
-    matrix, offset = np.array([[0.2, -0.9], [0.7, 0.3]]), np.array([0.05, -0.1])
-    u, start = rng.uniform(-1, 1, (6, 2)), rng.uniform(-0.1, 0.1, (6, 3))
-    motions = Motions(start, start + 0.5 * (u @ matrix.T + offset) @ columns, 0.5)
-    found = fit_affine(Encoder(linear_model.trained_), Answers(motions, u))
-    np.testing.assert_allclose(found.matrix, matrix, atol=1e-9)
-    np.testing.assert_allclose(found.offset, offset, atol=1e-9)
-    np.testing.assert_allclose(found(u, start), u @ matrix.T + offset, atol=1e-9)
-    assert found(np.zeros((3, 6, 2)), start).shape == (3, 6, 2)
-
-
-def test_too_few_answers_give_a_small_map_that_meets_them(linear_model, columns):
-    start = np.zeros((1, 3))
-    answers = Answers(Motions(start, start + 0.5 * columns[:1], 0.5), np.array([[0.0, 1.0]]))
-    found = fit_affine(Encoder(linear_model.trained_), answers)
-    np.testing.assert_allclose(found(answers.u, start), [[1.0, 0.0]], atol=1e-9)
-    with pytest.raises(UserError, match="no seed index 1"):
-        Encoder(linear_model.trained_, 1)

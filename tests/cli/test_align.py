@@ -93,7 +93,7 @@ def test_json_is_one_document_and_the_same_seed_gives_the_same(run: Run, trained
         assert "simulated" in err
         outs.append(errors(out))
     assert outs[0] == outs[1]
-    assert set(outs[0]) == {"no_align, simulated", "manual_align, simulated", "profile, simulated"}
+    assert set(outs[0]) == {"no_align, simulated", "profile, simulated"}
     stored = [(trained / "profiles" / name / "alignment.safetensors").read_bytes() for name in ("one", "two")]
     assert stored[0] == stored[1]
     config = json.loads((trained / "profiles" / "one" / "config.json").read_text())

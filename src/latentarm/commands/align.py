@@ -50,7 +50,7 @@ class AlignOptions:
 def align_run(config: AlignOptions, say: Say) -> list[Row]:
     """Ask, learn, and write the profile to ``profiles/<name>`` of the run. Nothing is written before the end.
 
-    Returns the error on the answers themselves: with the profile, with an affine map, and with z = u.
+    Returns the error on the answers themselves: with the profile, and with z = u.
 
     Raises UserError where the run cannot be aligned, the name is taken, or nobody answers.
     """

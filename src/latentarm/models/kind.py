@@ -54,14 +54,6 @@ class Runtime(ABC):
         return None
 
 
-class SearchingRuntime(Runtime, ABC):
-    """phi of a model whose encoder searches for the ``nearest`` action."""
-
-    @abstractmethod
-    def nearest(self, action: FloatArray, context: FloatArray) -> FloatArray:
-        """The inputs (N, d) whose actions come nearest to actions (N, m), rad/s, in contexts (N, c)."""
-
-
 @final
 @dataclass(frozen=True, kw_only=True)
 class ModelKind:
@@ -76,8 +68,8 @@ class ModelKind:
     # Layer widths, input first, by network, of the networks that decode
     decoder: Callable[[Dimensions], Mapping[str, Shape]]
     # ``projection`` onto the columns of the decoder or the ``nearest`` action that it can decode (neither has
-    # weights; the latter needs a `SearchingRuntime`), or a network of (c, a) whose output is z
-    # (``deterministic``) or (mu, log sigma^2) (``gaussian``)
+    # weights), or a network of (c, a) whose output is z (``deterministic``) or (mu, log sigma^2)
+    # (``gaussian``)
     encoder: Encoder
     sees_context: bool = True
     # Whether z = 0 means rest, phi(0, c) = 0, by the model's definition, so that it must stay u = 0. Where it

@@ -6,7 +6,6 @@ from typing import Final, final
 
 import numpy as np
 
-from latentarm.alignment.affine import fit_affine
 from latentarm.alignment.answers import Answers
 from latentarm.alignment.contract import Alignment, identity
 from latentarm.alignment.demonstrated import shown
@@ -21,7 +20,6 @@ from latentarm.demonstrations.split import select_episodes
 from latentarm.evaluation.measures import unit_of
 from latentarm.evaluation.results import as_document
 from latentarm.models.decoder import Decoder
-from latentarm.models.encoder import Encoder
 from latentarm.models.saving import read_model
 from latentarm.runs.folder import Run, read_run, robot_of
 from latentarm.runs.person import Kind
@@ -40,7 +38,6 @@ class Alignable:
     run: Run
     fingerprint: str  # of the model and the seed that decodes
     seed_index: int
-    encoder: Encoder
     scene: AlignmentProblem
     seed: int
 
@@ -53,7 +50,7 @@ class LearnedProfile:
     known: ToolSpace
     fingerprint: str  # of the model and the seed that it is for
     seed_index: int
-    rows: list[Row]  # error on the answers themselves: with the profile, an affine map, and z = u
+    rows: list[Row]  # error on the answers themselves: with the profile, and with z = u
     judgement: Judgement  # of it beside the directions that the person had
     about: dict[str, object]  # further keys of the profile's file
 
@@ -85,7 +82,7 @@ def alignable(folder: Path, seed_index: int = 0, seed: int = 0, dataset: Path | 
         training = np.setdiff1d(np.arange(len(demonstrations.episodes)), run.held_out)
         motions = shown(select_episodes(demonstrations, training), decoder.layout.features, chain, rng)
     scene = AlignmentProblem(decoder, chain, motions)
-    return Alignable(run, fingerprint, seed_index, Encoder(trained, seed_index), scene, seed)
+    return Alignable(run, fingerprint, seed_index, scene, seed)
 
 
 def learn(
@@ -104,7 +101,6 @@ def learn(
     )
     alignments = {
         NO_ALIGN: identity,
-        "manual_align": fit_affine(known.encoder, answers),
         PROFILE: tool_space.with_arm(decoder, scene.chain),
     }
     rows = [

@@ -9,6 +9,7 @@ from playwright.sync_api import expect
 
 from latentarm.alignment.answers import Answers
 from latentarm.alignment.profile import new_profile_folder
+from latentarm.models.estimators import load_model
 from latentarm.runs.aligning import alignable, learn
 
 from .conftest import control_with, press_switch, set_up
@@ -141,7 +142,7 @@ class TestProfile:
         scene = (asked := alignable(run)).scene
         motions = scene.candidates
         action = (motions.end - motions.start) / motions.duration_s
-        z = asked.encoder.encode(motions.context, action)
+        z = load_model(run).encode(motions.context, action)[asked.seed_index]
         answers = Answers(motions, np.clip(z, -1.0, 1.0) * [-1.0, 1.0])
         learn(asked, answers, "mia", "simulated person").save(new_profile_folder(run, "mia"))
         with start_server(tmp_path, str(run)) as address:

@@ -1,11 +1,19 @@
 """Directions of the stick in torch: their odd degrees, and the search for the one that explains an action."""
 
+from typing import Final
+
 import numpy as np
 import torch
 from torch import Tensor
 
-from latentarm.models.homogeneous.runtime import HALF_TURN, ORDERS, REFINEMENTS, directions
+from latentarm.models.homogeneous.runtime import ORDERS
 from latentarm.models.numpy_networks import NORM_FLOOR
+
+HALF_TURN: Final = 64
+"""Directions that are tried for d = 2, over half a turn: each stands for its opposite too."""
+
+DIRECTIONS: Final = 128  # directions that are tried for d > 2
+REFINEMENTS: Final = 2  # rounds of refinement of the best direction, each four times finer than the last
 
 
 def odd_degrees(direction: Tensor) -> Tensor:
@@ -52,7 +60,7 @@ def _explained(columns: Tensor, target: Tensor, direction: Tensor) -> Tensor:
 
 
 def _best_fixed(columns: Tensor, target: Tensor, latent_dim: int) -> Tensor:
-    """The directions (S, d, B) among `directions` that explain most, by ``(a^T C e)^2 / ‖C e‖^2`` of all."""
+    """The directions (S, d, B) of `_fixed` that explain most, by ``(a^T C e)^2 / ‖C e‖^2`` of all."""
     every = torch.cat([columns, target[:, None]], dim=1).permute(0, 3, 1, 2).contiguous()
     gram = every @ every.mT
     fixed = _fixed(latent_dim).to(target)
@@ -70,8 +78,12 @@ def _unit(vectors: Tensor) -> Tensor:
 
 
 def _fixed(latent_dim: int) -> Tensor:
-    """`directions` in torch."""
-    if latent_dim == 2:  # in single precision, as models have been trained
+    """Unit vectors (K, d), spread over half of all directions: each stands for its opposite too."""
+    if latent_dim == 1:
+        return torch.ones(1, 1)
+    if latent_dim == 2:
         angle = torch.arange(HALF_TURN) * (np.pi / HALF_TURN)
         return torch.stack([angle.cos(), angle.sin()], dim=-1)
-    return torch.from_numpy(directions(latent_dim))
+    drawn = np.random.default_rng(0).normal(size=(DIRECTIONS, latent_dim))
+    drawn /= np.linalg.norm(drawn, axis=-1, keepdims=True)
+    return torch.from_numpy(np.concatenate([np.eye(latent_dim), drawn]))

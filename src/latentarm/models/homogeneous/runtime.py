@@ -7,22 +7,17 @@ import numpy as np
 
 from latentarm.core.types import FloatArray
 from latentarm.models.enclosure import Enclosure, linear_enclosure
-from latentarm.models.kind import Dimensions, ModelKind, SearchingRuntime, Shape, TrainedModel
+from latentarm.models.kind import Dimensions, ModelKind, Runtime, Shape, TrainedModel
 from latentarm.models.numpy_networks import NORM_FLOOR, halve_hidden, layers_of, propagate, scale_context
 
 DAMPING_M2: Final = 1e-3
 ORDERS: Final = (3, 5, 7)  # odd degrees by which the model bends
 BEND_SIZE: Final = 0.3  # factor of the network's bends, so that they start small
-HALF_TURN: Final = 64
-"""Directions that the encoder tries for d = 2, over half a turn: each stands for its opposite too."""
-
-DIRECTIONS: Final = 128  # directions that it tries for d > 2
-REFINEMENTS: Final = 2  # rounds of refinement of the best direction, each four times finer than the last
 CELLS: Final = 64
 """Cells that half of all directions are cut into for the enclosure; 45 degrees lie between two of them."""
 
 
-class CurveDecoder(SearchingRuntime, ABC):
+class CurveDecoder(Runtime, ABC):
     """v r R(c, z / r) with r = ‖z‖, for columns of R that a network of the context gives."""
 
     def __init__(self, trained: TrainedModel, seed: int) -> None:
@@ -52,38 +47,6 @@ class CurveDecoder(SearchingRuntime, ABC):
         twist = np.matvec(jacobian, led)
         size = np.vecdot(twist, twist) + self._contexts.damping * np.vecdot(led, led)
         return self._speed * radius * led / np.sqrt(size + NORM_FLOOR)[..., None]
-
-    @final
-    def nearest(self, action: FloatArray, context: FloatArray) -> FloatArray:
-        """See `SearchingRuntime`: the best direction of a fixed set, refined along each axis by parabolas.
-
-        The best push in a direction has a closed form. Exact for d = 1 and otherwise an approximation.
-        """
-        jacobian = self._contexts.jacobian(context[..., : self._joints])
-        columns, target = self._columns(context, jacobian), action / self._speed
-
-        def explained(directions: FloatArray) -> FloatArray:
-            """The part (N, K) of ‖a‖^2 that the best push explains, along directions (N or 1, K, d)."""
-            led = odd_degrees(directions) @ columns.mT
-            return np.square(np.matvec(led, target)) / (np.vecdot(led, led) + NORM_FLOOR)
-
-        fixed = directions(self._latents)
-        best = fixed[explained(fixed[None]).argmax(axis=1)]
-        for spacing in np.pi / HALF_TURN / 4.0 ** np.arange(REFINEMENTS if self._latents > 1 else 0):
-            for axis in np.eye(self._latents):
-                # Along the sphere; zero where the direction is the axis itself.
-                step = spacing * _unit(axis - best * (best @ axis)[:, None])
-                shrink = 1 / np.sqrt(1 + np.vecdot(step, step))[:, None]
-                sides = explained(np.stack([(best - step) * shrink, best, (best + step) * shrink], axis=1))
-                less, here, more = sides.T
-                curvature = 2 * here - less - more
-                vertex = np.clip(0.5 * (more - less) / np.maximum(curvature, NORM_FLOOR), -1, 1)
-                best = _unit(best + np.where(curvature > 0, vertex, 0.0)[:, None] * step)
-        led = np.matvec(columns, odd_degrees(best))
-        twist = np.matvec(jacobian, led)
-        size = np.vecdot(twist, twist) + self._contexts.damping * np.vecdot(led, led) + NORM_FLOOR
-        push = np.vecdot(led, target) * np.sqrt(size) / (np.vecdot(led, led) + NORM_FLOOR)
-        return push[:, None] * best
 
     @final
     def enclose(self, context: FloatArray, fineness: int = 1) -> Enclosure:
@@ -173,23 +136,6 @@ def odd_degrees(direction: FloatArray) -> FloatArray:
         before, degree = degree, twice * degree - before
         parts.append(degree)
     return np.concatenate(parts, axis=-1)
-
-
-def _unit(vectors: FloatArray) -> FloatArray:
-    """Vectors (N, d) brought to length 1; those that are nearly zero become zero."""
-    length = np.sqrt(np.vecdot(vectors, vectors))[:, None]
-    return np.where(length > 1e-6, vectors / np.maximum(length, NORM_FLOOR), 0.0)
-
-
-def directions(latent_dim: int) -> FloatArray:
-    """Unit vectors (K, d), spread over half of all directions: each stands for its opposite too."""
-    if latent_dim == 1:
-        return np.ones((1, 1))
-    if latent_dim == 2:
-        angle = np.arange(HALF_TURN) * (np.pi / HALF_TURN)
-        return np.stack([np.cos(angle), np.sin(angle)], axis=-1)
-    drawn = np.random.default_rng(0).normal(size=(DIRECTIONS, latent_dim))
-    return np.concatenate([np.eye(latent_dim), drawn / np.linalg.norm(drawn, axis=-1, keepdims=True)])
 
 
 def curve_sizes(dimensions: Dimensions) -> dict[str, Shape]:

@@ -6,23 +6,17 @@ import numpy as np
 
 from latentarm.core.types import FloatArray
 from latentarm.models.enclosure import ROUNDING, Enclosure
-from latentarm.models.kind import Dimensions, ModelKind, SearchingRuntime, Shape, TrainedModel
+from latentarm.models.kind import Dimensions, ModelKind, Runtime, Shape, TrainedModel
 from latentarm.models.numpy_networks import NORM_FLOOR, halve_hidden, layers_of, network_output
 from latentarm.models.tool_contexts import PLACE, TWIST
 
 DAMPING_M2: Final = 1e-2
 BEND_SIZE: Final = 0.3  # factor of the network's bend, so that it starts small
-RADII: Final = 10  # values of ‖z‖ that the encoder tries before it refines the best
-REFINEMENTS: Final = 3  # rounds of refinement, each six times finer than the one before
-LEAST_RADIUS: Final = 1e-4
-MOST_RADIUS: Final = 1.5
-"""The encoder's smallest and largest ‖z‖; the fastest hundredth of the demonstrations lies beyond 1."""
-
 CELLS: Final = 8  # cells that the length of an input is cut into for the enclosure
 
 
 @final
-class _Runtime(SearchingRuntime):
+class _Runtime(Runtime):
     """g(r) R(c, r) z / r of the isometric model."""
 
     def __init__(self, trained: TrainedModel, seed: int) -> None:
@@ -46,38 +40,6 @@ class _Runtime(SearchingRuntime):
         led = np.matvec(straight, direction) + turn * aside
         speed = self._speed * np.tanh(self._saturation * radius)
         return speed * led / np.sqrt(1 + turn**2 * aside_size[..., None])
-
-    def nearest(self, action: FloatArray, context: FloatArray) -> FloatArray:
-        """See `SearchingRuntime`: over a grid of radii, then around its best with parabolas.
-
-        The direction follows from least squares. Exact for d = 1, and for d > 1 where nothing bends and the
-        best radius is below `MOST_RADIUS`; otherwise an approximation.
-        """
-        straight, bend, _ = (part[:, None] for part in self._geometry(context))
-        context, action, rows = context[:, None], action[:, None], np.arange(len(action))
-
-        def fit(radius: FloatArray) -> tuple[FloatArray, FloatArray]:
-            """The errors (N, K) and the best inputs (N, K, d) for radii (N, K)."""
-            turn = 2 * np.minimum(radius, 1.0) - 1
-            direction = np.matvec(np.linalg.pinv(straight + turn[..., None, None] * bend), action)
-            size = np.sqrt(np.vecdot(direction, direction))
-            z = (radius / np.maximum(size, NORM_FLOOR))[..., None] * direction
-            return np.square((self(z, context) - action) / self._scale).sum(axis=-1), z
-
-        share = np.arange(1, RADII + 1) / RADII
-        grid = MOST_RADIUS * np.square(share)
-        chosen = fit(np.broadcast_to(grid, (len(rows), RADII)))[0].argmin(axis=1)
-        best, step = grid[chosen], (2 * MOST_RADIUS / RADII * share)[chosen]
-        for _ in range(REFINEMENTS):
-            radii = np.clip(best[:, None] + step[:, None] * np.linspace(-1, 1, 5), LEAST_RADIUS, MOST_RADIUS)
-            error = fit(radii)[0]
-            middle = np.clip(error.argmin(axis=1), 1, 3)
-            before, here, after = (error[rows, middle + shift] for shift in (-1, 0, 1))
-            curvature = before - 2 * here + after
-            vertex = np.clip(0.5 * (before - after) / np.maximum(curvature, NORM_FLOOR), -1, 1)
-            best = radii[rows, middle] + np.where(curvature > 0, vertex, 0.0) * step / 2
-            best, step = np.clip(best, LEAST_RADIUS, MOST_RADIUS), step / 6
-        return fit(best[:, None])[1][:, 0]
 
     def enclose(self, context: FloatArray, fineness: int = 1) -> Enclosure:
         """See `Runtime`; exact for d = 1 but for the cells, at most sqrt(d) too large for more axes.

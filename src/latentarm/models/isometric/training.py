@@ -9,15 +9,7 @@ from torch import Tensor
 
 from latentarm.core.types import FloatArray
 from latentarm.models.batches import Batch, TrainingData
-from latentarm.models.isometric.runtime import (
-    BEND_SIZE,
-    DAMPING_M2,
-    ISOMETRIC,
-    LEAST_RADIUS,
-    MOST_RADIUS,
-    RADII,
-    REFINEMENTS,
-)
+from latentarm.models.isometric.runtime import BEND_SIZE, DAMPING_M2, ISOMETRIC
 from latentarm.models.kind import Dimensions, ModelKind
 from latentarm.models.losses import reconstruction_error
 from latentarm.models.networks import Networks, mlp
@@ -33,6 +25,11 @@ seed starts with the same orientation everywhere. M and -M reconstruct equally w
 between them at random in different places would keep a jump between the two that training cannot remove."""
 
 SATURATION_START: Final = 1.0  # first guess of kappa, before softplus
+RADII: Final = 10  # values of ‖z‖ that the encoder tries before it refines the best
+REFINEMENTS: Final = 3  # rounds of refinement, each six times finer than the one before
+LEAST_RADIUS: Final = 1e-4
+MOST_RADIUS: Final = 1.5
+"""The encoder's smallest and largest ‖z‖; the fastest hundredth of the demonstrations lies beyond 1."""
 
 
 def principal_start(data: TrainingData, dimensions: Dimensions) -> dict[str, FloatArray]:

@@ -5,12 +5,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from latentarm.alignment.affine import fit_affine
 from latentarm.alignment.answers import Answers
 from latentarm.alignment.contract import identity
 from latentarm.alignment.queries import order_of_questions
 from latentarm.core.types import FloatArray
-from latentarm.models.encoder import Encoder
+from latentarm_research.alignment.affine import fit_affine
 from latentarm_research.alignment.priors import NO_PRIORS
 from latentarm_research.alignment.training import FitConfig
 from latentarm_research.studies.alignment import preset as ways
@@ -38,10 +37,10 @@ def measure_cell(cell: AlignmentCell) -> AlignmentErrors:
     def ask(count: int) -> list[Answers]:
         return [scene.ask(count, cell.noise, ways.Stream.QUESTIONS, ways.Stream.ANSWERS, run) for run in runs]
 
-    few, encoder = ask(preset.answers), Encoder(scene.model.trained_)
+    few = ask(preset.answers)
     errors = {
         ways.NO_ALIGN: scene.errors([identity]),
-        ways.MANUAL: scene.errors([fit_affine(encoder, answers) for answers in few]),
+        ways.MANUAL: scene.errors([fit_affine(scene.model, answers) for answers in few]),
     }
     for name, priors in ways.LEARNED.items():
         errors[name] = scene.errors(scene.learn(few, FitConfig(priors, steps=preset.steps), runs))

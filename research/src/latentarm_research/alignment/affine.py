@@ -7,7 +7,7 @@ import numpy as np
 
 from latentarm.alignment.answers import Answers
 from latentarm.core.types import FloatArray
-from latentarm.models.encoder import Encoder
+from latentarm.models.model import LatentActionModel
 
 
 @final
@@ -23,12 +23,9 @@ class AffineAlignment:
         return u @ self.matrix.T + self.offset
 
 
-def fit_affine(encoder: Encoder, answers: Answers) -> AffineAlignment:
-    """The affine map that best fits the answers to the encoded motions; the smallest of several.
-
-    Raises UserError where the kind of model has no encoder in NumPy.
-    """
-    z = encoder.encode(answers.motions.context, answers.motions.action)
+def fit_affine(model: LatentActionModel, answers: Answers) -> AffineAlignment:
+    """The affine map that best fits the answers to the encoded motions; the smallest of several."""
+    z = model.encode(answers.motions.context, answers.motions.action)[0]
     inputs = np.concatenate([answers.u, np.ones((len(answers), 1))], axis=1)
     solution = np.asarray(np.linalg.lstsq(inputs, z, rcond=None)[0], dtype=np.float64)
     return AffineAlignment(matrix=solution[:-1].T, offset=solution[-1])
