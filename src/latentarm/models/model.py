@@ -21,6 +21,7 @@ from latentarm.demonstrations.pairs import make_pairs
 from latentarm.demonstrations.split import split_episodes
 from latentarm.models.batches import TrainingData
 from latentarm.models.decoder import Decoder
+from latentarm.models.goal_entropy import GoalEntropy, ScaledTerm
 from latentarm.models.kind import Dimensions, ModelKind, TrainedModel, TrainingSummary
 from latentarm.models.networks import Networks
 from latentarm.models.parameters import (
@@ -48,7 +49,6 @@ from latentarm.models.scaling import (
     latent_scale,
     unit_scale,
 )
-from latentarm.models.term import LossTerm, ScaledTerm
 from latentarm.models.torch_decoder import TorchDecoder
 from latentarm.models.training import Report, TrainingResult, choose_device
 from latentarm.models.way_back.runtime import WayBack
@@ -135,7 +135,7 @@ class LatentActionModel(BaseEstimator, ABC):
         *,
         validation: Sequence[int] | None = None,
         chain: Chain | None = None,
-        term: LossTerm | None = None,
+        term: GoalEntropy | None = None,
         report: Report | None = None,
     ) -> Self:
         """Learn from demonstrations, all seeds at once.
@@ -267,7 +267,7 @@ class LatentActionModel(BaseEstimator, ABC):
         demonstrations: Demonstrations,
         validation: Sequence[int] | None,
         chain: Chain | None,
-        term: LossTerm | None,
+        term: GoalEntropy | None,
     ) -> Prepared:
         """Pairs of demonstrations, ready for training; arguments and errors as in `fit`."""
         check_parameters(type(self), self.get_params(deep=False))

@@ -12,12 +12,12 @@ from torch import Tensor
 from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations, FloatArray
 from latentarm.models.batches import Batch, TrainingData
+from latentarm.models.goal_entropy import ScaledTerm, Span
 from latentarm.models.kind import Dimensions
 from latentarm.models.model import LatentActionModel, Weights
 from latentarm.models.networks import Networks, networks_from_arrays
 from latentarm.models.prepared import side_by_side
 from latentarm.models.scaling import SPAN_QUANTILE
-from latentarm.models.term import ScaledTerm, Span
 from latentarm.models.training import Report, TrainingConfig, TrainingResult, choose_device, train
 
 Start = Callable[[TrainingData, Dimensions], dict[str, FloatArray]]

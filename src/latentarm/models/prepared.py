@@ -11,8 +11,8 @@ from latentarm.core.errors import UserError
 from latentarm.core.types import BoolArray, FloatArray, Pairs
 from latentarm.demonstrations.held import moved_to
 from latentarm.models.batches import TrainingData
+from latentarm.models.goal_entropy import GoalEntropy, ScaledTerm
 from latentarm.models.scaling import Normaliser, action_normaliser, feature_normaliser
-from latentarm.models.term import LossTerm, ScaledTerm
 from latentarm.models.tool_contexts import ToolContexts
 from latentarm.models.tool_frame import ToolFrame
 from latentarm.robots.kinematics.chain import Chain
@@ -54,7 +54,7 @@ def prepare(
     layout: ContextLayout,
     validation: Sequence[int],
     arm: Chain | None,
-    term: LossTerm | None,
+    term: GoalEntropy | None,
 ) -> Prepared:
     """Split pairs by episode and normalise them by the training episodes alone.
 

@@ -14,7 +14,6 @@ import numpy as np
 
 from latentarm.alignment.frame_file import save_frames
 from latentarm.assistance.annotation import prepared
-from latentarm.assistance.entropy import GoalEntropy
 from latentarm.core.context import JOINTS, OBJECTS_IN_TOOL, Named, feature_names
 from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations, Row
@@ -26,6 +25,7 @@ from latentarm.demonstrations.things import ENVIRONMENT
 from latentarm.demonstrations.timing import check_one_rate
 from latentarm.models.catalogue import KINDS
 from latentarm.models.estimators import MODELS
+from latentarm.models.goal_entropy import GoalEntropy
 from latentarm.models.model import LatentActionModel
 from latentarm.models.neural import NeuralModel
 from latentarm.models.scaling import STILL

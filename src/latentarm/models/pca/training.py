@@ -10,11 +10,11 @@ from torch import Tensor
 from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray
 from latentarm.models.batches import TrainingData
+from latentarm.models.goal_entropy import ScaledTerm
 from latentarm.models.kind import Dimensions, ModelKind
 from latentarm.models.model import LatentActionModel, Weights
 from latentarm.models.networks import Networks, mlp
 from latentarm.models.pca import runtime
-from latentarm.models.term import ScaledTerm
 from latentarm.models.training import Report, TrainingResult
 
 

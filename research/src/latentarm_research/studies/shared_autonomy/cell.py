@@ -9,8 +9,8 @@ import numpy as np
 
 from latentarm.assistance.annotation import annotate
 from latentarm.assistance.blending import Arbitration
-from latentarm.assistance.entropy import GoalEntropy
 from latentarm.core.types import Demonstrations, FloatArray
+from latentarm.models.goal_entropy import GoalEntropy
 from latentarm.models.model import LatentActionModel
 from latentarm_research.studies.fitting import fit_model, validation_episodes
 from latentarm_research.studies.shared_autonomy.drive import (

@@ -1,9 +1,10 @@
 """Training latent actions to keep every goal reachable: the entropy over goals of equations 15 and 16."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Final, Literal, final
+from typing import Final, final
 
 import numpy as np
 import torch
@@ -11,7 +12,7 @@ from torch import Tensor
 
 from latentarm.core.errors import UserError
 from latentarm.core.types import FloatArray
-from latentarm.models.term import LossTerm, TermContexts
+from latentarm.models.scaling import Normaliser
 from latentarm.robots.kinematics.chain import Chain
 from latentarm.robots.kinematics.torch_chain import TorchChain
 
@@ -27,7 +28,7 @@ SLOWEST_M: Final = 0.05
 """Least speed of the tool, per unit of joint speed, that its progress is measured in: an arm that goes
 straight to a goal may hardly move its tool, m/rad."""
 
-Where = Literal["demonstrated", "any_belief", "anywhere"]
+LEAST_PROGRESS: Final = 0.5  # rho_0 of `log_probabilities`, in units of the demonstrated speed
 
 
 def goal_progress(
@@ -54,7 +55,7 @@ def goal_progress(
 
 @final
 @dataclass(frozen=True, eq=False)
-class GoalEntropy(LossTerm):
+class GoalEntropy:
     """``lambda_2 Σ_g p_c(g) log p_c(g)`` (equation 16): in every context, some input for each goal.
 
     Contexts are those in which a person may want to turn back, not only the demonstrated ones:
@@ -67,10 +68,7 @@ class GoalEntropy(LossTerm):
     goals: FloatArray  # (G, n), configurations, rad
     weight: float = 2.0  # lambda_2
     sharpness: float = 4.0  # kappa of `log_probabilities`
-    least_progress: float = 0.5  # rho_0 of `log_probabilities`, of the demonstrated speed
     per_axis: int = 7  # evenly spaced inputs in [-1, 1] on each axis, over which z is summed
-    where: Where = "anywhere"
-    """``demonstrated`` contexts, their states with ``any_belief``, or ``anywhere`` between these states."""
     chain: Chain | None = None  # for progress of the tool; without it the joints alone count
 
     def __post_init__(self) -> None:
@@ -80,30 +78,31 @@ class GoalEntropy(LossTerm):
             raise UserError(f"The weight of the entropy must be zero or more, not {self.weight}.")
         if not (math.isfinite(self.sharpness) and self.sharpness > 0):
             raise UserError(f"The sharpness of the entropy must be positive, not {self.sharpness}.")
-        if not self.least_progress < math.inf:
-            raise UserError(f"The least progress must be a number or -inf, not {self.least_progress}.")
         if self.per_axis < 2:
             raise UserError(f"The entropy needs at least 2 inputs on each axis, not {self.per_axis}.")
 
     def contexts(self, demonstrated: FloatArray, joints: int, rng: np.random.Generator) -> FloatArray:
-        """Contexts (CONTEXTS, c) as ``where`` says; see `LossTerm.contexts`."""
+        """Contexts (CONTEXTS, c) that training draws from, from those of the training pairs (N, c).
+
+        The first ``joints`` entries of a context are the state, rad.
+        """
         one, other, believing = demonstrated[rng.integers(0, len(demonstrated), (3, CONTEXTS))]
         share = rng.uniform(size=(CONTEXTS, 1))
-        state, belief = one[:, :joints], one[:, joints:]
-        if self.where != "demonstrated":
-            belief = believing[:, joints:]
-        if self.where == "anywhere":
-            state = share * state + (1 - share) * other[:, :joints]
-        return np.concatenate([state, belief], axis=1)
+        state = share * one[:, :joints] + (1 - share) * other[:, :joints]
+        return np.concatenate([state, believing[:, joints:]], axis=1)
 
-    def __call__(self, situation: TermContexts) -> Tensor:
-        """``lambda_2`` times the negative entropy, mean over contexts: (S,)."""
-        state = situation.state
+    def __call__(
+        self, state: Tensor, action_of: Callable[[Tensor], Tensor], speed: float, axes: int
+    ) -> Tensor:
+        """``lambda_2`` times the negative entropy, mean over contexts: (S,).
+
+        ``action_of`` maps inputs (K, d) in [-1, 1] to actions (S, E, K, m), rad/s, in states (S, E, n), rad.
+        ``speed`` is the root mean square of the demonstrated ‖a‖, rad/s, and ``axes`` is d.
+        """
         goals = torch.as_tensor(self.goals, dtype=state.dtype, device=state.device)
-        actions = situation.action_of(self._inputs(situation.axes))
         chain = None if self._torch_chain is None else self._torch_chain.to(state)
-        progress = goal_progress(state, actions, goals, situation.speed, chain)
-        log = log_probabilities(progress, self.sharpness, self.least_progress)
+        progress = goal_progress(state, action_of(self._inputs(axes)), goals, speed, chain)
+        log = log_probabilities(progress, self.sharpness)
         return self.weight * (log.exp() * log).sum(-1).mean(-1)
 
     @cached_property
@@ -121,7 +120,7 @@ def _direction(away: Tensor, near: float) -> Tensor:
     return away / torch.linalg.vector_norm(away, dim=-1, keepdim=True).clamp_min(near)
 
 
-def log_probabilities(progress: Tensor, sharpness: float, least_progress: float) -> Tensor:
+def log_probabilities(progress: Tensor, sharpness: float) -> Tensor:
     """Logarithm of ``p_c(g)``: how much of a person's possible actions conveys each goal (equation 15).
 
     The paper leaves the score open. Here it is::
@@ -130,14 +129,54 @@ def log_probabilities(progress: Tensor, sharpness: float, least_progress: float)
 
     with rho the progress towards g, ``eta_0 = K exp(kappa rho_0)`` for K inputs z, and kappa so large that
     the best input counts most. ``eta_0`` stands for conveying no goal: a goal counts as open where some
-    input makes more progress towards it than rho_0. Without it (rho_0 = -inf; equation 15 to the letter) a
-    decoder that hardly moves towards any goal has the highest entropy of all.
+    input makes more progress towards it than rho_0. Without it (equation 15 to the letter) a decoder that
+    hardly moves towards any goal has the highest entropy of all.
 
-    ``progress`` (..., K, G) is the speed towards each goal for K inputs, and ``least_progress`` is rho_0,
-    both in units of the demonstrated speed; ``sharpness`` is kappa.
+    ``progress`` (..., K, G) is the speed towards each goal for K inputs, in units of the demonstrated speed;
+    ``sharpness`` is kappa.
     """
     score = torch.logsumexp(sharpness * progress, dim=-2)
-    if not math.isfinite(least_progress):
-        return torch.log_softmax(score, dim=-1)
-    none = torch.full_like(score[..., :1], math.log(progress.shape[-2]) + sharpness * least_progress)
+    none = torch.full_like(score[..., :1], math.log(progress.shape[-2]) + sharpness * LEAST_PROGRESS)
     return torch.log_softmax(torch.cat([score, none], dim=-1), dim=-1)[..., :-1]
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class ScaledTerm:
+    """The entropy, with the normalisers of one training."""
+
+    term: GoalEntropy
+    contexts: Normaliser  # of the first c entries of a network's input
+    actions: Normaliser
+    joints: int
+    speed: float  # root mean square of the demonstrated ‖a‖, rad/s
+
+    def loss(self, decode: Callable[[Tensor, Tensor], Tensor], context: Tensor, span: "Span") -> Tensor:
+        """The term (S,) in contexts (S, E, c'), as the networks see them.
+
+        ``decode`` maps latents (S, B, d) in contexts (S, B, c') to normalised actions (S, B, m).
+        """
+
+        def constant(values: FloatArray) -> Tensor:
+            return torch.as_tensor(values, dtype=context.dtype, device=context.device)
+
+        def action_of(inputs: Tensor) -> Tensor:
+            latent = span.centre + span.scale * inputs.to(context)
+            (seeds, contexts, width), count = context.shape, len(inputs)
+            every = latent[:, None].expand(seeds, contexts, count, -1).reshape(seeds, contexts * count, -1)
+            where = context[:, :, None].expand(-1, -1, count, -1).reshape(seeds, contexts * count, width)
+            return decode(every, where).unflatten(1, (contexts, count)) * constant(self.actions.scale)
+
+        joints = slice(self.joints)
+        state = context[..., joints] * constant(self.contexts.scale[joints])
+        state = state + constant(self.contexts.centre[joints])
+        return self.term(state, action_of, self.speed, span.centre.shape[-1])
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Span:
+    """The latent actions that inputs stand for: z = centre + scale u."""
+
+    centre: Tensor  # (S, 1, d)
+    scale: Tensor  # (S, 1, d)
