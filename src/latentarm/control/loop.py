@@ -4,10 +4,7 @@ import math
 import queue
 import threading
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Final, final
-
-import numpy as np
 
 from latentarm.arms.contract import Arm, ArmStatus, check_arm, check_rate
 from latentarm.control.clock import Clock
@@ -18,61 +15,6 @@ from latentarm.core.types import StepRecord, Stop
 
 ENABLING_S: Final = 5.0
 """An arm that has not become ready for so long after it was asked to is left disabled, s."""
-
-
-@final
-@dataclass(frozen=True)
-class DeadlineStatistics:
-    """Figures over the ticks of one run."""
-
-    ticks: int
-    met_share: float  # share of ticks that were done before the next one was due
-    median_s: float  # median time from a tick's due time until its command was sent, s
-    p99_s: float  # 99th percentile of the same, s
-    worst_start_s: float  # the latest that any tick began after it was due, s
-    overruns: int  # ticks that began so late that the last command had run out
-
-
-@final
-class DeadlineLog:
-    """Collects how late ticks of a period, s, were: counts over all, figures over a window of recent ones."""
-
-    def __init__(self, period_s: float, window: int = 65536) -> None:
-        self._period_s = period_s
-        self._sent = np.zeros(window)
-        self._ticks = 0
-        self._met = 0
-        self._worst_start_s = 0.0
-        self._overruns = 0
-
-    @property
-    def ticks(self) -> int:
-        """How many ticks there were."""
-        return self._ticks
-
-    def add(self, started_s: float, sent_s: float, *, overrun: bool) -> None:
-        """Record one tick, which began ``started_s`` and sent its command ``sent_s`` after it was due.
-
-        ``overrun`` says that the command before had run out.
-        """
-        self._sent[self._ticks % len(self._sent)] = sent_s
-        self._ticks += 1
-        self._met += sent_s <= self._period_s
-        self._worst_start_s = max(self._worst_start_s, started_s)
-        self._overruns += overrun
-
-    def statistics(self) -> DeadlineStatistics:
-        """The figures so far; all zero, and all deadlines met, before the first tick."""
-        kept = self._sent[: min(self._ticks, len(self._sent))]
-        median, p99 = np.percentile(kept, [50, 99]) if len(kept) else (0.0, 0.0)
-        return DeadlineStatistics(
-            ticks=self._ticks,
-            met_share=self._met / self._ticks if self._ticks else 1.0,
-            median_s=float(median),
-            p99_s=float(p99),
-            worst_start_s=self._worst_start_s,
-            overruns=self._overruns,
-        )
 
 
 @final
@@ -121,7 +63,7 @@ class ControlLoop:
         self._clock = clock
         self._observers = tuple(observers)
         self._period_s = step.dt_s
-        self._log = DeadlineLog(self._period_s)
+        self._ticks = self._met = 0
         self._start_s = self._sent_s = 0.0
         self._next = 0
         self._finished = threading.Event()
@@ -143,11 +85,17 @@ class ControlLoop:
         """Stop the arm, and return from `run` once it is at rest."""
         self._finished.set()
 
-    def statistics(self) -> DeadlineStatistics:
-        """How punctual the loop has been."""
-        return self._log.statistics()
+    @property
+    def ticks(self) -> int:
+        """How many ticks there were."""
+        return self._ticks
 
-    def run(self, ticks: int | None = None, mode: int = 0) -> DeadlineStatistics:
+    @property
+    def met_share(self) -> float:
+        """Share of ticks that were done before the next one was due; 1 before the first tick."""
+        return self._met / self._ticks if self._ticks else 1.0
+
+    def run(self, ticks: int | None = None, mode: int = 0) -> None:
         """Run for a number of ticks, or until `finish`; then bring the arm to rest.
 
         The controller begins in the mode with this index. Raises UserError where it has no such mode.
@@ -158,7 +106,7 @@ class ControlLoop:
         self._next = 0
         self._ending = False
         try:
-            while not self._finished.is_set() and (ticks is None or self._log.ticks < ticks):
+            while not self._finished.is_set() and (ticks is None or self._ticks < ticks):
                 self._tick(self._observers)
             self._come_to_rest(self._observers)
         finally:
@@ -167,7 +115,6 @@ class ControlLoop:
                 self._come_to_rest(())
             finally:
                 self._arm.disable()
-        return self.statistics()
 
     def _come_to_rest(self, observers: Sequence[Callable[[StepRecord], None]]) -> None:
         self._ending = True
@@ -228,7 +175,7 @@ class ControlLoop:
     def _tick(self, observers: Sequence[Callable[[StepRecord], None]]) -> None:
         """Wait for the next tick, and do it."""
         due_s, now_s = self._await_tick()
-        overrun = self._ran_out(now_s)
+        ran_out = self._ran_out(now_s)
         stopped = False
         while not self._stop_reasons.empty():
             self._step.stop(self._stop_reasons.get())
@@ -238,9 +185,8 @@ class ControlLoop:
         self._heed(status)
         record = self._step(given, age_s, self._arm.read(), now_s)
         ready_s = self._clock.now_s()
-        if not overrun and self._ran_out(ready_s):
+        if not ran_out and self._ran_out(ready_s):
             # The step itself took too long: it decided for an arm that was still moving.
-            overrun = True
             record = self._step(given, math.inf, self._arm.read(), ready_s)
             ready_s = self._clock.now_s()
         # Counted from before it is sent: the arm's own count begins no earlier.
@@ -249,7 +195,8 @@ class ControlLoop:
         self._arm.send(record.command)
         if record.command.gripper is not None and not status.takes_commands:
             self._arm.move_gripper(record.command.gripper)
-        self._log.add(now_s - due_s, self._clock.now_s() - due_s, overrun=overrun)
+        self._ticks += 1
+        self._met += self._clock.now_s() - due_s <= self._period_s
         # Nobody is enabled in the tick of a stop, or while the loop is ending.
         if self._enable_asked.is_set() and (stopped or self._ending or self._try_to_enable(now_s)):
             self._enable_asked.clear()

@@ -66,15 +66,14 @@ class Drive:
     def _seen(self, record: StepRecord) -> dict[str, object]:
         stop = self._step.stopped
         pose = self._driven.robot.chain.forward(np.nan_to_num(record.state))
-        statistics = self._loop.statistics()
         return {
             "q": record.state.tolist(),
             "tool": [*pose.position.tolist(), *quaternion(pose.rotation).tolist()],
             "width_m": None if record.gripper is None else record.gripper.width_m,
             "u": record.input.tolist(),
             "stopped": "" if stop is None else stop.reason,
-            "ticks": statistics.ticks,
-            "met_share": statistics.met_share,
+            "ticks": self._loop.ticks,
+            "met_share": self._loop.met_share,
         }
 
 

@@ -356,7 +356,7 @@ class Drive:
         elif phase == STRETCHES:
             self._move_goals()
         elif steering.tick % _STATISTICS_EVERY == _LOOK_EVERY - 1:
-            self._late_share = 1.0 - self._loop.statistics().met_share
+            self._late_share = 1.0 - self._loop.met_share
 
     def _move_goals(self) -> None:
         move = self._run.move_goals(self._goals, self._readings.q, self._things.believed())
