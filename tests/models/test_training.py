@@ -27,11 +27,9 @@ def test_a_seeds_result_depends_neither_on_the_seeds_beside_it_nor_on_replays(
 ):
     context, z = samples
     alone = MODELS[name](seeds=1, seed=13, **SMALL).fit(few)
-    replayed = []
+    replayed, replay = [], RecordedStep.__call__
     monkeypatch.setattr(training, "REPLAYED_STEPS", 0)
-    monkeypatch.setattr(
-        RecordedStep, "__call__", lambda self: (replayed.append(self), RecordedStep.run(self))
-    )
+    monkeypatch.setattr(RecordedStep, "__call__", lambda self: (replayed.append(self), replay(self)))
     together = MODELS[name](seeds=5, seed=10, **SMALL).fit(few)
     assert len(replayed) > 1, "no step was replayed"
     np.testing.assert_allclose(alone.decode(z, context)[0], together.decode(z, context)[3], rtol=0, atol=1e-9)

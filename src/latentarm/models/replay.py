@@ -6,7 +6,7 @@ it records the operations of torch (ATen) that a computation and its gradient co
 and runs them again into memory that was laid out once. Views cost nothing in a replay, and what does not
 depend on the inputs is not computed again. The kernels are the same, and so are the results.
 
-This is to the CPU what a CUDA graph is to a GPU; on a GPU the replay is captured as one.
+This is to the CPU what a CUDA graph is to a GPU.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -19,7 +19,6 @@ from torch.utils._python_dispatch import TorchDispatchMode
 from torch.utils._pytree import tree_leaves, tree_map
 
 Operation = torch._ops.OpOverload  # pyright: ignore[reportPrivateUsage]
-WARM_UP: Final = 3  # runs on a GPU before the capture, as torch's documentation asks for
 ROOMY: Final = 4  # a block of memory is used again for a tensor that is at most so many times smaller
 
 
@@ -104,18 +103,10 @@ class RecordedStep:
         calls = _varying(recorder.calls, _storages(inputs))
         with torch.no_grad():
             self._steps = [_bound(*step) for step in _placed(calls, device)]
-        self._graph = _captured(self.run) if device.type == "cuda" else None
-
-    def __call__(self) -> None:
-        """Repeat the computation on what the inputs hold now."""
-        if self._graph is None:
-            self.run()
-        else:
-            self._graph.replay()
 
     @torch.no_grad()
-    def run(self) -> None:
-        """Repeat it operation by operation, without a CUDA graph."""
+    def __call__(self) -> None:
+        """Repeat the computation on what the inputs hold now."""
         for step in self._steps:
             step()
 
@@ -153,20 +144,6 @@ def _depends_on_values(operation: Operation, args: tuple[Any, ...]) -> bool:
     if indexed and all(index.dtype == torch.int64 for index in _tensors(args[1])):
         return False
     return torch.Tag.dynamic_output_shape in operation.tags
-
-
-def _captured(run: Callable[[], None]) -> "torch.cuda.CUDAGraph":
-    """All kernels of a run as one CUDA graph."""
-    stream = torch.cuda.Stream()
-    stream.wait_stream(torch.cuda.current_stream())
-    with torch.cuda.stream(stream):
-        for _ in range(WARM_UP):
-            run()
-    torch.cuda.current_stream().wait_stream(stream)
-    graph = torch.cuda.CUDAGraph()
-    with torch.cuda.graph(graph):
-        run()
-    return graph
 
 
 def _alias(leaf: Any) -> Any:

@@ -31,9 +31,6 @@ _bounds: list[int] = []  # limits of all current readers, after the original lim
 def bounded_memory(what: str, size: int) -> Generator[None]:
     """Limit how much the process may grow during a read of ``size`` bytes; ``what`` names it in errors.
 
-    The bound is the whole process's: another thread that needs more than remains meanwhile gets a
-    `MemoryError` too.
-
     The bound holds for the whole process: another thread that needs more also gets a `MemoryError`.
     """
     allowed = ALLOWANCE + PER_BYTE * size
