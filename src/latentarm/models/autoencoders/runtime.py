@@ -22,29 +22,8 @@ from latentarm.models.numpy_networks import (
 
 
 @final
-class LatentDecoder(Runtime):
-    """phi(z) of PCA, AE and VAE."""
-
-    def __init__(self, trained: TrainedModel, seed: int) -> None:
-        layers = scale_output(layers_of(trained, seed), trained.actions.scale)
-        weight, bias = scale_latent(layers[0], trained, seed)
-        (self._weight, self._bias), *self._rest = halve_hidden([(weight, bias), *layers[1:]])
-
-    def __call__(self, z: FloatArray, context: FloatArray) -> FloatArray:
-        action = propagate(z @ self._weight + self._bias, self._rest)
-        if context.ndim == 1:
-            return action
-        shape = np.broadcast_shapes(action.shape[:-1], context.shape[:-1])
-        return np.broadcast_to(action, (*shape, action.shape[-1]))
-
-    def enclose(self, context: FloatArray, fineness: int = 1) -> Enclosure:
-        offset = np.broadcast_to(self._bias, (*context.shape[:-1], len(self._bias)))
-        return network_enclosure(self._weight, offset, self._rest, fineness)
-
-
-@final
-class ConditionedDecoder(Runtime):
-    """phi(z, c) of the conditioned autoencoders."""
+class NetworkDecoder(Runtime):
+    """phi(z, c) of a network, or phi(z) where the context has no weight."""
 
     def __init__(self, trained: TrainedModel, seed: int) -> None:
         layers = scale_output(layers_of(trained, seed), trained.actions.scale)
@@ -52,7 +31,9 @@ class ConditionedDecoder(Runtime):
         weight, bias = layers[0]
         # Two products instead of one over (z, c) joined: cheaper than joining, and they broadcast.
         from_latent, bias = scale_latent((weight[:d], bias), trained, seed)
-        from_context, bias = scale_context((weight[d:], bias), trained)
+        from_context = np.zeros((trained.dimensions.context, len(bias)))
+        if trained.kind.sees_context:
+            from_context, bias = scale_context((weight[d:], bias), trained)
         weight = np.concatenate([from_latent, from_context])
         (weight, self._bias), *self._rest = halve_hidden([(weight, bias), *layers[1:]])
         self._from_latent, self._from_context = weight[:d].copy(), weight[d:].copy()
@@ -93,7 +74,7 @@ AE: Final = ModelKind(
     name="ae",
     label="AE",
     estimator=f"{_TRAINING}:AE",
-    runtime=LatentDecoder,
+    runtime=NetworkDecoder,
     decoder=_latent_sizes,
     encoder="deterministic",
     sees_context=False,
@@ -104,7 +85,7 @@ CAE: Final = ModelKind(
     name="cae",
     label="cAE",
     estimator=f"{_TRAINING}:CAE",
-    runtime=ConditionedDecoder,
+    runtime=NetworkDecoder,
     decoder=conditioned_sizes,
     encoder="deterministic",
     advice=_MOVES.format(name="cae"),

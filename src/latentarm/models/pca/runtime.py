@@ -2,7 +2,7 @@
 
 from typing import Final
 
-from latentarm.models.autoencoders.runtime import LatentDecoder
+from latentarm.models.autoencoders.runtime import NetworkDecoder
 from latentarm.models.kind import Dimensions, ModelKind, Shape
 
 
@@ -14,7 +14,7 @@ PCA: Final = ModelKind(
     name="pca",
     label="PCA",
     estimator="latentarm.models.pca.training:PCA",
-    runtime=LatentDecoder,
+    runtime=NetworkDecoder,
     decoder=_sizes,
     encoder="projection",
     sees_context=False,
