@@ -82,15 +82,3 @@ def test_drives_that_stall_end_without_a_change_to_what_they_reached(linear_deco
     patient, hasty = drive(np.inf), drive(0.5)
     np.testing.assert_allclose(hasty.distance_m, patient.distance_m, atol=1e-6)
     assert counted[1] < counted[0] / 3
-
-
-def test_what_was_chosen_leads_where_the_drive_went(turning_decoder, gantry):
-    decoder, start = turning_decoder(0.5), np.array([[0.2, 0.0], [0.0, 0.4]])
-    target = places([0.5, 0.3, 0.0], [-0.4, 0.1, 0.0])
-    came = approach([decoder], start, target, gantry, 0.1, SolverConfig(time_s=1.0))
-    assert came.latent.shape == (1, 2, 10, 2)
-    state, distance = start, np.inf
-    for z in np.swapaxes(came.latent[0], 0, 1):
-        state = state + 0.1 * decoder.decode(z, state)
-        distance = np.minimum(distance, np.linalg.norm(state - target.places[:, 0, :2], axis=-1))
-    np.testing.assert_allclose(distance, came.distance_m[0])

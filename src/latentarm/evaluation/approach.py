@@ -56,7 +56,6 @@ class Approach:
     context: FloatArray  # (S, P, c), at that moment
     path_m: FloatArray  # (S, P), path length of the tools until then, mean over tools, m
     straight_m: FloatArray  # (S, P), the straight-line distance, m
-    latent: FloatArray  # (S, P, T, d), what was chosen at each of the T steps; 0 after a drive has stalled
 
 
 def approach(
@@ -70,8 +69,8 @@ def approach(
 ) -> Approach:
     """Drive from every start (P, c) towards its target with every decoder; see the module's text."""
     drives = [_drive(_Problem(decoder, target, chain, tools, step_s, config), start) for decoder in decoders]
-    distance, context, path, straight, latent = (np.stack(part) for part in zip(*drives, strict=True))
-    return Approach(distance_m=distance, context=context, path_m=path, straight_m=straight, latent=latent)
+    distance, context, path, straight = (np.stack(part) for part in zip(*drives, strict=True))
+    return Approach(distance_m=distance, context=context, path_m=path, straight_m=straight)
 
 
 def tool_places(chain: Chain, state: FloatArray, tools: Sequence[int]) -> FloatArray:
@@ -117,21 +116,19 @@ class _Problem:
 
 
 def _drive(problem: _Problem, start: FloatArray) -> tuple[FloatArray, ...]:
-    """The arrays of `Approach` for one seed: distance, context, path, straight way and choices."""
+    """The arrays of `Approach` for one seed: distance, context, path and straight way."""
     config, target, z = problem.config, problem.target.places, zero_latent(problem.decoder, start)
     dof = problem.decoder.decode(z, start).shape[-1]
     first = tool_places(problem.chain, start[:, :dof], problem.tools)
     distance, nearest = mean_distance(first, target), start.copy()
     path, straight = np.zeros((2, len(start)))
     steps = max(1, round(config.time_s / problem.step_s))
-    latent = np.zeros((len(start), steps, problem.decoder.latent_dim))
     # The drives still running: their indices and their progress.
     running, waited, way = np.arange(len(start)), np.zeros(len(start)), np.zeros(len(start))
     mark, context, places = distance.copy(), start, first
     for step in range(steps):
         if step % config.hold == 0:
             z = _choose(problem.of(running), context, z)
-        latent[running, step] = z
         context = next_context(context, problem.decoder.decode(z, context), problem.step_s)
         before, places = places, tool_places(problem.chain, context[:, :dof], problem.tools)
         way = way + mean_distance(places, before)
@@ -147,7 +144,7 @@ def _drive(problem: _Problem, start: FloatArray) -> tuple[FloatArray, ...]:
         context, places, z = context[on], places[on], z[on]
         if not len(running):
             break
-    return distance, nearest, path, straight, latent
+    return distance, nearest, path, straight
 
 
 def _choose(problem: _Problem, context: FloatArray, previous: FloatArray) -> FloatArray:

@@ -36,8 +36,8 @@ class Prepared:
     """One data set, ready for training."""
 
     data: TrainingData
-    frame: ToolFrame | None  # turns poses in contexts into the tool's frame, where a feature asks for it
-    contexts: Normaliser | ToolContexts  # from contexts, after ``frame``, to those of ``data``
+    # From contexts, with poses in the tool's frame where a feature asks for that, to those of ``data``
+    contexts: Normaliser | ToolContexts
     layout: ContextLayout
     actions: Normaliser  # from actions in rad/s to those of ``data``
     joints: int  # m, joints that an action moves
@@ -103,7 +103,6 @@ def prepare(
             later=later(~outside),
             validation_later=later(outside),
         ),
-        frame=frame,
         contexts=contexts,
         layout=layout,
         actions=actions,
