@@ -200,6 +200,7 @@ def test_a_model_of_schema_2_loads(folder, fitted, samples):
         del model["layout"]
         model["parameters"]["context"] = "state"
         model["parameters"]["held_out_fraction"] = model["parameters"].pop("validation_fraction")
+        model["parameters"]["checkpoint_interval_s"] = 5.0
         for new in ("validation_episodes", "validation_loss"):
             model["training"][new.replace("validation", "held_out")] = model["training"].pop(new)
 
