@@ -10,7 +10,9 @@ import pytest
 from latentarm.core.errors import UserError
 from latentarm.core.types import Episode
 from latentarm.demonstrations.dataset import write_dataset
+from latentarm.models.catalogue import DEFAULT_MODEL
 from latentarm.robots.catalogue import load_robot
+from latentarm.runs.advice import next_step
 from latentarm.runs.evaluating import OVER_FOLDS, evaluate_run
 from latentarm.runs.folder import read_run
 from latentarm.runs.options import EvaluateOptions, TrainOptions
@@ -50,6 +52,21 @@ def test_zero_folds_measure_the_own_split_alone(run: Path, tmp_path: Path) -> No
     with pytest.raises(UserError, match="seed 0 there, 1 now"):
         evaluate_run(EvaluateOptions(run, out=tmp_path, seed=1, jobs=1, folds=0))
     assert evaluate_run(EvaluateOptions(run, out=tmp_path, jobs=1, folds=0)) == evaluation
+
+
+@pytest.mark.parametrize(
+    ("model", "way_back", "said"),
+    [
+        ("low_turning", True, "--model low_turning --way-back-m 0"),
+        ("homogeneous", True, "--model homogeneous --way-back-m 0"),
+        ("cvae", False, f"--model {DEFAULT_MODEL} --way-back-m 0"),
+        ("low_turning", False, "latentarm compare"),
+    ],
+)
+def test_a_model_that_does_not_go_back_is_followed_by_one_that_does(
+    model: str, way_back: bool, said: str
+) -> None:
+    assert said in next_step(model, way_back, "run", "eat", frozenset({"reversal"}))
 
 
 @pytest.mark.parametrize(("folds", "said"), [(1, "at least 2"), (-1, "at least 2"), (7, "too few")])

@@ -16,13 +16,16 @@ def model_advice(model: str, episodes: int) -> str:
     return " ".join(said)
 
 
-def next_step(model: str, run: str, dataset: str, missed: frozenset[str]) -> str:
+def next_step(model: str, way_back: bool, run: str, dataset: str, missed: frozenset[str]) -> str:
     """One sentence on what to do after evaluating."""
     if not missed:
         return f"Next: latentarm drive {run}"
-    if missed & {"drift", "reversal", "reversal_2_s"} and not KINDS[model].reverses:
+    reverses = KINDS[model].reverses
+    if missed & {"drift", "reversal", "reversal_2_s"} and (way_back or not reverses):
         return (
-            f"Next: latentarm train --demonstrations {dataset} --model {DEFAULT_MODEL} (rests and goes back)"
+            f"Next: latentarm train --demonstrations {dataset} --model {model if reverses else DEFAULT_MODEL}"
+            " --way-back-m 0 (rests and goes back; with a way back, beside the demonstrated path both"
+            " directions lead to it)"
         )
     if "motion_turn" in missed and model != "low_turning":
         return (

@@ -134,7 +134,8 @@ def evaluate_run(options: EvaluateOptions) -> Evaluation:
         rows = [*rows, *judged]
     found = findings(judged)
     missed = frozenset(one.measure for one in found)
-    advice = next_step(run.model, str(folder), str(dataset or run.demonstrations), missed)
+    way_back = model.decoder(0).way_back is not None
+    advice = next_step(run.model, way_back, str(folder), str(dataset or run.demonstrations), missed)
     evaluation = Evaluation(rows, found, advice, missing)
     document = as_document([*rows, findings_row(evaluation)], about)
     verdict = {"sentence": evaluation.verdict, "findings": [asdict(one) for one in found]}
