@@ -86,9 +86,17 @@ def test_a_state_may_pass_a_limit_by_no_more_than_the_tolerance(panda_limits: Jo
 def test_toggles_of_a_gripper_become_its_state(tmp_path: Path, toggles: list[int], state: list[int]) -> None:
     q = np.linspace(0.0, 0.1, 70).reshape(10, 7) + panda().home
     np.savez(tmp_path / "a.npz", q=q, episode_ends=[6, 10], rate_hz=10.0, gripper_toggles=toggles)
-    episodes = read_npz(tmp_path / "a.npz", ImportOptions()).episodes
+    episodes = read_npz(tmp_path / "a.npz", ImportOptions()).demonstrations.episodes
     found = np.concatenate([episode.extras["observation.gripper_toggled"] for episode in episodes])
     assert found.ravel().tolist() == state
+
+
+def test_arrays_that_are_not_used_are_named_and_never_opened(tmp_path: Path) -> None:
+    q = np.linspace(0.0, 0.1, 70).reshape(10, 7) + panda().home
+    notes = np.array([{}], dtype=object)
+    np.savez(tmp_path / "a.npz", q=q, episode_ends=[10], rate_hz=10.0, person=["ada"], notes=notes)
+    record = import_demonstrations(tmp_path / "a.npz", panda()).import_record
+    assert record["arrays left out"] == "person, notes"
 
 
 def test_a_gripper_starts_as_it_is_said_to(tmp_path: Path) -> None:

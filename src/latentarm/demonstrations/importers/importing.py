@@ -128,7 +128,7 @@ def _read_file(source: Path, start: bytes, robot: Robot | None, options: ImportO
         if start.startswith(magic):
             raise UserError(f"{source} is {what}.")
     if start.startswith(b"PK"):
-        return SourceData(read_npz(source, options), "NumPy archive", in_rad=True)
+        return read_npz(source, options)
     if start.startswith(b"\x89HDF\r\n\x1a\n"):
         return _read_hdf5(source, options)
     if source.suffix.lower() in {".npz", ".hdf5", ".h5"}:
@@ -160,7 +160,10 @@ def _read_folder(source: Path, robot: Robot | None, options: ImportOptions) -> S
             return read_bag(files, options)
     files += [entry for entry in entries if not is_missing(entry / BAG_INFO)]
     if not files:
-        return read_lerobot(source)  # which says what is missing
+        raise UserError(
+            f"{source} holds no recordings: neither a dataset's {INFO_PATH} nor a file ending in"
+            f" {', '.join(FILES)}."
+        )
     return join_files({file.name: _read(file, robot, options) for file in files}, str(source))
 
 

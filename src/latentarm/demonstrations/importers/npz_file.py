@@ -4,7 +4,7 @@ Keys: ``q`` (N, n) joint positions, rad; ``episode_ends`` (E,) exclusive end of 
 Optional: ``timestamp`` (N,) s, ``action`` (N, n) joint velocities meant as actions, rad/s, ``joint_names``
 (n,) and ``robot`` () as text, ``dq`` (N, n) measured velocities, ``tau`` (N, n) measured torques, and
 ``gripper_toggles`` (G,) samples after which the gripper opened or closed. Measured velocities are noisy and
-never become actions.
+never become actions. Other arrays are not read, and the record of the import names them.
 """
 
 import lzma
@@ -26,22 +26,22 @@ from latentarm.core.untrusted.opening import opened
 from latentarm.demonstrations.bounds import MAX_FILE_BYTES, check_values
 from latentarm.demonstrations.gripper import GRIPPER_TOGGLED
 from latentarm.demonstrations.importers.options import ImportOptions
+from latentarm.demonstrations.importers.source import SourceData
 from latentarm.demonstrations.info import default_joint_names
 
 FEATURES: Final = {"dq": "observation.velocity", "tau": "observation.effort"}
+TEXTS: Final = ("joint_names", "robot")
+ARRAYS: Final = {"q", "episode_ends", "rate_hz", "timestamp", "action", "gripper_toggles", *TEXTS, *FEATURES}
 MAX_ARRAYS: Final = 100  # in one archive
 _DAMAGED: Final = (zipfile.BadZipFile, zlib.error, lzma.LZMAError, struct.error)
-TEXTS: Final = ("joint_names", "robot")
 
 
-def read_npz(source: Path, options: ImportOptions) -> Demonstrations:
+def read_npz(source: Path, options: ImportOptions) -> SourceData:
     """Read demonstrations from a NumPy archive; the task is the file's name by default."""
-    arrays = _read_arrays(source)
+    arrays, others = _read_arrays(source)
     for key in ("q", "episode_ends"):
         if key not in arrays:
-            raise UserError(
-                f"{source} has no array '{key}'; it has {', '.join(sorted(arrays)) or 'none at all'}."
-            )
+            raise UserError(f"{source} has no array '{key}'; it has {', '.join(sorted([*arrays, *others]))}.")
     q = arrays["q"].astype(np.float64)
     if q.ndim != 2:
         raise UserError(f"{source}: the array 'q' has the shape {q.shape}, not (samples, joints).")
@@ -69,11 +69,14 @@ def read_npz(source: Path, options: ImportOptions) -> Demonstrations:
         )
         for start, end in zip([0, *ends[:-1]], ends, strict=True)
     )
-    return Demonstrations(
+    demonstrations = Demonstrations(
         episodes=episodes,
         rate_hz=rate,
         joint_names=_joint_names(arrays, q.shape[1], source),
         robot="" if "robot" not in arrays else str(arrays["robot"].reshape(-1)[0]),
+    )
+    return SourceData(
+        demonstrations, "NumPy archive", in_rad=True, record={"arrays left out": ", ".join(others)}
     )
 
 
@@ -86,8 +89,8 @@ def _joint_names(arrays: dict[str, NDArray[np.generic]], dof: int, source: Path)
     return names
 
 
-def _read_arrays(source: Path) -> dict[str, NDArray[np.generic]]:
-    """Every array of the archive, once all are known to be plain and of bearable size."""
+def _read_arrays(source: Path) -> tuple[dict[str, NDArray[np.generic]], list[str]]:
+    """The arrays that are used, once known to be plain and of bearable size, and the names of all others."""
     try:
         with opened(source, MAX_FILE_BYTES) as stream, zipfile.ZipFile(stream) as archive:
             members = [member for member in archive.infolist() if member.filename.endswith(".npy")]
@@ -95,13 +98,15 @@ def _read_arrays(source: Path) -> dict[str, NDArray[np.generic]]:
                 raise UserError(f"{source} is a .zip of other files: unpack it and import what is in it.")
             if len(members) > MAX_ARRAYS:
                 raise UserError(f"{source} holds {len(members):,} arrays, over the limit of {MAX_ARRAYS}.")
-            count = sum(_declared_count(archive, member, source) for member in members)
+            named = {member.filename.removesuffix(".npy"): member for member in members}
+            used = {key: member for key, member in named.items() if key in ARRAYS}
+            count = sum(_declared_count(archive, member, source) for member in used.values())
             check_values(source, "it", count)
             arrays: dict[str, NDArray[np.generic]] = {}
-            for member in members:
+            for key, member in used.items():
                 with archive.open(member) as stream:
-                    arrays[member.filename.removesuffix(".npy")] = npy.read_array(stream, allow_pickle=False)
-            return arrays
+                    arrays[key] = npy.read_array(stream, allow_pickle=False)
+            return arrays, [key for key in named if key not in ARRAYS]
     except (*_DAMAGED, EOFError, ValueError, OSError, RuntimeError) as error:
         raise UserError(
             f"{source} is not a whole .npz file; it is truncated, damaged or encrypted."
@@ -133,7 +138,7 @@ def _declared_count(archive: zipfile.ZipFile, member: zipfile.ZipInfo, source: P
 
 def _rate(arrays: dict[str, NDArray[np.generic]], source: Path) -> float:
     if "rate_hz" not in arrays or arrays["rate_hz"].size != 1:
-        raise UserError(f"{source} has no single 'rate_hz'; say the sampling rate.")
+        raise UserError(f"{source} has no single 'rate_hz'; give the sampling rate with --rate-hz.")
     rate = float(arrays["rate_hz"].astype(np.float64).ravel()[0])
     if not (math.isfinite(rate) and rate > 0):
         raise UserError(f"{source}: the sampling rate is {rate:g} Hz; it must be a finite number above zero.")
