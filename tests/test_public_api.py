@@ -60,13 +60,13 @@ class Named:
 @pytest.mark.parametrize("kind", [str, Named])
 def test_paths_may_be_texts_or_path_like(kind, tmp_path):
     """Every function of the API that takes a file or a folder."""
-    folder = {name: kind(tmp_path / name) for name in ("data", "run", "journal.sqlite")}
+    folder = {name: kind(tmp_path / name) for name in ("data", "run", "checkpoint", "journal.sqlite")}
     demonstrations = la.TableTop().demonstrate(4, np.random.default_rng(0))
     la.write_dataset(demonstrations, folder["data"])
     la.append_episode(folder["data"], demonstrations.episodes[0])
     read = la.read_dataset(folder["data"])
     assert len(read.episodes) == len(la.import_demonstrations(folder["data"]).episodes) == 5
-    model = la.SCL(epochs=1).fit(read)
+    model = la.SCL(epochs=1).fit(read, checkpoint=folder["checkpoint"])
     config = {"held_out": [], "demonstrations": "", "kind": "scl", "context": "state", "fingerprint": ""}
     model.save(folder["run"], run=config | {"robot": "panda", "end_effector": None})
     assert la.load_model(folder["run"]).kind.name == "scl"

@@ -72,7 +72,7 @@ def test_values_are_of_the_types_of_the_options(tmp_path: Path) -> None:
     path = tmp_path / "o.yaml"
     path.write_text(
         "demonstrations: eat\nhidden: [30, 20]\ncontext: state_belief\nstate-noise-rad: 1e-2\n"
-        "epochs: null\njson: true\n"
+        "epochs: null\nresume: true\n"
     )
     assert read_options(path, train, "train") == {
         "demonstrations": (Path("eat"),),
@@ -80,7 +80,7 @@ def test_values_are_of_the_types_of_the_options(tmp_path: Path) -> None:
         "context": ("state_belief",),
         "state_noise_rad": 0.01,
         "epochs": None,
-        "json": True,
+        "resume": True,
     }
 
 
@@ -98,7 +98,7 @@ def test_a_run_is_repeated_from_what_it_wrote(run: Run, workplace: Path, recordi
     resolved = yaml.safe_load(kept.read_text())
     assert (resolved["model"], resolved["seed"], resolved["window"]) == ("pca", 2, 5)
     assert resolved["out"] == "runs/eat-pca"
-    assert not {"json", "config"} & resolved.keys()
+    assert not {"json", "config", "resume"} & resolved.keys()
     assert run("train", "--config", kept)[0] == 2  # the run is there already
     assert run("train", "--config", kept, "--out", "again")[0] == 0
     one, two = (Path(name, "model.safetensors").read_bytes() for name in ("runs/eat-pca", "again"))

@@ -88,7 +88,7 @@ def test_an_objective_that_depends_on_more_than_its_arguments_is_not_replayed():
     context, action = rng.normal(size=(64, 2)), rng.normal(size=(64, 1))
     nothing = np.empty((64, 0))
     data = TrainingData(context, action, context, action, nothing[:0], nothing, nothing)
-    config = TrainingConfig(0.01, epochs=40, batch_size=4, patience=40)
+    config = TrainingConfig(0.01, epochs=40, batch_size=4, patience=40, checkpoint_interval_s=1.0)
     shapes = {"decoder.0.weight": (2, 2, 1), "decoder.0.bias": (2, 1, 1)}
     calls = []
 

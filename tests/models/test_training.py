@@ -1,6 +1,13 @@
-"""The training loop: many seeds as one, and stopping."""
+"""The training loop: many seeds as one, stopping, and going on after a kill."""
 
+import json
 import math
+import pickle
+import resource
+import signal
+import subprocess
+import sys
+import time
 from dataclasses import replace
 
 import numpy as np
@@ -11,10 +18,11 @@ from torch.optim.adam import adam
 from latentarm.core.errors import UserError
 from latentarm.models import training
 from latentarm.models.batches import seed_generator
+from latentarm.models.checkpoint import TrainingState
 from latentarm.models.estimators import MODELS
 from latentarm.models.optimiser import FlatAdam
 from latentarm.models.replay import RecordedStep
-from latentarm.models.training import Progress, epoch_bar
+from latentarm.models.training import epoch_bar
 
 NEURAL = [name for name in MODELS if name != "pca"]
 SMALL = {"epochs": 2, "hidden": (8, 8), "window": 2}
@@ -57,6 +65,99 @@ def test_training_lowers_the_loss_and_keeps_the_best_epoch(demonstrations):
     np.testing.assert_array_equal(model.validation_loss_, model.history_.min(axis=0))
     np.testing.assert_array_equal(model.trained_.summary.best_epoch, model.history_.argmin(axis=0) + 1)
     assert (model.validation_loss_ < 0.7 * model.history_[0]).all()
+
+
+class KilledError(Exception):
+    pass
+
+
+@pytest.mark.parametrize("name", ["cvae", "homogeneous"])  # noise; a start and a look ahead
+def test_resuming_gives_what_an_uninterrupted_training_gives(name, few, samples, tmp_path, monkeypatch):
+    context, z = samples
+    settings = {**SMALL, "epochs": 3, "seeds": 2, "checkpoint_interval_s": 0.0}
+    whole = MODELS[name](**settings).fit(few)
+    path = tmp_path / "checkpoint.safetensors"
+    write, calls = training.write_checkpoint, []
+
+    def write_then_die(*arguments):
+        write(*arguments)
+        calls.append(1)
+        if len(calls) == 2:
+            raise KilledError
+
+    with monkeypatch.context() as patch:
+        patch.setattr(training, "write_checkpoint", write_then_die)
+        with pytest.raises(KilledError):
+            MODELS[name](**settings).fit(few, checkpoint=path)
+    resumed = MODELS[name](**settings).fit(few, checkpoint=path)
+    np.testing.assert_array_equal(resumed.decode(z, context), whole.decode(z, context))
+    np.testing.assert_array_equal(resumed.history_, whole.history_)
+
+
+def test_a_finished_training_is_not_run_again(few, tmp_path, monkeypatch):
+    path = tmp_path / "checkpoint.safetensors"
+    first = MODELS["cae"](**SMALL).fit(few, checkpoint=path)
+    monkeypatch.setattr(FlatAdam, "step", lambda *_: pytest.fail("stepped"))
+    again = MODELS["cae"](**SMALL).fit(few, checkpoint=path)
+    np.testing.assert_array_equal(first.validation_loss_, again.validation_loss_)
+
+
+KILLED_SCRIPT = """
+import pickle, sys, time
+from pathlib import Path
+import torch
+torch.set_num_threads(1)
+from latentarm.models.estimators import MODELS
+demonstrations = pickle.load(sys.stdin.buffer)
+# A moment between epochs: it must not be over before it is killed.
+MODELS["cvae"](epochs={epochs}, hidden=(8, 8), window=2, checkpoint_interval_s=0.0, patience=1000).fit(
+    demonstrations, report=lambda *_: time.sleep(0.1), checkpoint=Path(sys.argv[1]))
+"""
+
+
+def test_a_training_killed_outright_goes_on(few, samples, tmp_path):
+    context, z = samples
+    epochs = 8
+    path = tmp_path / "checkpoint.safetensors"
+    script = KILLED_SCRIPT.format(epochs=epochs)
+    process = subprocess.Popen([sys.executable, "-c", script, str(path)], stdin=subprocess.PIPE)
+    with process.stdin as given:
+        given.write(pickle.dumps(few))
+    deadline = time.monotonic() + 60
+    while not path.exists() and process.poll() is None and time.monotonic() < deadline:
+        time.sleep(0.002)
+    process.send_signal(signal.SIGKILL)
+    assert process.wait() == -signal.SIGKILL, "it was over before it could be killed"
+    settings = {"epochs": epochs, "hidden": (8, 8), "window": 2, "patience": 1000}
+    resumed = MODELS["cvae"](**settings).fit(few, checkpoint=path)
+    whole = MODELS["cvae"](**settings).fit(few)
+    np.testing.assert_array_equal(resumed.decode(z, context), whole.decode(z, context))
+
+
+@pytest.mark.parametrize(
+    "change", [{"seed": 1}, {"learning_rate": 1e-3}, {"hidden": (8, 7)}, {"data_seed": 1}]
+)
+def test_the_checkpoint_of_another_training_is_refused(few, tmp_path, change):
+    path = tmp_path / "checkpoint.safetensors"
+    MODELS["cae"](**SMALL).fit(few, checkpoint=path)
+    with pytest.raises(UserError, match="checkpoint of another training"):
+        MODELS["cae"](**{**SMALL, **change}).fit(few, checkpoint=path)
+
+
+@pytest.mark.parametrize("content", [b"", b"not a checkpoint", b"\xff" * 100])
+def test_a_broken_checkpoint_is_refused(few, tmp_path, content):
+    path = tmp_path / "checkpoint.safetensors"
+    path.write_bytes(content)
+    with pytest.raises(UserError, match="not a whole training checkpoint"):
+        MODELS["cae"](**SMALL).fit(few, checkpoint=path)
+
+
+def test_a_truncated_checkpoint_is_refused(few, tmp_path):
+    path = tmp_path / "checkpoint.safetensors"
+    MODELS["cae"](**SMALL).fit(few, checkpoint=path)
+    path.write_bytes(path.read_bytes()[:-100])
+    with pytest.raises(UserError, match="not a whole training checkpoint"):
+        MODELS["cae"](**SMALL).fit(few, checkpoint=path)
 
 
 def test_divergence_is_said(few):
@@ -142,6 +243,27 @@ def test_epochs_of_one_seed_are_shuffled_differently_and_reproducibly():
     assert not torch.equal(order, torch.randperm(100, generator=other))
 
 
+def test_the_checkpoint_holds_no_pickle(few, tmp_path):
+    path = tmp_path / "checkpoint.safetensors"
+    MODELS["cae"](**SMALL).fit(few, checkpoint=path)
+    content = path.read_bytes()
+    header = json.loads(content[8 : 8 + int.from_bytes(content[:8], "little")])
+    assert set(header) == {"__metadata__", "values", "first", "second", "best"}
+    assert [entry.name for entry in tmp_path.iterdir()] == ["checkpoint.safetensors"]
+
+
+def test_a_full_disk_under_a_checkpoint_is_said_in_one_sentence(few, tmp_path):
+    path = tmp_path / "checkpoint.safetensors"
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1024, limits[1]))
+    try:
+        with pytest.raises(UserError, match=r"checkpoint\.safetensors cannot be written: File too large"):
+            MODELS["cae"](**SMALL).fit(few, checkpoint=path)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    assert not list(tmp_path.iterdir())
+
+
 def test_seeds_that_could_not_be_loaded_or_held_in_memory_are_refused(few):
     last = 2**31 - 1
     assert MODELS["pca"](seed=last, seeds=1).fit(few).seed_numbers == (last,)
@@ -175,13 +297,13 @@ def test_a_seed_stops_after_exactly_so_many_epochs_without_improvement(demonstra
 def test_a_stalled_seed_takes_no_later_improvement():
     """Alone, its training would have ended there; the other seed's goes on."""
     values = torch.arange(2.0)[:, None].clone()
-    progress = Progress.start(values)
+    state = TrainingState.start(values, FlatAdam(values))
     for epoch, loss in enumerate(([1.0, 1.0], [2.0, 0.9], [2.0, 0.8], [0.5, 0.7])):
         values[:] = 10.0 * (epoch + 1)
-        progress.record(np.array(loss), patience=2)
-    assert progress.best_loss.tolist() == [1.0, 0.7]
-    assert progress.best_epoch.tolist() == [1, 4]
-    assert progress.best.ravel().tolist() == [10.0, 40.0]
+        state.record(np.array(loss), steps=epoch, patience=2)
+    assert state.best_loss.tolist() == [1.0, 0.7]
+    assert state.best_epoch.tolist() == [1, 4]
+    assert state.best.ravel().tolist() == [10.0, 40.0]
 
 
 def test_the_learning_rate_falls_along_half_a_cosine(few, monkeypatch):

@@ -42,7 +42,8 @@ _ALWAYS: Final = {OPTION: (ConfigFile, None), "log_file": (LogFile, None), "verb
 """Options of every command, each with its default."""
 
 MOST_BYTES: Final = 1 << 16  # of a file of options
-NOT_KEPT: Final = (*_ALWAYS, "json")  # options of reporting, which do not change results
+NOT_KEPT: Final = (*_ALWAYS, "json", "resume")
+"""Options of reporting and resuming, which do not change results; they are not written."""
 
 _ASKED: ContextVar[tuple[str, Mapping[str, object]] | None] = ContextVar("asked", default=None)
 """Name and options of the command that is running."""

@@ -1,7 +1,7 @@
 """Training latent actions to keep every goal reachable: the entropy over goals of equations 15 and 16."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Final, final
@@ -80,6 +80,16 @@ class GoalEntropy:
             raise UserError(f"The sharpness of the entropy must be positive, not {self.sharpness}.")
         if self.per_axis < 2:
             raise UserError(f"The entropy needs at least 2 inputs on each axis, not {self.per_axis}.")
+
+    @property
+    def settings(self) -> Mapping[str, object]:
+        """Name and parameters."""
+        return {
+            **{name: getattr(self, name) for name in ("weight", "sharpness", "per_axis")},
+            "term": "goal_entropy",
+            "goals": self.goals.tolist(),
+            "sees_tool": self.chain is not None,
+        }
 
     def contexts(self, demonstrated: FloatArray, joints: int, rng: np.random.Generator) -> FloatArray:
         """Contexts (CONTEXTS, c) that training draws from, from those of the training pairs (N, c).

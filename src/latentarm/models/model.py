@@ -102,6 +102,7 @@ class LatentActionModel(BaseEstimator, ABC):
     patience: Count = 10  # epochs without improvement on the validation episodes after which a seed stops
     # ``cpu``, ``cuda``, or ``auto`` for CUDA where there is one
     device: Literal["cpu", "cuda", "auto"] = "cpu"
+    checkpoint_interval_s: NotNegative = 5.0  # shortest time between two checkpoints of a training, s
     # L, the distance from the demonstrations at which a full push is led back at their speed, m; 0 for no way
     # back (`latentarm.models.way_back`)
     way_back_m: NotNegative = 0.0
@@ -113,6 +114,7 @@ class LatentActionModel(BaseEstimator, ABC):
         data: TrainingData,
         dimensions: Dimensions,
         term: ScaledTerm | None,
+        checkpoint: Path | None,
         report: Report | None,
     ) -> TrainingResult:
         """Fit the weights of S seeds to normalised pairs."""
@@ -136,6 +138,7 @@ class LatentActionModel(BaseEstimator, ABC):
         validation: Sequence[int] | None = None,
         chain: Chain | None = None,
         term: GoalEntropy | None = None,
+        checkpoint: StrPath | None = None,
         report: Report | None = None,
     ) -> Self:
         """Learn from demonstrations, all seeds at once.
@@ -147,6 +150,8 @@ class LatentActionModel(BaseEstimator, ABC):
             chain: the arm's kinematics, for models that look at the tools; where None, those of the
                 robot that the demonstrations name.
             term: is minimised together with the model's own loss; for inputs that were not demonstrated.
+            checkpoint: file to write the training's state to and, if it exists, to go on from. It
+                stays when the training is done; delete it once the model is saved.
             report: called after each epoch, by models that are trained in epochs.
 
         Returns:
@@ -162,7 +167,8 @@ class LatentActionModel(BaseEstimator, ABC):
             NoWayBackWarning: a way back would not help, so the model has none.
         """
         prepared = self._prepared(demonstrations, validation, chain, term)
-        learned = self._learn(prepared.data, self._dimensions(prepared), prepared.term, report)
+        saved = None if checkpoint is None else Path(checkpoint)
+        learned = self._learn(prepared.data, self._dimensions(prepared), prepared.term, saved, report)
         self.trained_ = self._led_back(self._trained(prepared, learned), prepared, report)
         if self.collapsed_.any():
             seeds = self.trained_.summary.seeds

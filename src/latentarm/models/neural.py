@@ -1,8 +1,10 @@
 """Base of the models trained by gradient: from NumPy to torch and back."""
 
+import json
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import ClassVar, Self, final
 
 import numpy as np
@@ -65,7 +67,7 @@ class NeuralModel(LatentActionModel, ABC):
             for model, shown in zip(models, demonstrations, strict=True)
         ]
         data = side_by_side([one.data for one in prepared])
-        learned = self._learn(data, self._dimensions(prepared[0]), None, None)
+        learned = self._learn(data, self._dimensions(prepared[0]), None, None, None)
         for index, (model, own) in enumerate(zip(models, prepared, strict=True)):
             model.trained_ = model._led_back(model._trained(own, learned.of_seed(index)), own, None)
         return models
@@ -88,8 +90,13 @@ class NeuralModel(LatentActionModel, ABC):
         data: TrainingData,
         dimensions: Dimensions,
         term: ScaledTerm | None,
+        checkpoint: Path | None,
         report: Report | None,
     ) -> TrainingResult:
+        apart = ("device", "checkpoint_interval_s")
+        identity = {name: value for name, value in self.get_params(deep=False).items() if name not in apart}
+        if term is not None:
+            identity["term"] = dict(term.term.settings)
         return train(
             self._objective(term),
             self.kind.weight_shapes(dimensions),
@@ -101,9 +108,12 @@ class NeuralModel(LatentActionModel, ABC):
                 epochs=self.epochs,
                 batch_size=self.batch_size,
                 patience=self.patience,
+                checkpoint_interval_s=self.checkpoint_interval_s,
             ),
             device=choose_device(self.device),
             start=self._first(data, dimensions),
+            checkpoint=checkpoint,
+            identity=json.dumps({"kind": self.kind.name, **identity}, sort_keys=True),
             report=report,
         )
 

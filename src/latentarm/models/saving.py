@@ -41,7 +41,6 @@ OLD_NAMES: Final = {
     "held_out_loss": "validation_loss",
 }
 """Names of schema 2."""
-GONE: Final = ("checkpoint_interval_s",)  # parameters of earlier versions that changed no result
 CONFIG_LIMIT: Final = 16 * 2**20
 """Bytes; a config with the training curves of a hundred seeds stays far below."""
 MOST_LAYERS: Final = 64
@@ -177,9 +176,8 @@ def _checked(layout: ContextLayout, dimensions: Dimensions, where: str) -> Conte
 
 
 def _renamed(section: Section) -> Section:
-    """The section with today's names for what schema 2 called otherwise, without what has `GONE`."""
-    kept = {OLD_NAMES.get(key, key): value for key, value in section.values.items() if key not in GONE}
-    return Section(section.where, kept)
+    """The section with today's names for what schema 2 called otherwise."""
+    return Section(section.where, {OLD_NAMES.get(key, key): value for key, value in section.values.items()})
 
 
 def write_tensors(path: Path, tensors: Mapping[str, FloatArray]) -> str:

@@ -3,8 +3,10 @@
 import math
 from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
-from typing import Final, final
+from dataclasses import asdict, dataclass, fields
+from pathlib import Path
+from time import monotonic
+from typing import Final
 
 import numpy as np
 import torch
@@ -13,8 +15,9 @@ from torch import Tensor
 
 from latentarm.core.errors import UserError
 from latentarm.core.parallel import counting_bar
-from latentarm.core.types import BoolArray, FloatArray, IntArray
+from latentarm.core.types import FloatArray, IntArray
 from latentarm.models.batches import Batch, Batches, TrainingData, seed_generator
+from latentarm.models.checkpoint import TrainingState, fingerprint, read_checkpoint, write_checkpoint
 from latentarm.models.kind import Shape
 from latentarm.models.networks import FlatNetworks, Networks
 from latentarm.models.optimiser import FlatAdam, falling_rate
@@ -35,6 +38,7 @@ class TrainingConfig:
     epochs: int  # passes over the training pairs, at most
     batch_size: int  # pairs per step and seed, at most
     patience: int  # a seed stalls after so many epochs without improvement of its validation loss
+    checkpoint_interval_s: float  # shortest time between two checkpoints, s
 
 
 @dataclass(frozen=True)
@@ -57,43 +61,6 @@ class TrainingResult:
         )
 
 
-@final
-@dataclass
-class Progress:
-    """The weights (S, P) that are being trained, and each seed's best so far; updated in place."""
-
-    values: Tensor  # (S, P)
-    best: Tensor  # (S, P), each seed's weights at its best epoch
-    best_loss: FloatArray  # (S,), validation loss there; infinite before the first epoch
-    best_epoch: IntArray  # (S,), counted from 1
-    history: list[FloatArray] = field(default_factory=list[FloatArray])  # losses (S,) by epoch
-
-    @staticmethod
-    def start(values: Tensor) -> "Progress":
-        """The progress before the first epoch."""
-        seeds = len(values)
-        return Progress(
-            values, torch.zeros_like(values), np.full(seeds, np.inf), np.zeros(seeds, dtype=np.int64)
-        )
-
-    def stalled(self, patience: int) -> BoolArray:
-        """Which seeds (S,) have gone ``patience`` epochs without improving."""
-        return len(self.history) - self.best_epoch >= patience
-
-    def record(self, loss: FloatArray, patience: int) -> None:
-        """Take in the validation loss (S,) after one more epoch.
-
-        A stalled seed keeps its best weights even if it would improve later: trained alone, it would have
-        stopped there.
-        """
-        improved = (loss < self.best_loss) & ~self.stalled(patience)
-        self.history.append(loss)
-        self.best_loss = np.where(improved, loss, self.best_loss)
-        self.best_epoch = np.where(improved, len(self.history), self.best_epoch)
-        chosen = torch.from_numpy(improved).to(self.best.device)
-        self.best[chosen] = self.values[chosen]
-
-
 def train(
     objective: Callable[[Networks, Batch], Tensor],
     shapes: dict[str, Shape],
@@ -104,6 +71,8 @@ def train(
     *,
     device: torch.device,
     start: Mapping[str, FloatArray] | None = None,
+    checkpoint: Path | None = None,
+    identity: str = "",
     report: Report | None = None,
 ) -> TrainingResult:
     """Train S seeds together, with the same result as training each alone.
@@ -113,40 +82,53 @@ def train(
 
     The objective gives a loss (S,) for the networks on a batch, of N training or H validation pairs, with
     ``noise_dim`` standard normal numbers per pair. ``shapes`` (S, in, out) are those of the weights by name,
-    and ``start`` has values that some begin with instead of being drawn. ``report`` is also called before the
-    first epoch, with an infinite loss.
+    and ``start`` has values that some begin with instead of being drawn. ``checkpoint`` is a file to go on
+    from, if it exists, and to write to; one of another ``identity`` is refused. ``report`` is also called
+    before the first epoch, with an infinite loss.
 
-    Raises UserError where a seed diverged.
+    Raises UserError where a seed diverged, or the checkpoint is not this training's.
     """
     networks = FlatNetworks(shapes, device)
     adam = FlatAdam(networks.values)
-    progress = Progress.start(networks.values)
-    networks.initialise([seed_generator(seed, 0) for seed in seeds], start or {})
+    state = TrainingState.start(networks.values, adam)
+    settings = asdict(config) | {"identity": identity, "seeds": list(seeds), "shapes": shapes}
+    settings["offsets"] = networks.offsets
+    del settings["checkpoint_interval_s"]
+    print_of = fingerprint(settings, [getattr(data, field.name) for field in fields(data)])
+    if checkpoint is not None and checkpoint.exists():
+        read_checkpoint(checkpoint, print_of, state)
+        adam.steps = state.steps
+    else:
+        networks.initialise([seed_generator(seed, 0) for seed in seeds], start or {})
     batches = Batches(data, seeds, config.batch_size, noise_dim, device)
+    written = monotonic()
     report = report or (lambda epoch, epochs, loss: None)
-    report(0, config.epochs, math.inf)
+    report(state.epoch, config.epochs, math.inf)
     with threads_for(len(seeds) * batches.size * max(shape[-1] for shape in shapes.values())):
-        fill_gradient = _gradient(objective, networks, batches, device, config.epochs)
-        for epoch in range(config.epochs):
-            rate = falling_rate(config.learning_rate, epoch, config.epochs)
-            for _ in batches.epoch(epoch + 1):
+        fill_gradient = _gradient(objective, networks, batches, device, state, config)
+        while state.epoch < config.epochs and not state.stalled(config.patience).all():
+            rate = falling_rate(config.learning_rate, state.epoch, config.epochs)
+            for _ in batches.epoch(state.epoch + 1):
                 fill_gradient()
                 adam.step(networks.values, networks.gradient, rate)
-            progress.record(validation_loss(objective, networks, batches), config.patience)
-            report(epoch + 1, config.epochs, float(progress.best_loss.mean()))
-            if progress.stalled(config.patience).all():
-                break
-    diverged = [seed for seed, loss in zip(seeds, progress.best_loss, strict=True) if not math.isfinite(loss)]
+            state.record(validation_loss(objective, networks, batches), adam.steps, config.patience)
+            report(state.epoch, config.epochs, float(state.best_loss.mean()))
+            if checkpoint is not None and monotonic() - written >= config.checkpoint_interval_s:
+                write_checkpoint(checkpoint, print_of, state)
+                written = monotonic()
+    if checkpoint is not None:
+        write_checkpoint(checkpoint, print_of, state)
+    diverged = [seed for seed, loss in zip(seeds, state.best_loss, strict=True) if not math.isfinite(loss)]
     if diverged:
         raise UserError(
             f"Training diverged for seed {', '.join(map(str, diverged))}: the loss is not a number; "
             f"lower the learning rate ({config.learning_rate:g})."
         )
     return TrainingResult(
-        weights=networks.arrays(progress.best),
-        validation_loss=progress.best_loss,
-        best_epoch=progress.best_epoch,
-        history=np.array(progress.history),
+        weights=networks.arrays(state.best),
+        validation_loss=state.best_loss.copy(),
+        best_epoch=state.best_epoch.copy(),
+        history=np.array(state.history),
     )
 
 
@@ -155,15 +137,16 @@ def _gradient(
     networks: FlatNetworks,
     batches: Batches,
     device: torch.device,
-    epochs: int,
+    state: TrainingState,
+    config: TrainingConfig,
 ) -> Callable[[], None]:
     """Fills in the current batch's gradient: a `RecordedStep`, if it pays off and proves to be right."""
 
     def compute() -> None:
         networks.fill_gradient(objective(networks.networks, batches.batch).sum())
 
-    upcoming = batches.epoch(1)
-    if epochs * batches.steps < REPLAYED_STEPS or next(upcoming, None) is None:
+    upcoming = batches.epoch(state.epoch + 1)
+    if (config.epochs - state.epoch) * batches.steps < REPLAYED_STEPS or next(upcoming, None) is None:
         return compute
     try:
         replay = RecordedStep(compute, [*batches.batch, networks.values], device)

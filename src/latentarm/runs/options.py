@@ -102,6 +102,7 @@ class TrainOptions:
     out: Annotated[
         Path | None, arg(metavar="DIR", help="Folder of the run; runs/<dataset>-<model> by default.")
     ] = None
+    resume: Annotated[bool, arg(help="Continue an interrupted training.")] = False
     json: Json = False
 
     def __post_init__(self) -> None:

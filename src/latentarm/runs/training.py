@@ -40,6 +40,7 @@ from latentarm.runs.options import TrainOptions
 from latentarm.runs.samples import ALIGN_STREAM, save_samples, take_samples
 from latentarm.runs.tasks import routes_seen, usual_task
 
+CHECKPOINT: Final = "training.safetensors"
 JOINED: Final = "demonstrations"
 """Folder of a run with the datasets that it was trained on, where there were several."""
 
@@ -65,8 +66,7 @@ def train_run(options: TrainOptions, report: Report | None = None) -> TrainedRun
     setting makes no sense.
     """
     folder = options.folder
-    if (folder / "config.json").exists():
-        raise UserError(f"{folder} holds a run already: choose another folder with --out.")
+    _check_folder(folder, options.resume)
     dataset = _joined_dataset(options.demonstrations, folder)
     demonstrations = read_dataset(dataset)
     robot = None
@@ -82,12 +82,14 @@ def train_run(options: TrainOptions, report: Report | None = None) -> TrainedRun
         demonstrations, options.held_out, np.random.default_rng([HOLD_OUT_STREAM, options.seed])
     )
     model = _model(options, context, arm_known=robot is not None)
+    checkpoint = folder / CHECKPOINT
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         model.fit(
             select_episodes(demonstrations, training),
             chain=chain,
             term=_term(options.goal_entropy, demonstrations, chain, dataset),
+            checkpoint=checkpoint,
             report=report,
         )
     said = [*demonstrations.warnings, *(str(warning.message) for warning in caught)]
@@ -116,6 +118,7 @@ def train_run(options: TrainOptions, report: Report | None = None) -> TrainedRun
         run = replace(run, robot_model=_copy_of(robot, folder), **routes)
     facts |= run_facts(run)
     model.save(folder, run={**facts, "warnings": said, "git_commit": git_commit()})
+    checkpoint.unlink(missing_ok=True)
     for warning in caught:
         warnings.warn(warning.message, stacklevel=2)
     loss = model.validation_loss_
@@ -210,3 +213,15 @@ def _copy_of(robot: Robot, run: Path) -> str | None:
         message = f"{run} keeps no copy of its robot and needs {robot.model_path}: {error}"
         warnings.warn(message, stacklevel=3)
         return None
+
+
+def _check_folder(folder: Path, resume: bool) -> None:
+    if (folder / "config.json").exists():
+        raise UserError(f"{folder} holds a run already: choose another folder with --out.")
+    unfinished = (folder / CHECKPOINT).exists()
+    if unfinished and not resume:
+        raise UserError(
+            f"{folder} holds an unfinished training: continue it with --resume, or choose another --out."
+        )
+    if resume and not unfinished:
+        raise UserError(f"{folder} holds no unfinished training to resume.")

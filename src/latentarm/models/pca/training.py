@@ -1,6 +1,7 @@
 """Principal component analysis of the actions: the linear, context-free baseline of the paper."""
 
 from dataclasses import dataclass
+from pathlib import Path
 from typing import ClassVar, final
 
 import numpy as np
@@ -34,6 +35,7 @@ class PCA(LatentActionModel):
         data: TrainingData,
         dimensions: Dimensions,
         term: ScaledTerm | None,
+        checkpoint: Path | None,
         report: Report | None,
     ) -> TrainingResult:
         if term is not None:

@@ -32,7 +32,9 @@ LEAST_DISPLACED: Final = 0.15
 
 HIDDEN: Final = (128, 128)  # units of each hidden layer
 OUTPUT_RAD: Final = 0.1  # the network's output is multiplied by this, rad
-CONFIG: Final = TrainingConfig(learning_rate=3e-3, epochs=30, batch_size=256, patience=6)
+CONFIG: Final = TrainingConfig(
+    learning_rate=3e-3, epochs=30, batch_size=256, patience=6, checkpoint_interval_s=np.inf
+)
 
 
 class NoWayBackWarning(UserWarning):
