@@ -19,7 +19,7 @@ def model_advice(model: str, episodes: int) -> str:
 def next_step(model: str, way_back: bool, run: str, dataset: str, missed: frozenset[str]) -> str:
     """One sentence on what to do after evaluating."""
     if not missed:
-        return f"Next: latentarm drive {run}"
+        return f"Next: latentarm teleop {run}"
     reverses = KINDS[model].reverses
     if missed & {"drift", "reversal", "reversal_2_s"} and (way_back or not reverses):
         return (
