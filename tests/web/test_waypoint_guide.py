@@ -91,3 +91,21 @@ def test_a_step_that_is_not_done_after_its_last_waypoint_begins_again():
     assert guide.look(step, at_last).shift_m == (0.0, 0.0, 0.0)
     assert guide.look(step, replace(at_last, time_s=2.5)).shift_m == (0.0, 0.0, -0.1)
     assert guide.look(None, at_last) is None
+
+
+def test_a_tilted_vessel_is_turned_upright_before_it_is_carried():
+    tilted = Rotation.from_euler("x", 1.3).as_matrix()
+    carried = Waypoint(lambda state: Pose(THERE, np.eye(3)))
+    step = replace(step_of(carried), holds="cup")
+    tipped, level = state_at([0.0, 0.0, 0.0], tilted), state_at([0.0, 0.0, 0.0])
+    tipped = replace(tipped, poses={"cup": tipped.tool})
+    level = replace(level, poses={"cup": level.tool})
+    guide = WaypointGuide(frozenset({"cup"}))
+    left = guide.look(step, tipped)
+    assert left.shift_m == (0.0, 0.0, 0.0)
+    assert np.allclose(left.turn_rad, [-1.3, 0.0, 0.0])
+    assert guide.look(step, level).shift_m == tuple(THERE)
+    # To pour, it is brought there first, and what spills nothing is carried as it is.
+    pour = replace(step_of(Waypoint(lambda state: Pose(THERE, tilted))), holds="cup")
+    assert guide.look(pour, level).shift_m == tuple(THERE)
+    assert WaypointGuide().look(step, tipped).shift_m == tuple(THERE)

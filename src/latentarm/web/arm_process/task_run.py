@@ -69,7 +69,7 @@ class TaskRun:
         self._arm = arm
         self._chain = chain
         self._progress = Progress(todo.steps, todo.failures)
-        self._guide = WaypointGuide()
+        self._guide = WaypointGuide(frozenset(one.name for one in todo.vessels if one.enough is None))
         self._seen: SceneState | None = None
         self._to_go: ToGo | None = None
         self._fills = FillLevels(todo.vessels)

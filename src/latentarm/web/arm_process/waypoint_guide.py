@@ -14,6 +14,7 @@ _METRES: Final = 4
 _RADIANS: Final = 3  # digits that pages receive
 _LEAST_M: Final = 0.003
 _LEAST_RAD: Final = 0.05  # pages list no smaller way
+_SPILLS_RAD: Final = 0.5  # a vessel that is tilted by more may lose what is in it
 
 
 @final
@@ -21,10 +22,12 @@ class WaypointGuide:
     """Leads from one waypoint of a step to the next.
 
     For simulated drives the clock leads on from a waypoint at which the gripper closes. Here the person does,
-    and may take their time.
+    and may take their time. A vessel is first turned upright and then carried: people turn last, and it would
+    go on pouring. ``vessels`` are the things that are poured from.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, vessels: frozenset[str] = frozenset()) -> None:
+        self._vessels = vessels
         self._step: TaskStep | None = None
         self._index = 0
         self._arrived_s: float | None = None
@@ -55,8 +58,9 @@ class WaypointGuide:
         self._go_on(step.waypoints, state)
         waypoint = step.waypoints[self._index]
         shift_m, turn_rad = _left(waypoint, state)
+        upright = step.holds not in self._vessels or _untilts_rad(step.holds, waypoint, state) < _SPILLS_RAD
         return ToGo(
-            shift_m=_point(shift_m, _METRES),
+            shift_m=_point(shift_m, _METRES) if upright else (0.0, 0.0, 0.0),
             turn_rad=_point(turn_rad, _RADIANS),
             gripper=self._asked(waypoint, state),
         )
@@ -99,6 +103,14 @@ def _left(waypoint: Waypoint, state: SceneState) -> tuple[FloatArray, FloatArray
     """The way to a waypoint: a shift in the base frame, m, and a turn about the tool's own axes, rad."""
     pose, tool = waypoint.pose(state), state.tool
     return pose.position - tool.position, rotation_vector(tool.rotation.T @ pose.rotation)
+
+
+def _untilts_rad(held: str, waypoint: Waypoint, state: SceneState) -> float:
+    """How much less a held thing is tilted at the waypoint than now, rad."""
+    axis = state.poses[held].rotation[:, 2]
+    there = waypoint.pose(state).rotation @ state.tool.rotation.T @ axis
+    now_rad, there_rad = np.arccos(np.clip([axis[2], there[2]], -1.0, 1.0))
+    return float(now_rad - there_rad)
 
 
 def _point(vector: FloatArray, digits: int) -> Point:
