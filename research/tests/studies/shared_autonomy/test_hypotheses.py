@@ -30,9 +30,6 @@ def results_of(errors, task=TASK, model="cae"):
         AutonomyResult(
             cell,
             tuple(outcome(method, person) for method in cell.methods for person in PRESET.people),
-            np.ones(4),
-            0.0,
-            0.0,
         )
         for cell in (AutonomyCell(task, model, entropy, PRESET, 0) for entropy in (False, True))
     ]
