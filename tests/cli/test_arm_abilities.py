@@ -12,7 +12,7 @@ from wooden_server import wooden_server
 from latentarm.cli import main
 from latentarm.core.errors import UserError
 from latentarm.robots.panda import panda
-from latentarm.safety.bounds import Bounds
+from latentarm.safety.limits import Bounds
 from latentarm.web.arm_process.drive_setup import PERIOD_S, safety_limits
 from latentarm.web.arm_process.speed_limits import Speeds
 

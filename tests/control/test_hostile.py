@@ -16,8 +16,8 @@ from latentarm.control.step import Step
 from latentarm.core.errors import UserError
 from latentarm.core.types import Input, Stop
 from latentarm.robots.kinematics.obstacles import Sphere
-from latentarm.safety.bounds import Bounds
 from latentarm.safety.config import SafetyConfig, Workspace
+from latentarm.safety.limits import Bounds
 from latentarm.safety.ramp import Ramp
 from stepping import stepped
 

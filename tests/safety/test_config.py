@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from latentarm.core.errors import UserError
 from latentarm.robots.kinematics.obstacles import Box, Capsule, HalfSpace, Sphere
 from latentarm.robots.limits_file import parse_limits
-from latentarm.safety.bounds import STOPPED_WITHIN_S, Bounds
 from latentarm.safety.config import SafetyConfig, Workspace
+from latentarm.safety.limits import STOPPED_WITHIN_S, Bounds
 from latentarm.safety.obstacles import table
 
 FIGURES = [field.name for field in fields(SafetyConfig) if field.name not in ("workspace", "obstacles")]

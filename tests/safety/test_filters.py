@@ -12,7 +12,6 @@ from latentarm.core.types import Stop
 from latentarm.robots.kinematics.obstacles import Sphere
 from latentarm.safety.barriers import past_barriers
 from latentarm.safety.body import Body, Placement
-from latentarm.safety.bounds import Bounds
 from latentarm.safety.config import SafetyConfig, Workspace
 from latentarm.safety.filter import (
     Finite,
@@ -23,6 +22,7 @@ from latentarm.safety.filter import (
 )
 from latentarm.safety.halfspaces import slide
 from latentarm.safety.input_timeout import InputTimeout
+from latentarm.safety.limits import Bounds
 from latentarm.safety.obstacles import table
 from latentarm.safety.ramp import Ramp
 

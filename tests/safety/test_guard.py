@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 
 from latentarm.robots.kinematics.obstacles import Box, Capsule, HalfSpace, Sphere
 from latentarm.safety.body import Body, Placement
-from latentarm.safety.bounds import Bounds
 from latentarm.safety.config import SafetyConfig, Workspace
 from latentarm.safety.filter import GuardedArm, Situation
 from latentarm.safety.guard import Guard, StoppingPath
+from latentarm.safety.limits import Bounds
 
 
 def beside(robot, q, rng, oracle):

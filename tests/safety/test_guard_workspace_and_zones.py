@@ -5,10 +5,10 @@ import pytest
 
 from latentarm.robots.kinematics.obstacles import HalfSpace
 from latentarm.safety.body import Body, Placement
-from latentarm.safety.bounds import Bounds
 from latentarm.safety.config import SafetyConfig, Workspace
 from latentarm.safety.filter import GuardedArm, Situation
 from latentarm.safety.guard import Guard, StoppingPath
+from latentarm.safety.limits import Bounds
 from latentarm.safety.zones import Zone
 
 REST = np.zeros(7)

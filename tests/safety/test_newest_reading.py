@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 
 from latentarm.control.step import Step
 from latentarm.core.types import GripperReading, Input, Reading
-from latentarm.safety.bounds import STOPPED_WITHIN_S, Bounds
 from latentarm.safety.config import SafetyConfig
+from latentarm.safety.limits import STOPPED_WITHIN_S, Bounds
 from latentarm.safety.newest_reading import NewestReading
 
 PUSH, NEUTRAL = Input(np.array([1.0, 0.0])), Input(np.zeros(2))

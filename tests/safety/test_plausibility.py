@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 
 from latentarm.control.step import STEADY_S, Step
 from latentarm.core.types import Input
-from latentarm.safety.bounds import Bounds
 from latentarm.safety.config import SafetyConfig
+from latentarm.safety.limits import Bounds
 from latentarm.safety.plausibility import Plausibility
 from stepping import stepped
 

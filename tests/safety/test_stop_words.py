@@ -8,8 +8,8 @@ import pytest
 from latentarm.arms.contract import ArmStatus
 from latentarm.control.loop import stop_of
 from latentarm.core.types import Reading, Stop
-from latentarm.safety.bounds import Bounds
 from latentarm.safety.config import SafetyConfig
+from latentarm.safety.limits import Bounds
 from latentarm.safety.newest_reading import NewestReading
 from latentarm.safety.plausibility import Plausibility
 from latentarm.web.protocol.notice import Notice, notice_of_stop

@@ -9,10 +9,10 @@ from scipy.optimize import linprog
 from latentarm.robots.kinematics.obstacles import Box, Capsule, HalfSpace, Sphere
 from latentarm.robots.planar import planar
 from latentarm.safety.body import Body
-from latentarm.safety.bounds import BUFFER_M, BUFFER_RAD, Bounds
 from latentarm.safety.config import SafetyConfig, Workspace
 from latentarm.safety.filter import GuardedArm, Situation
 from latentarm.safety.halfspaces import slide
+from latentarm.safety.limits import BUFFER_M, BUFFER_RAD, Bounds
 from latentarm.safety.stack import SafetyStack
 from latentarm.safety.zones import Zone
 

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from latentarm.core.errors import UserError
 from latentarm.robots.kinematics.obstacles import Box, Capsule, HalfSpace, Sphere
-from latentarm.safety.bounds import Bounds
 from latentarm.safety.config import SafetyConfig
+from latentarm.safety.limits import Bounds
 from latentarm.safety.stack import SafetyStack
 from latentarm.safety.zones import MOST_ZONES, Zone, zone_of_filter
 

@@ -9,8 +9,8 @@ from latentarm.control.step import Step
 from latentarm.core.errors import UserError
 from latentarm.core.types import Input
 from latentarm.robots.kinematics.obstacles import Box, Capsule, HalfSpace, Sphere
-from latentarm.safety.bounds import Bounds
 from latentarm.safety.config import SafetyConfig
+from latentarm.safety.limits import Bounds
 from latentarm.safety.zones_file import read_zones
 from stepping import stepped
 

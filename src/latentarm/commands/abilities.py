@@ -9,7 +9,7 @@ import numpy as np
 from latentarm.arms.real import Fact
 from latentarm.core.errors import UserError
 from latentarm.robots.robot import Robot
-from latentarm.safety.bounds import Bounds
+from latentarm.safety.limits import Bounds
 from latentarm.web.arm_process.drive_setup import PERIOD_S, safety_limits
 from latentarm.web.arm_process.speed_limits import SLOWEST, Speeds
 

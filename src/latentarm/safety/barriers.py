@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, final
 import numpy as np
 
 from latentarm.core.types import FloatArray
-from latentarm.safety.bounds import BUFFER_M, BUFFER_RAD, MAY_BEND_M
 from latentarm.safety.halfspaces import slide, unbent
+from latentarm.safety.limits import BUFFER_M, BUFFER_RAD, MAY_BEND_M
 from latentarm.safety.small import any_nonzero, largest, smallest
 
 if TYPE_CHECKING:

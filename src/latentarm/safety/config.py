@@ -41,7 +41,7 @@ class Workspace:
 class SafetyConfig:
     """How fast and how close the arm may go; far below what its hardware can do.
 
-    Figures that need no robot are checked here; `latentarm.safety.bounds.Bounds` checks the
+    Figures that need no robot are checked here; `latentarm.safety.limits.Bounds` checks the
     rest against the hardware when a robot and the loop's period are known.
 
     Raises UserError where a figure is not a number, not finite, or out of its range.

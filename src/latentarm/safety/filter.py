@@ -14,7 +14,7 @@ from latentarm.safety.small import any_nonzero, largest, smallest
 from latentarm.safety.zone_distances import ZoneDistances
 
 if TYPE_CHECKING:
-    from latentarm.safety.bounds import Bounds
+    from latentarm.safety.limits import Bounds
 
 _DRIFT_RAD = 0.05  # a placement computed farther away than this is not reused
 

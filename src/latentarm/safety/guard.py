@@ -6,9 +6,9 @@ import numpy as np
 
 from latentarm.core.types import FloatArray, IntArray
 from latentarm.safety.body import Placement
-from latentarm.safety.bounds import MAY_BEND_M
 from latentarm.safety.brake import Brake
 from latentarm.safety.filter import Situation
+from latentarm.safety.limits import MAY_BEND_M
 from latentarm.safety.small import any_nonzero, largest, smallest
 from latentarm.safety.zone_distances import ZoneDistances
 from latentarm.safety.zones import Zone, zone_filter_name

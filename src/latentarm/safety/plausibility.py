@@ -8,7 +8,7 @@ import numpy as np
 
 from latentarm.core.types import FloatArray, Stop, StopCode
 from latentarm.robots.robot import Robot
-from latentarm.safety.bounds import LATE_PERIODS, Bounds
+from latentarm.safety.limits import LATE_PERIODS, Bounds
 from latentarm.safety.small import largest
 
 _BUCKETS = 9

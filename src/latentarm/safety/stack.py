@@ -12,7 +12,6 @@ from latentarm.robots.kinematics.obstacles import Box
 from latentarm.robots.robot import Robot
 from latentarm.safety.barriers import past_barriers
 from latentarm.safety.body import Body
-from latentarm.safety.bounds import Bounds
 from latentarm.safety.brake import Brake
 from latentarm.safety.config import SafetyConfig
 from latentarm.safety.filter import (
@@ -25,6 +24,7 @@ from latentarm.safety.filter import (
 )
 from latentarm.safety.guard import Guard
 from latentarm.safety.input_timeout import InputTimeout
+from latentarm.safety.limits import Bounds
 from latentarm.safety.ramp import Ramp
 from latentarm.safety.small import any_nonzero, largest, smallest
 from latentarm.safety.zone_speed import ZoneSpeed

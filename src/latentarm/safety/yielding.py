@@ -8,7 +8,7 @@ import numpy as np
 
 from latentarm.core.types import FloatArray
 from latentarm.safety.body import Body
-from latentarm.safety.bounds import Bounds
+from latentarm.safety.limits import Bounds
 from latentarm.safety.small import largest
 
 YIELDING: Final = "yielding"  # stands among the limits of each command that draws back

@@ -6,8 +6,8 @@ import numpy as np
 from typing_extensions import override
 
 from latentarm.core.types import FloatArray
-from latentarm.safety.bounds import Bounds
 from latentarm.safety.filter import HEADROOM, SafetyFilter, Situation
+from latentarm.safety.limits import Bounds
 from latentarm.safety.small import any_nonzero, smallest
 from latentarm.safety.zones import zone_filter_name
 

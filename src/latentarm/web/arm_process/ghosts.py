@@ -11,8 +11,8 @@ from latentarm.control.stick_ring import AHEAD_S, DIRECTIONS, STRETCHES, full_pu
 from latentarm.core.types import BoolArray, Context, FloatArray
 from latentarm.robots.kinematics.obstacles import HalfSpace
 from latentarm.robots.kinematics.pose_rows import stored_rows
-from latentarm.safety.bounds import largest_speeds, margins
 from latentarm.safety.config import SafetyConfig
+from latentarm.safety.limits import largest_speeds, margins
 from latentarm.tasks.place import Place
 from latentarm.web.arm_process.help import Help
 from latentarm.web.protocol.orders import HelpLevel
