@@ -33,7 +33,7 @@ TREMBLE_RAD = 1e-3
 
 @pytest.fixture(scope="module", autouse=True)
 def patience():
-    """What the patient driver has changed ends with these tests."""
+    """Undo the changes of the patient driver after these tests."""
     least = pace._LEAST
     yield
     pace._LEAST = least

@@ -35,7 +35,7 @@ def stated(text):
 
 
 def figures_of(condition, kind=""):
-    """What a condition of a step of a kind, or of a failure, has in figures."""
+    """The figures of a condition that ends a step, or of a failure."""
     match condition:
         case Lifted():
             return {(100 * (STABBED_M if kind == "stabbed" else TAKEN_M), "cm")}

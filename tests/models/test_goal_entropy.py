@@ -24,7 +24,7 @@ def test_the_probabilities_worked_by_hand():
     # Two inputs, two goals, kappa = ln 2: scores 2, 1 for the first goal, 1/2, 4 for the second.
     progress = torch.tensor([[1.0, -1.0], [0.0, 2.0]], dtype=torch.float64)
     kappa = float(np.log(2))
-    # What conveys no goal scores 2 inputs times 2^(1/2).
+    # Conveying no goal scores 2^(1/2) for each of the 2 inputs.
     assert log_probabilities(progress, kappa).exp() == pytest.approx(np.array([3.0, 4.5]) / (7.5 + 8**0.5))
 
 

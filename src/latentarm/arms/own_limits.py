@@ -54,12 +54,12 @@ def beyond(own: FoundLimits, robot: Robot) -> tuple[str, ...]:
 
 def limit_facts(own: FoundLimits | None, robot: Robot) -> tuple[Fact, ...]:
     """The limits that the robot is driven by, in figures, and for each whether the arm itself confirms it."""
-    return tuple(Fact(f"{one} limits", " ".join(_said(one, own, robot))) for one in QUANTITIES)
+    return tuple(Fact(f"{one} limits", " ".join(_describe(one, own, robot))) for one in QUANTITIES)
 
 
 def unconfirmed(own: FoundLimits | None, robot: Robot) -> tuple[str, ...]:
     """The limits that the arm does not confirm, a sentence, or nothing."""
-    open_ones = [one for one in QUANTITIES if not np.isfinite(_told(one, own, robot)).all()]
+    open_ones = [one for one in QUANTITIES if not np.isfinite(_own_figures(one, own, robot)).all()]
     if not open_ones:
         return ()
     return (
@@ -73,19 +73,19 @@ def _fits(own: FoundLimits, robot: Robot) -> bool:
     return all(one is None or one.shape == (robot.dof,) for one in told)
 
 
-def _said(quantity: Quantity, own: FoundLimits | None, robot: Robot) -> Iterator[str]:
+def _describe(quantity: Quantity, own: FoundLimits | None, robot: Robot) -> Iterator[str]:
     limits = robot.limits
     ours = (limits.lower, limits.upper) if quantity == "position" else (getattr(limits, quantity),)
     sources = dict.fromkeys(_SOURCES[one] for one in limits.sources.of(quantity))
     yield f"{_listed(quantity, ours, robot)}, by {' and '.join(sources)};"
-    theirs = _told(quantity, own, robot)
+    theirs = _own_figures(quantity, own, robot)
     if np.isfinite(theirs).any():
         yield f"the arm's own: {_listed(quantity, theirs, robot)}"
     else:
         yield "the arm states none, so nothing confirms this"
 
 
-def _told(quantity: Quantity, own: FoundLimits | None, robot: Robot) -> tuple[FloatArray, ...]:
+def _own_figures(quantity: Quantity, own: FoundLimits | None, robot: Robot) -> tuple[FloatArray, ...]:
     """The arm's own figures of a quantity, infinite where it states none."""
     none = np.full(robot.dof, np.inf)
     if own is None or not _fits(own, robot):

@@ -36,7 +36,7 @@ def zones_for(path: Path | None, speeds: Speeds) -> StatedZones:
 def with_distances(found: Findings, stated: StatedZones, robot: Robot, q: FloatArray) -> Findings:
     """The findings, and how far the arm's moving parts are from each zone and solid at ``q``, (n,), rad."""
     body, usual_m = Body(robot), SafetyConfig.clearance
-    # What is measured are solids that have grown by what they keep beyond the usual.
+    # Distances are to solids grown by the clearance that they keep beyond the usual.
     grown = [kept_m - usual_m for kept_m in stated.clearance]
     solids = tuple(Zone(solid, SLOWEST_M_PER_S) for solid in stated.keep_out)
     everything = (*stated.slow, *solids)

@@ -186,7 +186,7 @@ def _answer(
 
 
 def wrong_answer(definition: Definition, item: str, answer: int | str) -> str:
-    """The kind of answer that an item takes, where this is none; else ""."""
+    """Describe what an item accepts if ``answer`` is invalid; "" if it is valid."""
     scale = items_of(definition).get(item, (None,))[0]
     if scale is not None:
         right = isinstance(answer, int) and 1 <= answer <= scale.points
