@@ -24,7 +24,7 @@ _SKEW: Final = 1e-3  # largest error of a rotation matrix
 class Sighting:
     """One detection of a thing by a source.
 
-    Raises UserError where a figure is missing, not finite, or out of range, or if the matrix is not a rotation.
+    Raises UserError where a figure is missing, not finite or out of range, or the matrix is not a rotation.
     """
 
     name: str  # of the thing, as the task and the model name it
