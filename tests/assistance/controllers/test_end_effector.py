@@ -71,6 +71,65 @@ def test_through_singular_configurations_joint_speeds_stay_bounded(singular, mod
         assert (np.linalg.norm(action, axis=-1) <= largest).all()
 
 
+anywhere = hnp.arrays(float, 7, elements=st.floats(0.0, 1.0)).map(
+    lambda share: PANDA.limits.lower + share * (PANDA.limits.upper - PANDA.limits.lower)
+)
+
+
+def along_axes(robot, controller, state, axis, mode):
+    """Shares of a full input along the base's axes and about the tool's, for one axis of the input."""
+    action = controller.action(np.eye(2)[axis], Context(state, NO_BELIEF), mode)
+    twist = robot.chain.jacobian(state) @ action
+    turn = robot.chain.forward(state).rotation.T @ twist[3:]
+    return np.concatenate([twist[:3] / SPEED, turn / TURN])
+
+
+@pytest.mark.parametrize("axis", range(2))
+@pytest.mark.parametrize("mode", range(3))
+@given(state=anywhere | st.sampled_from([np.zeros(7), STRETCHED, WRIST_ALIGNED]))
+def test_everywhere_the_tool_hardly_moves_in_ways_that_were_not_asked_for(axis, mode, state):
+    shares = along_axes(PANDA, CONTROLLER, state, axis, mode)
+    row = ((0, 1), (2, 5), (3, 4))[mode][axis]
+    assert -1e-9 <= shares[row] <= 1 + 1e-9
+    others = np.delete(np.abs(shares), row)
+    assert (others <= np.delete(np.repeat([1 / 20, 1 / 6], 3), row) + 1e-9).all()
+
+
+def test_a_held_cup_that_is_tilted_over_a_bowl_does_not_dive_into_it():
+    # Joints 5 and 7 are nearly aligned here: a tilt took the tool 8 cm down within a second.
+    state = np.array([-0.583, -0.384, 0.458, -2.265, -2.102, 3.123, 2.53])
+    begin = PANDA.chain.forward(state)
+    for _ in range(100):
+        state = state + 0.01 * CONTROLLER.action(np.array([0.0, -1.0]), Context(state, NO_BELIEF), 2)
+    end = PANDA.chain.forward(state)
+    assert np.linalg.norm(end.position - begin.position) < 0.003
+    assert np.arccos((np.trace(end.rotation.T @ begin.rotation) - 1) / 2) > 0.25
+
+
+FIVE_JOINTS = """
+<mujoco><worldbody><body>
+  <joint name="pan" axis="0 0 1" range="-1.9 1.9"/><geom size=".03"/>
+  <body pos=".03 0 .1"><joint name="lift" axis="0 1 0" range="-1.7 1.7"/><geom size=".02"/>
+    <body pos=".03 0 .11"><joint name="elbow" axis="0 1 0" range="-1.7 1.7"/><geom size=".02"/>
+      <body pos=".13 0 0"><joint name="flex" axis="0 1 0" range="-1.7 1.7"/><geom size=".02"/>
+        <body pos=".06 0 0"><joint name="roll" axis="1 0 0" range="-2.7 2.7"/><geom size=".02"/>
+          <site name="tool" pos=".1 0 0" euler="0 90 0"/>
+</body></body></body></body></body></worldbody></mujoco>
+"""
+
+
+def test_an_arm_of_five_joints_moves_its_tool_straight_and_turns_it_only_in_place(tmp_path):
+    path = tmp_path / "five.xml"
+    path.write_text(FIVE_JOINTS)
+    robot = load_robot(str(path), end_effector="tool")
+    controller, state = EndEffectorController(robot, SPEED, TURN), np.array([0.2, -0.2, 0.4, 0.9, 0.1])
+    for mode, axis, row in ((0, 0, 0), (0, 1, 1), (1, 0, 2)):
+        shares = along_axes(robot, controller, state, axis, mode)
+        assert shares[:3] == pytest.approx(np.eye(6)[row, :3], abs=0.05)
+    for mode, axis in ((1, 1), (2, 0), (2, 1)):
+        assert np.abs(along_axes(robot, controller, state, axis, mode)[:3]).max() < 1 / 20
+
+
 @given(st.floats(0.0, 3.0), st.floats(0.0, 1e-6))
 def test_the_damped_reciprocal_has_no_jump_and_no_peak(singular, further):
     damping = Damping()

@@ -1,6 +1,6 @@
 """Mode-switched control of the end-effector by resolved rates."""
 
-from typing import final
+from typing import Final, final
 
 import numpy as np
 
@@ -10,6 +10,12 @@ from latentarm.models.enclosure import linear_enclosure
 from latentarm.robots.kinematics.resolved_rates import Damping, joint_velocities
 from latentarm.robots.robot import Robot
 
+KEPT_PLACE: Final = 10.0  # weight of a translation that was not asked for, beside the asked motion
+KEPT_TURN: Final = 3.0  # the same of a turn
+LOOSE_TURN: Final = 0.1  # the same during translations of an arm with too few joints to keep its turns
+
+_POSES: Final = 8  # configurations at which an arm's joints are counted against the tool's motions
+
 
 @final
 class EndEffectorController(AxisController):
@@ -17,13 +23,17 @@ class EndEffectorController(AxisController):
 
     Translations are along the axes of the base frame. Turns are about the axes of the tool frame
     through the tool point: roll about its x, pitch about its y, yaw about its z, the way it points.
-    Joint velocities follow by resolved rates: of all that give the wanted twist, the smallest.
+    Joint velocities follow by resolved rates: of all that give the wanted twist, the smallest. Near singular
+    configurations no joint velocities give it. There the asked motion becomes slower, and never turns round.
+    Translations that were not asked for stay below 1/20 of a full input for each asked axis, and turns below
+    1/6, but that an arm with too few joints turns its tool as it has to while it moves it.
 
     Args:
         robot: the arm; its first tool is driven.
         linear_speed: of a full input along an axis, m/s.
         angular_speed: of a full input about an axis, rad/s.
-        damping: behaviour near singular configurations.
+        damping: behaviour near singular configurations, where a full input along an axis counts as one about
+            an axis.
         modes: which axes the inputs drive in each mode.
 
     Raises:
@@ -40,13 +50,33 @@ class EndEffectorController(AxisController):
     ) -> None:
         super().__init__(robot, linear_speed, angular_speed, modes)
         self._damping = damping or Damping()
+        asked = np.array([np.eye(6)[list(rows)] for rows in modes.axes])  # (modes, d, 6)
+        kept = np.full((6, 6), KEPT_TURN)  # by the axis that is asked for
+        kept[:, :3] = KEPT_PLACE
+        if not _keeps_turns(robot):
+            kept[:3, 3:] = LOOSE_TURN
+        self._weights = np.where(asked > 0.0, 1.0, asked @ kept) * (angular_speed / self._scale)
+        self._asked = angular_speed * asked
 
     def action(self, z: FloatArray, context: Context, mode: int) -> FloatArray:
         """Joint velocities that move the tool along the mode's axes, (..., n), rad/s."""
-        twists, jacobian = self._twists_and_jacobian(context.state, mode)
-        return np.vecmat(z, joint_velocities(twists, jacobian, self._damping))
+        transforms = self._chain.link_transforms(context.state)
+        pose = self._chain.tool_pose(transforms)
+        jacobian = self._chain.jacobian_at(transforms, pose)
+        along = np.concatenate([jacobian[..., :3, :], pose.rotation.mT @ jacobian[..., 3:, :]], axis=-2)
+        # One axis of the input at a time: what the others may do, this one must not.
+        weighted = self._weights[mode][..., None] * along[..., None, :, :]
+        columns = joint_velocities(self._asked[mode][:, None, :], weighted, self._damping)
+        return np.vecmat(z, columns[..., 0, :])
 
     def speed_bound(self, context: Context, mode: int) -> float:
         """Exact: the action is linear in the input."""
         columns = self.action(np.eye(self.input_dim), context, mode)
         return float(linear_enclosure(columns, np.zeros(columns.shape[-1])).largest())
+
+
+def _keeps_turns(robot: Robot) -> bool:
+    """Whether the arm has as many joints as its tool has ways to move."""
+    nearby = robot.home + np.random.default_rng(0).normal(size=(_POSES, robot.dof))
+    ways = np.concatenate(list(robot.chain.jacobian(nearby)), axis=-1)
+    return bool(np.linalg.matrix_rank(ways) <= robot.dof)
