@@ -1,21 +1,8 @@
-"""Claims of a user study in short, and the statistics that the paper prints."""
+"""The statistics that the paper prints."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final, Literal, final
-
-from latentarm_research.studies.claims import Claim
-
-
-def below(measure: str, subject: str, *against: str, tasks: tuple[str, ...] = ()) -> tuple[Claim, ...]:
-    """Claims that one condition has less of a measure than each of the others."""
-    return tuple(Claim(measure, (subject,), (other,), "less", tasks) for other in against)
-
-
-def above(measure: str, subject: str, *against: str, tasks: tuple[str, ...] = ()) -> tuple[Claim, ...]:
-    """Claims that one condition has more of a measure than each of the others."""
-    return tuple(Claim(measure, (subject,), (other,), "greater", tasks) for other in against)
-
 
 PrintedTest = Literal["trials t", "paired t", "between F", "paired p", "share", "stars", "seconds"]
 """How a figure of the paper came about: t over trials as independent, t over people in pairs, F with the

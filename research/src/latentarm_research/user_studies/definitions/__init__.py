@@ -1,1 +1,0 @@
-"""One study of the paper per module, each with its ``DEFINITION``."""
