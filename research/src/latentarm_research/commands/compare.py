@@ -40,7 +40,7 @@ def compare(
 
     For example: latentarm compare --demonstrations pour pick --noise 0.01 0.1
     """
-    from latentarm_research.studies.compare.preset import OURS, PRESETS
+    from latentarm_research.studies.compare.preset import PRESETS
     from latentarm_research.studies.compare.study import compare_study
 
     asked = {
@@ -49,8 +49,9 @@ def compare(
         "seeds": seeds,
         "folds": folds,
         "reach_pairs": reach_pairs,
+        "ours": ours,
     }
     sizes = replace(PRESETS[preset], **{name: value for name, value in asked.items() if value is not None})
-    study = compare_study(demonstrations, sizes, ours or OURS, options.seed)
+    study = compare_study(demonstrations, sizes, options.seed)
     run_and_show(study, options.request(out, sizes), "compare")
     return 0

@@ -25,6 +25,7 @@ def tiny() -> Preset:
         demonstrations=(1,),
         drives=1,
         drive_limit_s=0.5,
+        ours="cae",
     )
 
 

@@ -17,8 +17,8 @@ from latentarm_research.studies.study import ALWAYS_MADE, Report, Request, run_s
 POUR = Path(__file__).parents[5] / "shared" / "demonstrations" / "panda_pour_coffee.npz"
 
 
-def compared(table: Path, sizes: Preset, out: Path, ours: str = "cae") -> Report:
-    study = compare_study((table,), sizes, ours)
+def compared(table: Path, sizes: Preset, out: Path) -> Report:
+    study = compare_study((table,), sizes)
     report = run_study(study, Request(out, sizes, jobs=1, quiet=True))
     made = {*ALWAYS_MADE, *study.documents} - {PDF}
     assert {path.name for path in out.iterdir()} == {
@@ -109,8 +109,9 @@ def test_drives_are_told_from_measurements_and_called_simulated(done: tuple[list
 @pytest.mark.skipif(not POUR.exists(), reason="the recorded demonstrations are not beside this clone")
 def test_recorded_demonstrations_are_compared_on(tmp_path: Path, tiny: Preset) -> None:
     import_to(POUR, tmp_path / "pour", load_robot("panda"))
-    small = replace(tiny, models=("pca", "scl"), noises_rad=(0.01,), seeds=1, demonstrations=(), drives=0)
-    rows = compared(tmp_path / "pour", small, tmp_path / "out", "homogeneous").rows
+    few = replace(tiny, noises_rad=(0.01,), seeds=1, demonstrations=(), drives=0)
+    small = replace(few, models=("pca", "scl"), ours="homogeneous")
+    rows = compared(tmp_path / "pour", small, tmp_path / "out").rows
     at = {(row.model, row.measure): row.mean for row in rows if row.condition == "noise 0.01 rad"}
     assert at["pca", "search_error_percent_of_pca"] == pytest.approx(100.0, abs=5.0)
     assert at["scl", "drift"] == pytest.approx(0.0, abs=1e-9)

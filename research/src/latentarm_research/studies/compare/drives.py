@@ -27,10 +27,9 @@ from latentarm_research.metrics.ending import Ending
 from latentarm_research.people.catalogue import PEOPLE, usual_operator
 from latentarm_research.studies.compare.cell import FoldResult
 from latentarm_research.studies.compare.datasets import Dataset
-from latentarm_research.studies.compare.preset import Stream
+from latentarm_research.studies.compare.preset import BESIDE, Preset, Stream
 from latentarm_research.studies.streams import sequence
 
-BESIDE: Final = "cvae"  # the model of the paper's user studies, which is driven as well as ours
 MODES: Final = "end_effector"  # mode switching, as rows name it
 
 
@@ -61,27 +60,30 @@ class DriveResult:
 def drive_cells(
     datasets: Sequence[Dataset],
     results: Sequence[FoldResult],
-    ours: str,
-    noise_rad: float,
-    drives: int | None,  # folds, and episodes of each, at most; None for all
-    limit_s: float,  # a drive that lasts longer has failed, s
+    preset: Preset,
     seed: int,
 ) -> list[ModelDriveCell]:
     """Every held-out episode once with each controller."""
     decoders = {
         (one.place.dataset, one.place.model, one.place.fold): one.decoder
         for one in results
-        if one.place.noise_rad == noise_rad
+        if one.place.noise_rad == preset.noises_rad[0]
     }
-    models = [name for name in dict.fromkeys((ours, BESIDE)) if any(name == key[1] for key in decoders)]
+    trained = {model for _, model, _ in decoders}
+    models = [name for name in dict.fromkeys((preset.ours, BESIDE)) if name in trained]
     return [
         ModelDriveCell(
-            dataset, episode, controller, decoders.get((dataset.name, controller, fold.index)), limit_s, seed
+            dataset,
+            episode,
+            controller,
+            decoders.get((dataset.name, controller, fold.index)),
+            preset.drive_limit_s,
+            seed,
         )
         for dataset in datasets
         for controller in (*models, MODES)
-        for fold in dataset.folds[:drives]
-        for episode in fold.held_out[:drives]
+        for fold in dataset.folds[: preset.drives]
+        for episode in fold.held_out[: preset.drives]
     ]
 
 

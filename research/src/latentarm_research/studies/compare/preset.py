@@ -1,5 +1,7 @@
 """How large the comparison is."""
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from enum import IntEnum
 from typing import Final
@@ -10,6 +12,8 @@ from latentarm.runs.checks import check_count
 
 OURS: Final = "homogeneous"  # the model that is driven by default
 REFERENCE: Final = "cae"  # the paper's model
+BESIDE: Final = "cvae"  # the model of the paper's user studies, which is driven as well as ours
+MOST_NOISES: Final = 6  # that markers of figures tell apart
 
 CHOSEN_ON: Final = "pour_coffee"
 """Ending of the name of the recording that hyper-parameters were chosen on; frozen for the others."""
@@ -37,12 +41,34 @@ class Preset:
     # folds whose held-out episodes are driven, and how many of each; None drives all
     drives: int | None = None
     drive_limit_s: float = 300.0  # a drive that lasts longer has failed, s
+    ours: str = OURS  # the model that is driven
 
     def __post_init__(self) -> None:
+        for name in (*self.models, self.ours):
+            if name not in KINDS:
+                raise UserError(f"There is no model {name!r}: choose from {', '.join(KINDS)}.")
+        for noise_rad in self.noises_rad:
+            if not (math.isfinite(noise_rad) and noise_rad >= 0):
+                raise UserError(f"The noise is {noise_rad:g} rad; it must be a finite number, zero or more.")
+        if len(self.noises_rad) > MOST_NOISES:
+            raise UserError(f"Name at most {MOST_NOISES} noises.")
+        check_each_once("models", self.models)
+        check_each_once("noises", self.noises_rad)
         check_count("seeds", self.seeds)
         check_count("pairs for reaching", self.reach_pairs)
         if self.folds < 2:
             raise UserError(f"The number of folds is {self.folds}: it must be at least 2.")
+
+    @property
+    def given_fewer(self) -> list[str]:
+        """The models that also learn from fewer demonstrations."""
+        return [name for name in dict.fromkeys((self.ours, REFERENCE, BESIDE)) if name in self.models]
+
+
+def check_each_once(what: str, given: Sequence[object]) -> None:
+    """Raise a `UserError` unless there is at least one, and none twice."""
+    if not given or len(set(given)) < len(given):
+        raise UserError(f"Name at least one of the {what}, and none twice.")
 
 
 PRESETS: Final[dict[str, Preset]] = {
