@@ -7,14 +7,10 @@ import pytest
 
 from latentarm_research.studies.alignment.cell import AlignmentErrors
 from latentarm_research.studies.alignment.preset import CONDITIONS, NO_ALIGN, PRESETS
-from latentarm_research.studies.alignment.scene import AlignmentCell, DecoderCell, LearnedDecoder
+from latentarm_research.studies.alignment.scene import AlignmentCell, DecoderCell
 
 AS_IN_THE_PAPER = (3.0, 2.0, 1.0, 0.4, 0.35, 0.4, 0.11, 0.1, 0.1, 0.1)
 """Means of the conditions, in their order."""
-
-
-def decoder(task="plane", preset=PRESETS["smoke"]):
-    return LearnedDecoder(DecoderCell(task, preset, 0), SimpleNamespace())
 
 
 def make_result(means=AS_IN_THE_PAPER, task="plane", noise=0.0, runs=6, spread=0.02):
@@ -24,11 +20,8 @@ def make_result(means=AS_IN_THE_PAPER, task="plane", noise=0.0, runs=6, spread=0
         name: np.array([mean]) if name == NO_ALIGN else mean * about
         for name, mean in zip(CONDITIONS, means, strict=True)
     }
-    return AlignmentErrors(
-        AlignmentCell(decoder(task), noise),
-        errors,
-        0.05,
-    )
+    cell = AlignmentCell(DecoderCell(task, PRESETS["smoke"], 0), SimpleNamespace(), noise)
+    return AlignmentErrors(cell, errors, {}, 0.05)
 
 
 @pytest.fixture

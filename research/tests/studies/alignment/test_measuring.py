@@ -1,4 +1,4 @@
-"""One decoder, one cell, one curve: what they hold, and that they are the same again."""
+"""One decoder, one cell with its curves: what they hold, and that they are the same again."""
 
 from dataclasses import replace
 from functools import cache
@@ -9,10 +9,10 @@ import pytest
 from latentarm.alignment.answers import Answers
 from latentarm.alignment.contract import identity
 from latentarm.alignment.queries import order_of_questions
-from latentarm_research.studies.alignment.cell import measure_cell
-from latentarm_research.studies.alignment.curves import CHOSEN, PRIORS_AT_RANDOM, measure_curve
+from latentarm_research.studies.alignment.cell import PRIORS_AT_RANDOM, measure_cell
 from latentarm_research.studies.alignment.preset import (
     ALL_PRIORS,
+    CHOSEN,
     CONDITIONS,
     FEW_ANSWERS,
     IDEAL,
@@ -23,7 +23,6 @@ from latentarm_research.studies.alignment.preset import (
     Preset,
     Stream,
 )
-from latentarm_research.studies.alignment.rows import time_alignment
 from latentarm_research.studies.alignment.scene import AlignmentCell, DecoderCell, learn_decoder, scene_of
 
 TINY = Preset(
@@ -49,12 +48,13 @@ TINY = Preset(
 @cache
 def learned_at(task):
     """Several tests look at the same decoder."""
-    return learn_decoder(DecoderCell(task, TINY, 0))
+    decoder = DecoderCell(task, TINY, 0)
+    return AlignmentCell(decoder, learn_decoder(decoder), 0.5)
 
 
 @cache
 def measured_at(task):
-    return measure_cell(AlignmentCell(learned_at(task), 0.5))
+    return measure_cell(learned_at(task))
 
 
 @pytest.fixture(scope="module", params=["plane", "reach_and_pour"])
@@ -68,7 +68,7 @@ def scene(learned):
 
 
 def test_every_condition_has_an_error_for_each_run(learned):
-    result = measured_at(learned.cell.task)
+    result = measured_at(learned.task)
     assert list(result.errors) == list(CONDITIONS)
     for name, errors in result.errors.items():
         assert errors.shape == ((1,) if name in (NO_ALIGN, IDEAL) else (TINY.runs,))
@@ -79,19 +79,22 @@ def test_every_condition_has_an_error_for_each_run(learned):
 
 def test_a_cell_is_the_same_from_the_same_seed():
     learned, result = learned_at("reach_and_pour"), measured_at("reach_and_pour")
-    again = measure_cell(AlignmentCell(learned, 0.5))
+    again = measure_cell(learned)
     for name, errors in result.errors.items():
         np.testing.assert_array_equal(errors, again.errors[name])
+    for choice, errors in result.curves.items():
+        for count, values in errors.items():
+            np.testing.assert_array_equal(values, again.curves[choice][count])
     assert again.encoded == result.encoded
-    anew = learn_decoder(learned.cell)
+    anew = learn_decoder(learned.decoder)
     for name, tensor in learned.model.trained_.tensors.items():
-        np.testing.assert_array_equal(tensor, anew.model.trained_.tensors[name])
+        np.testing.assert_array_equal(tensor, anew.trained_.tensors[name])
 
 
 def test_another_seed_gives_another_decoder(learned):
-    other = learn_decoder(replace(learned.cell, seed=1))
+    other = learn_decoder(replace(learned.decoder, seed=1))
     assert any(
-        not np.array_equal(tensor, other.model.trained_.tensors[name])
+        not np.array_equal(tensor, other.trained_.tensors[name])
         for name, tensor in learned.model.trained_.tensors.items()
     )
 
@@ -132,34 +135,18 @@ def test_single_priors_weigh_what_they_weigh_among_all():
         assert sorted(alone)[:2] == [0, 0]
 
 
-@pytest.fixture(scope="module")
-def curve():
-    return measure_curve(AlignmentCell(learned_at("reach_and_pour"), 0.0))
-
-
-def test_a_curve_has_a_point_for_every_number_and_choice(curve):
-    assert {choice: list(errors) for choice, errors in curve.errors.items()} == {
+def test_a_curve_has_a_point_for_every_number_and_choice():
+    curves = measured_at("reach_and_pour").curves
+    assert {choice: list(errors) for choice, errors in curves.items()} == {
         PRIORS_AT_RANDOM: [TINY.answers],
         CHOSEN: [1, 4],
     }
-    assert all(values.shape == (TINY.runs,) for errors in curve.errors.values() for values in errors.values())
-
-
-def test_a_curve_is_the_same_again(curve):
-    again = measure_curve(curve.cell)
-    for choice, errors in curve.errors.items():
-        for count, values in errors.items():
-            np.testing.assert_array_equal(values, again.errors[choice][count])
+    assert all(values.shape == (TINY.runs,) for errors in curves.values() for values in errors.values())
 
 
 def test_four_chosen_questions_hold_both_parts_of_reach_and_pour():
     """Where two things are meant in two places, each is asked about more than once."""
-    scene = scene_of(learn_decoder(DecoderCell("reach_and_pour", TINY, 0)))
+    scene = scene_of(learned_at("reach_and_pour"))
     asked = order_of_questions(scene.chain, scene.shown, 4)
     there = scene.preference.is_there(scene.chain.forward(scene.shown.start[asked]).position)
     assert there.sum() == 2
-
-
-def test_the_times_of_learning_and_of_a_call_are_taken():
-    took = time_alignment(learned_at("plane"))
-    assert min(took["tool_space_s"], took["tool_space_call_s"]) > 0

@@ -85,8 +85,6 @@ def test_the_folder_holds_what_was_made_and_the_page_reads_by_itself(done):
         assert words in page
     for name in STUDY.figures:
         assert f"]({name}.png)" in page
-    timings = json.loads((out / "timings.json").read_text())
-    assert timings["one_alignment"][0]["tool_space_call_s"] > 0
     runs = json.loads((out / "runs.json").read_text())
     assert all(len(one["values"]) in (1, 2) for one in runs)
 

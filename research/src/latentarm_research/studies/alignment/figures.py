@@ -10,7 +10,7 @@ from latentarm.evaluation.looks import look_of
 from latentarm_research.studies import drawing
 from latentarm_research.studies.alignment.cell import AlignmentErrors
 from latentarm_research.studies.alignment.preset import CONDITIONS
-from latentarm_research.studies.alignment.rows import ENCODED
+from latentarm_research.studies.alignment.tables import ENCODED
 from latentarm_research.studies.statistics import bootstrap_interval, reach_of_interval
 
 if TYPE_CHECKING:

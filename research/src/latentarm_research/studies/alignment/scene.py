@@ -53,36 +53,24 @@ class DecoderCell:
     seed: int  # of the whole study
 
 
-@dataclass(frozen=True, eq=False)
-class LearnedDecoder:
-    """A decoder that was learned."""
-
-    cell: DecoderCell
-    model: LatentActionModel  # fitted, of one seed
-
-
 @final
 @dataclass(frozen=True, eq=False)
 class AlignmentCell:
     """What is to be measured with a decoder."""
 
-    learned: LearnedDecoder  # task and decoder
+    decoder: DecoderCell  # how the decoder was learned
+    model: LatentActionModel  # that has it: fitted, of one seed
     noise: float  # coefficient of variation of the answers
 
     @property
     def task(self) -> str:
         """Name of the task."""
-        return self.learned.cell.task
+        return self.decoder.task
 
     @property
     def preset(self) -> Preset:
         """Sizes of the study."""
-        return self.learned.cell.preset
-
-
-def learn_decoder(cell: DecoderCell) -> LearnedDecoder:
-    """Demonstrate and fit."""
-    return LearnedDecoder(cell, _fit(cell, demonstrate(cell, Stream.TRAINING)))
+        return self.decoder.preset
 
 
 def demonstrate(cell: DecoderCell, stream: Stream) -> Demonstrations:
@@ -92,8 +80,9 @@ def demonstrate(cell: DecoderCell, stream: Stream) -> Demonstrations:
     return POURING_TASKS[cell.task]().demonstrate(episodes, generator(cell.seed, cell.task, stream))
 
 
-def _fit(cell: DecoderCell, demonstrations: Demonstrations) -> LatentActionModel:
-    preset = cell.preset
+def learn_decoder(cell: DecoderCell) -> LatentActionModel:
+    """Demonstrate and fit."""
+    preset, demonstrations = cell.preset, demonstrate(cell, Stream.TRAINING)
     return fit_model(
         PAPER_MODEL,
         demonstrations,
@@ -119,7 +108,7 @@ ALL: Final = 10**9  # more motions than there are
 class Scene:
     """What alignments are learned and judged with."""
 
-    learned: LearnedDecoder  # the decoder
+    cell: AlignmentCell
     chain: Chain
     preference: Preference  # what the simulated person means
     shown: Motions  # motions of the training demonstrations that are visibly not rest
@@ -130,7 +119,7 @@ class Scene:
     @property
     def model(self) -> LatentActionModel:
         """The fitted model."""
-        return self.learned.model
+        return self.cell.model
 
     @cached_property
     def decoder(self) -> Decoder:
@@ -146,7 +135,7 @@ class Scene:
         run: int,
     ) -> Answers:
         """One person's answers about motions drawn at random."""
-        cell = self.learned.cell
+        cell = self.cell.decoder
         rows = generator(cell.seed, cell.task, stream, run).permutation(len(self.shown))[:count]
         motions = self.shown[rows]
         person = Imprecise(self.preference, noise, generator(cell.seed, cell.task, answers, run))
@@ -154,7 +143,7 @@ class Scene:
 
     def candidates(self, noise: float) -> list[Answers]:
         """For each run, motions that may be asked about, and what would be answered."""
-        preset = self.learned.cell.preset
+        preset = self.cell.preset
         return [
             self.ask(preset.curves.candidates, noise, Stream.CANDIDATES, Stream.CANDIDATE_ANSWERS, run)
             for run in range(preset.runs)
@@ -192,9 +181,9 @@ class Scene:
         return float(np.square(missed).sum() / np.square(lengths(self.chain, motions)).sum())
 
 
-def scene_of(learned: LearnedDecoder) -> Scene:
-    """The scene of a decoder; each call returns the same."""
-    cell = learned.cell
+def scene_of(measured: AlignmentCell) -> Scene:
+    """The scene of a cell; each call returns the same."""
+    cell = measured.decoder
     chain = POURING_TASKS[cell.task]().robot.chain
     training = demonstrate(cell, Stream.TRAINING)
     preference = preference_of(cell.task, chain)
@@ -209,7 +198,7 @@ def scene_of(learned: LearnedDecoder) -> Scene:
     shown = every[np.flatnonzero(noticeable(every, chain))]
     some = shown[draw(Stream.SURROUNDINGS).permutation(len(shown))[: cell.preset.surroundings]]
     return Scene(
-        learned=learned,
+        cell=measured,
         chain=chain,
         preference=preference,
         shown=shown,

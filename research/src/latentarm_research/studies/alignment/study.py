@@ -1,6 +1,5 @@
 """`latentarm reproduce alignment`: learning what simulated people mean by their stick (section 8.3)."""
 
-from collections.abc import Sequence
 from math import exp
 from typing import Final
 
@@ -12,7 +11,6 @@ from latentarm_research.alignment.priors import Priors
 from latentarm_research.studies.alignment import preset as conditions
 from latentarm_research.studies.alignment import tables
 from latentarm_research.studies.alignment.cell import AlignmentErrors, measure_cell
-from latentarm_research.studies.alignment.curves import CurveResult, measure_curve
 from latentarm_research.studies.alignment.figures import conditions_figure
 from latentarm_research.studies.alignment.hypotheses import (
     HYPOTHESES,
@@ -20,67 +18,34 @@ from latentarm_research.studies.alignment.hypotheses import (
     compare_conditions,
 )
 from latentarm_research.studies.alignment.preset import PRESETS, Preset
-from latentarm_research.studies.alignment.rows import STUDY as NAME
-from latentarm_research.studies.alignment.rows import (
-    AlignmentResults,
-    series_of,
-    time_alignment,
-)
 from latentarm_research.studies.alignment.scene import (
     AlignmentCell,
     DecoderCell,
     learn_decoder,
 )
 from latentarm_research.studies.claim_tables import judged_parts, verdict_tables
-from latentarm_research.studies.claims import Tested
 from latentarm_research.studies.page import render_page
 from latentarm_research.studies.study import Grid, Report, Request, Study, again
 from latentarm_research.tasks.pouring.tasks import AT_BOWL_M, BOWL_M, POURING_TASKS
 from latentarm_research.tasks.pouring.tool_path import RATE_HZ, SPEED_M_S, TURN_RAD_S
 
 
-def _measure(request: Request[Preset], grid: Grid) -> AlignmentResults:
+def _measure(request: Request[Preset], grid: Grid) -> list[AlignmentErrors]:
     wanted = [DecoderCell(task, request.preset, request.seed) for task in request.tasks]
-    decoders = grid.run("Decoders", learn_decoder, wanted, lambda cell: f"{cell.task}, decoder")
-    curves = [AlignmentCell(one, noise) for noise in request.preset.curves.noises for one in decoders]
-    cells = [AlignmentCell(one, noise) for one in decoders for noise in request.preset.noises]
-    return AlignmentResults(
-        decoders,
-        curves=grid.run("Learning curves", measure_curve, curves, _label),
-        results=grid.run("Alignments", measure_cell, cells, _label),
-    )
+    models = grid.run("Decoders", learn_decoder, wanted, lambda cell: f"{cell.task}, decoder")
+    cells = [
+        AlignmentCell(decoder, model, noise)
+        for decoder, model in zip(wanted, models, strict=True)
+        for noise in request.preset.noises
+    ]
+    return grid.run("Alignments", measure_cell, cells, lambda cell: f"{cell.task}, noise {cell.noise:g}")
 
 
-def _label(cell: AlignmentCell) -> str:
-    return f"{cell.task}, noise {cell.noise:g}"
-
-
-def _report(request: Request[Preset], measured: AlignmentResults) -> Report:
-    series = series_of(measured)
-    tests = compare_conditions(measured.results)
-    figures = {"conditions": conditions_figure(measured.results, request.tasks, request.preset.noises)}
-    # While nothing else runs.
-    alone = [time_alignment(one) for one in measured.decoders]
-    return Report(
-        rows=[one.row(NAME) for one in series],
-        page=_page(request, measured, tests),
-        figures=figures,
-        tests=tests,
-        documents={"runs.json": [one.as_json() for one in series]},
-        timings={"one_alignment": alone},
-        tables=verdict_tables(request.preset.name, HYPOTHESES, tests),
-    )
-
-
-def _page(
-    request: Request[Preset],
-    measured: AlignmentResults,
-    tests: Sequence[Tested],
-) -> str:
-    by_task: dict[str, list[AlignmentErrors]] = {}
-    for result in measured.results:
-        by_task.setdefault(result.cell.task, []).append(result)
-    return render_page(
+def _report(request: Request[Preset], results: list[AlignmentErrors]) -> Report:
+    series = tables.series_of(results)
+    tests = compare_conditions(results)
+    by_task = {task: [one for one in results if one.cell.task == task] for task in request.tasks}
+    page = render_page(
         "alignment/page.md",
         command=again(STUDY, request),
         preset=request.preset,
@@ -101,18 +66,24 @@ def _page(
         settings=posterior,
         queries=queries,
         tool_space=tool_space,
-        curve_tables={_curve_name(curve): tables.curve_table(curve) for curve in measured.curves},
+        curve_tables={
+            f"{look_of(one.cell.task).label}, noise {one.cell.noise:g}": tables.curve_table(one)
+            for one in tables.with_curves(results)
+        },
         near=NEAR,
+    )
+    return Report(
+        rows=[one.row(STUDY.name) for one in series],
+        page=page,
+        figures={"conditions": conditions_figure(results, request.tasks, request.preset.noises)},
+        tests=tests,
+        documents={"runs.json": [one.as_json() for one in series]},
+        tables=verdict_tables(request.preset.name, HYPOTHESES, tests),
     )
 
 
-def _curve_name(curve: CurveResult) -> str:
-    cell = curve.cell
-    return f"{look_of(cell.task).label}, noise {cell.noise:g}"
-
-
 STUDY: Final = Study(
-    name=NAME,
+    name="alignment",
     command="reproduce alignment",
     presets=PRESETS,
     tasks=tuple(POURING_TASKS),
