@@ -1,4 +1,4 @@
-from dataclasses import replace
+from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
@@ -8,11 +8,11 @@ from hypothesis import strategies as st
 from latentarm.core.types import Command, Pose, StepRecord
 from latentarm.evaluation.summary import Subject
 from latentarm_research.metrics.drives import (
-    Outcome,
     drive_rows,
     measure_drive,
     path_length,
 )
+from made_drives import drive_of
 
 
 def record(time_s, u=(0.0, 0.0), mode=0):
@@ -37,8 +37,11 @@ def at(*positions):
 
 
 def outcome(target=(0.0, 0.0, 0.0), goals=(), **changes):
-    facts = {"success": False, "steps_done": 0.0, "stops": 0} | changes
-    return Outcome(target=Pose(np.array(target), np.eye(3)), goals=np.array(goals, dtype=float), **facts)
+    at_task = asdict(drive_of(False))
+    names = ("success", "steps_done", "stops", "preference_alignment", "spilled", "grains")
+    forces = {"table_force_n": np.nan, "food_force_n": np.nan}
+    facts = {name: at_task[name] for name in names} | forces | changes
+    return {"target": Pose(np.array(target), np.eye(3)), "goals": np.array(goals, dtype=float), **facts}
 
 
 def measured(**changes):
@@ -50,7 +53,7 @@ def measured(**changes):
     ]
     tool = at((0, 0, 0), (3, 0, 0), (3, 4, 0), (3, 4, 0))
     facts = {"target": (3.0, 4.0, 2.0), "goals": ((0, 0, 1), (3, 4, 2))} | changes
-    return measure_drive(records, tool, outcome(**facts))
+    return measure_drive(records, tool, **outcome(**facts))
 
 
 def test_the_figures_of_a_drive_are_those_of_its_record():
@@ -68,7 +71,7 @@ def test_the_figures_of_a_drive_are_those_of_its_record():
 
 
 def test_a_drive_of_one_step_went_nowhere():
-    drive = measure_drive([record(2.0, u=(1.0, 0.0))], at((1, 0, 0)), outcome(goals=((0, 0, 0),)))
+    drive = measure_drive([record(2.0, u=(1.0, 0.0))], at((1, 0, 0)), **outcome(goals=((0, 0, 0),)))
     assert (drive.time_s, drive.input_magnitude, drive.path_length) == (0.0, 0.0, 0.0)
     assert (drive.idle_s, drive.turned_round, drive.goal_error_m_s) == (0.0, 0.0, 0.0)
     assert drive.goal_error_m == pytest.approx(1.0)
@@ -77,7 +80,7 @@ def test_a_drive_of_one_step_went_nowhere():
 
 def test_no_steps_are_no_drive():
     with pytest.raises(ValueError, match="without a single step"):
-        measure_drive([], at((0, 0, 0)), outcome())
+        measure_drive([], at((0, 0, 0)), **outcome())
 
 
 def test_rows_hold_mean_sd_and_number_of_a_condition_failed_drives_too():
@@ -97,12 +100,12 @@ def test_rows_hold_mean_sd_and_number_of_a_condition_failed_drives_too():
 
 
 def test_where_nothing_can_be_touched_there_are_no_rows_of_forces():
-    def forces(force_n):
-        rows = drive_rows(Subject("drive"), [measured(force_n=force_n)])
+    def forces(**forces_n):
+        rows = drive_rows(Subject("drive"), [measured(**forces_n)])
         return {row.measure: row.mean for row in rows if row.unit == "N"}
 
-    assert forces(None) == {}
-    assert forces({"table": 7.0, "thing": 99.0}) == {"table_force_n": 7.0, "food_force_n": 0.0}
+    assert forces() == {}
+    assert forces(table_force_n=7.0, food_force_n=0.0) == {"table_force_n": 7.0, "food_force_n": 0.0}
 
 
 def test_only_where_there_are_goals_is_there_an_error_from_them():

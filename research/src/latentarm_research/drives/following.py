@@ -12,7 +12,7 @@ from latentarm.tasks.predicates import Spilled
 from latentarm.tasks.scene_task import Beginning
 from latentarm.tasks.steps import Progress, Waypoint
 from latentarm_research.drives.trace import Trace
-from latentarm_research.metrics.drives import Outcome, measure_drive
+from latentarm_research.metrics.drives import measure_drive
 from latentarm_research.metrics.ending import NOT_NEARER, STUCK_S, Ending, why_it_timed_out
 from latentarm_research.metrics.preference_alignment import alignment_by_step, preference_alignment
 
@@ -78,19 +78,23 @@ class Following:
             tool = chain.forward(np.stack([record.state for record in records]))
         points, needed = np.array(self._points), np.array(self._needed)
         spilled = [fails for fails in begun.failures if isinstance(fails, Spilled)]
-        outcome = Outcome(
+        unfelt = 0.0 if begun.scene.names else np.nan
+        figures = measure_drive(
+            records,
+            tool,
+            target=begun.steps[-1].waypoints[-1].pose(newest),
+            goals=np.array([goal.pose.position for goal in begun.goals]),
             success=self.progress.succeeded,
             steps_done=self.progress.share,
             stops=stops,
-            target=begun.steps[-1].waypoints[-1].pose(newest),
-            goals=np.array([goal.pose.position for goal in begun.goals]),
             preference_alignment=preference_alignment(points, needed),
-            force_n=self._force_n if begun.scene.names else None,
+            table_force_n=self._force_n.get("table", unfelt),
+            food_force_n=self._force_n.get("food", unfelt),
             spilled=sum(one.count(newest) for one in spilled),
             grains=sum(len(one) for one in newest.grains.values()),
         )
         return Trace(
-            figures=measure_drive(records, tool, outcome),
+            figures=figures,
             choice=choice,
             text=begun.text,
             steps=begun.steps,

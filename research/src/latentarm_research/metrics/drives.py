@@ -1,10 +1,10 @@
 """Measures of a drive: how far it came, time, input, the tool's way, forces, and what was spilled."""
 
 import itertools
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from math import isfinite
-from typing import Final, final
+from typing import Any, Final, final
 
 import numpy as np
 
@@ -50,24 +50,6 @@ class Drive:
         }
 
 
-@final
-@dataclass(frozen=True, eq=False)
-class Outcome:
-    """The outcome of a drive at its task."""
-
-    success: bool  # all steps were done, and nothing went wrong
-    steps_done: float  # share of the steps that were done
-    stops: int  # how often the arm was stopped
-    target: Pose  # the last waypoint of the last step, as things stand at the end
-    goals: FloatArray  # places that the person might have wanted, (G, 3), m
-    preference_alignment: float = np.nan  # see `latentarm_research.metrics.preference_alignment`
-    # largest force of the tool on the `table` (dishes too) and on `food`, N; None where nothing can be
-    # touched
-    force_n: Mapping[str, float] | None = None
-    spilled: int = 0  # grains that were spilled
-    grains: int = 0  # grains that there were
-
-
 def path_length(position: FloatArray) -> float:
     """Length of the path through positions (T, 3), m."""
     return float(np.linalg.norm(np.diff(position, axis=0), axis=-1).sum())
@@ -104,34 +86,28 @@ def goal_error(
 def measure_drive(
     records: Sequence[StepRecord],  # every step of the loop in order
     tool: Pose,  # (T,), where the tool was at each
-    outcome: Outcome,
+    target: Pose,  # the last waypoint of the last step, as things stand at the end
+    goals: FloatArray,  # places that the person might have wanted, (G, 3), m
+    **at_task: Any,  # the fields of `Drive` that say how the task went
 ) -> Drive:
     """Figures of a drive from its record. Raises a `ValueError` where there are no records."""
     if not records:
         raise ValueError("A drive without a single step has no figures.")
     time_s = np.array([record.time_s for record in records])
     u = np.stack([record.input for record in records])
-    total, mean = goal_error(time_s, tool.position, outcome.goals)
-    force_n = outcome.force_n
+    total, mean = goal_error(time_s, tool.position, goals)
     return Drive(
-        success=outcome.success,
-        steps_done=outcome.steps_done,
         time_s=float(time_s[-1] - time_s[0]),
         idle_s=idle_time(time_s, u),
         input_magnitude=input_magnitude(time_s, u),
         turned_round=turned_round_share(time_s, u),
         mode_switches=mode_switches([record.mode for record in records]),
         path_length=path_length(tool.position),
-        stops=outcome.stops,
         goal_error_m_s=total,
         goal_error_m=mean,
-        final_distance=float(np.linalg.norm(tool.position[-1] - outcome.target.position)),
-        final_angle_deg=float(np.rad2deg(angle_between(tool.rotation[-1], outcome.target.rotation))),
-        preference_alignment=outcome.preference_alignment,
-        table_force_n=np.nan if force_n is None else force_n.get("table", 0.0),
-        food_force_n=np.nan if force_n is None else force_n.get("food", 0.0),
-        spilled=outcome.spilled,
-        grains=outcome.grains,
+        final_distance=float(np.linalg.norm(tool.position[-1] - target.position)),
+        final_angle_deg=float(np.rad2deg(angle_between(tool.rotation[-1], target.rotation))),
+        **at_task,
     )
 
 
