@@ -5,7 +5,6 @@ Things stand where no demonstration had them, see `latentarm_research.studies.ta
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Final, cast, final
 
 import numpy as np
@@ -56,7 +55,7 @@ def measure(options: catalogue.Surroundings, work: Work) -> Outcome:
         for task in options.tasks
         for source in options.sources or SOURCES
     ]
-    found = grid.run("Drives", drive, drives, lambda cell: cell.label, Keep(_read, _write))
+    found = grid.run("Drives", drive, drives, lambda cell: cell.label, KEEP)
     rows, broken = [], list[str]()
     for task, source in dict.fromkeys((one.task, one.source) for one in drives):
         mine = [f for one, f in zip(drives, found, strict=True) if (one.task, one.source) == (task, source)]
@@ -92,16 +91,14 @@ class DriveCell:
         return f"{self.task}/{self.source}/{self.number}"
 
 
-def _read(out: Path, cell: DriveCell) -> dict[str, float] | None:
-    path = out / "runs" / f"{cell.label}.json"
-    return cast(dict[str, float], read_object(path)) if path.exists() else None
+KEEP: Final = Keep[DriveCell, Mapping[str, float]](
+    path=lambda out, cell: out / "runs" / f"{cell.label}.json",
+    read=lambda path, cell: cast(dict[str, float], read_object(path)),
+    write=lambda path, cell, figures: write_json(path, figures),
+)
 
 
-def _write(out: Path, cell: DriveCell, figures: Mapping[str, float]) -> None:
-    write_json(out / "runs" / f"{cell.label}.json", figures)
-
-
-def drive(cell: DriveCell) -> dict[str, float]:
+def drive(cell: DriveCell) -> Mapping[str, float]:
     """Drive once; the figures of the drive."""
     task = task_of(cell.task, Stream.RUNS)
     choice = choice_of(task, cell.number)

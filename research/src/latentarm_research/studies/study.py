@@ -80,9 +80,14 @@ class Request(Generic[Preset]):
 class Keep(Generic[Cell, Result]):
     """How the results of cells are kept in a study's folder, so that it goes on where it was stopped."""
 
-    # the kept result of a cell; None where there is none. Raises a `UserError` where it is damaged
-    read: Callable[[Path, Cell], Result | None]
-    write: Callable[[Path, Cell, Result], None]  # keeps the result of a cell, whole or not at all
+    path: Callable[[Path, Cell], Path]  # the file of a cell in the study's folder
+    read: Callable[[Path, Cell], Result]  # what a file holds. Raises a `UserError` where it is damaged
+    write: Callable[[Path, Cell, Result], None]  # writes it, whole or not at all
+
+    def find(self, out: Path, cell: Cell) -> Result | None:
+        """The kept result of a cell; None where there is none."""
+        path = self.path(out, cell)
+        return self.read(path, cell) if path.exists() else None
 
 
 class Grid:
@@ -112,7 +117,7 @@ class Grid:
         the same to the last bit in whatever process a cell is measured.
         """
         out = self._request.out
-        found = [None if keep is None else keep.read(out, cell) for cell in cells]
+        found = [None if keep is None else keep.find(out, cell) for cell in cells]
         missing = [cell for cell, one in zip(cells, found, strict=True) if one is None]
         there = f", {len(cells) - len(missing)} of them kept from before" if len(missing) < len(cells) else ""
         self.say(f"{what}: {len(cells)} cells{there}.")
@@ -125,7 +130,7 @@ class Grid:
                 backend=BACKENDS[self._request.backend],
                 label=label,
                 bars=self._request.bars,
-                keep=None if keep is None else lambda cell, result: keep.write(out, cell, result),
+                keep=None if keep is None else lambda cell, one: keep.write(keep.path(out, cell), cell, one),
             )
         )
         self.took_s += perf_counter() - began
@@ -148,8 +153,6 @@ class Report:
     documents: Mapping[str, object] = field(default_factory=dict)  # further JSON files by name
     # the same for long lists of numbers, without line breaks
     records: Mapping[str, object] = field(default_factory=dict)
-    # how long parts took, s, apart from the grids
-    timings: Mapping[str, object] = field(default_factory=dict)
     tables: "Sequence[RenderableType]" = ()  # the study at a glance, for a terminal
 
 
@@ -206,7 +209,7 @@ def run_study(study: Study[Preset, Measured], request: Request[Preset]) -> Repor
     report = study.report(request, measured)
     if request.preset.name == SMOKE:
         report = replace(report, tests=())
-    timings = {"backend": request.backend, "jobs": request.jobs, "grid_s": grid.took_s, **report.timings}
+    timings = {"backend": request.backend, "jobs": request.jobs, "grid_s": grid.took_s}
     write_json(request.out / "timings.json", timings)
     if why := write_report(request.out, report, about):
         grid.say(why)

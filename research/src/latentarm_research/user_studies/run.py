@@ -43,18 +43,15 @@ def _session_path(out: Path, cell: SessionCell) -> Path:
     return out / SESSIONS / f"{cell.traits.number}_{cell.order}_{cell.task.name}.json"
 
 
-def _write_session(out: Path, cell: SessionCell, session: Session) -> None:
+def _write_session(path: Path, cell: SessionCell, session: Session) -> None:
     document = {
         "trials": [trial.as_json() for trial in session.trials],
         "traces": [trace.as_json() for trace in session.traces],
     }
-    write_text(_session_path(out, cell), json.dumps(document, separators=(",", ":"), allow_nan=False) + "\n")
+    write_text(path, json.dumps(document, separators=(",", ":"), allow_nan=False) + "\n")
 
 
-def _read_session(out: Path, cell: SessionCell) -> Session | None:
-    path = _session_path(out, cell)
-    if not path.exists():
-        return None
+def _read_session(path: Path, cell: SessionCell) -> Session:
     document = read_object(path)
     session = Session(read_trials(document, path), read_traces(document, path))
     wanted = (cell.traits.number, cell.condition.name, cell.task.name)
@@ -63,7 +60,7 @@ def _read_session(out: Path, cell: SessionCell) -> Session | None:
     return session
 
 
-KEEP_SESSIONS: Final = Keep(_read_session, _write_session)
+KEEP_SESSIONS: Final = Keep(_session_path, _read_session, _write_session)
 
 
 def study_of(
@@ -97,7 +94,7 @@ def send_people(definition: Definition, request: Request[Sizes], grid: Grid) -> 
     """Let simulated people go through a study; sessions that are kept are not gone through again."""
     people = draw_people(request.preset.simulated, request.seed)
     cells = _session_cells(definition, request, people)
-    missing = {_trained_as(cell) for cell in cells if KEEP_SESSIONS.read(request.out, cell) is None}
+    missing = {_trained_as(cell) for cell in cells if KEEP_SESSIONS.find(request.out, cell) is None}
     fits = _training_cells(definition, request, people, missing)
     trained: Mapping[str, Trained] = {
         one.task: one

@@ -18,7 +18,7 @@ from latentarm.tasks.scene_task import SceneTask
 from latentarm_research.studies.page import PDF
 from latentarm_research.studies.results_folder import CONFIG
 from latentarm_research.studies.study import ALWAYS_MADE, Request, again, run_study
-from latentarm_research.studies.tasks.cell import TaskRunResult, show, training_set
+from latentarm_research.studies.tasks.cell import show, training_set
 from latentarm_research.studies.tasks.figures import success_figure
 from latentarm_research.studies.tasks.kept import MODELS
 from latentarm_research.studies.tasks.preset import (
@@ -173,7 +173,7 @@ def test_more_people_and_runs_are_added(stopped, monkeypatch):
 
     def drive(cell):
         measured.append((cell.person, cell.number))
-        return TaskRunResult(cell.task, cell.condition, ran(cell.number, 1))
+        return ran(cell.number, 1)
 
     monkeypatch.setattr("latentarm_research.studies.tasks.study.drive", drive)
     monkeypatch.setattr("latentarm_research.studies.tasks.study.show", show)

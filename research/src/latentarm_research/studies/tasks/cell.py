@@ -54,10 +54,11 @@ def show(cell: ShownCell) -> DemonstratedRun:
 @final
 @dataclass(frozen=True, eq=False)
 class ModelCell:
-    """Models of one kind."""
+    """Models of one kind, or the orientations that demonstrations had."""
 
     task: str  # a name of `latentarm_research.studies.tasks.moved.TASKS`
-    condition: Condition  # which kind of model, what its decoder sees, and whether it has a way back
+    # which kind of model, what its decoder sees, and whether it has a way back; or `ORIENTED`
+    condition: Condition
     demonstrations: Demonstrations  # to learn from
     preset: Preset  # sizes of the study
     seed: int  # of the study
@@ -123,24 +124,13 @@ class TaskRunCell:
         return self.driver.condition.by(self.person)
 
 
-@final
-@dataclass(frozen=True, eq=False)
-class TaskRunResult:
-    """The result of a `TaskRunCell`."""
-
-    task: str  # a name of `latentarm_research.studies.tasks.moved.TASKS`
-    condition: Condition  # see `TaskRunCell`
-    run: Run  # how it went
-
-
-def drive(cell: TaskRunCell) -> TaskRunResult:
+def drive(cell: TaskRunCell) -> Run:
     """Let the simulated person do the task."""
     task = task_of(cell.task, Stream.RUNS)
     setup = drives.Setup(task, cell.driver.controller(task.robot, cell.number), PEOPLE[cell.person])
     # The same number gives the same scene and start to the demonstrator and in every condition.
     rng = generator(cell.seed, cell.task, Stream.RUNS, cell.number)
-    trace = drives.drive(setup, choice_of(task, cell.number), rng)
-    return TaskRunResult(cell.task, cell.condition, driven_run(task, cell.number, trace))
+    return driven_run(task, cell.number, drives.drive(setup, choice_of(task, cell.number), rng))
 
 
 def training_set(

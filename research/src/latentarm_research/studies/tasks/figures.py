@@ -1,6 +1,5 @@
 """The study's figure: how many runs succeed, by task and person."""
 
-from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -8,8 +7,7 @@ import numpy as np
 from latentarm.core.figure_style import FONT_SIZE, SMALL_FONT_SIZE, tidy
 from latentarm.evaluation.looks import look_of
 from latentarm_research.studies.drawing import first_panels, name_series, panel_grid, title
-from latentarm_research.studies.tasks.preset import Condition
-from latentarm_research.studies.tasks.runs import Run
+from latentarm_research.studies.tasks.rows import ByTask
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -22,7 +20,7 @@ UNAWARE: Final = "joints"  # the context that knows nothing of things: its marke
 SPREAD: Final = 0.7  # the width in which the conditions of a task stand side by side, in tasks
 
 
-def success_figure(by_task: Mapping[str, Mapping[Condition, Sequence[Run]]]) -> "Figure":
+def success_figure(by_task: ByTask) -> "Figure":
     """The share of the runs that succeeded: a panel per person, tasks across."""
     conditions = dict.fromkeys(one for runs in by_task.values() for one in runs if one.person is not None)
     people = list(dict.fromkeys(one.person for one in conditions))

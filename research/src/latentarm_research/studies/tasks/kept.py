@@ -27,7 +27,6 @@ from latentarm_research.studies.tasks.cell import (
     ModelCell,
     ShownCell,
     TaskRunCell,
-    TaskRunResult,
 )
 from latentarm_research.studies.tasks.runs import Run, kept_in
 
@@ -40,19 +39,15 @@ def _shown_path(out: Path, cell: ShownCell) -> Path:
     return out / RUNS / cell.task / cell.stream.name.lower() / f"{cell.number}.json"
 
 
-def _write_shown(out: Path, cell: ShownCell, shown: DemonstratedRun) -> None:
-    path, episode = _shown_path(out, cell), shown.episode
-    about: dict[str, object] = {}
+def _write_shown(path: Path, cell: ShownCell, shown: DemonstratedRun) -> None:
+    episode, about = shown.episode, dict[str, object]()
     if episode is not None:
         arrays = {"state": episode.state, "timestamp": episode.timestamp, **episode.extras}
         about = {"text": episode.task, **_write_arrays(path, arrays)}
     write_json(path, {**shown.run.as_json(), "objects": list(shown.objects), **about})
 
 
-def _read_shown(out: Path, cell: ShownCell) -> DemonstratedRun | None:
-    path = _shown_path(out, cell)
-    if not path.exists():
-        return None
+def _read_shown(path: Path, cell: ShownCell) -> DemonstratedRun:
     section = Section.of_file(path, LIMIT)
     run = _run(section, cell.number)
     objects = tuple(section.texts("objects"))
@@ -71,30 +66,26 @@ def _drive_path(out: Path, cell: TaskRunCell) -> Path:
     return out / RUNS / cell.task / cell.person / cell.driver.condition.folder / f"{cell.number}.json"
 
 
-def _write_drive(out: Path, cell: TaskRunCell, driven: TaskRunResult) -> None:
-    write_json(_drive_path(out, cell), driven.run.as_json())
+def _write_drive(path: Path, cell: TaskRunCell, run: Run) -> None:
+    write_json(path, run.as_json())
 
 
-def _read_drive(out: Path, cell: TaskRunCell) -> TaskRunResult | None:
-    path = _drive_path(out, cell)
-    if not path.exists():
-        return None
+def _read_drive(path: Path, cell: TaskRunCell) -> Run:
     section = Section.of_file(path, LIMIT)
-    figures = Drive(**_values(section, Drive))
-    return TaskRunResult(cell.task, cell.condition, _run(section, cell.number, figures))
+    return _run(section, cell.number, Drive(**_values(section, Drive)))
 
 
-def _write_model(out: Path, cell: ModelCell, trained: FittedModel) -> None:
-    folder = out / MODELS / kept_in(cell.task, cell.condition)
-    write_model(folder, trained.model, {"preset": asdict(cell.preset), "fit_s": trained.fit_s})
+def _model_path(out: Path, cell: ModelCell) -> Path:
+    return out / MODELS / kept_in(cell.task, cell.condition) / CONFIG_NAME
 
 
-def _read_model(out: Path, cell: ModelCell) -> FittedModel | None:
-    folder = out / MODELS / kept_in(cell.task, cell.condition)
-    if not (folder / CONFIG_NAME).exists():
-        return None
-    fit_s = Section.of_file(folder / CONFIG_NAME, CONFIG_LIMIT).number("fit_s")
-    return FittedModel(cell.task, cell.condition, read_model(folder), fit_s)
+def _write_model(path: Path, cell: ModelCell, trained: FittedModel) -> None:
+    write_model(path.parent, trained.model, {"preset": asdict(cell.preset), "fit_s": trained.fit_s})
+
+
+def _read_model(path: Path, cell: ModelCell) -> FittedModel:
+    fit_s = Section.of_file(path, CONFIG_LIMIT).number("fit_s")
+    return FittedModel(cell.task, cell.condition, read_model(path.parent), fit_s)
 
 
 def _write_arrays(path: Path, arrays: Mapping[str, FloatArray]) -> dict[str, object]:
@@ -136,6 +127,6 @@ def _run(section: Section, number: int, figures: Drive | None = None) -> Run:
     return run
 
 
-KEEP_SHOWN: Final = Keep(_read_shown, _write_shown)
-KEEP_MODELS: Final = Keep(_read_model, _write_model)
-KEEP_DRIVES: Final = Keep(_read_drive, _write_drive)
+KEEP_SHOWN: Final = Keep(_shown_path, _read_shown, _write_shown)
+KEEP_MODELS: Final = Keep(_model_path, _read_model, _write_model)
+KEEP_DRIVES: Final = Keep(_drive_path, _read_drive, _write_drive)

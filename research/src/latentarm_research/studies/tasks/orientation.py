@@ -2,8 +2,7 @@
 
 import warnings
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any, Final, final
+from typing import Any, Final
 
 import numpy as np
 from sklearn.exceptions import ConvergenceWarning
@@ -16,9 +15,9 @@ from latentarm.robots.kinematics.chain import Chain
 from latentarm.robots.kinematics.pose_rows import STORED, seen_rows
 from latentarm_research.baselines.learned_orientation import OrientationMap, features
 from latentarm_research.studies.streams import generator, integer, sequence
+from latentarm_research.studies.tasks.cell import ModelCell
 from latentarm_research.studies.tasks.moved import task_of
-from latentarm_research.studies.tasks.preset import ORIENTED, Condition, Preset, Stream
-from latentarm_research.studies.tasks.runs import Driver
+from latentarm_research.studies.tasks.preset import Stream
 
 NOISE_M: Final = 0.02
 """SD of how far the tool is moved from where it was shown, along each axis, m: its orientation stays."""
@@ -26,32 +25,7 @@ NOISE_M: Final = 0.02
 DRAWS: Final = 3  # times that each sample is moved so
 
 
-@final
-@dataclass(frozen=True, eq=False)
-class OrientationCell:
-    """The orientations of one task."""
-
-    task: str  # a name of `latentarm_research.studies.tasks.moved.TASKS`
-    demonstrations: Demonstrations  # to learn from
-    preset: Preset  # sizes of the study
-    seed: int  # of the study
-
-
-@final
-@dataclass(frozen=True, eq=False)
-class Oriented:
-    """The result of an `OrientationCell`."""
-
-    task: str  # a name of `latentarm_research.studies.tasks.moved.TASKS`
-    orientation: OrientationMap  # what was learned
-
-    @property
-    def driver(self) -> Driver:
-        """What a person steers with."""
-        return Driver(Condition(ORIENTED), orientation=self.orientation)
-
-
-def orient(cell: OrientationCell) -> Oriented:
+def orient(cell: ModelCell) -> OrientationMap:
     """Learn the orientations of a task's demonstrations."""
     chain = task_of(cell.task, Stream.DEMONSTRATIONS).robot.chain
     use = (cell.seed, cell.task, Stream.NETWORKS)
@@ -61,7 +35,7 @@ def orient(cell: OrientationCell) -> Oriented:
         "max_iter": cell.preset.epochs,
         "random_state": integer(sequence(*use)),
     }
-    return Oriented(cell.task, learned(cell.demonstrations, chain, how, generator(*use)))
+    return learned(cell.demonstrations, chain, how, generator(*use))
 
 
 def learned(

@@ -7,11 +7,15 @@ from typing import Final, final
 from latentarm.core.types import Row
 from latentarm.evaluation.summary import Subject, summarise
 from latentarm_research.metrics.drives import drive_rows
-from latentarm_research.studies.tasks.cell import DemonstratedRun, FittedModel, TaskRunResult
+from latentarm_research.studies.tasks.cell import DemonstratedRun, FittedModel, TaskRunCell
 from latentarm_research.studies.tasks.preset import DEMONSTRATOR, Condition, Stream
 from latentarm_research.studies.tasks.runs import Run
 
 STUDY: Final = "tasks"
+
+
+ByTask = Mapping[str, Mapping[Condition, Sequence[Run]]]
+"""The runs of each task, by condition, each in the order of their numbers."""
 
 
 @final
@@ -21,20 +25,20 @@ class TasksResults:
 
     shown: Sequence[DemonstratedRun]  # by the scripted demonstrator
     trained: Sequence[FittedModel]  # models
-    driven: Sequence[TaskRunResult]  # by simulated people
+    driven: Sequence[tuple[TaskRunCell, Run]]  # by simulated people
 
-    def runs(self, task: str) -> dict[Condition, tuple[Run, ...]]:
-        """The runs of a task, by condition, each in the order of their numbers."""
-        found: dict[Condition, list[Run]] = {}
+    def by_task(self, tasks: Sequence[str]) -> ByTask:
+        """All runs that are no demonstrations to learn from."""
+        found: dict[str, dict[Condition, list[Run]]] = {task: {} for task in tasks}
         for one in self.shown:
-            if (one.cell.task, one.cell.stream) == (task, Stream.RUNS):
-                found.setdefault(Condition(DEMONSTRATOR), []).append(one.run)
-        for one in self.driven:
-            if one.task == task:
-                found.setdefault(one.condition, []).append(one.run)
-        return {
-            condition: tuple(sorted(runs, key=lambda run: run.number)) for condition, runs in found.items()
-        }
+            if one.cell.stream == Stream.RUNS:
+                found[one.cell.task].setdefault(Condition(DEMONSTRATOR), []).append(one.run)
+        for cell, run in self.driven:
+            found[cell.task].setdefault(cell.condition, []).append(run)
+        for by_condition in found.values():
+            for runs in by_condition.values():
+                runs.sort(key=lambda run: run.number)
+        return found
 
     def fit_s(self, context: str) -> dict[Condition, float]:
         """The decoders that see a context, and how long each trained for all tasks, s."""
@@ -54,7 +58,7 @@ class TasksResults:
         return len(kept), sum(run.time_s for run in kept)
 
 
-def rows_of(by_task: Mapping[str, Mapping[Condition, Sequence[Run]]]) -> list[Row]:
+def rows_of(by_task: ByTask) -> list[Row]:
     """Mean and SD over the runs of every condition, failed ones too."""
     return [
         row
@@ -64,7 +68,7 @@ def rows_of(by_task: Mapping[str, Mapping[Condition, Sequence[Run]]]) -> list[Ro
     ]
 
 
-def runs_as_json(by_task: Mapping[str, Mapping[Condition, Sequence[Run]]]) -> list[dict[str, object]]:
+def runs_as_json(by_task: ByTask) -> list[dict[str, object]]:
     """Every run."""
     return [
         {

@@ -10,6 +10,7 @@ from scipy.stats import fisher_exact
 from latentarm.tasks.catalogue import SCENE_TASKS
 from latentarm_research.studies.tables import listed, markdown_table
 from latentarm_research.studies.tasks.preset import SWITCHING, Condition
+from latentarm_research.studies.tasks.rows import ByTask
 from latentarm_research.studies.tasks.runs import Run, time_ratios
 
 PRACTISED: Final = ("planning", "greedy", "unsteady")
@@ -23,8 +24,6 @@ CHANCE: Final = 0.05
 """Fewer successes than by mode switching are no chance where Fisher's exact p is below this."""
 
 SWITCHED: Final = Condition(SWITCHING)
-
-ByTask = Mapping[str, Mapping[Condition, Sequence[Run]]]
 
 
 @final

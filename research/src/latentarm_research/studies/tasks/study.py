@@ -18,7 +18,6 @@ from latentarm_research.studies.tasks import cell as measuring
 from latentarm_research.studies.tasks import kept, moved, orientation, runs, tables
 from latentarm_research.studies.tasks import preset as presets
 from latentarm_research.studies.tasks.cell import (
-    FittedModel,
     ModelCell,
     ShownCell,
     TaskRunCell,
@@ -29,9 +28,10 @@ from latentarm_research.studies.tasks.cell import (
 )
 from latentarm_research.studies.tasks.figures import success_figure
 from latentarm_research.studies.tasks.moved import MOVED, TASKS, task_of
-from latentarm_research.studies.tasks.orientation import OrientationCell, Oriented, orient
+from latentarm_research.studies.tasks.orientation import orient
 from latentarm_research.studies.tasks.preset import (
     DEMONSTRATOR,
+    ORIENTED,
     PRESETS,
     SWITCHING,
     Condition,
@@ -39,9 +39,9 @@ from latentarm_research.studies.tasks.preset import (
     Stream,
 )
 from latentarm_research.studies.tasks.rows import STUDY as NAME
-from latentarm_research.studies.tasks.rows import TasksResults, rows_of, runs_as_json
+from latentarm_research.studies.tasks.rows import ByTask, TasksResults, rows_of, runs_as_json
 from latentarm_research.studies.tasks.rule import DefaultVerdict, decide
-from latentarm_research.studies.tasks.runs import Driver, Run
+from latentarm_research.studies.tasks.runs import Driver
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -64,11 +64,20 @@ def _measure(request: Request[Preset], grid: Grid) -> TasksResults:
     trained = grid.run(
         "Models", train, fits, lambda cell: f"{cell.task}, {cell.condition.label}", kept.KEEP_MODELS
     )
-    orienting = [OrientationCell(task, demonstrations, preset, seed) for task, demonstrations in sets.items()]
+    orienting = [
+        ModelCell(task, Condition(ORIENTED), demonstrations, preset, seed)
+        for task, demonstrations in sets.items()
+    ]
     oriented = grid.run("Orientations", orient, orienting, lambda cell: cell.task)
-    cells = _drive_cells(request, (*oriented, *trained))
+    drivers = {
+        cell.task: [Driver(cell.condition, orientation=one)]
+        for cell, one in zip(orienting, oriented, strict=True)
+    }
+    for one in trained:
+        drivers[one.task].append(one.driver)
+    cells = _drive_cells(request, drivers)
     driven = grid.run("Drives", drive, cells, _drive_label, kept.KEEP_DRIVES)
-    return TasksResults(shown, trained, driven)
+    return TasksResults(shown, trained, list(zip(cells, driven, strict=True)))
 
 
 def _shown_cells(request: Request[Preset]) -> list[ShownCell]:
@@ -84,14 +93,14 @@ def _shown_cells(request: Request[Preset]) -> list[ShownCell]:
     ]
 
 
-def _drive_cells(request: Request[Preset], learned: Sequence[FittedModel | Oriented]) -> list[TaskRunCell]:
+def _drive_cells(request: Request[Preset], learned: Mapping[str, Sequence[Driver]]) -> list[TaskRunCell]:
     """Number by number, so that a study that was stopped has as many runs of each condition."""
     preset = request.preset
     return [
         TaskRunCell(task, driver, person, number, request.seed)
         for number in range(preset.runs)
         for task in request.tasks
-        for driver in _drivers([one.driver for one in learned if one.task == task], preset)
+        for driver in _drivers(learned[task], preset)
         if number < preset.others or driver.condition in (Condition(SWITCHING), preset.default, preset.page)
         for person in preset.people
     ]
@@ -112,7 +121,7 @@ def _drive_label(cell: TaskRunCell) -> str:
 
 
 def _report(request: Request[Preset], measured: TasksResults) -> Report:
-    by_task = {task: measured.runs(task) for task in request.tasks}
+    by_task = measured.by_task(request.tasks)
     verdict = decide(by_task, measured.fit_s(request.preset.context))
     rows = rows_of(by_task)
     figures = {"success": success_figure(by_task)}
@@ -128,7 +137,7 @@ def _report(request: Request[Preset], measured: TasksResults) -> Report:
 def _page(
     request: Request[Preset],
     measured: TasksResults,
-    by_task: Mapping[str, Mapping[Condition, Sequence[Run]]],
+    by_task: ByTask,
     rows: Sequence[Row],
     figures: "Mapping[str, Figure]",
     verdict: DefaultVerdict,

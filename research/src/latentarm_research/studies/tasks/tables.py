@@ -10,6 +10,7 @@ from latentarm.evaluation.looks import look_of
 from latentarm.evaluation.table import ABSENT, format_figure
 from latentarm_research.studies.tables import heading, markdown_table, terminal_table
 from latentarm_research.studies.tasks.preset import SWITCHING, Condition
+from latentarm_research.studies.tasks.rows import ByTask
 from latentarm_research.studies.tasks.runs import Run, step_names, time_ratios
 
 if TYPE_CHECKING:
@@ -110,7 +111,7 @@ def failure_table(runs: Mapping[Condition, Sequence[Run]]) -> str:
     return markdown_table(["person", "ended in step", "why", *(what.label for what in moves)], lines)
 
 
-def summary_tables(by_task: Mapping[str, Mapping[Condition, Sequence[Run]]]) -> "list[Table]":
+def summary_tables(by_task: ByTask) -> "list[Table]":
     """How many runs succeeded: a table per task, what moves the arm down, people across."""
     tables: list[Table] = []
     for task, runs in by_task.items():
