@@ -11,7 +11,8 @@ from latentarm.assistance.controllers.end_effector import EndEffectorController
 from latentarm.core.errors import UserError
 from latentarm.core.types import Context
 from latentarm.robots.catalogue import load_robot
-from latentarm_research.baselines.retargeting import RetargetingController, RetargetingCosts
+from latentarm_research.baselines import retargeting
+from latentarm_research.baselines.retargeting import RetargetingController
 
 PANDA = load_robot("panda")
 CONTROLLER = RetargetingController(PANDA)
@@ -33,15 +34,16 @@ def test_away_from_limits_the_tool_nearly_follows_the_stick(u, mode):
 
 @pytest.mark.parametrize("side", [-1.0, 1.0])
 @pytest.mark.parametrize("joint", range(7))
-def test_a_joint_at_its_limit_goes_no_farther_and_comes_away_freely(joint, side):
+def test_a_joint_at_its_limit_goes_no_farther_and_comes_away_freely(joint, side, monkeypatch):
     limits, state = PANDA.limits, PANDA.home.copy()
     state[joint] = limits.upper[joint] if side > 0 else limits.lower[joint]
     context = Context(state, NO_BELIEF)
-    free = RetargetingController(PANDA, costs=RetargetingCosts(limits=1e-9))
     for mode in range(3):
         for u in (np.array([1.0, 0.0]), np.array([0.0, 1.0])):
             for sign in (1.0, -1.0):
-                wanted = side * free.action(sign * u, context, mode)[joint]
+                with monkeypatch.context() as free:
+                    free.setattr(retargeting, "LIMITS", 1e-9)
+                    wanted = side * CONTROLLER.action(sign * u, context, mode)[joint]
                 given_ = side * CONTROLLER.action(sign * u, context, mode)[joint]
                 if wanted > 1e-9:
                     assert -1e-9 <= given_ < wanted

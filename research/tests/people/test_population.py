@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from latentarm.core.errors import UserError
 from latentarm_research.people.calibration import BEFORE, Calibration
 from latentarm_research.people.population import TRAITS, draw_people
-from latentarm_research.people.practice import time_share
 from latentarm_research.people.spread import LogNormal, Normal
+from latentarm_research.people.traits import time_share
 
 SEEDS = st.integers(0, 2**31)
 

@@ -24,6 +24,8 @@ POSITION: Final = AxisModes(("x-y", "z"), ((0, 1), (2, 3)))
 """The second axis of the mode z would turn the tool, and does nothing here."""
 
 GAIN_PER_S: Final = 4.0  # how fast an error in orientation shrinks while the stick is pushed fully, 1/s
+LINEAR_M_S: Final = 0.15  # of a full input along an axis
+TURN_RAD_S: Final = 0.5  # fastest turn at a full input along an axis
 
 
 def features(
@@ -79,14 +81,10 @@ class LearnedOrientationController(AxisController):
         self,
         robot: Robot,  # the arm; its first tool is driven
         orientation: OrientationMap,
-        linear_speed: float = 0.15,  # of a full input along an axis, m/s
-        turn_speed: float = 0.5,  # fastest turn at a full input along an axis, rad/s
-        damping: Damping | None = None,
     ) -> None:
-        super().__init__(robot, linear_speed, turn_speed, POSITION)
+        super().__init__(robot, LINEAR_M_S, TURN_RAD_S, POSITION)
         self._orientation = orientation
-        self._linear_speed, self._turn_speed = linear_speed, turn_speed
-        self._damping = damping or Damping()
+        self._damping = Damping()
 
     @property
     def objects(self) -> tuple[str, ...]:
@@ -100,8 +98,8 @@ class LearnedOrientationController(AxisController):
         asked = np.vecmat(z, self._modes.twists(mode, self._scale, pose.rotation))[..., :3]
         turn = rotation_vector(self._orientation(pose.position, context) @ pose.rotation.mT)
         angle = np.sqrt(np.vecdot(turn, turn))[..., None]
-        rate = turn * np.minimum(GAIN_PER_S, self._turn_speed / np.maximum(angle, 1e-9))
-        push = np.sqrt(np.vecdot(asked, asked))[..., None] / self._linear_speed
+        rate = turn * np.minimum(GAIN_PER_S, TURN_RAD_S / np.maximum(angle, 1e-9))
+        push = np.sqrt(np.vecdot(asked, asked))[..., None] / LINEAR_M_S
         twist = np.concatenate(np.broadcast_arrays(asked, push * rate), axis=-1)
         jacobian = self._chain.jacobian_at(transforms, pose)
         return np.vecmat(twist, joint_velocities(np.eye(6), jacobian, self._damping))

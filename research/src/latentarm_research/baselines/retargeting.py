@@ -5,28 +5,22 @@ arms", 2017, carry the motion of a person's hand over to an arm by an optimisati
 hand for smooth, feasible joint motion. Of that, this keeps what applies to a stick of two axes.
 """
 
-from dataclasses import dataclass
-from typing import final
+from typing import Final, final
 
 import numpy as np
 
-from latentarm.assistance.controllers.axis_modes import PAIRS, AxisController, AxisModes
+from latentarm.assistance.controllers.axis_modes import PAIRS, AxisController
 from latentarm.core.types import Context, FloatArray
 from latentarm.robots.robot import Robot
 
-
-@final
-@dataclass(frozen=True)
-class RetargetingCosts:
-    """Weights of the objectives of retargeting; all values are assumptions."""
-
-    # what a rad of wrong orientation counts, m: the tool's place matters more than its turn
-    rotation_m: float = 0.2
-    # of joint velocities, (m/rad)²: keeps motions small, and bounded at singular configurations
-    effort: float = 1e-4
-    limits: float = 1.0  # of a velocity towards a joint's limit, (m/rad)², at the limit itself
-    # where that begins, before the limit, rad; it grows with the square of the nearness
-    near_rad: float = 0.3
+# Weights of the objectives; all values are assumptions.
+ROTATION_M: Final = (
+    0.2  # what a rad of wrong orientation counts, m: the tool's place matters more than its turn
+)
+EFFORT: Final = 1e-4  # of joint velocities, (m/rad)²: they stay small, and bounded at singular configurations
+LIMITS: Final = 1.0  # of a velocity towards a joint's limit, (m/rad)², at the limit itself
+NEAR_RAD: Final = 0.3  # where that begins, before the limit; it grows with the square of the nearness
+WEIGHTS: Final = np.repeat([1.0, ROTATION_M], 3)
 
 
 @final
@@ -39,7 +33,7 @@ class RetargetingController(AxisController):
         ‖W (J v - twist)‖² + effort ‖v‖² + Σ_i limits near_i² v_i²
 
     over joints i that a first solution without the last term moves towards a limit, where ``near_i`` grows
-    from 0 to 1 over ``near_rad`` before the limit. W counts a radian as ``rotation_m``.
+    from 0 to 1 over `NEAR_RAD` before the limit. W counts a radian as `ROTATION_M`.
 
     Kept of Rakita et al.: matching position and orientation as objectives rather than constraints, position
     before orientation; small joint velocities; keeping away from limits. Left out: the mapping of a human
@@ -53,30 +47,26 @@ class RetargetingController(AxisController):
         robot: Robot,  # the arm; its first tool is driven
         linear_speed: float = 0.15,  # of a full input along an axis, m/s
         angular_speed: float = 0.5,  # of a full input about an axis, rad/s
-        modes: AxisModes = PAIRS,
-        costs: RetargetingCosts | None = None,
     ) -> None:
-        super().__init__(robot, linear_speed, angular_speed, modes)
+        super().__init__(robot, linear_speed, angular_speed, PAIRS)
         self._limits = robot.limits
-        self._costs = costs or RetargetingCosts()
-        self._weights = np.array([1.0] * 3 + [self._costs.rotation_m] * 3)
 
     def action(self, z: FloatArray, context: Context, mode: int) -> FloatArray:
         """Joint velocities that follow the target best, (..., n), rad/s."""
-        costs, state = self._costs, context.state
+        state = context.state
         twists, jacobian = self._twists_and_jacobian(state, mode)
         twist = np.vecmat(z, twists)
-        matched = self._weights[:, None] * jacobian
-        wanted = np.vecmat(self._weights * twist, matched)
-        normal = matched.mT @ matched + costs.effort * np.eye(state.shape[-1])
+        matched = WEIGHTS[:, None] * jacobian
+        wanted = np.vecmat(WEIGHTS * twist, matched)
+        normal = matched.mT @ matched + EFFORT * np.eye(state.shape[-1])
         first = np.linalg.solve(normal, wanted[..., None])[..., 0]
-        held = costs.limits * np.where(first > 0.0, self._near_upper(state), self._near_lower(state)) ** 2
+        held = LIMITS * np.where(first > 0.0, self._near_upper(state), self._near_lower(state)) ** 2
         return np.linalg.solve(normal + held[..., None] * np.eye(state.shape[-1]), wanted[..., None])[..., 0]
 
     def _near_upper(self, state: FloatArray) -> FloatArray:
-        """From 0, ``near_rad`` and more before each joint's upper limit, to 1, at it, (..., n)."""
-        return np.clip(1.0 - (self._limits.upper - state) / self._costs.near_rad, 0.0, 1.0)
+        """From 0, `NEAR_RAD` and more before each joint's upper limit, to 1, at it, (..., n)."""
+        return np.clip(1.0 - (self._limits.upper - state) / NEAR_RAD, 0.0, 1.0)
 
     def _near_lower(self, state: FloatArray) -> FloatArray:
         """The same before the lower limit."""
-        return np.clip(1.0 - (state - self._limits.lower) / self._costs.near_rad, 0.0, 1.0)
+        return np.clip(1.0 - (state - self._limits.lower) / NEAR_RAD, 0.0, 1.0)

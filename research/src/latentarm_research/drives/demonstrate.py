@@ -1,14 +1,14 @@
 """Demonstrations of a task with things: a simulated person guides the arm through its steps, in physics."""
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Final, final
 
 import numpy as np
 
 from latentarm.arms.catalogue import make_scene_arm
-from latentarm.arms.contract import SceneArm
 from latentarm.control.clock import SimulatedClock
 from latentarm.core.parallel import run_grid
 from latentarm.core.types import (
@@ -59,7 +59,6 @@ def demonstrate_once(
     task: SceneTask,  # what is done
     choice: int,  # index into the task's choices
     rng: np.random.Generator,  # source of all variation
-    watch: Callable[[SceneArm], None] | None = None,  # sees the arm at every period, such as a camera
     time_limit_s: float = math.inf,  # where the task's own is longer, s
 ) -> Demonstration:
     """Guide an arm through one run of a task.
@@ -80,8 +79,6 @@ def demonstrate_once(
             clock.wait_until(tick * PERIOD_S)
             state, reading = driven.scene_state(), driven.read()
             person.progress.update(state)
-            if watch is not None:
-                watch(driven)
             command = person.command(state, reading, clock.now_s())
             if tick % SAMPLE_TICKS == 0:
                 progress = person.progress
@@ -102,8 +99,14 @@ def demonstrate(
     task: SceneTask, episodes: int, seed: int, jobs: int = 1, *, bars: bool = False
 ) -> tuple[Demonstrations, list[Demonstration]]:
     """Demonstrations of a task, its choices in turn: the dataset of those that succeeded, and all."""
-    calls = [_Call(task, index, seed) for index in range(episodes)]
-    all_of_them = run_grid(_demonstrate, calls, jobs=jobs, label=_name_of, bars=bars, unit="demonstrations")
+    all_of_them = run_grid(
+        partial(_demonstrate, task, seed),
+        range(episodes),
+        jobs=jobs,
+        label=lambda index: f"demonstration {index + 1} of {task.name}",
+        bars=bars,
+        unit="demonstrations",
+    )
     succeeded = [one.episode for one in all_of_them if one.progress.succeeded]
     return dataset_of(task, succeeded, all_of_them[0].objects), all_of_them
 
@@ -122,23 +125,9 @@ def dataset_of(task: SceneTask, episodes: Sequence[Episode], objects: tuple[str,
     )
 
 
-@final
-@dataclass(frozen=True, eq=False)
-class _Call:
-    """One demonstration of `demonstrate`."""
-
-    task: SceneTask
-    index: int
-    seed: int
-
-
-def _demonstrate(call: _Call) -> Demonstration:
-    rng = np.random.default_rng([DEMONSTRATION_STREAM, call.seed, call.index])
-    return demonstrate_once(call.task, call.index % len(call.task.choices), rng)
-
-
-def _name_of(call: _Call) -> str:
-    return f"demonstration {call.index + 1} of {call.task.name}"
+def _demonstrate(task: SceneTask, seed: int, index: int) -> Demonstration:
+    rng = np.random.default_rng([DEMONSTRATION_STREAM, seed, index])
+    return demonstrate_once(task, index % len(task.choices), rng)
 
 
 @final

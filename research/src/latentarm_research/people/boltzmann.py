@@ -43,10 +43,8 @@ def boltzmann(cost: FloatArray, beta: FloatArray | float) -> FloatArray:
 class BoltzmannConfig:
     """Parameters of a simulated person who looks one step ahead; all values are assumptions."""
 
-    # rationality of equation 24, 1/m², at the start of a drive; 0 acts at random, infinity always takes the
-    # best
+    # rationality of equation 24, 1/m²; 0 acts at random, infinity always takes the best
     beta: float = 2000.0
-    beta_per_s: float = 0.0  # m of `beta(t) = beta + m t`, 1/(m² s): somebody who learns within the task
     horizon_s: float = 0.5  # the look-ahead dt of equation 24, s: how far ahead an input is imagined
     rotation_weight: float = 0.2  # what a radian of wrong orientation counts, m
     decision_s: float = 0.1  # a person decides this often and holds the input in between, s
@@ -88,14 +86,13 @@ class OneStep(Decision):
 
     Equation 24::
 
-        p(u) ∝ exp(-beta(t) ‖g* - Psi(s + phi(f(u, c), c) dt)‖²)
+        p(u) ∝ exp(-beta ‖g* - Psi(s + phi(f(u, c), c) dt)‖²)
 
     over all inputs of length 1 at most that the loop does not take for rest (see
     `latentarm_research.people.density`), with the person's own `Foresight` in place of Psi and phi where
     they do not know these. Distance between poses is ``‖Δp‖² + (rotation_weight · angle)²``, m², and Δp
     grows where they must come nearer than usual (see `BoltzmannConfig.missed`). The person looks one step
     ahead only, as in the paper: they can get stuck where no single input brings the tool closer.
-    ``beta(t)`` counts from `reset`, by calls of `decide`.
 
     A person can also let go, which leaves the tool where it is: one more input of equation 24, with a
     probability of its own, ``rest_share``, where beta is zero.
@@ -107,7 +104,6 @@ class OneStep(Decision):
 
     def __init__(self, config: BoltzmannConfig, period_s: float, dead_zone: float = 0.0) -> None:
         self._config = config
-        self._period_s = period_s
         self._dead_zone = dead_zone
         self._hold_calls = max(round(config.decision_s / period_s), 1)
         # The step that asks for the mode already has a zero input.
@@ -118,7 +114,6 @@ class OneStep(Decision):
         """Forget the held input, any switch under way and what was learned."""
         self._held = np.zeros(0)
         self._held_calls = 0
-        self._calls = 0
 
     @property
     def holding(self) -> bool:
@@ -137,8 +132,7 @@ class OneStep(Decision):
         self, moment: Moment, controller: Controller, imagination: Imagination, rng: np.random.Generator
     ) -> Outlook:
         """Equation 24 at a moment."""
-        config, mode = self._config, moment.mode
-        beta = config.beta + config.beta_per_s * self._calls * self._period_s
+        config, mode, beta = self._config, moment.mode, self._config.beta
         lattice = Lattice.of(controller.input_dim, rng, self._dead_zone)
         inputs = np.concatenate([np.zeros((1, lattice.axes)), lattice.nodes])
         modes = range(len(controller.modes))
@@ -184,7 +178,6 @@ class OneStep(Decision):
 
     def _hold(self) -> Input:
         self._held_calls -= 1
-        self._calls += 1
         return Input(self._held)
 
 

@@ -10,10 +10,9 @@ from latentarm_research.people.lapses import LapseConfig
 from latentarm_research.people.linear_guess import LinearGuessConfig
 from latentarm_research.people.motor_noise import HandConfig
 from latentarm_research.people.own_directions import OwnDirections, OwnSpeed
-from latentarm_research.people.page_rates import PAGE, PageRates
+from latentarm_research.people.page_rates import PAGE
 from latentarm_research.people.person import Person
 from latentarm_research.people.planning import PlanningConfig
-from latentarm_research.people.practice import time_share
 
 UNSURE_M_S: Final = 0.05
 UNSURE_RAD_S: Final = 0.25
@@ -22,6 +21,24 @@ nothing in particular. Chosen."""
 
 TREMOR_HZ: Final = (8.0, 12.0)
 """Band of physiological tremor (Elble and Randall, J. Neurophysiol. 39:370, 1976), Hz."""
+
+TRIAL_S: Final = 60.0
+"""Practice of so long teaches as much as a trial, s. Chosen: about as long as the studies' trials last."""
+
+
+def time_share(
+    exponent: float,  # how fast they learn, 0 or more; at 0 they never do
+    trial: int,  # number of trials before this one
+    practice_s: float = 0.0,  # practised before the first trial, s
+) -> float:
+    """Effort in a trial, as a share of that in the first trial without practice.
+
+    The power law of practice: times shrink as ``N^-exponent`` (Newell and Rosenbloom 1981). N counts this
+    trial, those before it and what was practised before all of them. Practice of several minutes thus leaves
+    little to learn in the trials. Averages over people follow this law; single people rather follow an
+    exponential (Heathcote, Brown and Mewhort 2000), which is not modelled.
+    """
+    return (1.0 + trial + practice_s / TRIAL_S) ** -exponent
 
 
 @final
@@ -56,12 +73,11 @@ class Traits:
         """Where they push the stick, before anything is aligned to them."""
         return OwnDirections(self.turn_rad, self.mirrored)
 
-    def person(self, trial: int, practice_s: float = 0.0, page: PageRates | None = PAGE) -> Person:
-        """Who they are in a trial, with a stick whose effect they have been shown.
+    def person(self, trial: int, practice_s: float = 0.0) -> Person:
+        """Who they are in a trial on the page, with a stick whose effect they have been shown.
 
         They know what each input does, plan, and make up for their reaction time. ``trial`` counts those
-        before this one, ``practice_s`` the practice before the first, s; without a page they see and are
-        heard at once.
+        before this one, ``practice_s`` the practice before the first, s.
         """
         plans = PlanningConfig()
         pieces = max(round(self.plan_s / plans.piece_s), 1)
@@ -72,12 +88,10 @@ class Traits:
             speed=OwnSpeed(self.own_speed),
             lapses=self._lapses,
             anticipates=True,
-            page=page,
+            page=PAGE,
         )
 
-    def newcomer(
-        self, usual: FloatArray, trial: int, practice_s: float = 0.0, page: PageRates | None = PAGE
-    ) -> Person:
+    def newcomer(self, usual: FloatArray, trial: int, practice_s: float = 0.0) -> Person:
         """Who they are in a trial, with a stick whose effect nobody has shown to them; see `person`.
 
         They push by what the directions of the stick mean to themselves, where ``usual`` (6, 2) is the twist
@@ -91,7 +105,7 @@ class Traits:
             hand=self._hand,
             speed=OwnSpeed(self.own_speed),
             lapses=self._lapses,
-            page=page,
+            page=PAGE,
         )
 
     def as_json(self) -> Mapping[str, object]:

@@ -98,12 +98,12 @@ def test_every_seed_has_demonstrations_of_its_own():
     first, second = measured(cell(model="pca")).figures["start_distance_m"]
     assert first != second
     sizes = TINY.episodes, TINY.test_episodes
-    one, other = demonstrated("sine", TINY.design, sizes, 2, 0)
-    for shown in (one, other):
-        assert len(shown.training.episodes) == TINY.episodes
-        assert len(shown.test.episodes) == TINY.test_episodes
-    assert not np.array_equal(one.training.episodes[0].state, other.training.episodes[0].state)
-    assert not np.array_equal(one.training.episodes[0].state, one.test.episodes[0].state)
+    one, other = demonstrated("sine", sizes, 2, 0)
+    for training, test in (one, other):
+        assert len(training.episodes) == TINY.episodes
+        assert len(test.episodes) == TINY.test_episodes
+    assert not np.array_equal(one[0].episodes[0].state, other[0].episodes[0].state)
+    assert not np.array_equal(one[0].episodes[0].state, one[1].episodes[0].state)
 
 
 def test_the_same_cell_gives_the_same_bits_in_another_process_with_more_threads(tmp_path):

@@ -3,7 +3,6 @@ import pytest
 
 from latentarm.core.errors import UserError
 from latentarm_research.tasks.planar.catalogue import MOTIONS
-from latentarm_research.tasks.planar.motion import DESIGN, Design
 
 
 def task_jacobian(motion, state):
@@ -22,7 +21,7 @@ def test_demonstrations_are_of_the_robot_with_a_recorded_action_at_every_state(m
     assert (shown.robot, shown.joint_names) == (motion.robot.name, motion.robot.joint_names)
     assert len(shown.episodes) == 6
     for episode in shown.episodes:
-        assert episode.state.shape == episode.action.shape == (DESIGN.samples, motion.robot.dof)
+        assert episode.state.shape == episode.action.shape == (motion.samples, motion.robot.dof)
         np.testing.assert_allclose(np.diff(episode.timestamp), 1.0 / shown.rate_hz)
         assert not motion.robot.limits.violation(episode.state).any()
         assert np.linalg.norm(episode.action, axis=-1).max() > 0
@@ -58,20 +57,21 @@ def test_no_demonstration_is_refused(motion, episodes):
 
 def posture_told_by_place(motion):
     """Largest correlation of a free joint with a coordinate of the task where demonstrations begin."""
-    shown = type(motion)(Design(least_conditioning=0.1)).demonstrate(80, np.random.default_rng(5))
+    shown = motion.demonstrate(80, np.random.default_rng(5))
     first = np.array([episode.state[0] for episode in shown.episodes])
     free = np.setdiff1d(np.arange(motion.robot.dof), motion.closing)
     place = motion.constraint.coordinates(first)
     return np.abs(np.corrcoef(first[:, free].T, place.T)[: len(free), len(free) :]).max()
 
 
-def test_the_place_tells_nothing_of_the_free_joints(motion):
+def test_the_place_tells_nothing_of_the_free_joints(motion, monkeypatch):
+    monkeypatch.setattr(type(motion), "least_conditioning", 0.1)
     assert posture_told_by_place(motion) < 0.4
 
 
-def test_ill_conditioned_postures_are_drawn_anew(motion):
-    wide = type(motion)(Design(spread_rad=0.3))
+def test_ill_conditioned_postures_are_drawn_anew(motion, monkeypatch):
+    monkeypatch.setattr(type(motion), "spread_rad", 0.3)
     nominal = np.linalg.svd(task_jacobian(motion, motion.nominal), compute_uv=False)[-1]
-    for episode in wide.demonstrate(6, np.random.default_rng(0)).episodes:
+    for episode in motion.demonstrate(6, np.random.default_rng(0)).episodes:
         smallest = np.linalg.svd(task_jacobian(motion, episode.state), compute_uv=False)[:, -1]
-        assert smallest.min() > DESIGN.least_conditioning * nominal
+        assert smallest.min() > motion.least_conditioning * nominal

@@ -5,7 +5,6 @@ import pytest
 
 from latentarm.core.errors import UserError
 from latentarm_research.tasks.planar.circle import RADII_M, Circle
-from latentarm_research.tasks.planar.motion import Design
 from latentarm_research.tasks.planar.paths import STEP_S
 from latentarm_research.tasks.planar.reach import ReachRegion
 from latentarm_research.tasks.planar.resolved_rate import plane_point
@@ -131,6 +130,7 @@ def test_joint_speed_tells_neither_place_nor_posture(motion):
     assert speed.mean() / np.sqrt(np.mean(speed**2)) == pytest.approx(np.sqrt(2 / np.pi), rel=0.08)
 
 
-def test_a_design_that_no_posture_passes_is_refused():
+def test_a_design_that_no_posture_passes_is_refused(monkeypatch):
+    monkeypatch.setattr(Circle, "least_conditioning", 10.0)
     with pytest.raises(UserError, match="Too few postures of circle"):
-        Circle(Design(least_conditioning=10.0)).demonstrate(1, np.random.default_rng(0))
+        Circle().demonstrate(1, np.random.default_rng(0))

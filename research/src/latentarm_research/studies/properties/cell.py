@@ -17,7 +17,7 @@ from latentarm_research.studies.properties import measures
 from latentarm_research.studies.properties.preset import Preset
 from latentarm_research.studies.streams import generator, integer, sequence
 from latentarm_research.tasks.planar.catalogue import MOTIONS
-from latentarm_research.tasks.planar.motion import Design, PlanarMotion
+from latentarm_research.tasks.planar.motion import PlanarMotion
 from latentarm_research.tasks.planar.reach import ReachRegion
 
 BASELINE: Final = "pca"  # the baseline of controllability
@@ -55,26 +55,21 @@ class PropertiesResult:
     decoder: Decoder  # of the first seed, for figures
 
 
-@dataclass(frozen=True, eq=False)
-class Demonstrated:
-    """One seed's demonstrations."""
-
-    training: Demonstrations  # to fit a model to
-    test: Demonstrations  # that its figures are taken on
+Demonstrated = tuple[Demonstrations, Demonstrations]
+"""One seed's demonstrations: to fit a model to, and those that its figures are taken on."""
 
 
 @lru_cache(maxsize=2)
 def demonstrated(
     task: str,  # a name of `MOTIONS`
-    design: Design,
     sizes: tuple[int, int],
     seeds: int,
     seed: int,
 ) -> tuple[Demonstrated, ...]:
     """The demonstrations of every seed, the same for every kind of model."""
-    motion = MOTIONS[task](design)
+    motion = MOTIONS[task]()
     return tuple(
-        Demonstrated(
+        (
             motion.demonstrate(sizes[0], generator(seed, task, Stream.TRAINING, index)),
             motion.demonstrate(sizes[1], generator(seed, task, Stream.TEST, index)),
         )
@@ -85,9 +80,9 @@ def demonstrated(
 def measure_cell(cell: PropertiesCell) -> PropertiesResult:
     """Demonstrate, fit all seeds in one fit, measure."""
     preset = cell.preset
-    motion = MOTIONS[cell.task](preset.design)
+    motion = MOTIONS[cell.task]()
     sizes = preset.episodes, preset.test_episodes
-    shown = demonstrated(cell.task, preset.design, sizes, preset.seeds, cell.seed)
+    shown = demonstrated(cell.task, sizes, preset.seeds, cell.seed)
     models = _fit(cell, cell.model, shown)
     baselines = _fit(cell, BASELINE, shown)
     each = [
@@ -115,9 +110,9 @@ def _figures(
         """The same for every kind of model."""
         return generator(cell.seed, cell.task, stream, index)
 
-    preset = cell.preset
-    pairs = measures.recorded_pairs(shown.test, draws(Stream.TEST_PAIRS))
-    chosen = select_episodes(shown.training, range(validation_episodes(shown.training).start))
+    preset, (training, test) = cell.preset, shown
+    pairs = measures.recorded_pairs(test, draws(Stream.TEST_PAIRS))
+    chosen = select_episodes(training, range(validation_episodes(training).start))
     fitted = measures.recorded_pairs(chosen, draws(Stream.TRAINING_PAIRS))
     decoders = [model.decoder()]
     figures = measures.accuracy_figures(model, decoders, fitted, pairs)
@@ -125,7 +120,7 @@ def _figures(
     if isinstance(motion, ReachRegion):
         figures |= measures.reach_figures(motion, decoders, preset.reach_goals, draws(Stream.GOALS))
     else:
-        goals = measures.start_goal_pairs(motion, shown.test, preset.reach_pairs, draws(Stream.PAIRS))
+        goals = measures.start_goal_pairs(motion, test, preset.reach_pairs, draws(Stream.PAIRS))
         figures |= measures.control_figures(motion, decoders, baseline.decoder(), goals)
     return figures
 
@@ -134,8 +129,8 @@ def _fit(cell: PropertiesCell, kind: str, shown: tuple[Demonstrated, ...]) -> li
     preset = cell.preset
     return fit_each(
         kind,
-        [one.training for one in shown],
-        validation=validation_episodes(shown[0].training),
+        [training for training, _ in shown],
+        validation=validation_episodes(shown[0][0]),
         seed=integer(sequence(cell.seed, cell.task, Stream.NETWORKS)),
         kl_weight=preset.kl_weight,
         latent_dim=MOTIONS[cell.task]().latent_dim,

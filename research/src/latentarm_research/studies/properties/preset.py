@@ -4,7 +4,6 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from latentarm.models.catalogue import KINDS
-from latentarm_research.tasks.planar.motion import DESIGN, Design
 
 LEFT_OUT: Final = frozenset({"cae_jacobian", "cvae_jacobian", "odd_cae"})
 """Variants for recorded demonstrations, which `compare` measures. The study has the paper's models, cAE with
@@ -20,7 +19,6 @@ class Preset:
     models: tuple[str, ...] = field(
         default_factory=lambda: tuple(name for name in KINDS.usable() if name not in LEFT_OUT)
     )
-    design: Design = DESIGN  # how the tasks are demonstrated
     # demonstrations that each model has to itself; with 10 pairs each, the 10000 pairs that the paper trains
     # on. A fifth of them is for validation and decides which epoch is best
     episodes: int = 1000

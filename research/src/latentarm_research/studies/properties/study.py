@@ -5,6 +5,8 @@ from itertools import product
 from typing import TYPE_CHECKING, Final
 
 from latentarm.core.types import Row
+from latentarm.core.untrusted.console import VisibleConsole
+from latentarm.evaluation.table import rich_tables
 from latentarm_research.studies.claim_tables import judged_parts
 from latentarm_research.studies.claims import Tested
 from latentarm_research.studies.page import render_page
@@ -31,6 +33,7 @@ from latentarm_research.studies.properties.tables import (
 from latentarm_research.studies.study import Grid, Report, Request, Study, again
 from latentarm_research.studies.tables import Series
 from latentarm_research.tasks.planar.catalogue import MOTIONS
+from latentarm_research.tasks.planar.motion import PlanarMotion
 from latentarm_research.tasks.planar.paths import STEP_S
 
 if TYPE_CHECKING:
@@ -64,6 +67,14 @@ def _report(request: Request[Preset], results: list[PropertiesResult]) -> Report
         figures=figures,
         tests=tests,
         documents={"seeds.json": [one.as_json() for one in series]},
+        tables=[
+            rich_tables(
+                [row for row in rows if row.task == task],
+                title=f"{task}, simulated",
+                width=VisibleConsole().width,
+            )
+            for task in request.tasks
+        ],
     )
 
 
@@ -96,6 +107,7 @@ def _page(
         preset=request.preset,
         tasks=request.tasks,
         step_s=STEP_S,
+        design=PlanarMotion,
         cells_found=count(cells),
         cells_found_by_means=count(paper_cells(rows, means=True)),
         cells_table=cells_table(cells),

@@ -88,9 +88,9 @@ def curled(robot: Robot) -> FloatArray:
     return posture
 
 
-def plane_point(robot: Robot, state: FloatArray, tool: int = 0) -> FloatArray:
-    """Place (..., 2) of a tool in the plane at states (..., n), m."""
-    return robot.chain.forward(state, tool).position[..., :2]
+def plane_point(robot: Robot, state: FloatArray) -> FloatArray:
+    """Place (..., 2) of the tool in the plane at states (..., n), m."""
+    return robot.chain.forward(state).position[..., :2]
 
 
 def settle(start: FloatArray, wanted: FloatArray, constraint: Constraint, moved: IntArray) -> FloatArray:

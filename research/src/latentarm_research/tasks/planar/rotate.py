@@ -13,7 +13,7 @@ import numpy as np
 from latentarm.core.types import FloatArray, Pose
 from latentarm.robots.planar import planar
 from latentarm.robots.robot import Robot
-from latentarm_research.tasks.planar.motion import DEMONSTRATION_S, DESIGN, Design, PlanarMotion
+from latentarm_research.tasks.planar.motion import DEMONSTRATION_S, PlanarMotion
 from latentarm_research.tasks.planar.paths import Paced, Path
 from latentarm_research.tasks.planar.resolved_rate import Constraint
 
@@ -41,8 +41,8 @@ class Rotate(PlanarMotion):
     # the first two joints of each arm, and the last, which turns the gripper along the box
     closing = (0, 1, 4, 5, 6, 9)
 
-    def __init__(self, design: Design = DESIGN) -> None:
-        super().__init__(planar(5, arms=2), design)
+    def __init__(self) -> None:
+        super().__init__(planar(5, arms=2))
 
     @property
     def nominal(self) -> FloatArray:
