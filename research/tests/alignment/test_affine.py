@@ -12,8 +12,6 @@ def test_an_affine_preference_is_found(linear_model, columns):
     u, start = rng.uniform(-1, 1, (6, 2)), rng.uniform(-0.1, 0.1, (6, 3))
     motions = Motions(start, start + 0.5 * (u @ matrix.T + offset) @ columns, 0.5)
     found = fit_affine(linear_model, Answers(motions, u))
-    np.testing.assert_allclose(found.matrix, matrix, atol=1e-9)
-    np.testing.assert_allclose(found.offset, offset, atol=1e-9)
     np.testing.assert_allclose(found(u, start), u @ matrix.T + offset, atol=1e-9)
     assert found(np.zeros((3, 6, 2)), start).shape == (3, 6, 2)
 

@@ -11,7 +11,6 @@ from latentarm.robots.catalogue import load_robot
 from latentarm.robots.kinematics.resolved_rates import Damping
 from latentarm_research.assistance.cost_to_go import TICK_S, HindsightBelief
 from latentarm_research.assistance.published_help import (
-    WEIGHTS,
     HindsightOptimisation,
     Interpolation,
     PolicyBlending,
@@ -135,7 +134,9 @@ class TestWays:
         assert way.acts_at_rest == (weight > 0)
 
     def test_the_levels_of_harmonic(self):
-        assert list(WEIGHTS.values()) == pytest.approx([0, 1 / 3, 2 / 3, 1])
+        levels = [published_assistance(f"{name}_assist", PANDA)(GOALS) for name in ("low", "high")]
+        weights = [one.contribution(PUSH, towards(0), PANDA.home, EVEN).alpha for one in levels]
+        assert weights == pytest.approx([1 / 3, 2 / 3])
         full = published_assistance("full_assist", PANDA)(GOALS)
         assert full.acts_at_rest
         given = full.contribution(PUSH, towards(0), PANDA.home, EVEN)

@@ -43,8 +43,7 @@ def test_the_properties_for_people(run: Run, workplace: Path, monkeypatch: pytes
 def test_the_smallest_study_of_shared_autonomy_runs_from_end_to_end(run: Run, workplace: Path) -> None:
     code, out, err = run("reproduce", "shared-autonomy", "--preset", "smoke", "--jobs", 2)
     assert code == 0
-    assert "Panda, 7 joints, cAE, simulated: final state error" in out
-    assert "LA+SA+Entropy" in out
+    assert "only shows that the study runs" in out
     assert "reproduced/shared-autonomy/results.md" in out
     assert "8 cells" in " ".join(err.split())
     folder = Path("reproduced/shared-autonomy")
@@ -80,6 +79,5 @@ def test_one_task_for_machines(
 def test_the_smallest_study_of_alignment_runs_from_end_to_end(run: Run, workplace: Path) -> None:
     code, out, err = run("reproduce", "alignment", "--preset", "smoke", "--jobs", 2)
     assert code == 0
-    for words in ("Plane, cAE, simulated", "Ideal Align", "Drives at the table, cVAE, simulated"):
-        assert words in out
+    assert "only shows that the study runs" in out
     assert "Decoders: 3 cells" in err

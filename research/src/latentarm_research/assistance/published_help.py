@@ -72,17 +72,9 @@ class HindsightOptimisation(ExpectedHelp):
         return Contribution(self.action(action_human, state, belief), alpha=0.0, added=1.0)
 
 
-Level = Literal["no", "low", "high", "full"]
-
-WEIGHTS: Final[dict[Level, float]] = {"no": 0.0, "low": 1 / 3, "high": 2 / 3, "full": 1.0}
-"""The weight on assistance at each level of HARMONIC (Newman, Aronson, Srinivasa, Kitani and Admoni,
-"HARMONIC: A multimodal dataset of assistive human-robot collaboration", 2022). Losey et al. say that High
-gives assistance twice the weight, which is 2/3; the others are read from that."""
-
-
 @final
 class Interpolation(ExpectedHelp):
-    """``a = (1 - w) a_h + w Σ_g b(g) a_g``, HARMONIC's help.
+    """``a = (1 - w) a_h + w Σ_g b(g) a_g``, HARMONIC's help (Newman et al., 2022).
 
     The robot's action and the belief are those of hindsight optimisation; only how they join the person's
     action differs. At weight 1 the person's input moves nothing, and still says which goal they want.
@@ -138,9 +130,10 @@ AssistanceName = Literal["hindsight", "low_assist", "high_assist", "full_assist"
 
 _PUBLISHED: Final[dict[AssistanceName, Callable[..., Assistance]]] = {
     "hindsight": HindsightOptimisation,
-    "low_assist": partial(Interpolation, weight=WEIGHTS["low"]),
-    "high_assist": partial(Interpolation, weight=WEIGHTS["high"]),
-    "full_assist": partial(Interpolation, weight=WEIGHTS["full"]),
+    # Losey et al. say that High Assist gives assistance twice the weight; the others are read from that.
+    "low_assist": partial(Interpolation, weight=1 / 3),
+    "high_assist": partial(Interpolation, weight=2 / 3),
+    "full_assist": partial(Interpolation, weight=1.0),
     "policy_blending": PolicyBlending,
 }
 

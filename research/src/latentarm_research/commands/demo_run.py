@@ -3,6 +3,7 @@
 import shutil
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, final
 
@@ -150,43 +151,24 @@ def _draw(shown: Mapping[str, Sequence[Trace]], out: Path) -> None:
     draw_inputs(shown, out / "inputs.png")
 
 
-@final
-@dataclass(frozen=True)
-class _Learning:
-    """One kind of model, as it is trained and measured."""
-
-    config: "DemoOptions"
-    model: str
-    seeds: int
-    epochs: int
-
-
 def _learn_all(config: "DemoOptions", sizes: Sizes) -> list[Row]:
     """Train and measure the models, side by side."""
-    calls = [_Learning(config, model, sizes.seeds, sizes.epochs[model]) for model in MODELS]
-    found = run_grid(
-        _learn,
-        calls,
-        jobs=config.jobs,
-        label=lambda call: call.model,
-        bars=config.bars,
-        unit="models",
-    )
+    learn = partial(_learn, config, sizes)
+    found = run_grid(learn, MODELS, jobs=config.jobs, label=str, bars=config.bars, unit="models")
     return [row for rows in found for row in rows]
 
 
-def _learn(call: _Learning) -> list[Row]:
-    config = call.config
-    run = config.out / "runs" / call.model
+def _learn(config: "DemoOptions", sizes: Sizes, model: str) -> list[Row]:
+    run = config.out / "runs" / model
     chosen = TrainOptions(
         demonstrations=(config.out / "demonstrations",),
-        model=call.model,
+        model=model,
         out=run,
-        seeds=call.seeds,
+        seeds=sizes.seeds,
         seed=config.seed,
         state_noise_rad=STATE_NOISE_RAD,
-        epochs=call.epochs,
-        context=CONTEXT[call.model],
+        epochs=sizes.epochs[model],
+        context=CONTEXT[model],
         hidden=HIDDEN,
         batch_size=BATCH_SIZE,
         task=TASK.name,

@@ -1,9 +1,8 @@
 """`latentarm reproduce`: the paper's simulations, a command for each study of the catalogue."""
 
 import inspect
-from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 from tyro.conf import UseAppendAction, arg
 
@@ -11,11 +10,6 @@ from latentarm.commands.configuration import Command
 from latentarm.core.errors import UserError
 from latentarm_research.commands.study_options import StudyOptions, run_and_show
 from latentarm_research.studies.catalogue import STUDIES, load_study
-
-if TYPE_CHECKING:
-    from rich.console import RenderableType
-
-    from latentarm_research.studies.study import Report
 
 ALL = "all"
 
@@ -53,7 +47,7 @@ def command_of(
         if people or runs is not None:
             sizes = sizes.asked(people, runs)
         request = options.request(out, sizes, () if ALL in task else task)
-        run_and_show(study, request, study.command, tables=_tables)
+        run_and_show(study, request, study.command)
         return 0
 
     if not entry.people:
@@ -72,18 +66,3 @@ def __getattr__(name: str) -> Command:
     if words not in STUDIES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return command_of(words)
-
-
-def _tables(report: "Report") -> "Sequence[RenderableType]":
-    """Those of the report, or one per task, of the rows without a condition."""
-    from latentarm.core.untrusted.console import VisibleConsole
-    from latentarm.evaluation.table import rich_tables
-
-    if report.tables:
-        return report.tables
-    width = VisibleConsole().width
-    main_rows = [row for row in report.rows if row.condition is None]
-    return [
-        rich_tables([row for row in main_rows if row.task == task], title=f"{task}, simulated", width=width)
-        for task in dict.fromkeys(row.task for row in main_rows)
-    ]

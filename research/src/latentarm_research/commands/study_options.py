@@ -1,7 +1,6 @@
 """Options of the commands that run studies, and what each of these commands does with its study."""
 
 import sys
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar
@@ -14,9 +13,7 @@ from latentarm.runs.options import Jobs, Json, Seed
 from latentarm_research.user_studies.catalogue import NAMES
 
 if TYPE_CHECKING:
-    from rich.console import RenderableType
-
-    from latentarm_research.studies.study import Report, Request, Sizes, Study
+    from latentarm_research.studies.study import Request, Sizes, Study
 
 Preset = TypeVar("Preset", bound="Sizes")
 
@@ -82,7 +79,6 @@ def run_and_show(
     request: "Request[Preset]",
     command: str,  # the words after `latentarm` that its options are kept under
     page: str = "results.md",
-    tables: "Callable[[Report], Sequence[RenderableType]]" = lambda report: report.tables,
 ) -> None:
     """Run a study, keep the options, and print it at a glance."""
     from latentarm_research.studies.page import SMOKE
@@ -91,7 +87,7 @@ def run_and_show(
     report = run_study(study, request)
     out, json = request.out, request.quiet
     write_options(out, command)
-    show(report.rows, json, *tables(report))
+    show(report.rows, json, *report.tables)
     if request.preset.name == SMOKE:
         say(f"The preset {SMOKE} only shows that the study runs: nothing is judged.", json)
     say(f"Page, figures and results.json are in {out}/ (begin with {out}/{page}).", json)

@@ -62,13 +62,9 @@ def drive_all(conditions: Sequence[Sequence[Planned]], jobs: int, *, bars: bool 
             Planned.drive,
             [planned for condition in conditions for planned in condition],
             jobs=jobs,
-            label=_name_of,
+            label=lambda planned: f"the drive for the {planned.setup.task.choices[planned.choice]}",
             bars=bars,
             unit="drives",
         )
     )
     return [[next(traces) for _ in condition] for condition in conditions]
-
-
-def _name_of(planned: Planned) -> str:
-    return f"the drive for the {planned.setup.task.choices[planned.choice]}"

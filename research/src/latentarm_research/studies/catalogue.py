@@ -1,7 +1,7 @@
 """The studies by name: what `latentarm reproduce` offers. Nothing is imported before a study runs."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, Final
 
@@ -22,7 +22,8 @@ class Entry:
     summary: str  # the first line of its help
     tasks: tuple[str, ...]  # names of all its tasks, as in its `Study`
     about_tasks: str  # what they are, in a few words
-    presets: Mapping[str, str]  # what each of its presets is, by its name in the `Study`
+    # what each of its presets is, by its name in the `Study`
+    presets: Mapping[str, str] = field(default_factory=lambda: {"paper": _PAPER, "smoke": _SMOKE})
     people: bool = False  # whether one can choose which simulated people drive, and how often
 
 
@@ -31,22 +32,16 @@ STUDIES: Final[Mapping[str, Entry]] = {
         "Measure the four properties of all models on the paper's planar tasks (section 8.1), simulated.",
         ("sine", "rotate", "circle", "reach"),
         "One of the tasks, or all four.",
-        {
-            "paper": _PAPER,
-            "smoke": _SMOKE,
-        },
     ),
     "shared-autonomy": Entry(
         "Let simulated people reach and change goals with help and without (section 8.2).",
         ("planar_two_cups", "panda_two_cups"),
         "Two cups in front of one of the arms, or of both.",
-        {"paper": _PAPER, "smoke": _SMOKE},
     ),
     "alignment": Entry(
         "Learn from few answers what simulated people mean by their stick (section 8.3).",
         ("plane", "pour", "reach_and_pour"),
         "One of the paper's tasks, or all three.",
-        {"paper": _PAPER, "smoke": _SMOKE},
     ),
     "tasks": Entry(
         "Let simulated people do tasks with things in physics, by mode switching and by latent actions.",

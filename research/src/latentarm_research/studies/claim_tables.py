@@ -4,11 +4,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from latentarm.evaluation.looks import look_of
 from latentarm.evaluation.measures import label_of
 from latentarm.evaluation.table import ABSENT, format_figure
 from latentarm_research.studies.claims import Hypothesis, Label, Tested, Verdict, verdict_on
-from latentarm_research.studies.page import SMOKE
+from latentarm_research.studies.page import SMOKE, name_of
 from latentarm_research.studies.statistics import CONFIDENCE, LEVEL, format_p
 from latentarm_research.studies.tables import plain_table
 
@@ -105,11 +104,6 @@ def verdicts_by_task(hypotheses: Iterable[Hypothesis], tested: Sequence[Tested])
         replace(verdict_on(by_name[name], here, label_of, name_of), family=family, task=task)
         for (family, name, task), here in sorted(places.items(), key=lambda one: families.index(one[0][0]))
     ]
-
-
-def name_of(name: str) -> str:
-    """The label of a model, a condition or a task on the pages of simulations."""
-    return look_of(name).label
 
 
 def _numbers(one: Tested) -> str:

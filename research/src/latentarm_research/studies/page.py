@@ -42,7 +42,7 @@ def render_page(template: str, preset: Any, **content: Any) -> str:
         keep_trailing_newline=True,
     )
     environment.filters.update(
-        label=_label,
+        label=name_of,
         literal="`{}`".format,
         listed=listed,
         g="{:g}".format,
@@ -54,7 +54,8 @@ def render_page(template: str, preset: Any, **content: Any) -> str:
     return page if judged else page.replace("\n", f" (preset {SMOKE})\n", 1)
 
 
-def _label(name: str) -> str:
+def name_of(name: str) -> str:
+    """The label of a model, a condition or a task on the pages of simulations."""
     return look_of(name).label
 
 

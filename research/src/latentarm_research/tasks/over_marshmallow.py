@@ -1,6 +1,6 @@
 """The fork over one of three marshmallows: what people did in HARMONIC, where the arm stabbed by itself."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from typing import final
 
 import numpy as np
@@ -11,7 +11,6 @@ from latentarm.tasks.scene_task import Beginning
 
 
 @final
-@dataclass(frozen=True, eq=False)
 class OverMarshmallow(ForkTask):
     """Bring the fork over the chosen marshmallow: the first step of `Marshmallows`, and nothing more.
 
@@ -22,9 +21,8 @@ class OverMarshmallow(ForkTask):
     name = "over_marshmallow"
     choices = Marshmallows.choices
     time_limit_s = Marshmallows.time_limit_s
-    whole: Marshmallows = field(default_factory=Marshmallows)  # the task that this is the first step of
 
     def begin(self, choice: int, rng: np.random.Generator) -> Beginning:
         """The same things and start as in the whole task."""
-        begun = self.whole.begin(choice, rng)
+        begun = Marshmallows().begin(choice, rng)
         return replace(begun, steps=begun.steps[:1], text=f"the fork over the {self.choices[choice]}")

@@ -67,20 +67,13 @@ def student(n: int) -> float:
     return float(stats.t.ppf((1.0 + CONFIDENCE) / 2.0, n - 1)) if n > 1 else 0.0
 
 
-class Band(NamedTuple):
-    """Time series of the seeds, each (T,)."""
+def band(courses: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """What S seeds did over time, (S, T): the mean and the ends of its 95 % bootstrap interval, each (T,).
 
-    mean: FloatArray  # over seeds
-    low: FloatArray  # lower end of the 95 % bootstrap interval for the mean
-    high: FloatArray  # upper end
-
-
-def band(courses: FloatArray) -> Band:
-    """Mean and interval of what S seeds did over time, (S, T); the mean alone for fewer than three."""
+    The mean alone for fewer than three.
+    """
     mean = courses.mean(axis=0)
-    if len(courses) < FEWEST_SEEDS:
-        return Band(mean, mean, mean)
-    return Band(mean, *bootstrap_interval(courses))
+    return (mean, *bootstrap_interval(courses)) if len(courses) >= FEWEST_SEEDS else (mean, mean, mean)
 
 
 EXTRA_TIME: Final = "extra_time_percent"
