@@ -74,10 +74,12 @@ class HindsightOptimisation(ExpectedHelp):
 
 @final
 class Interpolation(ExpectedHelp):
-    """``a = (1 - w) a_h + w Σ_g b(g) a_g``, HARMONIC's help (Newman et al., 2022).
+    """``a = (1 - w) a_h + w Σ_g b(g) a_g``, HARMONIC's help.
 
-    The robot's action and the belief are those of hindsight optimisation; only how they join the person's
-    action differs. At weight 1 the person's input moves nothing, and still says which goal they want.
+    From Newman, Aronson, Srinivasa, Kitani and Admoni, "HARMONIC: A multimodal dataset of assistive
+    human-robot collaboration", 2022. The robot's action and the belief are those of hindsight optimisation;
+    only how they join the person's action differs. At weight 1 the person's input moves nothing, and still
+    says which goal they want.
     """
 
     def __init__(self, goals: FloatArray, robot: Robot, weight: float) -> None:

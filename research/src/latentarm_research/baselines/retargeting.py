@@ -14,9 +14,7 @@ from latentarm.core.types import Context, FloatArray
 from latentarm.robots.robot import Robot
 
 # Weights of the objectives; all values are assumptions.
-ROTATION_M: Final = (
-    0.2  # what a rad of wrong orientation counts, m: the tool's place matters more than its turn
-)
+ROTATION_M: Final = 0.2  # a rad of wrong orientation: the tool's place matters more than its turn
 EFFORT: Final = 1e-4  # of joint velocities, (m/rad)²: they stay small, and bounded at singular configurations
 LIMITS: Final = 1.0  # of a velocity towards a joint's limit, (m/rad)², at the limit itself
 NEAR_RAD: Final = 0.3  # where that begins, before the limit; it grows with the square of the nearness
