@@ -1,4 +1,4 @@
-"""What `latentarm demo` writes for a reader: a page, and a strip of pictures of one drive."""
+"""Parts of the page that `latentarm demo` writes: pictures of one drive, and the README's table."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -9,13 +9,10 @@ from latentarm.core.errors import UserError
 from latentarm.core.figure_style import save_figure
 from latentarm.core.types import Row
 from latentarm.evaluation.looks import look_of
-from latentarm.evaluation.table import format_figure, markdown_table, measure_name, series_name
-from latentarm.tasks.scene_task import SceneTask
+from latentarm.evaluation.table import format_figure, measure_name, series_name
 from latentarm_research.drives.drives import Planned
 from latentarm_research.drives.film import Camera, Film, strip
 from latentarm_research.drives.trace import Trace
-from latentarm_research.metrics.ending import STUCK_S
-from latentarm_research.people.names import OperatorName
 from latentarm_research.studies.tables import grid_table
 
 FILM: Final = "film.png"
@@ -71,44 +68,3 @@ def readme_table(rows: Sequence[Row]) -> str:
     series = {series_name(row): series_name(row) for row in shown}
     measures = {measure_name(row): row.measure for row in shown}
     return grid_table("mean ± SD", series, measures, lambda line, column: figures[line, column])
-
-
-def page(
-    task: SceneTask,
-    tables: Mapping[OperatorName, Sequence[Row]],
-    properties: Sequence[Row],
-    held: str,  # see `held_in_words`
-    filmed: Filmed,  # see `film`
-    *,
-    model: str,
-    shown: OperatorName,
-    drives: int,
-    others: int,
-    seeds: int,
-    seed: int,
-) -> str:
-    """The page of a demo, in Markdown."""
-    choices = len(task.choices)
-    return (
-        "# What the demo measured\n\n"
-        f"In physics, simulated operators drove a simulated Panda with a fork: the {shown} one"
-        f" {drives * choices} times per column ({drives} times for each of {choices} marshmallows), the"
-        f" others {others * choices} times. The {seeds} trained models of a kind take turns. Seed {seed};"
-        f" mean ± SD over the drives, failed ones included (they end after {task.time_limit_s:g} s, or once"
-        f" the tool has come no nearer for {STUCK_S:g} s). No person took part. {held}\n\n"
-        f"{filmed.picture}"
-        f"{readme_table(tables[shown])}\n"
-        f"{_people_tables(tables)}"
-        f"The figures show the model {model}, driven by the {shown} operator. Marks are over the"
-        " marshmallows, which lie elsewhere in each drive.\n\n"
-        "![Paths of the tool](paths.png)\n\n"
-        "![Inputs over time](inputs.png)\n\n"
-        "## The latent spaces, on held-out episodes\n\n"
-        f"Mean ± SD over {seeds} seeds.\n\n{markdown_table(properties)}\n"
-        "![The task, with the marshmallows where they lie in one run](task.png)\n"
-    )
-
-
-def _people_tables(tables: Mapping[OperatorName, Sequence[Row]]) -> str:
-    """A table of drives under the name of each simulated person."""
-    return "".join(f"## The {person} operator\n\n{markdown_table(rows)}\n" for person, rows in tables.items())

@@ -27,6 +27,7 @@ from latentarm.demonstrations.dataset import write_dataset
 from latentarm.evaluation.looks import look_of
 from latentarm.evaluation.results import write_results
 from latentarm.evaluation.summary import Subject
+from latentarm.evaluation.table import markdown_table
 from latentarm.models.catalogue import DEFAULT_MODEL
 from latentarm.models.saving import load_decoder
 from latentarm.runs.evaluating import evaluate_run
@@ -35,7 +36,7 @@ from latentarm.runs.results_folder import vacant_name
 from latentarm.runs.training import train_run
 from latentarm.tasks.eating.marshmallows import Marshmallows
 from latentarm.tasks.place import Place
-from latentarm_research.commands.demo_page import FILM, film, held_in_words, page
+from latentarm_research.commands.demo_page import FILM, film, held_in_words, readme_table
 from latentarm_research.drives.arm_figure import draw_task
 from latentarm_research.drives.demonstrate import demonstrate
 from latentarm_research.drives.drive import Setup
@@ -43,9 +44,11 @@ from latentarm_research.drives.drive_figures import draw_drives, draw_inputs, ma
 from latentarm_research.drives.drives import Planned, drive_all, plan_drives
 from latentarm_research.drives.trace import Trace
 from latentarm_research.metrics.drives import drive_rows
+from latentarm_research.metrics.ending import STUCK_S
 from latentarm_research.people.catalogue import PEOPLE
 from latentarm_research.people.names import OperatorName
 from latentarm_research.studies.fitting import STATE_NOISE_RAD
+from latentarm_research.studies.page import render_page
 from latentarm_research.studies.results_folder import ResultsFolder
 
 if TYPE_CHECKING:
@@ -73,6 +76,7 @@ MADE = ("results.json", "results.md", "paths.png", "inputs.png", "task.png", FIL
 class Sizes:
     """How much is learned from; only tests take other sizes."""
 
+    name: str = "demo"
     episodes: int = 230  # demonstrations, of some 5 s each
     seeds: int = 3  # models of each kind, trained together and driven in turn
     # passes over the training pairs, at most, by model
@@ -121,18 +125,21 @@ def run_demo(config: "DemoOptions", sizes: Sizes = USUAL) -> Shown:
     held = held_in_words({condition.name: traces for condition, traces in shown})
     filmed = film(config.out, MODELS[0], shown[0][0].planned, shown[0][1])
     _draw({str(one.subject.condition): traces for one, traces in shown if one.drawn}, config.out)
-    text = page(
-        task,
-        tables,
-        properties,
-        held,
-        filmed,
-        model=MODELS[0],
+    text = render_page(
+        "commands/demo.md",
+        sizes,
+        task=task,
         shown=SHOWN,
         drives=config.drives,
         others=config.others,
-        seeds=sizes.seeds,
         seed=config.seed,
+        stuck_s=STUCK_S,
+        held=held,
+        filmed=filmed,
+        readme_table=readme_table(tables[SHOWN]),
+        tables={person: markdown_table(table) for person, table in tables.items()},
+        model=MODELS[0],
+        properties=markdown_table(properties),
     )
     write_text(config.out / "results.md", text)
     return Shown(rows, (held, filmed.said))
