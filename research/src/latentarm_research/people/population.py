@@ -3,14 +3,14 @@
 They have no opinions: nothing here answers a questionnaire.
 """
 
-import json
 from dataclasses import dataclass
-from importlib.resources import files
-from typing import Any, Final, final
+from pathlib import Path
+from typing import Final, final
 
 import numpy as np
 
 from latentarm.core.errors import UserError
+from latentarm.core.untrusted.documents import read_object
 from latentarm_research.people.calibration import CALIBRATED, Calibration
 from latentarm_research.people.spread import LogNormal, Normal, Spread
 from latentarm_research.people.traits import Traits
@@ -34,10 +34,8 @@ class TraitSource:
     source: str  # where it comes from; what is chosen says so
 
 
-_TRAITS: Final[list[dict[str, Any]]] = json.loads(
-    (files("latentarm_research.people") / "traits.json").read_text(encoding="utf-8")
-)
-"""Traits with spread and source; with ``times``, a field of `Calibration`, figures are multiples of that."""
+_TRAITS: Final = read_object(Path(__file__).parent / "traits.json")
+"""Spread and source of traits by name; with ``times``, a field of `Calibration`, multiples of that."""
 
 
 def trait_sources(calibration: Calibration) -> tuple[TraitSource, ...]:
@@ -45,7 +43,10 @@ def trait_sources(calibration: Calibration) -> tuple[TraitSource, ...]:
 
     They are independent: nothing is known of how they go together.
     """
-    return tuple(TraitSource(**{**one, "spread": _spread(calibration, **one["spread"])}) for one in _TRAITS)
+    return tuple(
+        TraitSource(name, **{**one, "spread": _spread(calibration, **one["spread"])})
+        for name, one in _TRAITS.items()
+    )
 
 
 def _spread(
