@@ -61,10 +61,8 @@ def test_small_changes_of_the_stick_are_small_changes_of_the_motion(u, share, mo
     assert np.abs(here - there).max() < 1e-3
 
 
-def test_it_takes_the_modes_of_end_effector_control():
-    controller = RetargetingController(PANDA, modes=TWO_STICKS)
-    assert (controller.modes, controller.input_dim) == (("linear", "angular"), 3)
-    assert controller.speed_bound(HOME, 0) is None
+def test_it_has_no_bound_of_speed():
+    assert CONTROLLER.speed_bound(HOME, 0) is None
 
 
 @pytest.mark.parametrize("wrong", [{"linear_speed": 0.0}, {"angular_speed": np.nan}])

@@ -57,11 +57,15 @@ def test_circle_moves_along_circles_or_between_them_never_both():
         assert np.minimum(between, along).max() < 3 * slack
 
 
+def grip(robot, state, tool):
+    return robot.chain.forward(state, tool).position[..., :2]
+
+
 def test_rotate_keeps_both_grippers_on_a_box_whose_middle_rests():
     motion = Rotate()
     for state, following, slack in states_and_next(motion):
         for reached in (state, following):
-            left, right = (plane_point(motion.robot, reached, tool) for tool in (0, 1))
+            left, right = (grip(motion.robot, reached, tool) for tool in (0, 1))
             np.testing.assert_allclose(np.linalg.norm(left - right, axis=-1), BOX_WIDTH_M, atol=2 * slack)
             assert np.ptp((left + right) / 2, axis=0).max() < 4 * slack
             headings = motion.constraint.coordinates(reached)[:, [2, 5]]
@@ -75,7 +79,7 @@ def test_rotate_keeps_both_grippers_on_a_box_whose_middle_rests():
 def test_rotate_puts_the_box_elsewhere_every_time():
     motion = Rotate()
     middles = [
-        np.mean([plane_point(motion.robot, state[0], tool) for tool in (0, 1)], axis=0)
+        np.mean([grip(motion.robot, state[0], tool) for tool in (0, 1)], axis=0)
         for state, *_ in states_and_next(motion)
     ]
     assert np.ptp(middles, axis=0).min() > 0.01
