@@ -78,7 +78,7 @@ def _chosen(scene: Scene, candidates: Sequence[Answers], counts: Sequence[int]) 
 
 
 def _curves(scene: Scene, candidates: Sequence[Answers]) -> Curves:
-    """What is learned from each number of answers.
+    """Errors by the choice of questions and the number of answers.
 
     The first of the candidates, which are at random, teach All Priors beside that.
     """

@@ -44,7 +44,7 @@ def series_of(results: Sequence[AlignmentErrors]) -> list[Series]:
 
 
 def _asked(choice: str, count: int) -> str:
-    """How rows name a point of a curve."""
+    """The name of a point of a curve in rows."""
     return f"{choice}, {count} answer{'s' * (count != 1)}"
 
 

@@ -68,7 +68,7 @@ def student(n: int) -> float:
 
 
 def band(courses: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """What S seeds did over time, (S, T): the mean and the ends of its 95 % bootstrap interval, each (T,).
+    """The mean of S seeds over time, (S, T), and the ends of its 95 % bootstrap interval, each (T,).
 
     The mean alone for fewer than three.
     """
