@@ -44,7 +44,7 @@ def trait_sources(calibration: Calibration) -> tuple[TraitSource, ...]:
     They are independent: nothing is known of how they go together.
     """
     return tuple(
-        TraitSource(name, **{**one, "spread": _spread(calibration, **one["spread"])})
+        TraitSource(name, one["meaning"], one["unit"], _spread(calibration, **one["spread"]), one["source"])
         for name, one in _TRAITS.items()
     )
 
