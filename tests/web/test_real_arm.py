@@ -51,7 +51,7 @@ def test_a_task_with_things_drives_a_real_arm_without_physics():
     assert [thing.name for thing in setup.tracked] == list(setup.objects) == list(setup.scene.names)
     assert setup.task.goals == ()
     assert len(setup.task.obstacles) > 0
-    assert setup.task.robot.attachment is not None
+    assert setup.task.robot.tines is not None
 
 
 def test_a_run_goes_with_a_real_arm_and_its_goals_are_those_of_its_demonstrations(trained):

@@ -107,8 +107,8 @@ class MujocoArm(SimulatedArm, SceneArm):
         self._bonds = frozenset((one.first, one.second) for one in (() if scene is None else scene.bonds))
         if scene is not None:
             self._watch = SceneWatch(self.model, self.data, robot, found.body_link, scene)
-            if robot.attachment is not None and robot.attachment.tines is not None:
-                self._tines = TinesInFood(self.model, self.data, robot.attachment.tines, scene)
+            if robot.tines is not None:
+                self._tines = TinesInFood(self.model, self.data, robot.tines, scene)
         self._state: SceneState | None = None
         self._steps = 0
         self._behind_s = 0.0
@@ -211,7 +211,7 @@ def _world(
     if payload_kg > 0.0:
         _hang(spec, robot, payload_kg)
     if scene is not None:
-        add_scene(spec, scene, robot.attachment, grips=robot.gripper is not None)
+        add_scene(spec, scene, tined=robot.tines is not None, grips=robot.gripper is not None)
     spec.option.timestep = STEP_S
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
     return spec.compile(), found

@@ -7,10 +7,10 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from latentarm.core.types import FloatArray
-from latentarm.robots.attachment import TINES_BODY, Attachment
 from latentarm.robots.parts import add_parts
 from latentarm.robots.scene.scene import TABLE, Scene
 from latentarm.robots.scene.thing import Bond, Grains, Thing
+from latentarm.robots.tines import TINES_BODY
 
 SOLID: Final = 1  # bit of everything that collides with solids
 TINE: Final = 2  # bit of tines: a thing without it lets them in
@@ -45,9 +45,8 @@ def stab_name(name: str) -> str:
     return f"stab {name}"
 
 
-def add_scene(spec: mujoco.MjSpec, scene: Scene, attachment: Attachment | None, *, grips: bool) -> None:
-    """Add a scene to a robot's model; ``grips`` says whether the robot has a gripper."""
-    tined = attachment is not None and attachment.tines is not None
+def add_scene(spec: mujoco.MjSpec, scene: Scene, *, tined: bool, grips: bool) -> None:
+    """Add a scene to the model of a robot, which has tines, a gripper or neither."""
     if tined:
         for geom in spec.body(TINES_BODY).geoms:
             geom.contype, geom.conaffinity = TINE, 0

@@ -7,9 +7,9 @@ import numpy as np
 
 from latentarm.arms.scene_model import SOLID, TINE, bond_name, rotation_of, stab_name, thing_body
 from latentarm.core.types import BoolArray, FloatArray, IntArray
-from latentarm.robots.attachment import TINES_BODY, Tines
 from latentarm.robots.scene.scene import Scene
 from latentarm.robots.scene.thing import Bond, Food, Part, Thing
+from latentarm.robots.tines import TINES_BODY, Tines
 
 CUT_WITHIN_M: Final = 0.01
 """An edge cuts a bond whose plane it is this near to, m; over the top and past the sides of it as well."""

@@ -8,7 +8,6 @@ import numpy as np
 
 from latentarm.core.errors import UserError
 from latentarm.core.types import BoolArray, FloatArray, StatedGripper, StatedLimits
-from latentarm.robots.attachment import ATTACHED_BODIES, Attachment
 from latentarm.robots.end_effector import arm_joints, finger_joints
 from latentarm.robots.gripper import Gripper
 from latentarm.robots.kinematics.chain import Capsules
@@ -17,6 +16,7 @@ from latentarm.robots.limits import JointLimits, Source
 from latentarm.robots.limits_file import with_stated
 from latentarm.robots.robot import Robot
 from latentarm.robots.shapes import body_name, read_capsules, self_pairs
+from latentarm.robots.tines import HANDLE_BODY, TINES_BODY, Tines
 
 
 def assemble(
@@ -30,7 +30,7 @@ def assemble(
     model: mujoco.MjModel | None = None,
     tool_speed_source: Source = "assumed",
     gripper: Gripper | None = None,
-    attachment: Attachment | None = None,
+    tines: Tines | None = None,
 ) -> Robot:
     """Read a robot's kinematics and shape from its model, and add what the model lacks.
 
@@ -42,7 +42,7 @@ def assemble(
         model = mujoco.MjModel.from_xml_string(mjcf)
     reading = read(model, end_effectors)
     sliding = () if gripper is None else gripper.joints
-    capsules = read_capsules(model, reading, sliding, () if attachment is None else ATTACHED_BODIES)
+    capsules = read_capsules(model, reading, sliding, () if tines is None else (HANDLE_BODY, TINES_BODY))
     joints = frozenset(int(joint) for joint in reading.joints)
     return Robot(
         name=name,
@@ -58,7 +58,7 @@ def assemble(
         tool_speed_source=tool_speed_source,
         model_path=model_path,
         gripper=gripper,
-        attachment=attachment,
+        tines=tines,
         tuck=_tuck(model, reading, limits),
         home_stated=model_path is None or mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_KEY, "home") >= 0,
     )
@@ -86,7 +86,7 @@ def restate(robot: Robot, stated: StatedLimits) -> Robot:
         robot.model_path,
         tool_speed_source=source,
         gripper=robot.gripper if stated.gripper is None else _stated_gripper(robot, stated.gripper),
-        attachment=robot.attachment,
+        tines=robot.tines,
     )
     return replace(anew, stated_limits=stated)
 

@@ -10,8 +10,8 @@ from typing import Any
 from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations, StatedLimits, StrPath
 from latentarm.robots.assemble import restate
-from latentarm.robots.attachments import attach
 from latentarm.robots.end_effector import AmbiguousEndEffectorError
+from latentarm.robots.fork import with_fork
 from latentarm.robots.model_file import load_model_file
 from latentarm.robots.panda import fr3, panda
 from latentarm.robots.planar import planar
@@ -21,9 +21,7 @@ ROBOTS: dict[str, Callable[[], Robot]] = {
     "panda": panda,
     "planar": planar,
     "planar2": lambda: planar(arms=2),
-    "panda_fork": cache(lambda: attach(panda(), "fork")),
-    "panda_spoon": cache(lambda: attach(panda(), "spoon")),
-    "panda_cup": cache(lambda: attach(panda(), "cup")),
+    "panda_fork": cache(lambda: with_fork(panda())),
     "fr3": fr3,
 }
 """The built-in robots."""

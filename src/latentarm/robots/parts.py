@@ -1,4 +1,4 @@
-"""Solids of things and attachments in a MuJoCo model."""
+"""Solids of things and of a fork in a MuJoCo model."""
 
 from collections.abc import Sequence
 from typing import Final

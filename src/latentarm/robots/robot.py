@@ -4,10 +4,10 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, final
 
 from latentarm.core.types import FloatArray, IntArray, StatedLimits
-from latentarm.robots.attachment import Attachment
 from latentarm.robots.gripper import Gripper
 from latentarm.robots.kinematics.chain import Capsules, Chain
 from latentarm.robots.limits import JointLimits, Source
+from latentarm.robots.tines import Tines
 
 if TYPE_CHECKING:
     import mujoco
@@ -33,7 +33,7 @@ class Robot:
     driven_fingers: tuple[str, ...] = ()  # joints that look like a gripper's and are driven as the arm's
     stated_limits: StatedLimits | None = None  # from a limits file, or None
     gripper: Gripper | None = None  # None where there is none to command
-    attachment: Attachment | None = None
+    tines: Tines | None = None  # of the fork that it holds, or None
     # (n,), a configuration out of the way, rad; None where its model states none
     tuck: FloatArray | None = None
     # whether the robot or its model states ``home``; else it is the middle of the joints' ranges, where an

@@ -39,9 +39,9 @@ class FrankaArm(GuidableArm):
             raise UserError(
                 f"A Franka has 7 joints, and {robot.name} has {robot.dof}: choose the robot that the arm is."
             )
-        if robot.attachment is not None and not self._options.payload_kg:
+        if robot.tines is not None and not self._options.payload_kg:
             raise UserError(
-                f"{robot.name} carries a {robot.attachment.name}: say what it weighs, such as"
+                f"{robot.name} carries a fork: say what it weighs, such as"
                 f" --arm franka://{address.host}?payload_kg=0.1."
             )
         self._robot = robot

@@ -66,7 +66,7 @@ class SceneState:
     tool: Pose  # pose of the arm's end-effector
     poses: Mapping[str, Pose]  # of every thing, by name
     speed_m_s: Mapping[str, float]  # of every thing's middle, by name, m/s
-    stabbed: frozenset[str]  # names of things on the tines of the arm's attachment
+    stabbed: frozenset[str]  # names of things on the tines of the arm's fork
     gripped: frozenset[str]  # names of things that both fingers touch
     bonds: frozenset[tuple[str, str]]  # pairs of names that nothing has cut apart
     grains: Mapping[str, FloatArray]  # (K, 3), middles by the grains' name, m

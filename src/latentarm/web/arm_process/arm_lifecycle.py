@@ -53,7 +53,7 @@ def _alike(one: Robot, other: Robot) -> bool:
     return (
         one.joint_names == other.joint_names
         and one.gripper == other.gripper
-        and (one.attachment and one.attachment.name) == (other.attachment and other.attachment.name)
+        and (one.tines is None) == (other.tines is None)
         and all(
             np.array_equal(getattr(here, figure), getattr(there, figure))
             for figure in ("lower", "upper", "velocity", "acceleration", "jerk")

@@ -1,17 +1,15 @@
-"""A fork, a spoon or a cup in the hand: where its tool is, what it takes up, and what it can do."""
+"""A fork in the hand: where its tool is, what it takes up, and what it can do."""
 
 import mujoco
 import numpy as np
 import pytest
 
 from latentarm.core.errors import UserError
-from latentarm.robots.attachments import attach
 from latentarm.robots.catalogue import load_robot
+from latentarm.robots.fork import with_fork
 from latentarm.robots.kinematics.distances import segment_distance
 from latentarm.robots.kinematics.reader import read
 from latentarm.robots.planar import planar
-
-NAMES = ("fork", "spoon", "cup")
 
 
 def corners(model, geom):
@@ -23,11 +21,9 @@ def corners(model, geom):
     return local @ rotation.reshape(3, 3).T + model.geom_pos[geom]
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_the_tool_lies_on_the_hands_axis_and_mujoco_agrees(the_panda, name):
-    robot = load_robot(f"panda_{name}")
+def test_the_tool_lies_on_the_hands_axis_and_mujoco_agrees(the_panda):
+    robot = load_robot("panda_fork")
     assert robot.gripper is None
-    assert robot.attachment.name == name
     assert robot.still_joints == () == robot.driven_fingers
     model = robot.model()
     data = mujoco.MjData(model)
@@ -44,13 +40,12 @@ def test_the_tool_lies_on_the_hands_axis_and_mujoco_agrees(the_panda, name):
     assert 0.02 < model.body_mass.sum() - the_panda.model().body_mass.sum() + 1e-9 < 0.3
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_its_shell_covers_it_and_a_fork_comes_close_to_a_plate(name):
-    robot = load_robot(f"panda_{name}")
+def test_its_shell_covers_it_and_it_comes_close_to_a_plate():
+    robot = load_robot("panda_fork")
     model = robot.model()
     reading = read(model, ["tool"])
     last = robot.capsules.link == 6
-    for body in ("attachment", "tines") if name == "fork" else ("attachment",):
+    for body in ("attachment", "tines"):
         to_link = reading.body_transform[model.body(body).id]
         for geom in np.flatnonzero(model.geom_bodyid == model.body(body).id):
             # The corners of a capsule's box lie outside of it.
@@ -62,8 +57,7 @@ def test_its_shell_covers_it_and_a_fork_comes_close_to_a_plate(name):
             assert (distance - robot.capsules.radius[last]).min(axis=1).max() < 1e-3
     ends = np.concatenate([robot.capsules.start[last], robot.capsules.end[last]])[:, 2]
     beyond = (ends + np.tile(robot.capsules.radius[last], 2)).max() - robot.chain.tools[0].transform[2, 3]
-    if name == "fork":
-        assert 0.0 <= beyond < 0.01
+    assert 0.0 <= beyond < 0.01
 
 
 def test_the_shell_covers_the_fingers_however_far_they_are_open(the_panda):
@@ -83,23 +77,10 @@ def test_the_shell_covers_the_fingers_however_far_they_are_open(the_panda):
                 assert (distance - the_panda.capsules.radius).min(axis=1).max() < 1e-9
 
 
-def test_the_cup_stands_upright_where_the_hand_is_level():
-    robot = load_robot("panda_cup")
-    tool = robot.chain.forward(np.array([0.0, 0.3, 0.0, -1.8, 0.0, 3.67, 0.785]))
-    pose = robot.attachment.vessel.pose(tool)
-    np.testing.assert_allclose(pose.rotation[:, 2], [0.0, 0.0, 1.0], atol=2e-3)
-    # The tool is in the middle of the room in it.
-    inside = pose.rotation.T @ (tool.position - pose.position)
-    room = robot.attachment.vessel.interior
-    np.testing.assert_allclose(inside, [0.0, 0.0, (room.bottom_m + room.top_m) / 2.0], atol=1e-9)
-
-
-def test_any_robot_can_hold_a_fork_but_one_thing_at_a_time():
-    robot = attach(planar(3), "fork")
+def test_any_robot_can_hold_one_fork():
+    robot = with_fork(planar(3))
     assert robot.chain.tools[0].name == "tool"
     assert robot.chain.forward(robot.home).position.shape == (3,)
-    assert robot.attachment.tines is not None
+    assert robot.tines is not None
     with pytest.raises(UserError, match="holds its fork already"):
-        attach(robot, "cup")
-    with pytest.raises(UserError, match=r"no attachment 'knife'.*fork, spoon, cup"):
-        attach(planar(3), "knife")
+        with_fork(robot)
