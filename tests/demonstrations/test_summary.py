@@ -7,7 +7,7 @@ from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations, Episode
 from latentarm.demonstrations.figure import draw_trajectories
 from latentarm.demonstrations.importers.importing import import_demonstrations
-from latentarm.demonstrations.summary import summarise
+from latentarm.demonstrations.summary import Summary, summarise
 from latentarm.demonstrations.validation import validate
 from latentarm.robots.limits import JointLimits
 from latentarm.robots.planar import planar
@@ -20,40 +20,45 @@ def turning() -> Demonstrations:
     return Demonstrations((Episode(angle[:, None], time, task="turn"),), 10.0, ("joint1",))
 
 
+def figures(summary: Summary) -> dict[tuple[str, str | None], float]:
+    found = {(row.measure, row.condition): row.mean for row in summary.rows() if row.mean is not None}
+    assert len(found) == len(summary.rows())
+    return found
+
+
 def test_the_figures_of_a_motion_known_by_hand() -> None:
     robot = planar(1)
-    summary = summarise(turning(), robot)
-    (episode,), (joint,) = summary.episodes, summary.joints
-    assert episode.samples == 31
-    assert episode.duration_s == pytest.approx(3.0)
-    assert episode.rate_hz == pytest.approx(10.0)
-    assert episode.path_rad == pytest.approx(np.pi / 2)
+    found = figures(summarise(turning(), robot))
+    assert found["samples", "episode_0"] == found["samples", None] == 31
+    assert found["duration_s", "episode_0"] == found["duration_s", None] == pytest.approx(3.0)
+    assert found["rate_hz", "episode_0"] == found["rate_hz", None] == pytest.approx(10.0)
+    assert found["path_length_rad", "episode_0"] == pytest.approx(np.pi / 2)
     reach = np.linalg.norm(robot.chain.forward(np.zeros(1)).position)
-    assert episode.path_m == pytest.approx(reach * np.pi / 2, rel=1e-3)
-    assert episode.still_fraction == pytest.approx(1 / 3)
-    assert joint.speed_max == episode.peak_speed_rad_s == pytest.approx(np.pi / 4)
-    assert (joint.lowest, joint.highest) == pytest.approx((0, np.pi / 2))
-    assert joint.margin_rad == pytest.approx(robot.limits.upper[0] - np.pi / 2)
+    assert found["path_length", "episode_0"] == pytest.approx(reach * np.pi / 2, rel=1e-3)
+    assert found["still_fraction", "episode_0"] == pytest.approx(1 / 3)
+    assert found["speed_max", "joint1"] == found["peak_speed", "episode_0"] == pytest.approx(np.pi / 4)
+    assert (found["lowest", "joint1"], found["highest", "joint1"]) == pytest.approx((0, np.pi / 2))
+    assert found["limit_margin", "joint1"] == pytest.approx(robot.limits.upper[0] - np.pi / 2)
 
 
 def test_without_a_robot_limits_are_unknown() -> None:
     summary = summarise(turning())
-    assert summary.joints[0].margin_rad is None
-    assert all(row.mean is not None for row in summary.rows())
-    assert not [row for row in summary.rows() if row.measure in {"limit_margin", "path_length"}]
+    assert {"limit_margin", "path_length"}.isdisjoint(measure for measure, _ in figures(summary))
+    episodes, joints = summary.tables
+    assert dict(zip(episodes.headings(), episodes.lines()[0], strict=True))["tool path (m)"] == "–"
+    assert dict(zip(joints.headings(), joints.lines()[0], strict=True))["margin (rad)"] == "–"
 
 
 def test_tables_and_rows_say_the_same(demonstrations: Demonstrations) -> None:
     summary = summarise(demonstrations)
-    episodes, joints = summary.tables()
-    assert len(episodes.rows) == 3
-    assert len(joints.rows) == 3
-    assert all(len(row) == len(table.columns) for table in (episodes, joints) for row in table.rows)
-    rows = {(row.measure, row.condition): row.mean for row in summary.rows()}
-    assert rows["episodes", None] == 3
-    assert rows["samples", "episode_2"] == int(episodes.rows[2][2]) == 7
-    assert f"{rows['highest', 'wrist']:.3f}" == joints.rows[2][2]
-    assert len(rows) == len(summary.rows())
+    episodes, joints = summary.tables
+    assert len(episodes.lines()) == 3
+    assert len(joints.lines()) == 3
+    assert all(len(line) == len(table.headings()) for table in (episodes, joints) for line in table.lines())
+    found = figures(summary)
+    assert found["episodes", None] == 3
+    assert found["samples", "episode_2"] == int(episodes.lines()[2][2]) == 7
+    assert f"{found['highest', 'wrist']:.3f}" == joints.lines()[2][2]
 
 
 def with_gripper(feature: str, values: list[float], **others: list[float]) -> Demonstrations:
@@ -90,8 +95,8 @@ def test_what_a_gripper_did_is_counted(
     demonstrations = with_gripper(feature, values, **others)
     validate(demonstrations, "here")
     summary = summarise(demonstrations)
-    *_, gripper = summary.tables()
-    assert (gripper.title, gripper.rows) == ("Gripper", (("0", *shown),))
+    *_, gripper = summary.tables
+    assert (gripper.title, gripper.lines()) == ("Gripper", [("0", *shown)])
     rows = {row.measure: row.mean for row in summary.rows()}
     assert rows["gripper_changes"] == int(shown[2])
 
@@ -129,5 +134,7 @@ def test_the_real_recordings_are_within_the_pandas_limits(real: Path, panda_limi
         demonstrations = import_demonstrations(real / f"{name}.npz")
         states = np.concatenate([episode.state for episode in demonstrations.episodes])
         assert panda_limits.violation(states).max() == 0
-        speeds = [joint.speed_max for joint in summarise(demonstrations).joints]
+        rows = summarise(demonstrations).rows()
+        speeds = [row.mean for row in rows if row.measure == "speed_max" and row.mean is not None]
+        assert len(speeds) == len(panda_limits.velocity)
         assert np.all(speeds <= panda_limits.velocity)

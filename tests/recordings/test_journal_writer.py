@@ -765,7 +765,7 @@ CLOSE, LET_GO = GripperCommand(0.0, 0.05, 20.0), GripperCommand(0.08, 0.05, 20.0
 
 
 def test_a_gripper_s_life_goes_into_the_dataset(tmp_path, arm):
-    from latentarm.demonstrations.summary import summarise
+    from latentarm.demonstrations.gripper import gripper_uses
 
     steps = [(OPEN, None), (OPEN, CLOSE), (HELD, None), (HELD, None), (GripperReading(-1e-5), LET_GO)]
     journal = recorded(tmp_path / "drive.sqlite", steps, steps[:2])
@@ -782,7 +782,7 @@ def test_a_gripper_s_life_goes_into_the_dataset(tmp_path, arm):
     np.testing.assert_allclose(action, [0.08, 0.0, 0.0, 0.0, 0.08], rtol=1e-6)
     statistics = json.loads((tmp_path / "dataset/meta/stats.json").read_text())
     assert statistics["observation.gripper_width"]["max"] == [pytest.approx(0.08)]
-    first, second = summarise(demonstrations).gripper
+    first, second = gripper_uses(demonstrations)
     assert (first.changes, first.closed_fraction) == (2, pytest.approx(0.75))
     assert (second.changes, second.closed_fraction) == (1, 0.0)
 

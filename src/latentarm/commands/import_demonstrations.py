@@ -32,8 +32,9 @@ def import_demonstrations(
 
     For example: latentarm import panda_pour_coffee.npz pour
     """
-    from latentarm.commands.inspect import import_table, summary
+    from latentarm.commands.inspect import import_table
     from latentarm.demonstrations.importers.importing import import_to
+    from latentarm.demonstrations.summary import summarise
     from latentarm.robots.catalogue import load_robot
     from latentarm.robots.limits_file import read_limits
     from latentarm.robots.notices import notices
@@ -44,7 +45,7 @@ def import_demonstrations(
     write_options(destination, "import")
     note(demonstrations.warnings)
     if json:
-        show(summary(demonstrations).rows(), json)
+        show(summarise(demonstrations, arm).rows(), json)
         for subject, decision in demonstrations.import_record.items():
             say(f"{subject}: {decision}", json)
     else:

@@ -16,50 +16,22 @@ from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations, Provenance
 from latentarm.core.untrusted.terminal import visible
 from latentarm.demonstrations.summary import Summary, summarise
-from latentarm.robots.robot import Robot
 from latentarm.runs.options import Json
 
 _FINGERPRINT_LENGTH: Final = 64  # digits of a SHA-256
 
 
-def known_robot(demonstrations: Demonstrations) -> Robot | None:
-    """The robot that a dataset names, or None if it names none or that robot is not available."""
-    from latentarm.robots.catalogue import load_recorded_robot
-
-    try:
-        return load_recorded_robot(demonstrations) if demonstrations.robot else None
-    except UserError:
-        return None
-
-
-def why_unknown(demonstrations: Demonstrations, dataset: str) -> str | None:
-    """Why the robot that a dataset names cannot be loaded; None if it can, or if none is named."""
-    from latentarm.robots.catalogue import load_recorded_robot
-
-    try:
-        if demonstrations.robot:
-            load_recorded_robot(demonstrations, dataset)
-    except UserError as error:
-        return f"Limits and the tool's path are not known. {error}"
-    return None
-
-
-def summary(demonstrations: Demonstrations) -> Summary:
-    """The dataset in figures, with the limits of its robot where that is known."""
-    return summarise(demonstrations, known_robot(demonstrations))
-
-
-def summary_tables(demonstrations: Demonstrations) -> list[Table]:
+def _tables(demonstrations: Demonstrations, summary: Summary) -> list[Table]:
     """Episodes and joints as tables for the terminal."""
     tables: list[Table] = []
-    for plain in summary(demonstrations).tables():
+    for plain in summary.tables:
         table = Table(title=plain.title, title_justify="left", box=SIMPLE_HEAD, padding=0)
-        for index, heading in enumerate(plain.columns):
+        for index, heading in enumerate(plain.headings()):
             # One word a line: the table then fits 80 columns.
             heading = heading.replace(" ", "\n")
             table.add_column(heading, justify="left" if index == 0 else "right", no_wrap=True)
-        for row in plain.rows:
-            table.add_row(*(Text(visible(text)) for text in row))
+        for line in plain.lines():
+            table.add_row(*(Text(visible(text)) for text in line))
         tables.append(table)
     return [*_origin_tables(demonstrations), *tables]
 
@@ -103,16 +75,6 @@ def _told(value: object) -> str:
     return text if len(text) < _FINGERPRINT_LENGTH else f"{text[:8]}…"
 
 
-def draw(demonstrations: Demonstrations, folder: Path) -> Path:
-    """Draw the joints over time; the figure's path. UserError where the folder cannot be written."""
-    from latentarm.demonstrations.figure import draw_trajectories
-
-    robot = known_robot(demonstrations)
-    path = folder / "joints.png"
-    draw_trajectories(demonstrations, path, robot.limits if robot else None)
-    return path
-
-
 def inspect(
     dataset: Annotated[Positional[Path], arg(metavar="DST", help="Folder of a native dataset.")],
     out: Annotated[
@@ -125,14 +87,20 @@ def inspect(
     For example: latentarm inspect pour
     """
     from latentarm.demonstrations.dataset import read_dataset
+    from latentarm.demonstrations.figure import draw_trajectories
+    from latentarm.robots.catalogue import load_recorded_robot
 
     demonstrations = read_dataset(dataset)
-    unknown = why_unknown(demonstrations, str(dataset))
-    if unknown:
-        note([unknown])
+    robot = None
+    try:
+        robot = load_recorded_robot(demonstrations, str(dataset)) if demonstrations.robot else None
+    except UserError as error:
+        note([f"Limits and the tool's path are not known. {error}"])
     note(demonstrations.warnings)
-    figure = draw(demonstrations, out or dataset.with_name(f"{dataset.name}-figures"))
+    figure = (out or dataset.with_name(f"{dataset.name}-figures")) / "joints.png"
+    draw_trajectories(demonstrations, figure, robot.limits if robot else None)
     write_options(figure.parent, "inspect")
-    show(summary(demonstrations).rows(), json, *summary_tables(demonstrations))
+    summary = summarise(demonstrations, robot)
+    show(summary.rows(), json, *_tables(demonstrations, summary))
     say(f"The joints over time are drawn in {figure}.", json)
     return 0
