@@ -60,7 +60,6 @@ class FixedAlpha(Arbitration):
 
     @property
     def acts_at_rest(self) -> bool:
-        """No: an arm whose person lets go stands still."""
         return False
 
     def alpha(self, u: FloatArray, belief: FloatArray) -> FloatArray:
@@ -103,7 +102,6 @@ class ConfidenceAlpha(Arbitration):
 
     @property
     def acts_at_rest(self) -> bool:
-        """No: an arm whose person lets go stands still."""
         return False
 
     def alpha(self, u: FloatArray, belief: FloatArray) -> FloatArray:

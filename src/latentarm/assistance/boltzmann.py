@@ -42,7 +42,6 @@ class BoltzmannBelief(Belief):
         self.beta = not_negative("beta", beta)
 
     def log_likelihood(self, state: FloatArray, actions: FloatArray) -> FloatArray:
-        """``log P(u | s, g)`` of one decision; see `Belief.log_likelihood`."""
         # D(g, s + a tau) - D(g, s) = ‖a tau‖² - 2 a tau · (g - s): a product of matrices for all goals at
         # once, and D(g, s) itself cancels.
         way = self.horizon_s * actions

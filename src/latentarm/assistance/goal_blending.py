@@ -21,7 +21,6 @@ class GoalBlending(Assistance):
 
     @property
     def acts_at_rest(self) -> bool:
-        """As the arbitration does."""
         return self._arbitration.acts_at_rest
 
     def contribution(
@@ -32,7 +31,6 @@ class GoalBlending(Assistance):
         return Contribution(assistive_action(state, belief, self._goals), alpha)
 
     def over(self, goals: FloatArray) -> Self:
-        """See `Assistance.over`."""
         return type(self)(goals, self._arbitration)
 
     def bound_rad(self, given: Contribution, state: FloatArray, belief: FloatArray, sigma_h: float) -> float:

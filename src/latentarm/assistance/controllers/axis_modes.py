@@ -74,13 +74,11 @@ class AxisController(Controller, ABC):
     @property
     @final
     def modes(self) -> tuple[str, ...]:
-        """Names of the groups of axes."""
         return self._modes.names
 
     @property
     @final
     def input_dim(self) -> int:
-        """As many axes as a mode has."""
         return len(self._modes.axes[0])
 
     @final

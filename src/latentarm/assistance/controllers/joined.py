@@ -34,7 +34,6 @@ class JoinedController(Controller):
 
     @property
     def modes(self) -> tuple[str, ...]:
-        """All modes of all controllers, in their order."""
         return self._modes
 
     @property
@@ -44,7 +43,6 @@ class JoinedController(Controller):
 
     @property
     def objects(self) -> tuple[str, ...]:
-        """Those of the controllers that look at any."""
         return self._objects
 
     def latent(self, u: FloatArray, context: Context, mode: int) -> FloatArray:
@@ -58,11 +56,9 @@ class JoinedController(Controller):
         return z
 
     def action(self, z: FloatArray, context: Context, mode: int) -> FloatArray:
-        """The action of the mode's own controller."""
         controller, own = self._parts[mode]
         return controller.action(z[..., : controller.input_dim], context, own)
 
     def speed_bound(self, context: Context, mode: int) -> float | None:
-        """That of the mode's own controller."""
         controller, own = self._parts[mode]
         return controller.speed_bound(context, own)

@@ -50,7 +50,6 @@ class LatentController(Controller):
 
     @property
     def input_dim(self) -> int:
-        """As many axes as the latent space has."""
         return self._decoder.latent_dim
 
     @property
@@ -59,7 +58,6 @@ class LatentController(Controller):
         return self._decoder.layout.objects
 
     def latent(self, u: FloatArray, context: Context, mode: int) -> FloatArray:
-        """The alignment of equation 4."""
         return self._alignment(u, self._vector(context))
 
     def action(self, z: FloatArray, context: Context, mode: int) -> FloatArray:

@@ -41,16 +41,13 @@ class ToPose(Controller):
 
     @property
     def modes(self) -> tuple[str, ...]:
-        """One."""
         return ("to a pose",)
 
     @property
     def input_dim(self) -> int:
-        """One axis."""
         return 1
 
     def latent(self, u: FloatArray, context: Context, mode: int) -> FloatArray:
-        """The input as it is."""
         return u
 
     def action(self, z: FloatArray, context: Context, mode: int) -> FloatArray:
