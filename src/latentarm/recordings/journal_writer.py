@@ -5,7 +5,7 @@ import sqlite3
 import sys
 from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any, final
 
@@ -156,19 +156,11 @@ class Recorder:
         self._episode = None
         self._watch.check()
         about = {
-            "robot": header.robot,
-            "joint_names": list(header.joint_names),
-            "rate_hz": header.rate_hz,
-            "task": header.task,
-            "modes": list(header.modes),
-            "end_effector": header.end_effector,
+            **{one.name: getattr(header, one.name) for one in fields(header)},
             "limits": None if header.limits is None else limits_document(header.limits),
             "joint_limits": None if header.joint_limits is None else _limits_as_json(header.joint_limits),
             "goals": goals_document(header.goals),
             "provenance": provenance_json(header.provenance),
-            "things": list(header.things),
-            "objects": list(header.objects),
-            "sources": list(header.sources),
             "settings": dict(header.settings),
         }
         try:
