@@ -47,7 +47,7 @@ def test_nothing_is_left_to_fill_in_of_a_robot_that_is_known(tmp_path):
     assert "assumed" not in text
     path = tmp_path / "panda.toml"
     path.write_text(text)
-    assert load_robot("panda", limits=read_limits(path)).limits.sources.jerk == ("limits_file",) * 7
+    assert load_robot("panda", limits=read_limits(path)).limits.sources["jerk"] == ("limits_file",) * 7
 
 
 @pytest.mark.parametrize(("name", "said"), [("limits.toml", "is there already"), ("limits.txt", "TOML")])

@@ -86,7 +86,7 @@ def test_a_joint_that_follows_another_moves_with_it_and_within_the_limits_of_bot
     assert (both.joint_names, both.chain.tools[0].name) == (("shoulder",), "lower")
     np.testing.assert_allclose([*both.limits.lower, *both.limits.upper], [-0.5, 0.5])
     assert both.limits.velocity == [1.0]
-    assert both.limits.sources.position == ("model",)
+    assert both.limits.sources["position"] == ("model",)
     robot = load_model_file(path, "upper")
     assert robot.joint_names == ("shoulder",)
     # It turns for ever: that it stays within two turns is this program's choice, and said so.

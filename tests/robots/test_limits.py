@@ -61,11 +61,11 @@ def test_violation_is_how_far_outside():
 
 def test_a_limit_of_which_nothing_is_said_is_assumed():
     assert limits().assumed == dict.fromkeys(("position", "velocity", "acceleration", "jerk"), (0, 1))
-    known = LimitSources(position=("model", "model"), velocity=("model", "assumed"))
+    known: LimitSources = {"position": ("model", "model"), "velocity": ("model", "assumed")}
     given = JointLimits(**{name: np.array(value) for name, value in GOOD.items()}, sources=known)
     assert given.assumed == {"velocity": (1,), "acceleration": (0, 1), "jerk": (0, 1)}
 
 
 def test_sources_for_other_than_every_joint_are_refused():
     with pytest.raises(UserError, match="sources of the joint limits' jerk are 3"):
-        JointLimits(**{n: np.array(v) for n, v in GOOD.items()}, sources=LimitSources(jerk=("model",) * 3))
+        JointLimits(**{n: np.array(v) for n, v in GOOD.items()}, sources={"jerk": ("model",) * 3})

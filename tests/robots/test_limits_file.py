@@ -38,8 +38,10 @@ def test_what_is_stated_takes_the_place_of_what_is_known(written, name, text):
     assert limits.upper[0] == pytest.approx(math.pi / 2)
     assert (limits.velocity[0], limits.jerk[1], robot.tool_speed_limit) == (1.5, 300.0, 0.8)
     assert limits.acceleration[1] == pytest.approx(math.pi)
-    assert limits.sources.velocity[:2] == ("limits_file", "manufacturer")
-    assert limits.sources.position[0] == limits.sources.jerk[1] == robot.tool_speed_source == "limits_file"
+    assert limits.sources["velocity"][:2] == ("limits_file", "manufacturer")
+    assert (
+        limits.sources["position"][0] == limits.sources["jerk"][1] == robot.tool_speed_source == "limits_file"
+    )
 
 
 def test_home_stays_within_what_is_stated():

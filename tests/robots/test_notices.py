@@ -4,7 +4,7 @@ import pytest
 
 from latentarm.arms.contract import ArmSpec, check_arm
 from latentarm.core.errors import UserError
-from latentarm.robots.limits import LimitSources
+from latentarm.robots.limits import same_source
 from latentarm.robots.model_file import load_model_file
 from latentarm.robots.notices import assumed_limits, notices
 from latentarm.robots.planar import planar
@@ -40,8 +40,8 @@ def test_a_real_arm_refuses_limits_that_are_assumed(the_panda, ur5e_file):
         check_arm(real(ur5e), ur5e)
     check_arm(replace(real(ur5e), simulated=True), ur5e)
     # One figure of one joint is enough.
-    sources = LimitSources.same("manufacturer", 7)
-    one = replace(sources, jerk=("assumed", *sources.jerk[1:]))
+    sources = same_source("manufacturer", 7)
+    one = {**sources, "jerk": ("assumed", *sources["jerk"][1:])}
     doubtful = replace(the_panda, limits=replace(the_panda.limits, sources=one))
     with pytest.raises(UserError, match=r"assumed in part \(jerk of joint joint1"):
         check_arm(real(doubtful), doubtful)

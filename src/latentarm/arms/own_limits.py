@@ -76,7 +76,7 @@ def _fits(own: FoundLimits, robot: Robot) -> bool:
 def _describe(quantity: Quantity, own: FoundLimits | None, robot: Robot) -> Iterator[str]:
     limits = robot.limits
     ours = (limits.lower, limits.upper) if quantity == "position" else (getattr(limits, quantity),)
-    sources = dict.fromkeys(_SOURCES[one] for one in limits.sources.of(quantity))
+    sources = dict.fromkeys(_SOURCES[one] for one in limits.sources[quantity])
     yield f"{_listed(quantity, ours, robot)}, by {' and '.join(sources)};"
     theirs = _own_figures(quantity, own, robot)
     if np.isfinite(theirs).any():

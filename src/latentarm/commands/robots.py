@@ -82,7 +82,7 @@ def _facts(robot: Robot) -> dict[str, object]:
                 "acceleration": float(limits.acceleration[index]),
                 "jerk": float(limits.jerk[index]),
                 "home": float(robot.home[index]),
-                "source": {quantity: limits.sources.of(quantity)[index] for quantity in QUANTITIES},
+                "source": {quantity: limits.sources[quantity][index] for quantity in QUANTITIES},
             }
             for index, joint in enumerate(robot.joint_names)
         ],
@@ -108,7 +108,7 @@ def _sheet(robot: Robot) -> Table:
     for index, joint in enumerate(robot.joint_names):
         cells: list[str] = []
         for figure, quantity in figures:
-            assumed = quantity is not None and limits.sources.of(quantity)[index] == "assumed"
+            assumed = quantity is not None and limits.sources[quantity][index] == "assumed"
             cells.append(f"{figure[index]:.4g}{' assumed' if assumed else ''}")
         table.add_row(joint, *cells)
     tools = ", ".join(tool.name for tool in robot.chain.tools)
@@ -126,7 +126,7 @@ def _known_from(robot: Robot) -> str:
     """The sources of the limits, such as "position: from the model; jerk: assumed"."""
     texts: dict[str, list[str]] = {}
     for quantity in QUANTITIES:
-        sources = dict.fromkeys(robot.limits.sources.of(quantity))
+        sources = dict.fromkeys(robot.limits.sources[quantity])
         texts.setdefault(" or ".join(_SOURCES[source] for source in sources), []).append(quantity)
     return "; ".join(f"{', '.join(quantities)}: {text}" for text, quantities in texts.items())
 

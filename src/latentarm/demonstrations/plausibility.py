@@ -53,7 +53,7 @@ def speed_warning(demonstrations: Demonstrations, robot: Robot, source: str, nam
     if not over:
         return ""
     worst = int(np.argmax(peak / limit))
-    known = "assumed limit" if robot.limits.sources.velocity[worst] == "assumed" else "limit"
+    known = "assumed limit" if robot.limits.sources["velocity"][worst] == "assumed" else "limit"
     return (
         f"{100.0 * over / count:.2g} % of the steps are faster than the robot's limits:"
         f" {robot.joint_names[worst]} goes up"

@@ -1,5 +1,6 @@
 """Limits of a robot's joints, and the source of each figure."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Final, Literal, final
 
@@ -14,26 +15,13 @@ QUANTITIES: Final[tuple[Quantity, ...]] = ("position", "velocity", "acceleration
 LIMIT_NAMES: Final = ("lower", "upper", "velocity", "acceleration", "jerk")
 
 
-@final
-@dataclass(frozen=True)
-class LimitSources:
-    """Sources of the limits of n joints, "assumed" by default; ``position`` is for lower and upper."""
+LimitSources = Mapping[Quantity, tuple[Source, ...]]
+"""Sources of the limits of n joints, "assumed" where not named; ``position`` is for lower and upper."""
 
-    position: tuple[Source, ...] = ()
-    velocity: tuple[Source, ...] = ()
-    acceleration: tuple[Source, ...] = ()
-    jerk: tuple[Source, ...] = ()
 
-    @staticmethod
-    def same(source: Source, dof: int) -> "LimitSources":
-        """One source for every limit of every joint."""
-        all_joints: tuple[Source, ...] = (source,) * dof
-        return LimitSources(all_joints, all_joints, all_joints, all_joints)
-
-    def of(self, quantity: Quantity) -> tuple[Source, ...]:
-        """The n sources of one quantity."""
-        sources: tuple[Source, ...] = getattr(self, quantity)
-        return sources
+def same_source(source: Source, dof: int) -> LimitSources:
+    """One source for every limit of every joint."""
+    return dict.fromkeys(QUANTITIES, (source,) * dof)
 
 
 @final
@@ -46,7 +34,7 @@ class JointLimits:
     velocity: FloatArray  # (n,), rad/s
     acceleration: FloatArray  # (n,), rad/s²
     jerk: FloatArray  # (n,), rad/s³
-    sources: LimitSources = field(default_factory=LimitSources)
+    sources: LimitSources = field(default_factory=dict[Quantity, tuple[Source, ...]])
 
     def __post_init__(self) -> None:
         for name in LIMIT_NAMES:
@@ -65,13 +53,11 @@ class JointLimits:
                 )
             value.flags.writeable = False
             object.__setattr__(self, name, value)
-        unknown: tuple[Source, ...] = ("assumed",) * self.dof
-        sources = LimitSources(*(self.sources.of(quantity) or unknown for quantity in QUANTITIES))
-        for quantity in QUANTITIES:
-            if len(sources.of(quantity)) != self.dof:
+        sources = {**same_source("assumed", self.dof), **self.sources}
+        for quantity, each in sources.items():
+            if len(each) != self.dof:
                 raise UserError(
-                    f"The sources of the joint limits' {quantity} are {len(sources.of(quantity))}:"
-                    " give one for each joint."
+                    f"The sources of the joint limits' {quantity} are {len(each)}: give one for each joint."
                 )
         object.__setattr__(self, "sources", sources)
         for joint in np.flatnonzero(self.lower >= self.upper):
@@ -95,7 +81,7 @@ class JointLimits:
     def assumed(self) -> dict[Quantity, tuple[int, ...]]:
         """Joints with assumed limits, by quantity, for quantities that have any."""
         found: dict[Quantity, tuple[int, ...]] = {
-            one: tuple(joint for joint, source in enumerate(self.sources.of(one)) if source == "assumed")
+            one: tuple(joint for joint, source in enumerate(self.sources[one]) if source == "assumed")
             for one in QUANTITIES
         }
         return {quantity: joints for quantity, joints in found.items() if joints}

@@ -31,7 +31,7 @@ from latentarm.core.types import StatedGripper, StatedJointLimits, StatedLimits
 from latentarm.core.untrusted.hand_written import MOST_BYTES, check_keys, number_of, parse_toml, table_of
 from latentarm.core.untrusted.opening import read_bytes
 from latentarm.core.untrusted.yaml_file import parse_yaml
-from latentarm.robots.limits import JointLimits, LimitSources, Quantity, Source
+from latentarm.robots.limits import JointLimits, Quantity, Source
 
 TOOL_SPEED: Final = "tool_speed_m_per_s"
 GRIPPER: Final = "gripper"
@@ -123,7 +123,7 @@ def with_stated(
     """The limits with stated values in place of known or assumed ones, for n named joints."""
     known = list(names)
     figures = {field: np.array(getattr(limits, field)) for fields in _SAID_BY.values() for field in fields}
-    sources: dict[Quantity, list[Source]] = {one: list(limits.sources.of(one)) for one in _SAID_BY}
+    sources: dict[Quantity, list[Source]] = {one: list(limits.sources[one]) for one in _SAID_BY}
     for name, one in stated.joints.items():
         if name not in known:
             raise UserError(
@@ -140,7 +140,7 @@ def with_stated(
                     figures[field][joint] = figure
                 sources[quantity][joint] = "limits_file"
     said = {quantity: tuple(each) for quantity, each in sources.items()}
-    return JointLimits(**figures, sources=LimitSources(**said))
+    return JointLimits(**figures, sources=said)
 
 
 _SAID_BY: Final[Mapping[Quantity, tuple[str, ...]]] = {

@@ -27,12 +27,12 @@ def _lines(robot: Robot) -> Iterator[str]:
         yield ""
         yield f"[joints.{name if _PLAIN.fullmatch(name) else json.dumps(name)}]"
         unit = "m" if robot.chain.slide[joint] else "rad"
-        known = limits.sources.position[joint] != "assumed"
+        known = limits.sources["position"][joint] != "assumed"
         yield _line(f"lower_{unit}", float(limits.lower[joint]), known=known)
         yield _line(f"upper_{unit}", float(limits.upper[joint]), known=known)
         for quantity in QUANTITIES[1:]:
             figure = float(getattr(limits, quantity)[joint])
-            known = limits.sources.of(quantity)[joint] != "assumed"
+            known = limits.sources[quantity][joint] != "assumed"
             yield _line(f"{quantity}_{unit}{PER_TIME[quantity]}", figure, known=known)
     if robot.stated_limits is not None and robot.stated_limits.gripper is not None:
         yield ""

@@ -15,7 +15,7 @@ from latentarm.robots.assemble import assemble
 from latentarm.robots.end_effector import AmbiguousEndEffectorError, choose_end_effector
 from latentarm.robots.kinematics.chain import Chain
 from latentarm.robots.kinematics.reader import ModelChain, read
-from latentarm.robots.limits import JointLimits, LimitSources, Source
+from latentarm.robots.limits import JointLimits, Source
 from latentarm.robots.model_xml import read_model_xml
 from latentarm.robots.robot import Robot
 from latentarm.robots.urdf import Urdf, prepare_urdf
@@ -146,10 +146,10 @@ def _limits(model: mujoco.MjModel, reading: ModelChain, velocity: Mapping[str, f
         velocity=np.where(known, fastest, [defaults.velocity for defaults in assumed]),
         acceleration=np.array([defaults.acceleration for defaults in assumed]),
         jerk=np.array([defaults.jerk for defaults in assumed]),
-        sources=LimitSources(
-            position=tuple(_source(bool(one)) for one in limited),
-            velocity=tuple(_source(bool(one)) for one in known),
-        ),
+        sources={
+            "position": tuple(_source(bool(one)) for one in limited),
+            "velocity": tuple(_source(bool(one)) for one in known),
+        },
     )
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from latentarm.core.types import FloatArray
 from latentarm.robots.assemble import assemble
 from latentarm.robots.gripper import Gripper
-from latentarm.robots.limits import JointLimits, LimitSources
+from latentarm.robots.limits import JointLimits, same_source
 from latentarm.robots.panda_look import SHELL_GROUP, add_look
 from latentarm.robots.robot import Robot
 
@@ -21,7 +21,7 @@ LIMITS = JointLimits(
     velocity=np.array([2.175, 2.175, 2.175, 2.175, 2.61, 2.61, 2.61]),
     acceleration=np.array([15.0, 7.5, 10.0, 12.5, 15.0, 20.0, 20.0]),
     jerk=np.array([7500.0, 3750.0, 5000.0, 6250.0, 7500.0, 10000.0, 10000.0]),
-    sources=LimitSources.same("manufacturer", 7),
+    sources=same_source("manufacturer", 7),
 )
 """Franka control-parameters documentation."""
 
@@ -34,7 +34,7 @@ FR3_LIMITS = JointLimits(
     velocity=np.array([2.62, 2.62, 2.62, 2.62, 5.26, 4.18, 5.26]),
     acceleration=np.full(7, 10.0),
     jerk=np.full(7, 5000.0),
-    sources=LimitSources.same("manufacturer", 7),
+    sources=same_source("manufacturer", 7),
 )
 """The manufacturer's limits of the FR3 (https://frankarobotics.github.io/docs/robot_specifications.html).
 Positions end where the Panda's do too: beyond, it is not known which of the links cannot meet."""

@@ -7,7 +7,7 @@ import numpy as np
 
 from latentarm.core.errors import UserError
 from latentarm.robots.assemble import assemble
-from latentarm.robots.limits import JointLimits, LimitSources
+from latentarm.robots.limits import JointLimits, same_source
 from latentarm.robots.robot import Robot
 
 REACH_M = 1.0  # length of a whole arm
@@ -54,7 +54,7 @@ def planar(n_links: int = 5, arms: int = 1) -> Robot:
         acceleration=np.full(n, 10.0),
         jerk=np.full(n, 1000.0),
         # An imaginary arm: these limits are its specification.
-        sources=LimitSources.same("model", n),
+        sources=same_source("model", n),
     )
     tools = [f"{side}tool" for side in sides]
     return assemble(spec.modelname, spec.to_xml(), tools, limits, home, 2.0, tool_speed_source="model")

@@ -84,7 +84,7 @@ class Steering:
             "robot": robot.name,
             "arm": self.arm,
             "end_effector": robot.chain.tools[0].name,
-            "limit_sources": asdict(robot.limits.sources) | {"tool_speed": robot.tool_speed_source},
+            "limit_sources": {**robot.limits.sources, "tool_speed": robot.tool_speed_source},
             "profile": config.profile,
             "seat": config.seat,
             "drives_per_goal": config.drives,

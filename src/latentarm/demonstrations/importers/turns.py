@@ -17,7 +17,7 @@ def turning(robot: Robot) -> BoolArray:
     """(n,), whether each joint has no stops: neither the model nor a limits file gives any within a turn."""
     limits = robot.limits
     wide = limits.upper - limits.lower >= TURN
-    told = np.array(limits.sources.position)
+    told = np.array(limits.sources["position"])
     return ~robot.chain.slide & ((told == "assumed") | ((told == "limits_file") & wide))
 
 
