@@ -6,8 +6,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from latentarm.core.types import Row
-from latentarm.evaluation.results import as_document, write_results
+from latentarm.evaluation.results import as_document
 from latentarm.evaluation.summary import Subject, summarise
+from latentarm.runs.results_folder import write_json
 
 number = st.none() | st.floats(allow_nan=False, allow_infinity=False)
 text = st.none() | st.text(max_size=8)
@@ -30,7 +31,7 @@ row = st.builds(
 @given(rows=st.lists(row, max_size=5))
 def test_what_is_written_is_read_again(rows, tmp_path_factory):
     path = tmp_path_factory.mktemp("results") / "metrics.json"
-    write_results(path, rows, about={"seed": 1})
+    write_json(path, as_document(rows, about={"seed": 1}))
     assert [Row(**entry) for entry in json.loads(path.read_text())["rows"]] == rows
 
 
@@ -52,5 +53,5 @@ def test_runs_without_a_figure_are_not_counted():
 
 def test_a_figure_that_is_no_number_leaves_no_file(tmp_path):
     with pytest.raises(ValueError):
-        write_results(tmp_path / "metrics.json", [Row("s", "drift", "1", float("nan"), None, 1)])
+        write_json(tmp_path / "metrics.json", as_document([Row("s", "drift", "1", float("nan"), None, 1)]))
     assert list(tmp_path.iterdir()) == []

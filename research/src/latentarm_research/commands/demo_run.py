@@ -25,14 +25,14 @@ from latentarm.core.types import Row
 from latentarm.core.untrusted.console import VisibleConsole
 from latentarm.demonstrations.dataset import write_dataset
 from latentarm.evaluation.looks import look_of
-from latentarm.evaluation.results import write_results
+from latentarm.evaluation.results import as_document
 from latentarm.evaluation.summary import Subject
 from latentarm.evaluation.table import markdown_table
 from latentarm.models.catalogue import DEFAULT_MODEL
 from latentarm.models.saving import load_decoder
 from latentarm.runs.evaluating import evaluate_run
 from latentarm.runs.options import EvaluateOptions, TrainOptions
-from latentarm.runs.results_folder import vacant_name
+from latentarm.runs.results_folder import vacant_name, write_json
 from latentarm.runs.training import train_run
 from latentarm.tasks.eating.marshmallows import Marshmallows
 from latentarm.tasks.place import Place
@@ -120,7 +120,8 @@ def run_demo(config: "DemoOptions", sizes: Sizes = USUAL) -> Shown:
     for condition, traces in zip(conditions, driven, strict=True):
         tables[condition.person] += drive_rows(condition.subject, [trace.figures for trace in traces])
     rows = [_named(person, row) for person, table in tables.items() for row in table]
-    write_results(config.out / "results.json", [*rows, *properties], _about(config, sizes))
+    about = _about(config, sizes)
+    write_json(config.out / "results.json", as_document([*rows, *properties], about))
     shown = [(one, traces) for one, traces in zip(conditions, driven, strict=True) if one.person == SHOWN]
     held = held_in_words({condition.name: traces for condition, traces in shown})
     filmed = film(config.out, MODELS[0], shown[0][0].planned, shown[0][1])

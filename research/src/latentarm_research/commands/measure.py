@@ -48,7 +48,7 @@ def _measure(name: str, own: Any, common: Common, out: Path) -> int:
     """Measure, write and print; 1 where a limit is broken."""
     from latentarm.core.files import write_text
     from latentarm.core.parallel import check_jobs
-    from latentarm.evaluation.results import write_results
+    from latentarm.evaluation.results import as_document
     from latentarm.runs.checks import check_seed
     from latentarm.runs.folder import git_commit
     from latentarm.runs.results_folder import write_json
@@ -73,7 +73,7 @@ def _measure(name: str, own: Any, common: Common, out: Path) -> int:
     for file, document in outcome.documents.items():
         write_json(out / file, document)
     said = {"study": words, "command": command, "broken": list(outcome.broken)}
-    write_results(out / "results.json", outcome.rows, said)
+    write_json(out / "results.json", as_document(outcome.rows, said))
     write_options(out, words)
     if common.json:
         show(outcome.rows, json=True)

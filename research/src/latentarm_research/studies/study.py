@@ -17,7 +17,7 @@ from latentarm.core.files import write_text
 from latentarm.core.parallel import check_jobs, run_grid
 from latentarm.core.types import Row
 from latentarm.core.untrusted.console import VisibleConsole
-from latentarm.evaluation.results import write_results
+from latentarm.evaluation.results import as_document
 from latentarm.runs.checks import check_seed
 from latentarm.runs.results_folder import write_json
 from latentarm_research.studies.backends import BACKENDS, check_backend
@@ -227,7 +227,7 @@ def write_report(out: Path, report: Report, about: Mapping[str, object]) -> str:
         write_json(out / name, document)
     for name, record in report.records.items():
         write_text(out / name, json.dumps(record, separators=(",", ":"), allow_nan=False) + "\n")
-    write_results(out / "results.json", report.rows, about)
+    write_json(out / "results.json", as_document(report.rows, about))
     return print_page(out / HTML, out / PDF)
 
 
