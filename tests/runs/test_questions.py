@@ -17,13 +17,11 @@ NEVER = StoppingRule(share=0.0, patience=100)
 class Scripted(Respondent):
     """Says one thing after the other, and remembers what it was asked."""
 
+    kind = "person"
+
     def __init__(self, *replies):
         self.replies = list(replies)
         self.asked = []
-
-    @property
-    def kind(self):
-        return "person"
 
     def answer(self, question):
         self.asked.append(question)

@@ -1,7 +1,7 @@
 """The person that `latentarm align` asks: at the terminal, or simulated."""
 
 from collections.abc import Callable
-from typing import Final, final
+from typing import ClassVar, Final, final
 
 import numpy as np
 
@@ -73,12 +73,10 @@ FASTEST: Final = 0.99  # share of the motions that the simulated person can ask 
 class SimulatedRespondent(Respondent):
     """Answers by a stated preference, and prints that."""
 
+    kind: ClassVar[Kind] = "simulated person"
+
     def __init__(self, preference: Preference, say: Say) -> None:
         self._preference, self._say = preference, say
-
-    @property
-    def kind(self) -> Kind:
-        return "simulated person"
 
     def answer(self, question: Question) -> FloatArray:
         """The preference's input for the motion."""
@@ -95,12 +93,10 @@ class SimulatedRespondent(Respondent):
 class PersonAtTerminal(Respondent):
     """Sees each motion as numbers and as a small figure, and answers with a line or the arrow keys."""
 
+    kind: ClassVar[Kind] = "person"
+
     def __init__(self, say: Say, read: Callable[[int], str]) -> None:
         self._say, self._read = say, read
-
-    @property
-    def kind(self) -> Kind:
-        return "person"
 
     def answer(self, question: Question) -> FloatArray | None:
         """Ask until the answer is valid; UserError where the input has ended."""

@@ -3,7 +3,7 @@
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Literal, final
+from typing import ClassVar, Literal, final
 
 from latentarm.alignment.answers import Motions
 from latentarm.core.types import FloatArray
@@ -31,10 +31,7 @@ class Question:
 class Respondent(ABC):
     """A person who answers questions."""
 
-    @property
-    @abstractmethod
-    def kind(self) -> Kind:
-        """The kind of person, for the profile."""
+    kind: ClassVar[Kind]  # for the profile
 
     @abstractmethod
     def answer(self, question: Question) -> Reply:

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Final, final
+from typing import Annotated, ClassVar, Final, final
 
 import numpy as np
 from pydantic import Field, TypeAdapter
@@ -78,6 +78,8 @@ class PersonaliseJob:
 class PersonOnPage(Respondent):
     """A person who sees motions on a page and answers there, through the parent process."""
 
+    kind: ClassVar[Kind] = "person"
+
     def __init__(self, wire: Wire, plan: PersonalisePlan) -> None:
         self._wire = wire
         self._behind = 0
@@ -86,10 +88,6 @@ class PersonOnPage(Respondent):
     def say(self, **fields: object) -> None:
         self._state = self._state.model_copy(update=fields)
         self._wire.say(self._state)
-
-    @property
-    def kind(self) -> Kind:
-        return "person"
 
     def answer(self, question: Question) -> Reply:
         """Wait for the page's answer, without a time limit."""
