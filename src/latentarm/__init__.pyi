@@ -40,9 +40,8 @@ from .models.low_turning.training import LowTurning as LowTurning
 from .models.saving import load_decoder as load_decoder
 from .models.scl.training import SCL as SCL
 from .recordings.journal_writer import Recorder as Recorder
-from .robots.attachment import Attachment as Attachment
-from .robots.attachments import attach as attach
 from .robots.catalogue import load_robot as load_robot
+from .robots.fork import with_fork as with_fork
 from .robots.gripper import Gripper as Gripper
 from .robots.scene.scene import Scene as Scene
 from .robots.scene.scene import SceneState as SceneState
@@ -50,6 +49,7 @@ from .robots.scene.thing import Bond as Bond
 from .robots.scene.thing import Food as Food
 from .robots.scene.thing import Grains as Grains
 from .robots.scene.thing import Thing as Thing
+from .robots.tines import Tines as Tines
 from .runs.folder import read_run as read_run
 from .runs.tasks import make_task as make_task
 from .safety.config import SafetyConfig as SafetyConfig
