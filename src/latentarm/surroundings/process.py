@@ -13,12 +13,10 @@ import time
 from collections.abc import Sequence
 from contextlib import suppress
 from multiprocessing.connection import Connection
-from typing import Any, Final, final
-
-import numpy as np
-from scipy.spatial.transform import Rotation
+from typing import Final, final
 
 from latentarm.core.errors import UserError
+from latentarm.core.exact_json import of_json, to_json
 from latentarm.core.types import Pose
 from latentarm.core.untrusted.terminal import one_line
 from latentarm.surroundings.catalogue import open_source
@@ -119,34 +117,18 @@ class Inbox:
             try:
                 if not self._sightings.poll(0):
                     break
-                found.append(_parsed(json.loads(self._sightings.recv_bytes(_LONGEST)), ahead_s))
+                message = json.loads(self._sightings.recv_bytes(_LONGEST))
+                seen, source, hold_s = of_json(message, Sighting, Pose)
+                figures = seen.time_s + ahead_s, seen.position_sd_m, seen.orientation_sd_rad
+                sighting = Sighting(str(seen.name), seen.pose, *map(float, figures))
+                found.append((sighting, str(source), float(hold_s)))
             except (OSError, EOFError):
                 self._sightings = None  # its process has ended: what it saw grows old
-            except (ValueError, KeyError, TypeError, UserError):
+            except (ValueError, TypeError, AttributeError, UserError):
                 continue
         return found
 
 
 def as_message(sighting: Sighting, source: str, hold_s: float) -> bytes:
     """A sighting as it is sent to an `Inbox`."""
-    message = {
-        "source": source,
-        "hold_s": hold_s,
-        "name": sighting.name,
-        "position": sighting.pose.position.tolist(),
-        "rotation": Rotation.from_matrix(sighting.pose.rotation).as_quat().tolist(),
-        "time_s": sighting.time_s,
-        "sd_m": sighting.position_sd_m,
-        "sd_rad": sighting.orientation_sd_rad,
-    }
-    return json.dumps(message).encode()
-
-
-def _parsed(message: dict[str, Any], ahead_s: float) -> tuple[Sighting, str, float]:
-    pose = Pose(
-        np.array(message["position"], dtype=np.float64),
-        Rotation.from_quat(message["rotation"]).as_matrix(),
-    )
-    time_s = message["time_s"] + ahead_s
-    sighting = Sighting(str(message["name"]), pose, time_s, message["sd_m"], message["sd_rad"])
-    return sighting, str(message["source"]), float(message["hold_s"])
+    return json.dumps(to_json((sighting, source, hold_s))).encode()
