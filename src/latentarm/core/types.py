@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from os import PathLike
 from typing import Literal
 
@@ -87,6 +87,16 @@ class Episode:
     task: str = ""
     extras: Mapping[str, FloatArray] = field(default_factory=dict)
     provenance: Provenance | None = None
+
+    def at(self, samples: slice | IntArray) -> "Episode":
+        """Some of its samples, with their timestamps."""
+        return replace(
+            self,
+            state=self.state[samples],
+            timestamp=self.timestamp[samples],
+            action=None if self.action is None else self.action[samples],
+            extras={name: values[samples] for name, values in self.extras.items()},
+        )
 
 
 @dataclass(frozen=True)

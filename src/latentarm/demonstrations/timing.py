@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import pairwise
 from typing import Final, Literal
 
 import numpy as np
@@ -48,11 +49,10 @@ def split_at_gaps(data: SourceData, gaps: Gaps, source: str) -> SourceData:
             f" {steps[worst]:.4g} s after {episode.timestamp[worst]:.4g} s"
         )
         ends = [0, *(cuts + 1), len(episode.state)]
-        pieces = [slice(*ends[index : index + 2]) for index in range(len(ends) - 1)]
         parts += [
-            (f"{name}.{number}", _at(episode, np.arange(len(episode.state))[piece]))
-            for number, piece in enumerate(pieces)
-            if piece.stop - piece.start > 1
+            (f"{name}.{number}", _from_zero(episode.at(slice(first, stop))))
+            for number, (first, stop) in enumerate(pairwise(ends))
+            if stop - first > 1
         ]
     if not found:
         return data
@@ -102,7 +102,7 @@ def resampled(
         last = np.searchsorted(episode.timestamp, time_s + _ROUNDING / rate_hz, side="right") - 1
         last[-1] = len(episode.timestamp) - 1  # what is recorded at the very end only, such as success, stays
         state = np.stack([np.interp(time_s, episode.timestamp, joint) for joint in episode.state.T], axis=1)
-        episodes.append(replace(_at(episode, last), state=state, timestamp=time_s))
+        episodes.append(replace(episode.at(last), state=state, timestamp=time_s))
     return replace(demonstrations, episodes=tuple(episodes), rate_hz=rate_hz)
 
 
@@ -121,13 +121,5 @@ def _gaps(episode: Episode) -> IntArray:
     return np.flatnonzero(_is_gap(steps) & bool((steps > 0).all()))
 
 
-def _at(episode: Episode, samples: IntArray) -> Episode:
-    """Some samples of an episode, with time from zero."""
-    time_s = episode.timestamp[samples]
-    return replace(
-        episode,
-        state=episode.state[samples],
-        timestamp=time_s - time_s[0],
-        action=None if episode.action is None else episode.action[samples],
-        extras={name: values[samples] for name, values in episode.extras.items()},
-    )
+def _from_zero(episode: Episode) -> Episode:
+    return replace(episode, timestamp=episode.timestamp - episode.timestamp[0])

@@ -5,7 +5,7 @@ states and no seed is needed.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -42,15 +42,7 @@ def moving_episodes(demonstrations: Demonstrations, held_out: Sequence[int]) -> 
     for episode in select_episodes(demonstrations, held_out).episodes:
         first, end = moving_range(episode.state, episode.timestamp)
         if end > first:
-            moving.append(
-                replace(
-                    episode,
-                    state=episode.state[first:end],
-                    timestamp=episode.timestamp[first:end],
-                    action=None if episode.action is None else episode.action[first:end],
-                    extras={name: values[first:end] for name, values in episode.extras.items()},
-                )
-            )
+            moving.append(episode.at(slice(first, end)))
     if not moving:
         raise UserError("The arm never moves in the held-out episodes, so there is nothing to measure on.")
     return tuple(moving)

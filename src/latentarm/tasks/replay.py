@@ -128,11 +128,9 @@ def _leaving(robot: Robot, demonstrations: Demonstrations) -> list[Episode]:
     """Episodes in which the tool goes somewhere, without the still samples at their ends."""
     found: list[Episode] = []
     for one in demonstrations.episodes:
-        moving = slice(*moving_range(one.state, one.timestamp))
-        path = one.state[moving]
-        if len(path) and _away(robot, path).max() > 1.0:
-            extras = {name: values[moving] for name, values in one.extras.items()}
-            found.append(Episode(path, one.timestamp[moving], extras=extras))
+        moving = one.at(slice(*moving_range(one.state, one.timestamp)))
+        if len(moving.state) and _away(robot, moving.state).max() > 1.0:
+            found.append(moving)
     if not found:
         tool = robot.chain.tools[0].name
         raise UserError(
