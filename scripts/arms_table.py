@@ -41,7 +41,7 @@ def measure(path: Path, end_effector: str | None) -> None:
     took_s = time.process_time() - began
     peak_mb = (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) / 1024
     kinds = (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE))
-    known = [quantity for quantity in QUANTITIES if set(robot.limits.sources.of(quantity)) == {"model"}]
+    known = [quantity for quantity in QUANTITIES if set(robot.limits.sources[quantity]) == {"model"}]
     print(
         json.dumps(
             {
