@@ -20,7 +20,7 @@ from latentarm_research.user_studies.serving.options import Serving
 from latentarm_research.user_studies.serving.page_drive import ToDrive
 from latentarm_research.user_studies.serving.store import Store
 from latentarm_research.user_studies.serving.way import ToAnswer, Way
-from latentarm_research.user_studies.trace import Trace
+from latentarm_research.user_studies.trace import BINS, Trace
 from study_participant import CONTACT, MODES, TWIST, definition
 
 ORIGIN = "http://study.example"
@@ -102,7 +102,9 @@ class Study:
 
 
 def driven(due: ToDrive, *, success: bool = True) -> DriveRecord:
-    trace = Trace(0, due.condition.name, due.task.name, due.trial, due.choice, success, (), (), (), ())
+    rest = ((0.0,) * BINS,) * BINS
+    way = ((0.0,), ((0.0, 0.0, 0.0),), (), rest)
+    trace = Trace(0, due.condition.name, due.task.name, due.trial, due.choice, success, *way)
     return DriveRecord(
         people_are="real", person=0, condition=due.condition.name, order=due.order, task=due.task.name,
         trial=due.trial, choice=due.choice, attempt=due.attempt, ending="done", trace=trace,

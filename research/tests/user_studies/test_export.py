@@ -22,11 +22,20 @@ from latentarm_research.user_studies.catalogue import load_definition
 from latentarm_research.user_studies.definition import Definition
 from latentarm_research.user_studies.designs import design_of
 from latentarm_research.user_studies.export.dataset import write_dataset
+from latentarm_research.user_studies.questionnaire import Item, MultipleChoice, Scale
 from latentarm_research.user_studies.recorded import Recorded
 from latentarm_research.user_studies.report.page import report_of
 from latentarm_research.user_studies.sizes import PRESETS
 
-EATING = load_definition("eating")
+USED = MultipleChoice("used", "Which do you use?", ("cane", "wheelchair", "none"), several=True)
+EATING = replace(
+    load_definition("eating"),
+    questionnaire=(
+        *load_definition("eating").questionnaire,
+        Scale("pain", "Pain", (Item("It hurt."),), 100, "not at all", "much", slider=True),
+    ),
+    multiple_choice=(USED,),
+)
 BETWEEN = replace(EATING, design="between", people=16)
 PIE = load_definition("apple_pie")
 
@@ -56,6 +65,10 @@ def recorded(definition: Definition) -> Recorded:
         if rng.uniform() < 0.98
     ]
     assert met
+    for one in list(dict.fromkeys((one.person, one.condition) for one in trials))[:-1]:
+        for question in definition.multiple_choice:
+            chosen = [str(number) for number in (1, 2, 3) if rng.uniform() < 0.5]
+            answers += [Answer(*one, question.name, ";".join(chosen))] if chosen else []
     return Recorded(definition, "real", tuple(trials), (), (), PRESETS["paper"], tuple(answers))
 
 
@@ -107,6 +120,14 @@ def test_a_script_makes_the_tables_of_the_report_from_csv_files_alone(
             if (line["scale"], line["condition"]) == (one.scale, one.condition)
         )
         agree(line, vars(one), ("n", "mean", "sd", "alpha", "alpha_low", "alpha_high"))
+    for chosen in ratings.chosen:
+        lines = (
+            line
+            for line in tables["options"]
+            if (line["item"], line["condition"]) == (chosen.question, chosen.condition)
+        )
+        found = {int(line["option"]): (int(line["n"]), int(line["chosen"])) for line in lines}
+        assert found == {number: (chosen.n, count) for number, count in enumerate(chosen.counts, start=1)}
     assert len(tables["claims"]) == len(report.tests)
     for line, claim in zip(tables["claims"], report.tests, strict=True):
         said: Any = claim.as_json()

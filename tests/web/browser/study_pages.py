@@ -1,5 +1,6 @@
 """Steps of a person who takes a study in the browser."""
 
+from collections.abc import Mapping
 from pathlib import Path
 
 from playwright.sync_api import Page
@@ -20,8 +21,11 @@ def drive_trial(page: Page) -> None:
     raise AssertionError("the trial is never over")
 
 
-def assert_recorded(folder: Path) -> None:
-    """Check a study of two conditions in which each of the four items was answered by 6."""
+def assert_recorded(folder: Path, answers: Mapping[str, int | str]) -> None:
+    """Check a study in which each question was answered alike after each of two conditions."""
     recorded = read_recorded(folder)
-    assert [one.answer for one in recorded.answers] == [6] * 8
+    conditions = sorted({one.condition for one in recorded.trials})
+    found = {(one.condition, one.item): one.answer for one in recorded.answers}
+    assert len(conditions) == 2
+    assert found == {(one, item): answer for one in conditions for item, answer in answers.items()}
     assert all(one.measures["path_length"] > 0.0 for one in recorded.trials)

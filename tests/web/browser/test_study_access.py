@@ -2,19 +2,35 @@
 
 import json
 import re
+import time
 from pathlib import Path
 
 import pytest
 from playwright.sync_api import Browser, Locator, Page
 
-from study_participant import MODES, TWIST, definition, next_link, participant, serving
+from latentarm_research.user_studies.recorded import DATABASE
+from latentarm_research.user_studies.serving.store import Store
+from study_participant import MODES, SCALE, TWIST, definition, next_link, participant, serving
 
 from .conftest import STICKS_OUT, press_switch
 from .study_pages import assert_recorded, drive_trial
 from .test_access import found
 
 WITHIN_MS = 60_000
-GIVEN = definition(MODES, TWIST)
+GIVEN = {
+    **definition(MODES, TWIST),
+    "questionnaire": [
+        SCALE,
+        {"name": "pain", "label": "Pain", "items": [{"text": "It hurt."}], "points": 100, "slider": True},
+    ],
+    "multiple_choice": [
+        {"name": "used", "text": "What do you use?", "options": ["cane", "chair", "lift"], "several": True},
+        {"name": "again", "text": "Once more?", "options": ["yes", "no"]},
+    ],
+}
+ANSWERS: dict[str, int | str] = {
+    **{f"ease_{number}": 6 for number in range(1, 5)}, "used": "1;3", "again": "2"
+}  # fmt: skip
 SLOW_LIGHT = """if (!localStorage.getItem("latentarm.settings."))
   localStorage.setItem("latentarm.settings.", JSON.stringify({ dwellS: 2.5 }));"""
 """A choice stays lit for so long that a busy computer presses in time, s."""
@@ -100,15 +116,23 @@ def test_a_study_is_done_by_keyboard_alone(
             reach(page, page.locator("#stick"))
             drive_trial(page)
             looked_at(page, "How was this way of driving?")
-            for item in page.locator("fieldset").all():
+            for item in page.locator("fieldset:not([data-options])").all():
                 reach(page, item.get_by_label("1"))
                 for _ in range(5):
                     page.keyboard.press("ArrowRight")
+            slider = page.get_by_role("slider", name="It hurt.")
+            assert slider.get_attribute("aria-valuetext") == "not answered yet"
+            press(page, "slider", "It hurt.", "ArrowRight")
+            assert slider.get_attribute("aria-valuetext") is None
+            for option in ("cane", "lift"):
+                press(page, "checkbox", option, "Space")
+            press(page, "radio", "yes", "Space")
+            page.keyboard.press("ArrowDown")
             press(page, "button", "Send my answers")
         looked_at(page, "Thank you")
         context.close()
     assert faults == []
-    assert_recorded(tmp_path / "people")
+    assert_recorded(tmp_path / "people", {**ANSWERS, "pain_1": 51})
 
 
 def test_a_study_is_done_by_one_switch_alone(
@@ -145,11 +169,13 @@ def test_a_study_is_done_by_one_switch_alone(
             for number in range(1, 5):
                 choose(page, f"Statement {number}")
                 choose(page, "6")
+            for name in ("It hurt", "More", "Back", "What do you use", "cane", "lift", "Back", "^no$"):
+                choose(page, name)
             choose(page, "Send my answers")
         looked_at(page, "Thank you")
         page.context.close()
     assert faults == []
-    assert_recorded(tmp_path / "people")
+    assert_recorded(tmp_path / "people", {**ANSWERS, "pain_1": 60})
 
 
 def test_a_page_waits_in_the_queue_and_goes_on_by_itself(
@@ -168,3 +194,33 @@ def test_a_page_waits_in_the_queue_and_goes_on_by_itself(
         first.ready()
         page.locator("#stick").wait_for(timeout=WITHIN_MS)
         page.context.close()
+
+
+def test_people_who_cannot_go_on_can_leave(
+    chromium: Browser, a_study: tuple[str, ...], tmp_path: Path
+) -> None:
+    out = tmp_path / "people"
+    with serving(*a_study) as (link, _):
+        first, late = chromium.new_page(), chromium.new_page()
+        first.goto(link)
+        late.goto(next_link(out))
+        for page in (first, late):
+            page.get_by_role("checkbox").check()
+        first.get_by_role("button", name="Take part").click()
+        first.get_by_role("heading", name="Practice").wait_for()
+        # Two others come when the first person has been away for too long, and have both places.
+        store, later_s = Store(out / DATABASE, away_s=0.0), time.time() + 60.0
+        for name in ("one", "other"):
+            key = str(store.arrive(name, "visit", later_s))
+            store.consent(key, "0" * 64, "2026-01-01T00:00:00+00:00")
+            assert store.place(key, later_s) is not None
+        store.close()
+        first.reload()
+        looked_at(first, "Your place was given to somebody else")
+        late.get_by_role("button", name="Take part").click()
+        looked_at(late, "The study is full")
+        for page in (first, late):
+            page.get_by_text("Leave the study").click()
+            page.get_by_role("button", name="Leave, and delete everything").click()
+            looked_at(page, "You have left the study")
+            page.context.close()

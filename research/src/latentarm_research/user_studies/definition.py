@@ -11,7 +11,7 @@ from latentarm.evaluation.measures import label_of
 from latentarm_research.studies.claims import Claim, Hypothesis
 from latentarm_research.user_studies.exclusion import Exclusion
 from latentarm_research.user_studies.hypothesis import Printed
-from latentarm_research.user_studies.questionnaire import HIGH, LOW, Question, Scale
+from latentarm_research.user_studies.questionnaire import HIGH, LOW, MultipleChoice, Question, Scale
 
 Controls = Literal["modes", "two_sticks", "retargeting", "latent"]
 Assists = Literal["none", "interpolation", "blending"]
@@ -19,7 +19,8 @@ Design = Literal["within", "between"]
 Aligns = Literal["none", "no_priors", "all_priors"]
 PUBLIC_TITLE: Final = "Driving a robot arm"
 _LATER: Final[Mapping[str, object]] = {
-    "public_title": PUBLIC_TITLE, "in_words": (), "low": LOW, "high": HIGH
+    "public_title": PUBLIC_TITLE, "in_words": (), "low": LOW, "high": HIGH, "slider": False,
+    "multiple_choice": (),
 }  # fmt: skip
 """Defaults of fields that older definitions do not have, whose digests must stay."""
 PREFIX: Final = "user study "  # before a study's name, in what a folder of its results says that it is
@@ -157,7 +158,9 @@ class Definition:
     """Title that participants read until they have finished: it must tell neither conditions nor
     hypotheses."""
     in_words: tuple[Question, ...] = ()
-    """Questions after each condition, after the scales, that people answer in their own words."""
+    """Questions after each condition that people answer in their own words, after all others."""
+    multiple_choice: tuple[MultipleChoice, ...] = ()
+    """Questions with options after each condition, after the scales."""
 
     def __post_init__(self) -> None:
         in_order = [condition.name for condition in self.conditions]

@@ -1,4 +1,4 @@
-"""The questions after a condition: scales of one item or more, and questions answered in words."""
+"""The questions after a condition: scales, questions with options, and questions answered in words."""
 
 from dataclasses import dataclass
 from typing import Final, final
@@ -37,12 +37,33 @@ class Scale:
     """Meaning of the answer 1."""
     high: str = HIGH
     """Meaning of the highest answer."""
+    slider: bool = False
+    """True for a slider from 1 to `points` for each item, in place of one button for each point."""
 
     def __post_init__(self) -> None:
         if not self.items:
             raise UserError(f"The scale {self.name} needs one item or more.")
         if self.points < 2:
             raise UserError(f"The scale {self.name} needs two points or more, not {self.points}.")
+
+
+@final
+@dataclass(frozen=True)
+class MultipleChoice:
+    """One question with options to choose from."""
+
+    name: str
+    """Name in records: at most 40 of a to z, 0 to 9 and _, a letter first."""
+    text: str
+    """The question."""
+    options: tuple[str, ...]
+    """Two or more, each another; they are asked in this order."""
+    several: bool = False
+    """True if several may be chosen, False for one."""
+
+    def __post_init__(self) -> None:
+        if len(self.options) < 2 or len(set(self.options)) < len(self.options):
+            raise UserError(f"The question {self.name} needs two options or more, each another.")
 
 
 @final

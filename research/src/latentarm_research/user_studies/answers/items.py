@@ -18,7 +18,7 @@ from latentarm_research.studies.streams import generator
 from latentarm_research.studies.tables import markdown_table
 from latentarm_research.user_studies.definition import Definition
 from latentarm_research.user_studies.designs import design_of
-from latentarm_research.user_studies.questionnaire import LONGEST_TEXT, Item, Scale
+from latentarm_research.user_studies.questionnaire import LONGEST_TEXT, Item, MultipleChoice, Scale
 from latentarm_research.user_studies.sizes import Stream
 
 
@@ -29,7 +29,7 @@ class Asked:
 
     person: int  # their number, from 0
     condition: str  # after which they are asked
-    item: str  # name of the item, or of the question in words
+    item: str  # name of the item, or of the question
     text: str  # the statement or question
 
 
@@ -42,13 +42,22 @@ def items_of(definition: Definition) -> dict[str, tuple[Scale, Item]]:
     }
 
 
+def names_of(definition: Definition) -> list[str]:
+    """Names of everything that is asked, in the order of the definition."""
+    others = (*definition.multiple_choice, *definition.in_words)
+    return [*items_of(definition), *(one.name for one in others)]
+
+
 def sheet(definition: Definition, people: int, seed: int) -> list[Asked]:
-    """Everybody's questions: after each condition all items in an order of their own, then those in words."""
+    """Everybody's questions: after each condition all items in an order of their own, then all others."""
     items = items_of(definition)
-    in_words = {one.name: one.text for one in definition.in_words}
-    if not (items or in_words):
+    others = {
+        **{one.name: _with_options(one) for one in definition.multiple_choice},
+        **{one.name: one.text for one in definition.in_words},
+    }
+    if not (items or others):
         raise UserError(f"The study {definition.name} has no questionnaire.")
-    texts = {**{name: item.text for name, (_, item) in items.items()}, **in_words}
+    texts = {**{name: item.text for name, (_, item) in items.items()}, **others}
     rng = generator(seed, definition.name, Stream.ORDER)
     met = design_of(definition).orders(definition, people, rng)
     rng = generator(seed, f"{definition.name} items", Stream.QUESTIONS)
@@ -57,8 +66,14 @@ def sheet(definition: Definition, people: int, seed: int) -> list[Asked]:
         for person, order in enumerate(met)
         for names in [_shuffled(list(items), rng)]
         for condition in order
-        for name in (*names, *in_words)
+        for name in (*names, *others)
     ]
+
+
+def _with_options(question: MultipleChoice) -> str:
+    """A question with its numbered options, for a sheet."""
+    options = ", ".join(f"{number} {text}" for number, text in enumerate(question.options, start=1))
+    return f"{question.text} {'Choose one or more' if question.several else 'Choose one'}: {options}"
 
 
 def _shuffled(names: Sequence[str], rng: np.random.Generator) -> list[str]:
@@ -93,7 +108,7 @@ def _csv(definition: Definition, asked: Sequence[Asked]) -> str:
 
 def _markdown(definition: Definition, asked: Sequence[Asked]) -> str:
     items = items_of(definition)
-    most = max((scale.points for scale in definition.questionnaire), default=0)
+    most = max((scale.points for scale in definition.questionnaire if not scale.slider), default=0)
     head = ["statement", "1 means", *map(str, range(1, most + 1)), "the highest means", "item"]
     parts = [f"# {definition.public_title}\n"]
     places: Counter[int] = Counter()
@@ -103,14 +118,19 @@ def _markdown(definition: Definition, asked: Sequence[Asked]) -> str:
         asked_now = list(lines)
         rows: list[list[str]] = []
         for one in asked_now:
-            if one.item in items:
-                scale = items[one.item][0]
+            if one.item in items and not (scale := items[one.item][0]).slider:
                 boxes = ["☐"] * scale.points + [""] * (most - scale.points)
                 rows.append([one.text, scale.low, *boxes, scale.high, one.item])
         if rows:
             parts.append("Mark one number on each line.\n")
             parts.append(markdown_table(head, rows))
-        parts.extend(f"{one.text} ({one.item})\n\n" for one in asked_now if one.item not in items)
+        for one in asked_now:
+            scale = items[one.item][0] if one.item in items else None
+            if scale is None:
+                parts.append(f"{one.text} ({one.item})\n\n")
+            elif scale.slider:
+                ends = f"from 1, {scale.low}, to {scale.points}, {scale.high}"
+                parts.append(f"{one.text} A whole number {ends}: ____ ({one.item})\n\n")
     return "\n".join(parts)
 
 
@@ -127,8 +147,9 @@ class Answer:
 
     person: int  # their number, from 0
     condition: str  # name of the condition
-    item: str  # name of the item, or of the question in words
-    answer: int | str  # 1 to the points of the item's scale; or words
+    item: str  # name of the item, or of the question
+    # 1 to the points of the item's scale; numbers of options from 1, separated by ;; or words
+    answer: int | str
 
 
 def read_answers(
@@ -170,7 +191,7 @@ def _answer(
 ) -> Answer | None:
     person, condition, item = given["person"], given["condition"], given["item"]
     scale = items_of(definition).get(item, (None,))[0]
-    if scale is None and item not in {one.name for one in definition.in_words}:
+    if item not in names_of(definition):
         raise UserError(f"{where}: the study {definition.name} has no item {item!r}.")
     if not (person.isascii() and person.isdigit() and len(person) < 10 and int(person) in met):
         raise UserError(f"{where}: there is no person {person!r} in the study.")
@@ -191,6 +212,13 @@ def wrong_answer(definition: Definition, item: str, answer: int | str) -> str:
     if scale is not None:
         right = isinstance(answer, int) and 1 <= answer <= scale.points
         return "" if right else f"a whole number from 1 to {scale.points}"
+    for one in definition.multiple_choice:
+        if one.name == item:
+            numbers = [str(number) for number in range(1, len(one.options) + 1)]
+            given = answer.split(";") if isinstance(answer, str) else []
+            right = bool(given) and given == [number for number in numbers if number in given]
+            most = len(numbers) if one.several else 1
+            return "" if right and len(given) <= most else _right_numbers(one)
     right = (
         isinstance(answer, str)
         and item in {one.name for one in definition.in_words}
@@ -199,3 +227,8 @@ def wrong_answer(definition: Definition, item: str, answer: int | str) -> str:
         and not any(letter < " " and letter not in "\t\n\r" for letter in answer)
     )
     return "" if right else f"words, of at most {LONGEST_TEXT} characters"
+
+
+def _right_numbers(question: MultipleChoice) -> str:
+    one = f"the number of an option, from 1 to {len(question.options)}"
+    return f"{one}, or several in order, separated by ;" if question.several else one

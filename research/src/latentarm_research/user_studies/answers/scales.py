@@ -1,7 +1,7 @@
-"""Scores of scales, and Cronbach's alpha with its interval."""
+"""Scores of scales, Cronbach's alpha with its interval, and how often options were chosen."""
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Final, final
 
@@ -37,11 +37,23 @@ class Rated:
 
 @final
 @dataclass(frozen=True)
+class Chosen:
+    """One question with options in one condition."""
+
+    question: str  # its name
+    condition: str  # name of the condition
+    n: int  # people who answered it
+    counts: tuple[int, ...]  # people who chose each option
+
+
+@final
+@dataclass(frozen=True)
 class Ratings:
     """What people's answers say."""
 
     rated: tuple[Rated, ...]  # every scale in every condition
     scores: tuple[Trial, ...]  # a record for each person and condition, with the scales as measures
+    chosen: tuple[Chosen, ...]  # every question with options in every condition
     answers: int  # number of those on a scale
 
     def as_json(self) -> dict[str, object]:
@@ -49,6 +61,7 @@ class Ratings:
         return {
             "answers": self.answers,
             "scales": [asdict(one) for one in self.rated],
+            "multiple_choice": [asdict(one) for one in self.chosen],
             "scores": [
                 {"person": one.person, "condition": one.condition, "scores": dict(one.measures)}
                 for one in self.scores
@@ -88,7 +101,21 @@ def rate(definition: Definition, answers: Sequence[Answer], trials: Sequence[Tri
         Trial(person, condition, QUESTIONNAIRE, order[person, condition], 0, measures)
         for (person, condition), measures in sorted(scores.items())
     )
-    return Ratings(tuple(rated), records, len(given))
+    return Ratings(tuple(rated), records, tuple(_chosen(definition, answers)), len(given))
+
+
+def _chosen(definition: Definition, answers: Sequence[Answer]) -> Iterator[Chosen]:
+    """Count the options of every question in every condition."""
+    for question in definition.multiple_choice:
+        for condition in definition.conditions:
+            given = [
+                str(one.answer).split(";")
+                for one in answers
+                if (one.item, one.condition) == (question.name, condition.name)
+            ]
+            numbers = range(1, len(question.options) + 1)
+            counts = tuple(sum(str(number) in one for one in given) for number in numbers)
+            yield Chosen(question.name, condition.name, len(given), counts)
 
 
 def cronbach_alpha(table: FloatArray) -> tuple[float, float, float] | None:

@@ -3,76 +3,26 @@
 import csv
 import shutil
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from io import StringIO
 from pathlib import Path
-from typing import Final, final
+from typing import Final
 
 from latentarm.core.files import write_text
-from latentarm.evaluation.measures import MEASURES
 from latentarm.runs.results_folder import write_json
 from latentarm_research.user_studies.answers.items import Answer, items_of
 from latentarm_research.user_studies.definition import Definition
 from latentarm_research.user_studies.drive_record import DriveRecord, devices_of
 from latentarm_research.user_studies.exclusion import counted
+from latentarm_research.user_studies.export.codebook import VARIABLES, variable_of
 from latentarm_research.user_studies.export.drives import write_drives
 from latentarm_research.user_studies.record import Trial
 from latentarm_research.user_studies.recorded import Recorded
 
+# Formulas begin with these, also in their full width; an apostrophe says that none follows.
+_GUARDED: Final = tuple("=+-@\uff1d\uff0b\uff0d\uff20'\t\r\n")
 SCRIPTS: Final = ("tables.py", "tables.R")
 
 Cell = str | float | None
-
-
-@final
-@dataclass(frozen=True)
-class Variable:
-    """A column of the dataset."""
-
-    name: str
-    meaning: str
-    unit: str = ""  # "" for a name or a number of something
-
-
-VARIABLES: Final = (
-    Variable("person", "number of the person, from 0"),
-    Variable("condition", "name of the condition"),
-    Variable("task", "name of the task"),
-    Variable("order", "place of the condition in the person's order, from 0"),
-    Variable("trial", "number of the trial in this condition, from 0"),
-    Variable("excluded", "why the trial does not count; empty where it counts"),
-    Variable("scale", "name of the questionnaire's scale"),
-    Variable("item", "name of the questionnaire's item"),
-    Variable("reversed", "1 where agreement means less of what the scale measures, else 0"),
-    Variable("points", "points of the answer's scale, from 1 on"),
-    Variable("answer", "the answer, from 1 to points"),
-    Variable("question", "a question that people answer in their own words"),
-    Variable("text", "the answer to it"),
-    Variable("claim", "number of the claim, from 0"),
-    Variable("hypothesis", "name of the hypothesis that the claim belongs to"),
-    Variable("measure", "measure or scale that the claim is about"),
-    Variable("direction", "what the claim says of the subject: less, greater or equal"),
-    Variable("margin", "for equal, the largest difference that does not matter, in the measure's unit"),
-    Variable("design", "within: each person meets all conditions; between: each meets one"),
-    Variable("kind", "what is named: a condition that the claim is about (subject), one that it is compared"
-             " with (against), or a task; without a task, all tasks with the measure"),
-    Variable("name", "name of the condition or task"),
-    Variable("choice", "number of the choice that the drive was about, from 0"),
-    Variable("attempt", "number of earlier drives at this choice in this trial"),
-    Variable("ending", "why the drive ended"),
-    Variable("episode", "number of the drive's episode in the dataset drives/TASK; empty without steps"),
-    Variable("conditions", "names of the conditions that the person drove with, in order, separated by ;"),
-    Variable("consent", "SHA-256 of the text that the person consented to; the study's folder has the text as"
-             " information-HASH.md, named by the first 12 digits"),
-    Variable("consented", "day of the consent, UTC"),
-    Variable("practised", "number of conditions that the person practised"),
-    Variable("devices", "input devices that were pushed, the longest first, separated by ;: pointer (the"
-             " stick on the page) or dpad (its buttons) with mouse, touch or pen; keyboard; gamepad with its"
-             " id; switch"),
-    Variable("finished", "1 for a person who finished, else 0: without a number, and without trials"),
-    Variable("factor", "factor of a 2 x 2 design"),
-    Variable("level", "level of the factor, 1 or 2"),
-)  # fmt: skip
 
 
 def write_dataset(folder: Path, recorded: Recorded, drives: Sequence[tuple[DriveRecord, Path]] = ()) -> None:
@@ -94,6 +44,10 @@ def write_dataset(folder: Path, recorded: Recorded, drives: Sequence[tuple[Drive
             ("person", "condition", "scale", "item", "reversed", "points", "answer"),
             _answers(definition, recorded.answers),
         ),
+        "options": (
+            ("person", "condition", "item", "question", "option", "label", "chosen"),
+            _options(definition, recorded.answers),
+        ),
         "claims": (
             ("claim", "hypothesis", "measure", "direction", "margin", "design"),
             _claims(definition),
@@ -113,8 +67,7 @@ def write_dataset(folder: Path, recorded: Recorded, drives: Sequence[tuple[Drive
     for name, (head, rows) in tables.items():
         path = folder / "data" / f"study-{named or 'own'}_description-{name}_data.csv"
         write_text(path, _csv(head, rows))
-    measures = [_measure(name) for name in definition.measures]
-    variables = (*VARIABLES, *measures)
+    variables = (*VARIABLES, *map(variable_of, definition.measures))
     write_text(
         folder / "documentation" / "codebook.csv",
         _csv(("name", "meaning", "unit"), ((one.name, one.meaning, one.unit) for one in variables)),
@@ -140,11 +93,6 @@ def write_dataset(folder: Path, recorded: Recorded, drives: Sequence[tuple[Drive
     (folder / "analysis").mkdir()
     for name in SCRIPTS:
         shutil.copyfile(Path(__file__).with_name(name), folder / "analysis" / name)
-
-
-def _measure(name: str) -> Variable:
-    known = MEASURES[name]
-    return Variable(name, f"{known.label}: {known.definition}", known.unit)
 
 
 def _trials(definition: Definition, trials: Sequence[Trial]) -> Iterable[Sequence[Cell]]:
@@ -186,11 +134,25 @@ def _answers(definition: Definition, answers: Sequence[Answer]) -> Iterable[Sequ
             yield one.person, one.condition, scale.name, one.item, turned, scale.points, one.answer
 
 
+def _options(definition: Definition, answers: Sequence[Answer]) -> Iterable[Sequence[Cell]]:
+    asked = {one.name: one for one in definition.multiple_choice}
+    for one in (one for one in answers if one.item in asked):
+        question, chosen = asked[one.item], str(one.answer).split(";")
+        for number, label in enumerate(question.options, start=1):
+            given = one.person, one.condition, one.item, question.text
+            yield *given, number, label, int(str(number) in chosen)
+
+
 def _texts(definition: Definition, answers: Sequence[Answer]) -> Iterable[Sequence[Cell]]:
     asked = {one.name: one.text for one in definition.in_words}
     for one in answers:
         if one.item in asked:
-            yield one.person, one.condition, one.item, asked[one.item], one.answer
+            yield one.person, one.condition, one.item, asked[one.item], guarded(str(one.answer))
+
+
+def guarded(text: str) -> str:
+    """What a person has written, such that no spreadsheet takes it as a formula."""
+    return f"'{text}" if text.startswith(_GUARDED) else text
 
 
 def _drives(

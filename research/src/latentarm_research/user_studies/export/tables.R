@@ -85,6 +85,13 @@ scores_of <- function(answers) {
   list(table = do.call(rbind, rows), scores = do.call(rbind, scores))
 }
 
+# People who chose each option by condition, and people who answered the question.
+options_of <- function(options) {
+  by <- options[c("option", "condition", "item")]
+  found <- aggregate(cbind(n = rep(1, nrow(options)), chosen = options$chosen), by, sum)
+  found[c("item", "condition", "option", "n", "chosen")]
+}
+
 # People's means on both sides; within people those of the same people.
 two_sides <- function(trials, claim, subject, against, tasks) {
   if (claim$design == "within") {
@@ -305,6 +312,8 @@ if (nrow(answers)) {
   }
   trials <- rbind(trials, more)
 }
+options <- read("options")
+if (nrow(options)) tables$options <- options_of(options)
 tables$claims <- claims_table(trials, claims, sides)
 tables$anova <- anova_table(trials, claims, sides, read("factors"))
 dir.create(out, showWarnings = FALSE, recursive = TRUE)

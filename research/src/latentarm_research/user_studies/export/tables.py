@@ -87,6 +87,12 @@ def scores_of(answers: Any) -> tuple[Any, Any]:
     return pd.DataFrame(rows, columns=columns), wide.assign(task="questionnaire", trial=0)
 
 
+def options_of(options: Any) -> Any:
+    """People who chose each option by condition, and people who answered the question."""
+    groups = options.groupby(["item", "condition", "option"], sort=False)
+    return groups.chosen.agg(n="size", chosen="sum").reset_index()
+
+
 def two_sides(trials: Any, claim: Any, subject: list[str], against: list[str], tasks: list[str]) -> Any:
     """People's means on both sides; within people those of the same people."""
     if claim.design == "within":
@@ -326,6 +332,8 @@ def main(out: Path) -> None:
         order = every.drop_duplicates(["person", "condition"])[["person", "condition", "order"]]
         scores = scores.merge(order, on=["person", "condition"])
         trials = pd.concat([trials, scores[scores.person.isin(trials.person)]])
+    if len(options := read("options")):
+        tables["options"] = options_of(options)
     tables["claims"] = claims_table(trials, claims, sides)
     tables["anova"] = anova_table(trials, claims, sides, factors)
     out.mkdir(parents=True, exist_ok=True)

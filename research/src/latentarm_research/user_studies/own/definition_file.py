@@ -13,7 +13,7 @@ from latentarm.core.errors import UserError
 from latentarm.core.untrusted.documents import read_object
 from latentarm.models.catalogue import KINDS
 from latentarm_research.metrics.drives import TRIAL_MEASURES
-from latentarm_research.user_studies.answers.items import items_of
+from latentarm_research.user_studies.answers.items import names_of
 from latentarm_research.user_studies.catalogue import NAMES, load_definition
 from latentarm_research.user_studies.definition import Definition, StudyTask
 from latentarm_research.user_studies.report.boxes import MOST_CONDITIONS
@@ -94,6 +94,7 @@ def _check_labels(definition: Definition) -> None:
         ("name", definition.name),
         *(("tasks: name", task.name) for task in definition.tasks),
         *(("in_words: name", one.name) for one in definition.in_words),
+        *(("multiple_choice: name", one.name) for one in definition.multiple_choice),
     ):
         if not NAME.fullmatch(name):
             raise UserError(
@@ -116,7 +117,7 @@ def _check_labels(definition: Definition) -> None:
         ("tasks", [one.name for one in definition.tasks]),
         ("hypotheses", [one.name for one in definition.hypotheses]),
         ("measures and questionnaire", [*definition.measures, *definition.scales]),
-        ("questionnaire and in_words", [*items_of(definition), *(one.name for one in definition.in_words)]),
+        ("questionnaire, multiple_choice and in_words", names_of(definition)),
     ):
         _each_once(field, names)
 

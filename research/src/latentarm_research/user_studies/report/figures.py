@@ -55,7 +55,7 @@ def draw(
             f"Every measure, {who}. Boxes hold the middle half, whiskers end at the 10 and 90 percentiles."
         )
         found.append(Drawn("measures", boxes.box_figure(definition, trials, shown, who), caption))
-    if ratings is not None:
+    if ratings is not None and any(not scale.slider for scale in definition.questionnaire):
         caption = (
             f"Answers to the questionnaire's scales, {who}: shares of all answers; agreement to the right."
         )

@@ -34,12 +34,13 @@ def likert_figure(
     rated: Sequence[Rated],  # every scale in every condition; reversed items are turned
     who: str,
 ) -> "Figure":
-    """A panel for each scale; in it a bar for each condition, agreement to the right."""
+    """A panel for each scale without sliders; in it a bar for each condition, agreement to the right."""
     from matplotlib import colormaps
     from matplotlib.colors import to_hex
     from matplotlib.patches import Patch
 
-    scales, conditions = definition.questionnaire, definition.conditions
+    scales = [scale for scale in definition.questionnaire if not scale.slider]
+    conditions = definition.conditions
     rows = -(-len(scales) // ACROSS)
     figure = new_figure(rows * (PANEL_MM + BAR_MM * len(conditions)) + LEGEND_MM, TWO_COLUMNS_MM)
     panels = figure.subplots(rows, min(ACROSS, len(scales)), squeeze=False, sharex=True).ravel()

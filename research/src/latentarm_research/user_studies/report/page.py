@@ -88,6 +88,8 @@ def _page(
         rated_head=RATED_HEAD,
         rated_lines=_rated_lines(definition, ratings),
         item_lines=_item_lines(definition),
+        chosen_head=["question", "option", *(one.name for one in definition.conditions)],
+        chosen_lines=_chosen_lines(definition, ratings),
         in_words_lines=_in_words_lines(recorded),
         departures=departures,
     )
@@ -174,11 +176,24 @@ def _rated_lines(definition: Definition, ratings: Ratings | None) -> list[tuple[
     ]
 
 
+def _chosen_lines(definition: Definition, ratings: Ratings | None) -> list[list[str]]:
+    found = {(one.question, one.condition): one for one in (() if ratings is None else ratings.chosen)}
+    lines: list[list[str]] = []
+    for question in definition.multiple_choice:
+        shown = [found.get((question.name, one.name)) for one in definition.conditions]
+        for number, option in enumerate(question.options):
+            cells = [
+                ABSENT if one is None or not one.n else f"{one.counts[number]} of {one.n}" for one in shown
+            ]
+            lines.append([question.text, option, *cells])
+    return lines
+
+
 def _item_lines(definition: Definition) -> list[tuple[str, str, str]]:
     return [
         (
             scale.label,
-            f"1: {scale.low}; {scale.points}: {scale.high}",
+            f"1: {scale.low}; {scale.points}: {scale.high}{'; slider' if scale.slider else ''}",
             " · ".join(f"{item.text}{' (r)' if item.reversed else ''}" for item in scale.items),
         )
         for scale in definition.questionnaire

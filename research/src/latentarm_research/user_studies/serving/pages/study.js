@@ -9,10 +9,11 @@ function content(form) {
   const { to, digest, order } = form.dataset;
   if (to === "consent") return { digest };
   if (to !== "answers") return {};
-  const inWords = new Set([...form.querySelectorAll("textarea")].map(({ name }) => name));
-  const given = [...new FormData(form)].filter(([, value]) => String(value).trim());
-  const answers = Object.fromEntries(given.map(([name, value]) => [name, inWords.has(name) ? value : Number(value)]));
-  return { order: Number(order), answers };
+  const asText = new Set([...form.querySelectorAll("textarea, [data-options] input")].map((field) => field.getAttribute("name")));
+  const data = new FormData(form);
+  const given = [...new Set(data.keys())].map((name) => /** @type {const} */ ([name, data.getAll(name).join(";")]));
+  const answered = given.filter(([, value]) => value.trim());
+  return { order: Number(order), answers: Object.fromEntries(answered.map(([name, value]) => [name, asText.has(name) ? value : Number(value)])) };
 }
 
 /** @param {HTMLFormElement} form @returns {Promise<{to?: string, problem?: string, waits_s?: number}>} */
@@ -58,6 +59,21 @@ for (const form of document.querySelectorAll("form")) {
     problem?.parentElement?.toggleAttribute("hidden", false);
     busy?.toggleAttribute("hidden", true);
     for (const button of buttons) button.disabled = false;
+  });
+}
+
+/** A slider that was set is an answer; one that was only looked at is none. @param {HTMLInputElement} slider */
+function answered(slider) {
+  slider.name = slider.dataset.name ?? "";
+  slider.removeAttribute("aria-valuetext");
+  const shown = slider.closest(".item")?.querySelector("output");
+  if (shown) shown.textContent = slider.value;
+}
+for (const slider of /** @type {NodeListOf<HTMLInputElement>} */ (document.querySelectorAll("input[type=range]"))) {
+  // A click or the space bar takes the place at which it stands.
+  for (const kind of ["input", "click"]) slider.addEventListener(kind, () => answered(slider));
+  slider.addEventListener("keydown", ({ key }) => {
+    if (key === " ") answered(slider);
   });
 }
 

@@ -12,13 +12,15 @@ const [{ readWords }, { Settings }, { Deflection }, { pageControls, elementOf },
   ["layout/words", "settings/settings", "inputs/deflection", "inputs/page_controls", "inputs/scanning"].map(load),
 );
 
-/** Questions without an answer. */
-const OPEN = "fieldset:not(:has(:checked)), label:has(:required:not(:checked))";
+/** Questions without an answer; a slider has a name once it was set. */
+const OPEN = "fieldset:not(:has(:checked)), fieldset:not(:has(:checked)) label, label:has(:required:not(:checked)), label:has([type=range]:not([name]))";
 
-/** Everything that can be pressed. The light begins at what is to be done, and an answer leads back there. @param {Group} group */
+/** Everything that can be pressed. The light begins at what is to be done; the one answer to a question leads back there. @param {Group} group */
 function choices(group) {
   /** @type {Group} */
-  const question = (id, label, inner) => group(id, label, () => inner().map((answer) => Object.assign(answer, { stays: false })));
+  const question = (id, label, inner) => group(id, label, () => inner().map((answer) => (
+    elementOf(answer)?.querySelector("[type=radio]") ? Object.assign(answer, { stays: false }) : answer
+  )));
   const found = /** @type {Choice[]} */ (pageControls(document.getElementById("main"), question));
   const next = found.find((choice) => elementOf(choice)?.matches(OPEN));
   if (next) next.first = true;
