@@ -32,9 +32,9 @@ VARIABLES: Final = (
     Variable("option", "number of an option, from 1"),
     Variable("label", "words of the option"),
     Variable("chosen", "1 where the person chose the option, else 0"),
-    Variable("text", "the answer in the person's own words. One that begins with =, +, -, @, an"
-             " apostrophe or a control character has an apostrophe before it, so that no spreadsheet takes it as"
-             " a formula: remove that one"),
+    Variable("text", "the answer in the person's own words. One that begins with =, +, -, @, an apostrophe"
+             " or a control character has an apostrophe before it, so that spreadsheets take it as text:"
+             " remove that one"),
     Variable("claim", "number of the claim, from 0"),
     Variable("hypothesis", "name of the hypothesis that the claim belongs to"),
     Variable("measure", "measure or scale that the claim is about"),
