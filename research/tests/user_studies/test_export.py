@@ -186,10 +186,12 @@ def test_a_script_leaves_cells_empty_where_nothing_is_left_to_compare(
 
 
 def test_a_dataset_follows_psych_ds_and_its_codebook_has_every_column(tmp_path: Path) -> None:
-    study = recorded(EATING)
+    definition = load_definition("eating")
+    study = recorded(definition)
     folder, dataset = tmp_path / "people", tmp_path / "dataset"
     write_json(
-        folder / "config.json", {"study": EATING.study, "definition": EATING.digest, "people_are": "real"}
+        folder / "config.json",
+        {"study": definition.study, "definition": definition.digest, "people_are": "real"},
     )
     write_json(folder / "trials.json", study.documents["trials.json"])
     assert main(["study", "export", str(folder), "--out", str(dataset)]) == 0

@@ -48,8 +48,12 @@ def test_a_participant_goes_through_a_study_with_a_learned_model_and_is_reported
     assert {one.condition for one in recorded.trials} == {"Modes", "Latent"}
     for trial in recorded.trials:
         assert trial.measures["time_s"] == pytest.approx(1.0, abs=0.05)
-        assert 0.2 < trial.measures["input_magnitude"] <= trial.measures["time_s"]
         assert trial.measures["path_length"] > 0.01
+    for drive in recorded.participants[0].drives:
+        found = drive.measures
+        # It is the integral of ‖u‖, and they push one axis fully or not at all.
+        assert found["input_magnitude"] == pytest.approx(found["time_s"] - found["idle_s"])
+        assert found["input_magnitude"] > 0.2
     assert devices_of(recorded.participants[0].drives) == ("pointer mouse",)
     assert len(recorded.answers) == 8
     # Of the person who has left no byte remains, and nobody's address was kept.

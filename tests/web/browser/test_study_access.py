@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, Locator, Page
 
+from latentarm_research.user_studies.definition import PUBLIC_TITLE
 from latentarm_research.user_studies.recorded import DATABASE
 from latentarm_research.user_studies.serving.store import Store
 from study_participant import MODES, SCALE, TWIST, definition, next_link, participant, serving
@@ -99,7 +100,7 @@ def test_a_study_is_done_by_keyboard_alone(
         page.goto(link.replace("code=", "code=0"))
         looked_at(page, "This link opens nothing")
         page.goto(link)
-        looked_at(page, GIVEN["title"])
+        looked_at(page, PUBLIC_TITLE)
         press(page, "checkbox", "I have read this", "Space")
         press(page, "button", "Take part")
         looked_at(page, "Practice")
@@ -147,7 +148,7 @@ def test_a_study_is_done_by_one_switch_alone(
         page.get_by_role("button", name="Take part").wait_for()
         page.wait_for_timeout(1000)
         press_switch(page, "Enter")
-        looked_at(page, GIVEN["title"])
+        looked_at(page, PUBLIC_TITLE)
         choose(page, "I have read this")
         choose(page, "Take part")
         looked_at(page, "Practice")
