@@ -119,6 +119,8 @@ def run_page(page: Path, not_run: dict[str, str]) -> dict[str, Any]:
             exec(compile(block.code, name_of(page), "exec"), names)  # noqa: S102 - the page is ours
         elif block.language == "toml":
             tomllib.loads(block.code)
+        elif block.language == "json":
+            json.loads(block.code)
         elif block.language == "yaml":
             yaml.safe_load(block.code)
         elif block.language == "sh":

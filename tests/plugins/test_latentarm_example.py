@@ -10,7 +10,6 @@ import signal
 import subprocess
 import sys
 import time
-import tomllib
 import urllib.request
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -22,6 +21,7 @@ import pytest
 from websockets.sync.client import connect
 
 from latentarm.demonstrations.dataset import read_dataset
+from registered import register
 
 HERE = Path(__file__).parent / "latentarm_example"
 SOURCE = Path(__file__).parents[2] / "src"
@@ -104,15 +104,7 @@ class TestTask(TaskContract):
 def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder to work in, and the distribution's metadata in ``site`` there."""
     folder = tmp_path_factory.mktemp("plugin")
-    project = tomllib.loads((HERE / "pyproject.toml").read_text())["project"]
-    info = folder / "site" / f"latentarm_example-{project['version']}.dist-info"
-    info.mkdir(parents=True)
-    names = {"Metadata-Version": "2.1", "Name": project["name"], "Version": project["version"]}
-    (info / "METADATA").write_text("".join(f"{key}: {value}\n" for key, value in names.items()))
-    lines: list[str] = []
-    for group, entries in project["entry-points"].items():
-        lines += [f"[{group}]", *(f"{name} = {value}" for name, value in entries.items())]
-    (info / "entry_points.txt").write_text("\n".join(lines))
+    register(HERE, folder / "site")
     return folder
 
 

@@ -12,6 +12,7 @@ from latentarm_research.drives import trace as drives
 from latentarm_research.metrics.drives import TRIAL_MEASURES, goal_error
 from latentarm_research.metrics.ending import Reason
 from latentarm_research.user_studies.definition import StudyTask
+from latentarm_research.user_studies.own.measures import OWN_MEASURES, own_figures
 from latentarm_research.user_studies.record import PeopleAre, Trial
 from latentarm_research.user_studies.trace import Trace, trace_of
 
@@ -117,7 +118,7 @@ def together(measured: Sequence[Mapping[str, float]]) -> dict[str, float]:
     found: dict[str, float] = {}
     for name in (name for name in measured[0] if all(name in one for one in measured)):
         values = np.array([one[name] for one in measured])
-        if name in SUMMED:
+        if name in SUMMED or (name in OWN_MEASURES and OWN_MEASURES[name].summed):
             found[name] = float(values.sum())
         elif name == "success_rate":
             found[name] = float(values.min())
@@ -133,6 +134,7 @@ def _measured(task: StudyTask, trace: drives.Trace) -> dict[str, float]:
     figures = trace.figures
     found = {name: float(getattr(figures, name)) for name in TRIAL_MEASURES}
     found["success_rate"] = float(figures.success)
+    found |= own_figures(trace)
     if (measured := np.isfinite(trace.delay_s)).any():
         found["input_delay_s"] = float(trace.delay_s[measured].mean())
     if task.plates:

@@ -16,6 +16,7 @@ from latentarm_research.metrics.drives import TRIAL_MEASURES
 from latentarm_research.user_studies.answers.items import names_of
 from latentarm_research.user_studies.catalogue import NAMES, load_definition
 from latentarm_research.user_studies.definition import Definition, StudyTask
+from latentarm_research.user_studies.own.measures import OWN_MEASURES
 from latentarm_research.user_studies.report.boxes import MOST_CONDITIONS
 from latentarm_research.user_studies.scenes import scene_names, scene_of
 
@@ -172,10 +173,13 @@ def _check_task(definition: Definition, task: StudyTask, where: str) -> None:
 
 def _check_measures(definition: Definition) -> None:
     at_plates = any(task.plates for task in definition.tasks)
-    measured = (*MEASURED, *(MEASURED_AT_PLATES if at_plates else ()))
+    measured = (*MEASURED, *(MEASURED_AT_PLATES if at_plates else ()), *OWN_MEASURES)
     if not definition.measures:
         raise UserError("measures: there must be one or more.")
     _known("measures", definition.measures, measured)
+    for name in definition.measures:
+        if name in OWN_MEASURES:
+            OWN_MEASURES.find(name, "measures")
     known = (*definition.measures, *definition.scales)
     conditions = [one.name for one in definition.conditions]
     for one in definition.printed:
