@@ -48,7 +48,7 @@ USED = {
     "options": ["cane", "chair", "none"],
     "several": True,
 }
-AGAIN = {"name": "again", "text": "Once more?", "options": ["yes", "no"]}
+AGAIN = {"name": "again", "text": "Once more?", "options": ["yes", "no"], "attention": 2}
 WISH = {"name": "wish", "text": "What do you wish for?"}
 WORDS = '=1+1, "quoted"\nand \u0646\u200c\u0645'  # a line break and a joiner without width
 
@@ -78,7 +78,7 @@ def test_answers_of_every_kind_go_from_the_page_to_the_dataset_and_the_report(st
         assert study.ask(key, "POST", "/answers", order=0, answers=wrong).status_code == 400, wrong
     given: dict[str, Any] = {
         "order": 0,
-        "answers": {"effort_1": 5, "pain_1": 73, "used": "1;3", "wish": WORDS},
+        "answers": {"effort_1": 5, "pain_1": 73, "used": "1;3", "again": "2", "wish": WORDS},
     }
     assert study.ask(key, "POST", "/answers", **given).json() == {"to": "/study"}
     study.store.finish(key, "CODE")
@@ -101,9 +101,11 @@ def test_answers_of_every_kind_go_from_the_page_to_the_dataset_and_the_report(st
     # No spreadsheet takes what a person has written as a formula.
     assert [(one["question"], one["text"]) for one in table("texts")] == [(WISH["text"], f"'{WORDS}")]
     assert [tuple(one.values())[2:] for one in table("options")] == [
-        ("used", USED["text"], "1", "cane", "1"),
-        ("used", USED["text"], "2", "chair", "0"),
-        ("used", USED["text"], "3", "none", "1"),
+        ("used", USED["text"], "1", "cane", "0", "1"),
+        ("used", USED["text"], "2", "chair", "0", "0"),
+        ("used", USED["text"], "3", "none", "0", "1"),
+        ("again", AGAIN["text"], "1", "yes", "0", "0"),
+        ("again", AGAIN["text"], "2", "no", "1", "1"),
     ]
 
     report = study.folder.parent / "report"
@@ -112,6 +114,7 @@ def test_answers_of_every_kind_go_from_the_page_to_the_dataset_and_the_report(st
     first = next(one["condition"] for one in table("answers"))
     cells = ["1 of 1", ABSENT] if first == "Modes" else [ABSENT, "1 of 1"]
     assert f"| Which do you use? | cane | {' | '.join(cells)} |" in said
+    assert f"| Once more? | no (attention check) | {' | '.join(cells)} |" in said
     assert "| Pain | 1: not at all; 100: as much as can be; slider | How much did it hurt? |" in said
     assert (report / "ratings.png").exists()
 
@@ -162,6 +165,8 @@ def test_a_study_without_scales_is_reported() -> None:
         ({"in_words": [{**WISH, "name": "effort_1"}]}, "'effort_1' stands there twice"),
         ({"in_words": [{**WISH, "name": "A wish"}]}, "in_words: name must have"),
         ({"multiple_choice": [{**AGAIN, "name": "wish"}]}, "'wish' stands there twice"),
+        ({"multiple_choice": [{**AGAIN, "attention": 3}]}, "attention of again must be"),
+        ({"multiple_choice": [{**AGAIN, "several": True}]}, "attention of again must be"),
         ({"multiple_choice": [{**AGAIN, "options": ["yes"]}]}, "needs two options or more"),
         ({"multiple_choice": [{**AGAIN, "options": ["yes", "yes"]}]}, "each another"),
         ({"questionnaire": [{**EFFORT, "items": []}]}, "needs one item or more"),

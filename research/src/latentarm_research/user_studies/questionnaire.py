@@ -60,10 +60,15 @@ class MultipleChoice:
     """Two or more, each another; they are asked in this order."""
     several: bool = False
     """True if several may be chosen, False for one."""
+    attention: int = 0
+    """Number, from 1, of the option that everybody chooses who reads the question; 0 if it checks no
+    attention."""
 
     def __post_init__(self) -> None:
         if len(self.options) < 2 or len(set(self.options)) < len(self.options):
             raise UserError(f"The question {self.name} needs two options or more, each another.")
+        if not 0 <= self.attention <= len(self.options) or (self.attention and self.several):
+            raise UserError(f"The attention of {self.name} must be the number of its only right option.")
 
 
 @final

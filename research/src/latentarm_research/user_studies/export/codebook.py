@@ -31,6 +31,7 @@ VARIABLES: Final = (
     Variable("question", "a question with options, or one that people answer in their own words"),
     Variable("option", "number of an option, from 1"),
     Variable("label", "words of the option"),
+    Variable("attention", "1 for the option that everybody chooses who reads the question, else 0"),
     Variable("chosen", "1 where the person chose the option, else 0"),
     Variable("text", "the answer in the person's own words. One that begins with =, +, -, @, an apostrophe"
              " or a control character has an apostrophe before it, so that spreadsheets take it as text:"

@@ -45,7 +45,7 @@ def write_dataset(folder: Path, recorded: Recorded, drives: Sequence[tuple[Drive
             _answers(definition, recorded.answers),
         ),
         "options": (
-            ("person", "condition", "item", "question", "option", "label", "chosen"),
+            ("person", "condition", "item", "question", "option", "label", "attention", "chosen"),
             _options(definition, recorded.answers),
         ),
         "claims": (
@@ -140,7 +140,7 @@ def _options(definition: Definition, answers: Sequence[Answer]) -> Iterable[Sequ
         question, chosen = asked[one.item], str(one.answer).split(";")
         for number, label in enumerate(question.options, start=1):
             given = one.person, one.condition, one.item, question.text
-            yield *given, number, label, int(str(number) in chosen)
+            yield *given, number, label, int(number == question.attention), int(str(number) in chosen)
 
 
 def _texts(definition: Definition, answers: Sequence[Answer]) -> Iterable[Sequence[Cell]]:

@@ -181,11 +181,13 @@ def _chosen_lines(definition: Definition, ratings: Ratings | None) -> list[list[
     lines: list[list[str]] = []
     for question in definition.multiple_choice:
         shown = [found.get((question.name, one.name)) for one in definition.conditions]
-        for number, option in enumerate(question.options):
+        for number, option in enumerate(question.options, start=1):
             cells = [
-                ABSENT if one is None or not one.n else f"{one.counts[number]} of {one.n}" for one in shown
+                f"{one.counts[number - 1]} of {one.n}" if one is not None and one.n else ABSENT
+                for one in shown
             ]
-            lines.append([question.text, option, *cells])
+            checks = " (attention check)" if number == question.attention else ""
+            lines.append([question.text, f"{option}{checks}", *cells])
     return lines
 
 
