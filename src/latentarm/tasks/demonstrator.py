@@ -2,15 +2,17 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import final
+from typing import TYPE_CHECKING, final
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from latentarm.core.errors import UserError
 from latentarm.core.types import Demonstrations, Episode, FloatArray
 from latentarm.robots.kinematics.chain import Chain
 from latentarm.tasks.task import Task
+
+if TYPE_CHECKING:
+    from scipy.interpolate import CubicSpline
 
 _FINE = 400  # samples for integrating a stroke's timing
 _WAVES = 3  # most half-waves in the low-frequency noise along a stroke
@@ -83,6 +85,8 @@ def demonstrations_of(
 
 def _stroke(chain: Chain, via: FloatArray, hand: Hand, rng: np.random.Generator) -> FloatArray:
     """One movement through configurations (V, n), without its first sample: (T, n)."""
+    from scipy.interpolate import CubicSpline  # 0.14 s, for which a drive on the page waits
+
     progress = _progress(hand, rng)
     fine = _path(via, hand, rng)(progress)
     # Per unit of the stroke's own time, which is 1 in total.
@@ -95,7 +99,9 @@ def _stroke(chain: Chain, via: FloatArray, hand: Hand, rng: np.random.Generator)
     return CubicSpline(np.linspace(0.0, 1.0, _FINE + 1), fine)(own_time)
 
 
-def _path(via: FloatArray, hand: Hand, rng: np.random.Generator) -> CubicSpline:
+def _path(via: FloatArray, hand: Hand, rng: np.random.Generator) -> "CubicSpline":
+    from scipy.interpolate import CubicSpline
+
     knots = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(via, axis=0), axis=-1))])
     progress = np.linspace(0.0, 1.0, 50)
     curve = CubicSpline(knots / knots[-1], via)(progress)
