@@ -48,6 +48,9 @@ def test_a_page_with_ones_own_parts_is_a_study(study: Path) -> None:
     shown = json.loads(said("show", study, "--json"))
     assert shown["tasks"][0]["scene"] == "one_bite"
     assert "highest_speed" in shown["measures"]
+    said("preregister", study, "--out", "plan.json")
+    analysis = json.loads(Path("plan.json").read_text())["analysis"]
+    assert analysis["measures"] == {"highest_speed": "latentarm-example 0.3.0"}
 
 
 @pytest.mark.slow

@@ -15,6 +15,7 @@ from latentarm_research.user_studies import designs, drive_record, exclusion
 from latentarm_research.user_studies.analysis import analysis, anova, means, randomisation
 from latentarm_research.user_studies.answers import scales
 from latentarm_research.user_studies.definition import Definition
+from latentarm_research.user_studies.own.measures import OWN_MEASURES
 from latentarm_research.user_studies.recorded import Recorded
 from latentarm_research.user_studies.report.words import DESIGN_WORDS
 from latentarm_research.user_studies.scenes import scene_of
@@ -39,9 +40,16 @@ def _plan(definition: Definition, power: object) -> dict[str, Any]:
     code = hashlib.sha256("".join(map(getsource, _CODE)).encode()).hexdigest()
     return {
         "definition": definition.as_json(),
-        "analysis": {"words": DESIGN_WORDS[definition.design].tests, "code": code},
+        "analysis": {"words": DESIGN_WORDS[definition.design].tests, "code": code, **_packages(definition)},
         "power": power,
     }
+
+
+def _packages(definition: Definition) -> dict[str, dict[str, str]]:
+    """The packages, with their versions, of measures that are not ours."""
+    theirs = (name for name in definition.measures if name in OWN_MEASURES)
+    found = {name: str(OWN_MEASURES.origin(name)) for name in theirs}
+    return {"measures": found} if found else {}
 
 
 def differences(path: Path, recorded: Recorded) -> list[str]:
