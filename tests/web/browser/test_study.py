@@ -7,7 +7,7 @@ import pytest
 from playwright.sync_api import Browser, Page
 
 from latentarm_research.user_studies.recorded import read_recorded
-from study_participant import MODES, TWIST, definition, serving
+from study_participant import MODES, SCALE, TWIST, definition, serving
 
 from .conftest import STICKS_OUT
 from .study_pages import drive_trial
@@ -32,6 +32,8 @@ def test_a_participant_takes_a_study_on_the_page(
     study, out = tmp_path / "study.json", tmp_path / "people"
     given = definition(MODES, TWIST)
     given["tasks"] = [{**given["tasks"][0], "trials": 1, "trial_s": 6.0}]
+    pain = {"name": "pain", "label": "Pain", "items": [{"text": "It hurt."}], "points": 101, "slider": True}
+    given["questionnaire"] = [SCALE, pain]
     study.write_text(json.dumps(given))
     with serving(str(study), "--out", str(out), "--preset", "paper", "--completion-code", "C0DE") as (
         link,
@@ -68,6 +70,11 @@ def test_a_participant_takes_a_study_on_the_page(
             looked_at(page, "How was this way of driving?")
             for item in page.locator("fieldset").all():
                 item.get_by_label("6").check()
+            slider = page.get_by_role("slider")
+            page.get_by_text("It hurt.").click()
+            assert slider.get_attribute("aria-valuetext") == "not answered yet"
+            slider.click()
+            assert slider.get_attribute("aria-valuetext") is None
             press(page, "Send my answers")
         looked_at(page, "Thank you")
         assert page.get_by_text("C0DE").is_visible()
@@ -77,4 +84,5 @@ def test_a_participant_takes_a_study_on_the_page(
     assert recorded.who == "1 real person"
     assert {one.condition for one in recorded.trials} == {"Modes", "Retargeting"}
     assert all(one.measures["path_length"] > 0.0 for one in recorded.trials)
-    assert [one.answer for one in recorded.answers] == [6] * 8
+    assert [one.answer for one in recorded.answers if one.item != "pain_1"] == [6] * 8
+    assert [one.answer for one in recorded.answers if one.item == "pain_1"] == [51] * 2

@@ -12,8 +12,8 @@ function content(form) {
   const asText = new Set([...form.querySelectorAll("textarea, [data-options] input")].map((field) => field.getAttribute("name")));
   const data = new FormData(form);
   const given = [...new Set(data.keys())].map((name) => /** @type {const} */ ([name, data.getAll(name).join(";")]));
-  const answered = given.filter(([, value]) => value.trim());
-  return { order: Number(order), answers: Object.fromEntries(answered.map(([name, value]) => [name, asText.has(name) ? value : Number(value)])) };
+  const filled = given.filter(([, value]) => value.trim());
+  return { order: Number(order), answers: Object.fromEntries(filled.map(([name, value]) => [name, asText.has(name) ? value : Number(value)])) };
 }
 
 /** @param {HTMLFormElement} form @returns {Promise<{to?: string, problem?: string, waits_s?: number}>} */
@@ -70,8 +70,8 @@ function answered(slider) {
   if (shown) shown.textContent = slider.value;
 }
 for (const slider of /** @type {NodeListOf<HTMLInputElement>} */ (document.querySelectorAll("input[type=range]"))) {
-  // A click or the space bar takes the place at which it stands.
-  for (const kind of ["input", "click"]) slider.addEventListener(kind, () => answered(slider));
+  // A press on it or the space bar takes the place at which it stands; a click on its label, which is a click on it, does not.
+  for (const kind of ["input", "pointerup"]) slider.addEventListener(kind, () => answered(slider));
   slider.addEventListener("keydown", ({ key }) => {
     if (key === " ") answered(slider);
   });
