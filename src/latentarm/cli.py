@@ -1,6 +1,6 @@
 """The command line: assembles the commands and turns their errors into exit codes.
 
-Exit codes: 0 done, 1 not reached or failed, 2 a problem that the user can fix, 130 interrupted.
+Exit codes: 0 done, 1 not reached or failed, 2 a problem that the user can fix, 130 interrupted (`__main__`).
 """
 
 import io
@@ -59,9 +59,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 0
     except OSError as error:
         return _refuse(f"{error.filename or 'The output'} cannot be used: {error.strerror or error}.")
-    except KeyboardInterrupt:
-        print("latentarm: interrupted.", file=sys.stderr)
-        return 130
 
 
 def _app(words: Sequence[str]) -> SubcommandApp:

@@ -13,6 +13,7 @@ from latentarm.core.errors import UserError
         ("franka://172.16.0.2", ArmAddress("franka", "172.16.0.2", None, {})),
         ("ros2://robot.local:9090", ArmAddress("ros2", "robot.local", 9090, {})),
         ("xarm://[::1]:502?tool=1.5", ArmAddress("xarm", "::1", 502, {"tool": "1.5"})),
+        ("my_arm://10.0.0.2", ArmAddress("my_arm", "10.0.0.2", None, {})),
         ("lerobot:///dev/ttyACM0", ArmAddress("lerobot", "/dev/ttyACM0", None, {})),
     ],
 )

@@ -36,14 +36,15 @@ def is_address(name: str) -> bool:
 
 def parse_address(text: str) -> ArmAddress:
     """Parse an address."""
+    scheme, _, rest = text.partition(MARK)
     try:
-        parts = urlsplit(text)
+        parts = urlsplit(f"//{rest}")  # in urllib a scheme has no underscore, as the name of a driver may
         host, port = parts.hostname or parts.path, parts.port
         options = parse_qsl(parts.query, keep_blank_values=True, strict_parsing=bool(parts.query))
     except ValueError as error:
         raise UserError(f"--arm {text} is not an address ({error}): write SCHEME://HOST:PORT.") from error
-    if not parts.scheme or not host or parts.username is not None or parts.fragment:
+    if not scheme or not host or parts.username is not None or parts.fragment:
         raise UserError(f"--arm {text} is not an address: write SCHEME://HOST, such as franka://172.16.0.2.")
     if len(dict(options)) < len(options):
         raise UserError(f"--arm {text} gives an option twice.")
-    return ArmAddress(parts.scheme, host, port, dict(options))
+    return ArmAddress(scheme.lower(), host, port, dict(options))

@@ -3,15 +3,11 @@
 import gc
 import math
 import os
-import signal
 import threading
 import time
 from collections.abc import Generator
 from contextlib import contextmanager, suppress
 from typing import Final, final
-
-HANG_UPS: Final = (signal.SIGHUP,) if hasattr(signal, "SIGHUP") else ()
-"""A terminal that is closed sends it to all processes that were started there; Windows has none."""
 
 _PRIORITY: Final = 10  # lowest real-time priority
 _HELD_UP_S: Final = 0.1  # a shorter pause explains no silence of an arm, s

@@ -7,7 +7,6 @@ there is JSON: strangers wrote what is decoded there, so nothing is unpickled.
 import json
 import multiprocessing
 import os
-import signal
 import sys
 import time
 from collections.abc import Sequence
@@ -15,6 +14,7 @@ from contextlib import suppress
 from multiprocessing.connection import Connection
 from typing import Final, final
 
+from latentarm.core.child_processes import start_child
 from latentarm.core.errors import UserError
 from latentarm.core.exact_json import of_json, to_json
 from latentarm.core.types import Pose
@@ -31,7 +31,6 @@ _LOWER_PRIORITY: Final = 5
 
 def run_sources(texts: Sequence[str], names: Sequence[str], sightings: Connection, owner: Connection) -> None:
     """Open sources, send what they see, and end when ``owner`` is closed at the other end."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
     with suppress(OSError, AttributeError):
         os.nice(_LOWER_PRIORITY)
     os.set_blocking(sightings.fileno(), False)
@@ -73,13 +72,9 @@ class SourceProcess:
     """
 
     def __init__(self, texts: Sequence[str], names: Sequence[str]) -> None:
-        context = multiprocessing.get_context("spawn")
         self.sightings, writing = multiprocessing.Pipe(duplex=False)
         self._owner, theirs = multiprocessing.Pipe()
-        self._process = context.Process(
-            target=run_sources, args=(texts, names, writing, theirs), name="latentarm objects", daemon=True
-        )
-        self._process.start()
+        self._process = start_child(run_sources, (texts, names, writing, theirs), "latentarm objects")
         writing.close()
         theirs.close()
         refused = "The sources of --objects did not open in time."

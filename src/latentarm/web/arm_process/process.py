@@ -17,9 +17,10 @@ from threadpoolctl import threadpool_limits
 
 from latentarm.arms.contract import SceneArm
 from latentarm.control.clock import MonotonicClock
+from latentarm.core.child_processes import start_child
 from latentarm.core.errors import UserError
 from latentarm.core.logs import LogSettings, log_settings, logging_as
-from latentarm.core.punctuality import HANG_UPS, ask_for_priority, short_collections
+from latentarm.core.punctuality import ask_for_priority, short_collections
 from latentarm.core.types import StepRecord
 from latentarm.core.untrusted.terminal import one_line
 from latentarm.web.arm_process.arm_lifecycle import first_arm, from_where_it_stands
@@ -50,9 +51,6 @@ def run_control(spec: Spec, channel: Channel, server: int, logs: LogSettings) ->
     def orphaned() -> bool:
         return os.getppid() != server
 
-    # Ctrl-C in a terminal, and closing it, reach both processes: the server then ends this one in good order.
-    for number in (signal.SIGINT, *HANG_UPS):
-        signal.signal(number, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, end)
     privileged = ask_for_priority()
     with threadpool_limits(1), logging_as(logs):
@@ -98,19 +96,13 @@ class ControlProcess:
     """A running control process. Every method but `end` returns at once."""
 
     def __init__(self, spec: Spec, sightings: Connection | None = None) -> None:
-        context = multiprocessing.get_context("spawn")
         reading, self._orders = multiprocessing.Pipe(duplex=False)
         # Writing never waits, and an order is short enough to fit whole or not at all.
         os.set_blocking(self._orders.fileno(), False)
         self._channel = Channel(reading, sightings)
         self._seen = 0
-        self._process = context.Process(
-            target=run_control,
-            args=(spec, self._channel, os.getpid(), log_settings()),
-            name="latentarm control",
-            daemon=True,
-        )
-        self._process.start()
+        given = (spec, self._channel, os.getpid(), log_settings())
+        self._process = start_child(run_control, given, "latentarm control")
         # Else nobody would notice when the control process has closed its end.
         reading.close()
 

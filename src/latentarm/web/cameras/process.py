@@ -9,7 +9,6 @@ import json
 import logging
 import multiprocessing
 import os
-import signal
 import threading
 import time
 from collections.abc import Mapping, Sequence
@@ -20,8 +19,8 @@ from multiprocessing.connection import Connection
 from typing import Any, Final, final
 
 from latentarm.cameras.sources import CameraSource
+from latentarm.core.child_processes import start_child
 from latentarm.core.errors import UserError
-from latentarm.core.punctuality import HANG_UPS
 from latentarm.core.untrusted.terminal import one_line
 from latentarm.web.protocol.notice import NoticeError
 
@@ -36,8 +35,6 @@ _LONGEST: Final = 1 << 17
 
 def run_cameras(sources: Sequence[CameraSource], pipe: Connection, host: str) -> None:
     """Serve the cameras until the web server is gone, listening on the address ``host`` alone."""
-    for number in (signal.SIGINT, *HANG_UPS):
-        signal.signal(number, signal.SIG_IGN)
     with suppress(OSError, AttributeError):
         os.nice(_LOWER_PRIORITY)
     # What goes wrong with one page is shown on that page; aiortc would also quote what strangers sent.
@@ -174,13 +171,9 @@ class CameraProcess:
             self._process.join()
 
     def _start(self) -> None:
-        context = multiprocessing.get_context("spawn")
         self._pipe, theirs = multiprocessing.Pipe()
         self._started_s = time.monotonic()
-        self._process = context.Process(
-            target=run_cameras, args=(self.sources, theirs, self._host), name="latentarm cameras", daemon=True
-        )
-        self._process.start()
+        self._process = start_child(run_cameras, (self.sources, theirs, self._host), "latentarm cameras")
         theirs.close()
 
     def _answer(self, page: str, offer: str) -> str:

@@ -20,6 +20,7 @@ from typing import Final, Generic, TypeVar, final
 from pydantic import BaseModel, TypeAdapter, ValidationError
 from threadpoolctl import threadpool_limits
 
+from latentarm.core.child_processes import start_child
 from latentarm.core.errors import UserError, naming_extras
 from latentarm.web.protocol.notice import Message, Notice, notice_of
 
@@ -75,18 +76,14 @@ class Job(Generic[Said]):
     def __init__(
         self, work: Callable[..., None], arguments: tuple[object, ...], kind: type[Said], name: str
     ) -> None:
-        context = multiprocessing.get_context("spawn")
-        child_hears, self._saying = context.Pipe(duplex=False)
-        self._hearing, child_says = context.Pipe(duplex=False)
+        child_hears, self._saying = multiprocessing.Pipe(duplex=False)
+        self._hearing, child_says = multiprocessing.Pipe(duplex=False)
         os.set_blocking(self._saying.fileno(), False)
         self._kind = kind
         self._heard: deque[Said] = deque()
         self.failure: Notice | None = None  # why it failed; None while it is at work and if it succeeded
         self._ended = False
-        self._process = context.Process(
-            target=_run, args=(work, arguments, child_hears, child_says), name=name, daemon=True
-        )
-        self._process.start()
+        self._process = start_child(_run, (work, arguments, child_hears, child_says), name)
         child_hears.close()
         child_says.close()
         # In a thread, because a half-written message would make its reader wait.
@@ -140,8 +137,6 @@ class Job(Generic[Said]):
 def _run(
     work: Callable[..., None], arguments: tuple[object, ...], hearing: Connection, saying: Connection
 ) -> None:
-    # Ctrl-C in a terminal reaches every process: the server then ends this one in good order.
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, _tidy_up)
     threading.Thread(target=_die_with_parent, daemon=True).start()
     with suppress(OSError, AttributeError):  # not supported by the system

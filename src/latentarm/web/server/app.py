@@ -23,9 +23,10 @@ from starlette.types import ASGIApp
 from latentarm.arms.catalogue import make_real_arm
 from latentarm.arms.checking import look_at
 from latentarm.control.clock import MonotonicClock
+from latentarm.core.child_processes import HANG_UPS
 from latentarm.core.errors import UserError
 from latentarm.core.logs import logging_also_to
-from latentarm.core.punctuality import HANG_UPS, short_collections
+from latentarm.core.punctuality import short_collections
 from latentarm.demonstrations.folders import locked
 from latentarm.recordings.folder import JOURNAL_SUFFIX
 from latentarm.robots.notices import notices
