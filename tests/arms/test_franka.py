@@ -11,6 +11,7 @@ from latentarm.arms.catalogue import make_real_arm
 from latentarm.arms.contract import check_arm
 from latentarm.arms.franka import pace
 from latentarm.arms.franka.link import has_realtime
+from latentarm.arms.shadow import ShadowArm
 from latentarm.control.clock import MonotonicClock
 from latentarm.core.errors import UserError
 from latentarm.core.types import Command, FloatArray, GripperCommand
@@ -125,6 +126,20 @@ def test_what_looking_refuses_connecting_refuses(stand_in, address, robot, said)
         driver.connect()
     assert str(error.value) in sentences
     assert driver.status().phase == "off"
+
+
+def test_its_shadow_takes_commands_and_tells_it_none(new_arm, stand_in):
+    at, before = stand_in.positions(), len(stand_in.told())
+    shadow = ShadowArm(new_arm)
+    shadow.connect()
+    shadow.enable()
+    assert shadow.status().takes_commands
+    drive(shadow, stand_in, VELOCITY, 0.5, gripper=GripperCommand(0.02, 0.05, force_n=5.0))
+    shadow.stop()
+    shadow.close()
+    # franky sets the collision thresholds when it connects, and asks for the model.
+    assert set(stand_in.told()[before:]) <= {"kConnect", "kSetCollisionBehavior", "kGetRobotModel"}
+    np.testing.assert_allclose(stand_in.positions(), at, atol=TREMBLE_RAD)
 
 
 def test_a_robot_with_its_joints_elsewhere_is_refused(stand_in):

@@ -19,9 +19,10 @@ import pytest
 
 from arms.feetech_bus import ACCELERATION, CELSIUS, GOAL, MIN_POSITION, TORQUE, FeetechBus
 from latentarm.arms.address import parse_address
-from latentarm.arms.contract import INPUT_BUDGET_S, check_arm
+from latentarm.arms.contract import INPUT_BUDGET_S, Arm, check_arm
 from latentarm.arms.lerobot.arm import STOPS_AFTER_S, LerobotArm
 from latentarm.arms.lerobot.keeper import now_s
+from latentarm.arms.shadow import ShadowArm
 from latentarm.core.errors import UserError
 from latentarm.core.types import Command, GripperCommand
 from latentarm.robots.catalogue import load_robot
@@ -132,7 +133,7 @@ def _enabled(arm: LerobotArm) -> LerobotArm:
     return arm
 
 
-def _drive(arm: LerobotArm, ticks: int, gripper: GripperCommand | None = None) -> float:
+def _drive(arm: Arm, ticks: int, gripper: GripperCommand | None = None) -> float:
     """How long it was driven, s."""
     begun_s = time.monotonic()
     for tick in range(ticks):
@@ -169,6 +170,18 @@ def test_looking_and_connecting_change_nothing(arm: LerobotArm, bus: FeetechBus)
     arm.connect()
     time.sleep(0.3)
     arm.close()
+    assert not bus.written()
+
+
+@needs_lerobot
+def test_its_shadow_takes_commands_and_tells_the_motors_nothing(arm: LerobotArm, bus: FeetechBus) -> None:
+    shadow = ShadowArm(arm)
+    shadow.connect()
+    shadow.enable()
+    assert shadow.status().takes_commands
+    _drive(shadow, 50, GripperCommand(0.0, speed_m_s=0.05, force_n=5.0))
+    shadow.stop()
+    shadow.close()
     assert not bus.written()
 
 

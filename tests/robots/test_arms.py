@@ -9,6 +9,7 @@ import mujoco
 import numpy as np
 import pytest
 
+from latentarm.arms.own_pose import OwnPose, misfits
 from latentarm.core.errors import UserError
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.kinematics.reader import reference_positions
@@ -41,7 +42,7 @@ def file_of(arm):
 
 
 @pytest.mark.parametrize("arm", arms(refused=False))
-def test_the_tool_is_where_mujoco_puts_it(arm):
+def test_the_tool_is_where_mujoco_puts_it_and_an_arm_that_says_so_is_accepted(arm):
     robot = load_robot(str(file_of(arm)), arm.get("end_effector"))
     assert robot.dof == arm["joints"]
     # Nobody has told of accelerations and jerks, whatever the file.
@@ -51,6 +52,7 @@ def test_the_tool_is_where_mujoco_puts_it(arm):
     addresses = [int(model.joint(name).qposadr[0]) for name in robot.joint_names]
     tool = robot.chain.tools[0].name
     is_site = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_SITE, tool) >= 0
+    told = []
     for q in np.random.default_rng(0).uniform(robot.limits.lower, robot.limits.upper, (20, robot.dof)):
         data.qpos[:] = reference_positions(model)
         data.qpos[addresses] = q
@@ -59,6 +61,10 @@ def test_the_tool_is_where_mujoco_puts_it(arm):
         pose = robot.chain.forward(q)
         np.testing.assert_allclose(pose.position, placed.xpos, atol=1e-9)
         np.testing.assert_allclose(pose.rotation, placed.xmat.reshape(3, 3), atol=1e-9)
+        frame = np.eye(4)
+        frame[:3, :3], frame[:3, 3] = placed.xmat.reshape(3, 3), placed.xpos
+        told.append(OwnPose(q, frame))
+    assert misfits(told, robot) == ()
 
 
 @pytest.mark.parametrize("arm", arms(refused=True))

@@ -15,6 +15,7 @@ import subprocess
 import sys
 import threading
 import time
+from typing import ClassVar
 
 import numpy as np
 
@@ -112,6 +113,10 @@ class FrankaStandIn:
     def break_down(self) -> None:
         self.ask("break")
 
+    def told(self) -> list[str]:
+        """Every command to arm or hand since it was switched on, by its name in the arm's protocol."""
+        return self.ask("told")["told"]
+
     def push(self, by: np.ndarray) -> None:
         goal = self.positions() + by
         self.ask("push " + " ".join(map(str, goal)))
@@ -135,6 +140,16 @@ def patient_driver(robot, address, now_s):
     return FrankaArm(robot, address, now_s)
 
 
+class _Noted(dict):
+    """Classes of commands by kind, looked up once for each command that comes."""
+
+    told: ClassVar[list[str]] = []
+
+    def get(self, kind):
+        self.told.append(kind.name)
+        return super().get(kind)
+
+
 def _servers():
     """The classes of franky-sim with what is added to them."""
     from franky_sim import franka_gripper_server, franka_robot_server, simulation_server
@@ -154,6 +169,10 @@ def _servers():
             super().handle(server)
 
     class HandServer(franka_gripper_server.FrankaGripperServer):
+        def __init__(self, robot, hostname):
+            super().__init__(robot, hostname)
+            self._FrankaServer__command_class_map = _Noted(self._FrankaServer__command_class_map)
+
         def stop(self, command_id, tcp_socket):
             # The real hand answers the command that it gives up; franky-sim forgets it.
             if self._pending_command_id is not None:
@@ -174,7 +193,8 @@ def _servers():
             self.silent = 0
             self._heard = False
             super().__init__(robot, hostname_candidates)
-            self._FrankaServer__command_class_map[RobotCommand.kAutomaticErrorRecovery] = Recovery
+            known = self._FrankaServer__command_class_map | {RobotCommand.kAutomaticErrorRecovery: Recovery}
+            self._FrankaServer__command_class_map = _Noted(known)
 
         @property
         def robot_state(self):
@@ -278,6 +298,8 @@ def _obey(order, server, robot, hand, cycle) -> dict:
             "dq": list(robot.inner_state.dq),
             "width": robot.hand_width,
         }
+    elif name == "told":
+        answer["told"] = _Noted.told
     elif name == "press":
         arm.press()
     elif name == "release":

@@ -3,9 +3,6 @@
 It serves what the driver needs of ROS 2: joint states, a controller, the controller manager's list, a
 gripper's action, and the watchdog's two topics. The messages are those of ``ROSBRIDGE_PROTOCOL.md``; the
 decisions of the watchdog are those of the published file, which is loaded as it is.
-
-As a program it serves until its standard input ends: ``python rosbridge_server.py [ROBOT]`` prints the
-address for ``--arm``.
 """
 
 import asyncio
@@ -14,7 +11,6 @@ import importlib.util
 import json
 import math
 import socket
-import sys
 import threading
 import time
 from collections.abc import Iterator
@@ -29,7 +25,6 @@ from websockets.asyncio.server import ServerConnection, serve
 from websockets.exceptions import ConnectionClosed
 
 from latentarm.core.types import FloatArray
-from latentarm.robots.catalogue import load_robot
 from latentarm.robots.robot import Robot
 from latentarm.testing.real_arms import StandIn
 
@@ -488,10 +483,3 @@ def silent_port() -> Iterator[int]:
     """A port that takes connections and says nothing."""
     with socket.create_server(("127.0.0.1", 0)) as listening:
         yield listening.getsockname()[1]
-
-
-if __name__ == "__main__":
-    with RosbridgeServer(load_robot(sys.argv[1] if len(sys.argv) > 1 else "panda")) as server:
-        address = f"ros2://127.0.0.1:{server.port}?controller=arm_controller&gripper_joint={GRIPPER_JOINT}"
-        print(address, flush=True)  # noqa: T201
-        sys.stdin.read()
