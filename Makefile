@@ -83,7 +83,7 @@ arms: $(VENV)/installed-dev ## Fetch some 25 arms of other packages (420 MB), lo
 lerobot: $(VENV)/installed ## An environment with LeRobot 0.6 and our plug-in, for its tests (Python 3.12, several GB).
 	$(BIN)/python scripts/uv.py venv --quiet --allow-existing --python 3.12 .venv-lerobot-06
 	$(BIN)/python scripts/uv.py pip install --quiet --python .venv-lerobot-06/bin/python \
-		--editable '.[lerobot,testing]' --editable plugins/lerobot_robot_latentarm
+		--editable '.[lerobot,testing]' pytest-rerunfailures --editable plugins/lerobot_robot_latentarm
 
 bench: $(VENV)/installed ## The online step and the batched fit, as ratios in one run.
 	$(BIN)/latentarm bench

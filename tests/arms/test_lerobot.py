@@ -166,6 +166,7 @@ def test_looking_and_connecting_change_nothing(arm: LerobotArm, bus: FeetechBus)
     told = {fact.name: fact.value for fact in found.facts}
     assert told["firmware"] == "3.10"
     assert "7.4 V" in told["supply"]
+    assert "shoulder_pan ±87.9°" in told["calibrated to"]
     assert "shoulder_pan -4.2°" in told["positions"] or "shoulder_pan 0.0°" in told["positions"]
     arm.connect()
     time.sleep(0.3)

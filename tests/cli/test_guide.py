@@ -19,6 +19,14 @@ def test_a_file_is_printed_as_it_is(capsys):
     assert capsys.readouterr().out == (ROOT / "docs/your-arm/zones.toml").read_text()
 
 
+def test_a_page_shows_the_files_that_it_includes(capsys):
+    for name in listed(capsys):
+        assert main(["guide", name]) == 0
+        assert "8<--" not in capsys.readouterr().out
+    assert main(["guide", "objects"]) == 0
+    assert (ROOT / "examples/your_own_detector.py").read_text().rstrip() in capsys.readouterr().out
+
+
 def test_another_name_is_refused(capsys):
     assert main(["guide", "hammer"]) == 2
     assert "There is no hammer: name one of your-arm, arms," in capsys.readouterr().err

@@ -7,7 +7,7 @@ from pathlib import Path
 from shlex import join
 from typing import TYPE_CHECKING, Annotated, Final
 
-from rich.table import Table
+from rich.table import Column, Table
 from tyro.conf import Positional, arg
 
 from latentarm.arms.address import is_address
@@ -116,7 +116,7 @@ def check(
         told = {"address": address, "facts": facts, "notices": found.notices, "refusals": found.refusals}
         print(json_format.dumps(told, indent=2))
     elif found.facts:
-        table = Table("what", "found", title=address)
+        table = Table("what", Column("found", overflow="fold"), title=address)
         for fact in found.facts:
             table.add_row(fact.name, fact.value)
         print_renderables(table)

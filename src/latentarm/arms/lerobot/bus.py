@@ -147,6 +147,7 @@ class MotorsBus:
         if self._bus.calibration:
             at = self.positions()
             told["positions"] = ", ".join(f"{name} {at[name]:.1f}°" for name in self.joints)
+            told["calibrated to"] = ", ".join(f"{name} ±{half:.1f}°" for name, half in self.ranges().items())
         return told
 
     def ranges(self) -> dict[str, float]:
