@@ -6,6 +6,7 @@ import shutil
 import zipfile
 from dataclasses import replace
 from datetime import UTC, datetime
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -219,6 +220,20 @@ def test_what_was_kept_is_there_for_the_next_server(records, about, tmp_path):
     again = Records(tmp_path, dict, lambda: None)
     assert again.drives.wanted(Wanted(person=person.id)) == [record]
     assert again.people.problems + again.drives.problems == []
+
+
+def test_records_that_an_earlier_program_wrote_are_read_and_exported(tmp_path):
+    """Those that commit 44babad3 of 24 November 2026 wrote."""
+    shutil.copytree(Path(__file__).with_name("earlier_records"), tmp_path / FOLDER)
+    records = Records(tmp_path, dict, lambda: None)
+    (person,) = records.people.all()
+    (record,) = records.drives.wanted(Wanted(person=person.id))
+    assert records.people.problems + records.drives.problems == []
+    assert (person.name, record.choice, record.ended, record.time_s) == ("Ada", "carrot", "reset", 5.0)
+    assert [pose.name for pose in read_poses(records.people.folder_of(person.id))] == ["Drink"]
+    assert records.drives.trace(record.id)  # checked
+    with zipfile.ZipFile(records.export(person.id)) as packed_up:
+        assert any(record.id in name for name in packed_up.namelist())
 
 
 def test_a_scene_stays_as_long_as_a_drive_is_left_that_is_shown_with_it(records, about, tmp_path):
