@@ -6,7 +6,8 @@ import json
 import pytest
 
 from latentarm.tasks.catalogue import SCENE_TASKS, TASKS
-from latentarm.web.words.catalogue import COOKIE
+from latentarm.web.protocol.personalise_messages import Personalise
+from latentarm.web.words.catalogue import COOKIE, languages
 
 from .conftest import STICKS_OUT, ask_to_drive, set_up
 
@@ -21,6 +22,7 @@ SIZES = {
     "a large screen at 200 %": (960, 540),
     "a phone": (390, 844),
     "a phone below the bars of its browser": (390, 664),
+    "a small phone": (360, 640),
     "a phone on its side": (844, 390),
 }
 PANELS = {"stick": ["#stick"], "dpad": ["#dpad"], "switch": ["#scan", "#switch"]}
@@ -109,7 +111,7 @@ def test_nothing_scrolls_in_any_task_at_any_size_with_any_control(
     named = [str(trained)] if task == "learned" else ["--task", task]
     physics = ["--arm", "mujoco"] if task in SCENE_TASKS else []
     with start_server(tmp_path, *named, *physics) as address:
-        for language in ("en", "de"):
+        for language in languages():
             context = chromium.new_context(reduced_motion="reduce")
             context.add_cookies([{"name": COOKIE, "value": language, "url": address}])
             context.add_init_script(f"localStorage['latentarm.settings.'] = '{PRACTISED}'")
@@ -142,6 +144,36 @@ def test_the_practice_leaves_the_arm_the_stick_and_stop_on_the_screen(opened, na
     page.get_by_role("button", name="Practise now").click()
     assert page.evaluate(CUT_OFF, ["#practice", "#status"]) == []
     assert_on_one_screen(page, (name, "stick"))
+
+
+@pytest.mark.parametrize("language", languages())
+def test_new_directions_under_trial_leave_the_arm_the_stick_and_stop_on_the_screen(
+    chromium, address, language
+):
+    learned = Personalise(phase="learned", name="Ada", answers=10, error=0.1, error_without=0.8).model_dump()
+
+    def hear(socket):
+        def changed(text):
+            message = json.loads(text)
+            changes = {"state": {"profile": ".trial"}, "learning": {"personalise": learned}}
+            socket.send(json.dumps(message | changes.get(message["type"], {})))
+
+        socket.connect_to_server().on_message(changed)
+
+    context = chromium.new_context(reduced_motion="reduce")
+    context.add_cookies([{"name": COOKIE, "value": language, "url": address}])
+    page = context.new_page()
+    page.route_web_socket("**/drive", hear)
+    page.goto(address)
+    page.locator("#trial").wait_for()
+    page.locator(".label").first.wait_for(state="attached")
+    for name, panel in itertools.product(SIZES, PANELS):
+        page.set_viewport_size({"width": SIZES[name][0], "height": SIZES[name][1]})
+        page.locator(f"input[name=panel][value={panel}]").evaluate("one => one.click()")
+        page.wait_for_timeout(120)
+        assert_on_one_screen(page, (name, panel))
+        assert page.evaluate(CUT_OFF, ["#trial-keep", "#trial-discard"]) == [], (name, panel)
+    context.close()
 
 
 @pytest.mark.parametrize("name", ["a phone", "a phone on its side"])
