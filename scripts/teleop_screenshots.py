@@ -16,7 +16,7 @@ import shutil
 import subprocess
 import tempfile
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import date
 from pathlib import Path
@@ -26,6 +26,7 @@ from PIL import Image, ImageDraw, ImageFont
 from playwright.sync_api import Browser, Locator, Page, WebSocketRoute
 from playwright.sync_api import Error as PlaywrightError
 
+from latentarm.web.protocol.personalise_messages import Personalise
 from latentarm.web.words.catalogue import COOKIE, Words, languages
 from teleop_page import chromium, drive_back, enable, served
 
@@ -77,6 +78,7 @@ TREES = {
     "History": ("history", "main"),
 }
 """Pages as a screen reader has them: of which state, and which part: what surrounds it is the same on all."""
+LEARNED = Personalise(phase="learned", name=PERSON, answers=10, error=0.13, error_without=0.84).model_dump()
 PASSING = ("drive", "drive-ready")
 """States that end by themselves, or when the page is sized anew: reached for each picture."""
 BEGUN = "#answer-cancel, #working-cancel, #discard, #trial-discard"
@@ -111,14 +113,18 @@ def fresh(visit: Visit) -> None:
     """The Drive page as a new person finds it."""
 
 
-def open_with_state(visit: Visit, path: str = "", **changes: Any) -> None:
-    """Open a page, with some fields of the server's states replaced."""
+def open_with_state(
+    visit: Visit, path: str = "", learned: Mapping[str, Any] | None = None, **changes: Any
+) -> None:
+    """Open a page, with some fields of the server's states replaced, or what is learned of a person."""
 
     def hear(socket: WebSocketRoute) -> None:
         def changed(text: str | bytes) -> None:
             said = json.loads(text)
             if said["type"] == "state":
                 merge(said, changes)
+            if said["type"] == "learning" and learned:
+                said["personalise"] = learned
             socket.send(json.dumps(said))
 
         socket.connect_to_server().on_message(changed)
@@ -359,44 +365,26 @@ def asked(visit: Visit) -> None:
 def refused(visit: Visit) -> None:
     """What comes of the same answer to every question."""
     asked(visit)
-    answer_all(visit.page, lambda: (0.6, 0.2))
-    visit.page.locator("#refused").wait_for()
-
-
-def learned(visit: Visit) -> None:
-    """Answers by where the tool goes: right along y of the base, up along -x."""
-    told: dict[str, Any] = {}
-
-    def hear(text: str | bytes) -> None:
-        if '"personalise"' in str(text):
-            told.update(json.loads(text))
-
-    visit.page.on("websocket", lambda socket: socket.on("framereceived", hear))
-    asked(visit)
-
-    def meant() -> tuple[float, float]:
-        (x, y, _), *_, (to_x, to_y, _) = told["personalise"]["motion"]["tools"][0]
-        return min(max(5 * (to_y - y), -0.6), 0.6), min(max(5 * (x - to_x), -0.6), 0.6)
-
-    answer_all(visit.page, meant)
-    visit.page.locator("#learned").wait_for()
-
-
-def answer_all(page: Page, meant: Callable[[], tuple[float, float]]) -> None:
-    """Answer every question by a push of the stick, right and up, until nothing more is asked."""
+    page = visit.page
     page.mouse.up()
     while page.locator("#asking, #working").filter(visible=True).count():
         if page.locator("#stick").is_visible():
-            push(page, *meant())
+            push(page, 0.6, 0.2)
             page.mouse.up()
             page.locator("#answer-send").click()
         page.wait_for_timeout(600)
+    page.locator("#refused").wait_for()
+
+
+def learned(visit: Visit) -> None:
+    """A person's directions have been learned."""
+    open_with_state(visit, "personalise", LEARNED)
+    visit.page.locator("#learned").wait_for()
 
 
 def tried(visit: Visit) -> None:
     """What was learned, under trial."""
-    learned(visit)
-    visit.page.locator("#try").click()
+    open_with_state(visit, "", LEARNED, profile=".trial")
     visit.page.locator("#trial").wait_for()
 
 
