@@ -14,6 +14,8 @@ FULL = 0.4
 TAP_S = 0.08
 PATIENCE_MS = 10_000.0
 """A busy computer takes this long to show what is pressed."""
+ENDS_MS = 1500.0
+"""A person with a switch waits for so long, after the time that a push should take, until it ends."""
 SCANNED_MS = 12_000.0
 """All choices have been lit within this."""
 
@@ -205,8 +207,11 @@ class OneSwitch(Hand):
         self._choose(direction)
 
     def let_go(self) -> None:
-        if self.page.locator("#scan li[data-moving=true]").count():
-            self._press("Enter")
+        # The motion ends where its way ends; one that goes on for longer is ended by a press.
+        with suppress(Error):
+            self.page.locator("#scan li[data-moving=true]").wait_for(state="detached", timeout=ENDS_MS)
+            return
+        self._press("Enter")
 
     def enable(self) -> None:
         self._choose("enable")

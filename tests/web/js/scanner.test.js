@@ -79,15 +79,48 @@ test("a direction does not move while another way is pressed", () => {
   assert.deepEqual([input.x, input.y], [1, 0]);
 });
 
-test("a press just after the arm stopped by itself was meant to stop it, and chooses nothing", () => {
+for (const scan of ["auto", "inverse", "step"]) {
+  test(`a press just after the arm stopped by itself was meant to stop it, and chooses nothing: ${scan}`, () => {
+    settings.change({ scan });
+    scanner.choose();
+    input.neutral();
+    scanner.offer(choices("enable", "mode"));
+    scanner.press(0, true);
+    pass(500);
+    scanner.press(0, false);
+    pass(4000);
+    assert.deepEqual(done, []);
+    scanner.lit = 0;
+    scanner.choose();
+    assert.deepEqual(done, ["enable"]);
+  });
+}
+
+test("after a motion that ended by itself the light waits as long as a press means nothing, and begins at what is best by then", () => {
+  const directions = (best) => ["up", "down", "left", "stop"].map((id) => ({ id, label: id, first: id === best }));
+  scanner.offer(directions("down"));
   scanner.choose();
   input.neutral();
-  scanner.offer(choices("enable", "mode"));
+  scanner.offer(directions("left"));
+  assert.equal(lit(), "down");
+  pass(790);
+  assert.equal(lit(), "down");
+  pass(20);
+  assert.equal(lit(), "left");
+});
+
+test("the light goes on at what brings the task on, where that has become another choice", () => {
+  const choices = (best) => ["up", "down", "left", "gripper", "stop"].map((id) => ({ id, label: id, first: id === best, act: () => {} }));
+  scanner.offer([]);
+  scanner.offer(choices("gripper"));
   scanner.choose();
-  assert.deepEqual(done, []);
-  pass(900);
-  scanner.choose();
-  assert.deepEqual(done, ["enable"]);
+  pass(500);
+  scanner.offer(choices("down"));
+  assert.equal(lit(), "gripper");
+  pass(1000);
+  assert.equal(lit(), "down");
+  pass(1000);
+  assert.equal(lit(), "left");
 });
 
 test("other choices begin at the first one; the same ones leave the light where it is", () => {

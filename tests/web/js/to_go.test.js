@@ -52,7 +52,7 @@ test("along straight lines the sentence has a direction and number of the list o
     PAIRS.forEach((pair, axes) => {
       const said = straightOn(ways, axes, PAIRS, number % 2 === 1);
       if (ways[axes].length === 0) assert.ok(said === null || said.key === "status.next_pair");
-      else assert.ok(ways[axes].some(({ text, direction }) => said.parameters.way === text && said.direction === direction));
+      else assert.ok(ways[axes].some(({ text, direction }) => said.parameters.way === text && said.choice === direction));
     });
   }
   assert.equal(straightOn([[], [], []], 0, PAIRS, false), null);

@@ -81,11 +81,7 @@ class PeopleRoutes:
         return json_answer(
             {
                 "people": [
-                    {
-                        **_shown(person),
-                        "pin": self._pins.asked(person),
-                        **_history_of(person, drives),
-                    }
+                    {**_shown(person), "pin": self._pins.asked(person), **_history_of(person, drives)}
                     for person in self._records.people.all()
                 ],
                 "pins": self._pins.wanted,

@@ -7,7 +7,6 @@ import { whoAsks } from "./driver_lease.js";
 import { enableButtonOf } from "./enable_button.js";
 import { concerns, sayTo } from "./notices.js";
 
-/** @import {HaltReason} from "../inputs/deflection.js" */
 /** @import {Step} from "../practice/steps.js" */
 /** @import {Reader} from "./notices.js" */
 

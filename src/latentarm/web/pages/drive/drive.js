@@ -32,16 +32,16 @@ import { motionWords } from "../views/directions.js";
 import { personalPaths, personalRing, showPredictions } from "../views/predictions.js";
 import { attachChecklist } from "./checklist.js";
 import { attachHelp } from "./help.js";
-import { attachModes } from "./modes.js";
+import { attachModes, attachSpeed } from "./modes.js";
 import { attachPoses } from "./poses.js";
 import { attachThingsHere, seenWords } from "./things_here.js";
 import { attachProfileChoice } from "./profile_choice.js";
 import { attachRecording } from "./recording.js";
-import { attachSpeed } from "./speed.js";
 import { attachTask } from "./task_panel.js";
 import { attachToGo, movedPart } from "./to_go.js";
 import { wantedThing } from "./task_words.js";
 import { whereWords } from "./where_words.js";
+import { attachWayEnd } from "./way_end.js";
 import { attachWayBack } from "./way_back.js";
 import { attachZones } from "./zones.js";
 
@@ -94,13 +94,16 @@ const thingChoices = attachThingsHere(connection);
 const modes = attachModes(connection, settings);
 const inPair = (/** @type {number} */ axes, /** @type {number} */ x, /** @type {number} */ y) =>
   connection.state ? modeInput(values(), { ...connection.state, mode: "end_effector", axes }, connection.welcome, x, y) : [0, 0];
-const nextWords = attachToGo(connection, inPair, () => settings.values.panel === "switch");
+const toGo = attachToGo(connection, inPair, () => settings.values.panel === "switch");
 /** Where each direction leads, as drawn last. @type {Paths | null} */
 let paths = null;
 status.watch(() => ({
   slow: input.lateness.wasSlow, unconfirmed: !checklist.done(), dialog: dialogIsOpen(), pressed: input.source !== null,
-  keys: document.documentElement.hasAttribute("data-keys"), practice: practice.step, next: nextWords(paths),
+  keys: document.documentElement.hasAttribute("data-keys"), practice: practice.step, next: toGo.next(paths),
 }));
+// In a study nobody is helped so.
+const leads = () => settings.values.bestFirst && !fixed;
+attachWayEnd(input, connection, toGo.left, leads);
 attachSpeed(settings);
 attachHelp(connection, settings);
 attachCopilot(connection);
@@ -128,7 +131,8 @@ const scanner = attachScanning(input, settings, stop, (stopIt, group) => {
   if (connection.state?.lost) return [...buttonChoice("lost-again"), stopIt, more];
   const unconfirmed = checklist.choices();
   if (unconfirmed.length) return [...unconfirmed, stopIt, more];
-  return input.live ? [...directionChoices(settings.values.bestFirst ? nextWords(paths)?.direction : undefined), ...gripper.choices(), mode, stopIt, more]
+  const best = leads() ? toGo.next(paths)?.choice : undefined;
+  return input.live ? [...directionChoices(), ...gripper.choices(), mode, stopIt, more].map((one) => ({ ...one, first: one.id === best }))
     : [{ id: "enable", label: say("layout.enable"), act: enable }, mode, ...(fixed ? [] : taskChoices()), more];
 });
 attachKeyboard(input, settings, { enable, nextMode: modes.next, axes: modes.axes, gripper: () => gripper.toggle("keyboard") });

@@ -1,6 +1,6 @@
-/** The stick's modes: latent actions, with help or without, or the tool along two axes at a time. */
+/** The stick's modes: latent actions, with help or without, or the tool along two axes at a time; and its speed. */
 
-import { byId, checkRadio, create, setHidden } from "../layout/dom.js";
+import { byId, checkRadio, create, setHidden, whenever } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 
 /** @typedef {Exclude<State["mode"], "assisted">} ModeName with help or without is chosen apart */
@@ -66,6 +66,15 @@ export function attachModes(connection, settings) {
       if (index < (connection.welcome?.end_effector_modes.length ?? 0)) ask({ mode: "end_effector", axes: index });
     },
   };
+}
+
+/** Slow, medium and fast, as shares of the full speed; the setting may also lie between them. @param {Settings} settings */
+export function attachSpeed(settings) {
+  const fieldset = byId("speed");
+  const radios = fieldset.querySelectorAll("input");
+  const show = () => radios.forEach((radio) => (radio.checked = Number(radio.value) === settings.values.sensitivity));
+  fieldset.addEventListener("change", ({ target }) => settings.change({ sensitivity: Number(/** @type {HTMLInputElement} */ (target).value) }));
+  whenever(settings, ["change"], show);
 }
 
 /** @param {HTMLElement} fieldset @param {string} name @param {string[]} labels @param {(index: number) => void} chosen */

@@ -6,8 +6,8 @@ import { say, sayNumber } from "../layout/words.js";
 import { displacement } from "../views/predictions.js";
 
 /** @import {ToGo} from "../connection/messages.js" */
-/** @import {Words} from "../connection/sentence.js" */
 
+/** @typedef {Words & {choice: string}} Next what brings the task on, and the choice of a switch for it */
 /** @typedef {{of: "shift_m" | "turn_rad", axis: number}} Part one of the six ways in which the tool can move */
 
 /** The parts that the two axes of each pair move. @type {Record<string, [Part, Part]>} */
@@ -56,9 +56,9 @@ export function leftToGo(toGo, pair, shaped) {
   });
 }
 
-/** @param {Direction} direction @param {string} way @param {boolean} switches whether a switch chooses directions @returns {Words & {direction: Direction}} */
+/** @param {Direction} direction @param {string} way @param {boolean} switches whether a switch chooses directions @returns {Next} */
 function push(direction, way, switches) {
-  return { direction, key: switches ? "status.go_switch" : "status.go", parameters: { way } };
+  return { choice: direction, key: switches ? "status.go_switch" : "status.go", parameters: { way } };
 }
 
 /**
@@ -68,13 +68,14 @@ function push(direction, way, switches) {
  * @param {number} axes the pair in use
  * @param {string[]} pairs their names
  * @param {boolean} switches
+ * @returns {Next | null}
  */
 export function straightOn(ways, axes, pairs, switches) {
   const rank = (/** @type {(typeof ways)[0][0]} */ { size, turn }) => turn + (size < LARGE ? 3 : 0);
   const [first] = [...ways[axes]].sort((one, other) => rank(one) - rank(other) || other.size - one.size);
   if (first) return push(first.direction, first.text, switches);
   const other = ways.findIndex((left) => left.length > 0);
-  return other < 0 ? null : { key: /** @type {const} */ ("status.next_pair"), parameters: { pair: say(/** @type {WordKey} */ (`axes.${pairs[other]}`)) } };
+  return other < 0 ? null : { choice: "mode", key: "status.next_pair", parameters: { pair: say(/** @type {WordKey} */ (`axes.${pairs[other]}`)) } };
 }
 
 /** By learned motions: the direction that leads nearest to where the tool is to be. @param {ToGo} toGo @param {Paths} paths @param {boolean} switches */
@@ -88,12 +89,13 @@ export function learnedOn(toGo, paths, switches) {
 }
 
 /**
- * The list under the task, and the pair to choose next once nothing is left in the one in use.
+ * The list under the task, and what to choose next.
  *
  * @param {Connection} connection
  * @param {(axes: number, x: number, y: number) => number[]} shaped from stick to what is sent in a pair
  * @param {() => boolean} switches whether a switch chooses directions
- * @returns {(paths: Paths | null) => (Words & {direction?: Direction}) | null} what brings the task on, in the numbers of the list
+ * @returns `next`: what brings the task on, in the numbers of the list; `left`: how far it is in a direction of straight lines,
+ *   m or rad, negative beyond; null where nothing is to be driven so
  */
 export function attachToGo(connection, shaped, switches) {
   const list = byId("to-go");
@@ -137,12 +139,26 @@ export function attachToGo(connection, shaped, switches) {
       });
     });
   });
-  return (paths) => {
+  /** Where the tool was when the server looked last: it tells a turn less often than a place. */
+  let looked = "";
+  let from = [0, 0, 0];
+  const left = (/** @type {Direction} */ direction) => {
+    const { state, welcome } = connection;
+    const toGo = state?.task.to_go ?? null;
+    if (!state || !welcome || toGo === null || state.mode !== "end_effector") return null;
+    const look = JSON.stringify(toGo);
+    if (look !== looked) [looked, from] = [look, state.tool];
+    const { part: { of, axis }, way } = movedPart(welcome.end_effector_modes[state.axes], shaped(state.axes, ...DIRECTIONS[direction]));
+    return way * (toGo[of][axis] - (of === "shift_m" ? state.tool[axis] - from[axis] : 0));
+  };
+  /** @returns {Next | null} */
+  const next = (/** @type {Paths | null} */ paths) => {
     const { state, welcome } = connection;
     const toGo = state?.task.to_go ?? null;
     if (!state || !welcome || toGo === null || state.task.outcome !== null) return null;
-    if (toGo.gripper) return { key: `to_go.gripper_${toGo.gripper}` };
+    if (toGo.gripper) return { choice: "gripper", key: `to_go.gripper_${toGo.gripper}` };
     if (state.mode !== "end_effector") return paths && learnedOn(toGo, paths, switches());
     return ways[state.axes] ? straightOn(ways, state.axes, welcome.end_effector_modes, switches()) : null;
   };
+  return { next, left };
 }

@@ -8,7 +8,6 @@
 import { Deflection } from "./deflection.js";
 import { Lateness } from "./lateness.js";
 
-/** @import {Source} from "./deflection.js" */
 /** @typedef {NonNullable<import("../connection/messages.js").DriverInput["gripper"]>} GripperAsk */
 
 const PERIOD_MS = 20;

@@ -10,7 +10,6 @@ import { dialogIsOpen } from "./dialogs.js";
 import { padLives } from "./pad_life.js";
 
 /** @import {Actions} from "./keyboard.js" */
-/** @import {Scanner} from "./scanner.js" */
 /** @import {Mapping} from "../settings/pads.js" */
 
 const IDLE_MS = 100;

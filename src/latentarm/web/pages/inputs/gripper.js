@@ -4,7 +4,6 @@ import { byId, setHidden, setText } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 
 /** @import {GripperState} from "../connection/messages.js" */
-/** @import {Source} from "./deflection.js" */
 
 /** Narrower than this share of its opening it is closed, and wider than the rest of it, open. */
 const END_SHARE = 0.03;

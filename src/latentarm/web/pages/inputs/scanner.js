@@ -48,6 +48,8 @@ export class Scanner extends EventTarget {
     /** Ids of the choices that were opened, the outermost first. @type {string[]} */
     this._path = [];
     this._movedUntil = -Infinity;
+    /** What brought the task on when the light began there last. @type {string | undefined} */
+    this._led = undefined;
     /** When something was last lit by itself, and what was lit before. */
     this._litAt = -Infinity;
     /** @type {Choice | undefined} */
@@ -104,7 +106,6 @@ export class Scanner extends EventTarget {
       this._rest();
       return;
     }
-    if (performance.now() - this._movedUntil < LATE_PRESS_MS) return;
     const choice = this.choices[this.lit];
     if (!choice) return;
     this._going = false;
@@ -144,8 +145,9 @@ export class Scanner extends EventTarget {
 
   /** @param {number} downAt ms */
   _pressed(downAt) {
-    this._spent = this.moving !== null;
-    if (this._spent) this._rest();
+    this._spent = this.moving !== null || this._lateMs > 0;
+    if (this.moving !== null) this._rest();
+    else if (this._spent) return;
     else if (this.ready !== null) this._move(this.ready, false);
     else if (this.style === "auto" || this.style === "two") this._take(downAt);
     else this._go();
@@ -164,7 +166,12 @@ export class Scanner extends EventTarget {
   }
 
   _next() {
-    if (this.moving === null) this.next();
+    if (this.moving === null && this._lateMs <= 0) this.next();
+  }
+
+  /** How long a press is still meant for a motion that has ended by itself, ms. */
+  get _lateMs() {
+    return this._movedUntil + LATE_PRESS_MS - performance.now();
   }
 
   /** Begin to go through the choices, or go on, where that takes a press. */
@@ -230,7 +237,7 @@ export class Scanner extends EventTarget {
     if (ids !== before && before) this._litByItself();
     this.choices = choices;
     if (ids !== before) {
-      this.lit = this._first;
+      this.lit = Math.max(this._best, 0);
       this._going = false;
       this.ready = null;
     }
@@ -238,9 +245,19 @@ export class Scanner extends EventTarget {
     if (ids !== before) this._restart();
   }
 
-  /** Where the light begins. */
-  get _first() {
-    return Math.max(this.choices.findIndex(({ first }) => first), 0);
+  /** Where what brings the task on stands; -1 where nothing does. */
+  get _best() {
+    return this.choices.findIndex(({ first }) => first);
+  }
+
+  /** The light begins where the task goes on; where that is nowhere, it stays. */
+  _begin(best = this._best) {
+    if (best >= 0) {
+      this._litByItself();
+      this.lit = best;
+    }
+    this._changed();
+    this._restart();
   }
 
   _litByItself() {
@@ -254,14 +271,10 @@ export class Scanner extends EventTarget {
   }
 
   _rest() {
-    if (this.moving !== null && this._first > 0) {
-      this._litByItself();
-      this.lit = this._first;
-    }
+    const best = this.moving !== null && this._lateMs <= 0 ? this._best : -1;
     this.moving = this.ready = null;
     this._input.release("switch");
-    this._changed();
-    this._restart();
+    this._begin(best);
   }
 
   /** Act when nothing is pressed or let go for a while. */
@@ -269,18 +282,21 @@ export class Scanner extends EventTarget {
     clearTimeout(this._timer);
     const { dwellS, firstS } = this._settings.values;
     if (!this.on || this.moving !== null) return;
-    const waitMs = 1000 * (dwellS + (this.lit === this._first ? firstS : 0));
+    const waitMs = 1000 * (dwellS + (this.lit === Math.max(this._best, 0) ? firstS : 0));
     const goOn = () => {
       this._litByItself();
-      this.next();
+      if (this._best >= 0 && this.choices[this._best].id !== this._led) this._begin();
+      else this.next();
     };
-    if (this.ready !== null) this._timer = setTimeout(() => this._rest(), READY_MS);
+    if (this._lateMs > 0) this._timer = setTimeout(() => this._begin(), this._lateMs);
+    else if (this.ready !== null) this._timer = setTimeout(() => this._rest(), READY_MS);
     else if (this.style === "auto") this._timer = setTimeout(goOn, waitMs);
     else if (this.style === "inverse" && this._going) this._timer = setTimeout(goOn, waitMs);
     else if (this.style === "step" && this._going) this._timer = setTimeout(() => this.choose(), waitMs);
   }
 
   _changed() {
+    if (this.lit === this._best) this._led = this.choices[this.lit].id;
     this.dispatchEvent(new Event("change"));
   }
 }

@@ -16,9 +16,9 @@ import { attachSwitchPlace } from "./switch_place.js";
 const LOOK_MS = 100;
 const LIT = "lit";
 
-/** The four directions to choose from. @param {string} [best] where the light begins @returns {Choice[]} */
-export function directionChoices(best) {
-  return DIRECTION_NAMES.map((id) => ({ id, label: say(`directions.${id}`), first: id === best }));
+/** The four directions to choose from. @returns {Choice[]} */
+export function directionChoices() {
+  return DIRECTION_NAMES.map((id) => ({ id, label: say(`directions.${id}`) }));
 }
 
 /**

@@ -2,8 +2,6 @@
 
 import { isSwitch } from "./keys.js";
 
-/** @import {Scanner} from "./scanner.js" */
-
 /** Somebody types in a field for so long after the last click or other key in it, ms. */
 const TYPING_MS = 5000;
 

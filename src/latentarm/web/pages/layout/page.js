@@ -13,7 +13,6 @@ import { Settings } from "../settings/settings.js";
 import { attachSettingsDialog } from "../settings/settings_dialog.js";
 import { attachTheme } from "../settings/theme.js";
 import { byId, setHidden, setText, whenever } from "./dom.js";
-import { attachKeysAtHand } from "./keys_at_hand.js";
 import { robotWords } from "./thing_words.js";
 import { attachTooLong } from "./too_long.js";
 import { readWords, say } from "./words.js";
@@ -41,7 +40,7 @@ export function attachPage({ drop = () => {}, repaint = () => {}, runChanged = (
   const feedback = attachFeedback(connection, settings);
   attachWakeLock(connection);
   attachTooLong();
-  attachKeysAtHand();
+  markKeysAtHand();
   // Pages from which nobody drives have no such panel.
   if (document.getElementById("driver")) {
     attachInvitation();
@@ -75,4 +74,16 @@ export function attachPage({ drop = () => {}, repaint = () => {}, runChanged = (
     offerProfiles(learning.profiles);
   });
   return { settings, connection, status, lease, stop, feedback };
+}
+
+/**
+ * Mark the page where a keyboard is at hand: `about-keys` is shown only there. No browser says so: where something points finely and
+ * hovers, as a mouse does, a keyboard is likely; elsewhere only once a key was pressed. A touch screen's own keyboard sends no codes.
+ */
+function markKeysAtHand() {
+  const desk = matchMedia("(any-pointer: fine) and (any-hover: hover)");
+  const mark = () => document.documentElement.setAttribute("data-keys", "");
+  if (desk.matches) mark();
+  desk.addEventListener("change", mark);
+  window.addEventListener("keydown", ({ code }) => code && mark(), { capture: true });
 }

@@ -19,8 +19,6 @@ import { Replay } from "./replay.js";
 import { missedWords, STEPS, stepOf } from "./steps.js";
 import { attachTrial, TRIAL } from "./trial.js";
 
-/** @import {Personalise} from "../connection/messages.js" */
-
 /** @type {Drawing | null} */
 let drawing = null;
 /** The server's state of it. @type {Personalise | null} */

@@ -2,8 +2,6 @@
 
 import { sayPercent } from "../layout/words.js";
 
-/** @import {Personalise} from "../connection/messages.js" */
-
 /** @typedef {"begin" | "asking" | "working" | "learned" | "refused" | "kept"} Step */
 
 /** @type {Step[]} */

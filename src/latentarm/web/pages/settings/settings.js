@@ -37,7 +37,7 @@ const SETTINGS = {
   releaseS: within(0.2, 0, 2), // how long a switch must have been up before a press counts, s
   repeatS: within(0, 0, 3), // how often a switch that is held counts again, s; 0 for never
   rows: any(false), // whether long lists are scanned by rows
-  bestFirst: any(false), // whether the direction that brings the task on is lit first
+  bestFirst: any(true), // whether what brings the task on is lit first, and a motion ends where its way ends
   speak: any(false), // whether what is lit is spoken
   speakNext: any(false), // whether what is to be done now is spoken
   speakVolume: within(0.8, 0, 1),

@@ -2,7 +2,6 @@
 
 import * as THREE from "../three/three.module.min.js";
 
-/** @import {ArmScene} from "./scene.js" */
 /** @import {View} from "./views.js" */
 
 export const FOV_DEG = 32;

@@ -15,7 +15,6 @@ const SOON_MS = 120;
 /** Without a graphics processor, the small view is drawn so much less often, ms, and never in the first frame of a motion. */
 const SMALL_MS = 150;
 
-/** @import {ArmScene} from "./scene.js" */
 /** @import {Box} from "./label_layout.js" */
 
 /** @typedef {Views["views"][number]} View */
