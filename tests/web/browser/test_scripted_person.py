@@ -1,9 +1,11 @@
 """A scripted person who follows only what the page shows eats a marshmallow, with the keyboard."""
 
+import re
+
 import pytest
 
-from .conftest import ask_to_drive
-from .hands import Keyboard
+from .conftest import ask_to_drive, press_switch
+from .hands import Keyboard, OneSwitch
 from .scripted_person import Person
 
 
@@ -39,3 +41,22 @@ def test_what_the_page_shows_is_enough_to_eat(open_page, arm):
     assert arm.state["task"]["outcome"] == "success"
     assert page.locator("#to-go").is_hidden()
     assert page.evaluate("[...smallView]") == ["Close up"]
+
+
+def test_a_switch_drives_as_far_as_the_sentence_says_by_one_press(open_page, arm):
+    page = open_page(OneSwitch.script(), locale="en-GB")
+    ask_to_drive(page)
+    OneSwitch(page).enable()
+    says = page.locator("#status-text", has_text="Choose ")
+    says.wait_for()
+    direction = re.search(r"Choose (\w+) [\d.]+ cm", says.inner_text())[1]
+    page.locator("#scan li[aria-current=true]", has_text=direction).wait_for()
+    press_switch(page, "Enter")
+    moving = page.locator("#scan li[data-moving=true]")
+    moving.wait_for()
+    moving.wait_for(state="detached")
+    arm.is_let_go()
+    assert arm.enabled
+    page.wait_for_timeout(500)
+    left = re.search(rf"{direction} ([\d.]+) cm", page.locator("#to-go li[aria-current=true]").inner_text())
+    assert left is None or float(left[1]) < 1.0

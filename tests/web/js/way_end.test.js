@@ -52,12 +52,12 @@ for (const way of [0.004, 0.01, 0.03, 0.12]) {
   });
 }
 
-test("a push that is held, one beyond the end or away from it, and one of a person who wants none of this go on", () => {
-  for (const [way, latched, wants] of [[0.05, false, true], [-0.001, true, true], [0.05, true, false]]) {
+test("a push that is held, one by something else, one beyond the end or away from it, and one of a person who wants none of this go on", () => {
+  for (const [way, latched, wants, source = "switch"] of [[0.05, false, true], [-0.001, true, true], [0.05, true, false], [0.05, true, true, "keyboard"]]) {
     on = wants;
-    input.hold("switch", 0, 1, latched);
+    input.hold(source, 0, 1, latched);
     drive(way);
-    assert.equal(input.source, "switch");
+    assert.equal(input.source, source);
     input.neutral();
   }
 });

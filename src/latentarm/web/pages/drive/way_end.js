@@ -1,4 +1,4 @@
-/** A motion that goes on by itself ends where its way ends: nobody presses a switch to the centimetre. */
+/** A motion by a switch that goes on by itself ends where its way ends: nobody presses a switch to the centimetre. */
 
 /** So long passes from what is known of the arm until it stands still, ms. */
 const AHEAD_MS = 80;
@@ -11,7 +11,7 @@ export function attachWayEnd(input, connection, left, on) {
   /** @type {{at: number, far: number}[]} */
   let seen = [];
   connection.addEventListener("state", () => {
-    const direction = input.latched && on() ? input.pressed[0] : undefined;
+    const direction = input.source === "switch" && input.latched && on() ? input.pressed[0] : undefined;
     if (driven !== direction) [driven, seen] = [direction, []];
     const far = direction ? left(direction) : null;
     // A motion that begins at the end, or leads away from it, is the person's own.
