@@ -139,7 +139,7 @@ def with_stated(
                 for field, figure in zip(fields, np.atleast_1d(value), strict=True):
                     figures[field][joint] = figure
                 sources[quantity][joint] = "limits_file"
-    said = {quantity: tuple(each) for quantity, each in sources.items()}
+    said: dict[Quantity, tuple[Source, ...]] = {one: tuple(each) for one, each in sources.items()}
     return JointLimits(**figures, sources=said)
 
 
