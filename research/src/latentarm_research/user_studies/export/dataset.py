@@ -151,7 +151,7 @@ def _texts(definition: Definition, answers: Sequence[Answer]) -> Iterable[Sequen
 
 
 def guarded(text: str) -> str:
-    """What a person has written, such that no spreadsheet takes it as a formula."""
+    """A person's own words, such that no spreadsheet takes them as a formula."""
     return f"'{text}" if text.startswith(_GUARDED) else text
 
 
