@@ -5,6 +5,7 @@ import socket
 import threading
 import time
 from collections import deque
+from contextlib import suppress
 from typing import Self, final
 
 
@@ -38,6 +39,15 @@ class Line:
             one.close()
 
     def _carry(self) -> None:
+        try:
+            self._carry_until_cut()
+        except OSError:
+            # An end is gone, such as that of a killed server: the other one hears of it.
+            for one in (self._theirs, self._server):
+                with suppress(OSError):
+                    one.shutdown(socket.SHUT_RDWR)
+
+    def _carry_until_cut(self) -> None:
         under_way: deque[tuple[float, socket.socket, bytes]] = deque()
         ends = [self._theirs, self._server]
         while not self._closed.is_set() and not self.cut.is_set():
@@ -50,9 +60,6 @@ class Line:
                     ends.remove(source)
             while under_way and under_way[0][0] <= time.monotonic():
                 _, target, content = under_way.popleft()
-                try:
-                    if not content:
-                        target.shutdown(socket.SHUT_WR)
-                    target.sendall(content)
-                except OSError:
-                    return
+                if not content:
+                    target.shutdown(socket.SHUT_WR)
+                target.sendall(content)
