@@ -127,8 +127,7 @@ def test_space_as_a_switch_does_not_stop_and_escape_does(page, arm, press_enable
     press_enable(page, arm)
     page.locator("#scan li[data-choice=up]").wait_for()
     stopped = arm.state["reason"]
-    press_switch(page, "Backspace")
-    press_switch(page, "Space")
+    choose_by_two(page, "Up", key="Space")
     arm.wait(lambda: arm.state["phase"] == "moving" or not arm.enabled)
     assert "stop_pressed" not in str((arm.state["reason"] or stopped or {}).get("code"))
     press_enable(page, arm) if not arm.enabled else None
