@@ -6,9 +6,9 @@ from importlib.metadata import entry_points, version
 
 import pytest
 
+from latentarm.__main__ import main
 from latentarm.assistance.blending import ConfidenceAlpha, FixedAlpha
 from latentarm.assistance.catalogue import BELIEFS
-from latentarm.cli import main
 from latentarm.commands.catalogue import all_commands
 from latentarm_research.measurements.catalogue import MEASUREMENTS
 from latentarm_research.studies.alignment import preset as alignment_preset
