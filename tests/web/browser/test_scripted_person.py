@@ -47,16 +47,16 @@ def test_a_switch_drives_as_far_as_the_sentence_says_by_one_press(open_page, arm
     page = open_page(OneSwitch.script(), locale="en-GB")
     ask_to_drive(page)
     OneSwitch(page).enable()
-    says = page.locator("#status-text", has_text="Choose ")
+    ask = re.compile(r"Choose (\w+) [\d.]+ cm")
+    says = page.locator("#status-text", has_text=ask)
     says.wait_for()
-    direction = re.search(r"Choose (\w+) [\d.]+ cm", says.inner_text())[1]
+    direction = ask.search(says.inner_text())[1]
     page.locator("#scan li[aria-current=true]", has_text=direction).wait_for()
     press_switch(page, "Enter")
     moving = page.locator("#scan li[data-moving=true]")
     moving.wait_for()
     moving.wait_for(state="detached")
-    arm.is_let_go()
-    assert arm.enabled
+    arm.wait(lambda: arm.state["phase"] == "ready")
     page.wait_for_timeout(500)
     left = re.search(rf"{direction} ([\d.]+) cm", page.locator("#to-go li[aria-current=true]").inner_text())
     assert left is None or float(left[1]) < 1.0
