@@ -73,7 +73,7 @@ def test_the_figures_of_a_drive_are_those_of_its_record():
 @given(st.lists(st.tuples(st.floats(-1, 1), st.floats(-1, 1)), min_size=2, max_size=20))
 def test_input_is_at_most_that_of_both_axes_fully_pushed_while_any_is(inputs):
     records = [record(0.01 * index, u) for index, u in enumerate(inputs)]
-    drive = measure_drive(records, at(*[(0, 0, 0)] * len(inputs)), outcome())
+    drive = measure_drive(records, at(*[(0, 0, 0)] * len(inputs)), **outcome())
     pushed_s = drive.time_s - drive.idle_s
     assert 0.0 <= drive.input_magnitude <= np.sqrt(2.0) * pushed_s + 1e-12
 
