@@ -18,14 +18,21 @@ def model_advice(model: str, episodes: int) -> str:
 
 def next_step(model: str, way_back: bool, run: str, dataset: str, missed: frozenset[str]) -> str:
     """One sentence on what to do after evaluating."""
+    reverses = KINDS[model].reverses
+    moves_on = missed & {"drift", "reversal", "reversal_2_s"}
+    if way_back and reverses and moves_on:  # by its way back alone, which is there to do this
+        missed -= moves_on
+        if not missed:
+            return (
+                f"Next: latentarm teleop {run} (beside the demonstrated motions its way back leads to them,"
+                " whichever way is pushed; for pushes that undo each other, train with --way-back-m 0)"
+            )
     if not missed:
         return f"Next: latentarm teleop {run}"
-    reverses = KINDS[model].reverses
-    if missed & {"drift", "reversal", "reversal_2_s"} and (way_back or not reverses):
+    if missed & moves_on and not reverses:
         return (
-            f"Next: latentarm train --demonstrations {dataset} --model {model if reverses else DEFAULT_MODEL}"
-            " --way-back-m 0 (rests and goes back; with a way back, beside the demonstrated path both"
-            " directions lead to it)"
+            f"Next: latentarm train --demonstrations {dataset} --model {DEFAULT_MODEL} --way-back-m 0 (rests"
+            " and goes back)"
         )
     if "motion_turn" in missed and model != "low_turning":
         return (
