@@ -76,7 +76,7 @@ class EndEffectorController(AxisController):
 
 
 def _keeps_turns(robot: Robot) -> bool:
-    """Whether the arm has as many joints as its tool has ways to move."""
+    """True if the arm has as many joints as its tool has ways to move."""
     nearby = robot.home + np.random.default_rng(0).normal(size=(_POSES, robot.dof))
     ways = np.concatenate(list(robot.chain.jacobian(nearby)), axis=-1)
     return bool(np.linalg.matrix_rank(ways) <= robot.dof)
