@@ -51,6 +51,9 @@ class Hand:
         """Begin to push in a direction of `PUSH`."""
         raise NotImplementedError
 
+    def await_end(self) -> None:
+        """Wait a little for a push that ends by itself where its way ends, as those of a switch do."""
+
     def let_go(self) -> None:
         """Push no more."""
         raise NotImplementedError
@@ -206,12 +209,13 @@ class OneSwitch(Hand):
     def push(self, direction: str) -> None:
         self._choose(direction)
 
-    def let_go(self) -> None:
-        # The motion ends where its way ends; one that goes on for longer is ended by a press.
+    def await_end(self) -> None:
         with suppress(Error):
             self.page.locator("#scan li[data-moving=true]").wait_for(state="detached", timeout=ENDS_MS)
-            return
-        self._press("Enter")
+
+    def let_go(self) -> None:
+        if self.page.locator("#scan li[data-moving=true]").count():
+            self._press("Enter")
 
     def enable(self) -> None:
         self._choose("enable")

@@ -107,6 +107,7 @@ class Person:
         hold_s = max(aim / speed - self._more_s[wanted.unit], SHORTEST_S)
         self.hand.push(wanted.direction.lower())
         time.sleep(hold_s)
+        self.hand.await_end()
         self.hand.let_go()
         time.sleep(READS_S)
         signs = {wanted.direction: 1.0, OPPOSITE[wanted.direction]: -1.0}
