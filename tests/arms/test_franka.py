@@ -129,7 +129,7 @@ def test_what_looking_refuses_connecting_refuses(stand_in, address, robot, said)
 
 
 def test_its_shadow_takes_commands_and_tells_it_none(new_arm, stand_in):
-    at, before = stand_in.positions(), len(stand_in.told())
+    at, before = stand_in.positions(), len(stand_in.commands())
     shadow = ShadowArm(new_arm)
     shadow.connect()
     shadow.enable()
@@ -138,7 +138,7 @@ def test_its_shadow_takes_commands_and_tells_it_none(new_arm, stand_in):
     shadow.stop()
     shadow.close()
     # franky sets the collision thresholds when it connects, and asks for the model.
-    assert set(stand_in.told()[before:]) <= {"kConnect", "kSetCollisionBehavior", "kGetRobotModel"}
+    assert set(stand_in.commands()[before:]) <= {"kConnect", "kSetCollisionBehavior", "kGetRobotModel"}
     np.testing.assert_allclose(stand_in.positions(), at, atol=TREMBLE_RAD)
 
 

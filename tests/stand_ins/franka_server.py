@@ -113,7 +113,7 @@ class FrankaStandIn:
     def break_down(self) -> None:
         self.ask("break")
 
-    def told(self) -> list[str]:
+    def commands(self) -> list[str]:
         """Every command to arm or hand since it was switched on, by its name in the arm's protocol."""
         return self.ask("told")["told"]
 

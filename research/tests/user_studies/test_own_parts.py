@@ -32,7 +32,7 @@ def study(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path / "bite.json"
 
 
-def said(*words: object) -> str:
+def output_of(*words: object) -> str:
     """The standard output of a command that must end well."""
     done = subprocess.run(
         [sys.executable, "-m", "latentarm", "study", *map(str, words)],
@@ -45,17 +45,17 @@ def said(*words: object) -> str:
 
 
 def test_a_page_with_ones_own_parts_is_a_study(study: Path) -> None:
-    shown = json.loads(said("show", study, "--json"))
+    shown = json.loads(output_of("show", study, "--json"))
     assert shown["tasks"][0]["scene"] == "one_bite"
     assert "highest_speed" in shown["measures"]
-    said("preregister", study, "--out", "plan.json")
+    output_of("preregister", study, "--out", "plan.json")
     analysis = json.loads(Path("plan.json").read_text())["analysis"]
     assert analysis["measures"] == {"highest_speed": "latentarm-example 0.3.0"}
 
 
 @pytest.mark.slow
 def test_ones_own_parts_go_through_a_study(study: Path) -> None:
-    said("run", study, "--preset", "smoke", "--simulated", 2, "--jobs", 1, "--out", "simulated")
+    output_of("run", study, "--preset", "smoke", "--simulated", 2, "--jobs", 1, "--out", "simulated")
     trials = json.loads(Path("simulated/trials.json").read_text())["trials"]
     assert {one["condition"] for one in trials} == {"Alone", "Help"}
     assert all(one["measures"]["highest_speed"] > 0.0 for one in trials)
@@ -67,12 +67,12 @@ def test_ones_own_parts_go_through_a_study(study: Path) -> None:
                 assert person.post("answers", order=order, answers=answers).json() == {"to": "/study"}
             else:
                 {"consent": person.consent, "practice": person.ready, "trial": person.try_drive}[part]()
-    assert "Drives that come out the same: 2 of 2." in said("replay", "people")
-    said("analyse", "people")
+    assert "Drives that come out the same: 2 of 2." in output_of("replay", "people")
+    output_of("analyse", "people")
     page = Path("people-analysis/results.md").read_text()
     assert "highest speed (m/s)" in page
     assert "| What do you use? | cane | 1 of 1 | 1 of 1 |" in page
-    said("export", "people")
+    output_of("export", "people")
     codebook = Path("people-dataset/documentation/codebook.csv").read_text().splitlines()
     (about,) = (line for line in csv.DictReader(codebook) if line["name"] == "highest_speed")
     assert about["unit"] == "m/s"

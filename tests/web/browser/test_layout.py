@@ -70,6 +70,15 @@ def parts(page, panel):
     return [".views:not([hidden])", *ALWAYS, *PANELS[panel], *shown]
 
 
+def screens(page):
+    """Show the page at every size with every control; their names."""
+    for name, panel in itertools.product(SIZES, PANELS):
+        page.set_viewport_size({"width": SIZES[name][0], "height": SIZES[name][1]})
+        page.locator(f"input[name=panel][value={panel}]").evaluate("one => one.click()")
+        page.wait_for_timeout(120)
+        yield name, panel
+
+
 def assert_on_one_screen(page, look):
     assert page.evaluate(CUT_OFF, parts(page, look[-1])) == [], look
     assert page.evaluate("document.scrollingElement.scrollHeight <= innerHeight"), look
@@ -118,11 +127,8 @@ def test_nothing_scrolls_in_any_task_at_any_size_with_any_control(
             page = context.new_page()
             page.goto(address)
             page.locator(".label").first.wait_for(state="attached")
-            for name, panel in itertools.product(SIZES, PANELS):
-                page.set_viewport_size({"width": SIZES[name][0], "height": SIZES[name][1]})
-                page.locator(f"input[name=panel][value={panel}]").evaluate("one => one.click()")
-                page.wait_for_timeout(120)
-                assert_on_one_screen(page, (name, panel))
+            for shown in screens(page):
+                assert_on_one_screen(page, shown)
             context.close()
 
 
@@ -167,12 +173,9 @@ def test_new_directions_under_trial_leave_the_arm_the_stick_and_stop_on_the_scre
     page.goto(address)
     page.locator("#trial").wait_for()
     page.locator(".label").first.wait_for(state="attached")
-    for name, panel in itertools.product(SIZES, PANELS):
-        page.set_viewport_size({"width": SIZES[name][0], "height": SIZES[name][1]})
-        page.locator(f"input[name=panel][value={panel}]").evaluate("one => one.click()")
-        page.wait_for_timeout(120)
-        assert_on_one_screen(page, (name, panel))
-        assert page.evaluate(CUT_OFF, ["#trial-keep", "#trial-discard"]) == [], (name, panel)
+    for shown in screens(page):
+        assert_on_one_screen(page, shown)
+        assert page.evaluate(CUT_OFF, ["#trial-keep", "#trial-discard"]) == [], shown
     context.close()
 
 
@@ -234,10 +237,7 @@ def test_a_long_sentence_lies_over_no_control(chromium, start_server, tmp_path, 
         page.route_web_socket("**/drive", hear)
         page.goto(address)
         page.locator("#status-text", has_text="joint6").wait_for()
-        for name, panel in itertools.product(SIZES, PANELS):
-            page.set_viewport_size({"width": SIZES[name][0], "height": SIZES[name][1]})
-            page.locator(f"input[name=panel][value={panel}]").evaluate("one => one.click()")
-            page.wait_for_timeout(120)
+        for name, panel in screens(page):
             shown = ["#stop", "#enable", "#status", *PANELS[panel], "#gripper-open"]
             assert page.evaluate(CUT_OFF, shown) == [], (name, panel)
         context.close()

@@ -52,8 +52,10 @@ class RetargetingController(AxisController):
     def action(self, z: FloatArray, context: Context, mode: int) -> FloatArray:
         """Joint velocities that follow the target best, (..., n), rad/s."""
         state = context.state
-        twists, jacobian = self._twists_and_jacobian(state, mode)
-        twist = np.vecmat(z, twists)
+        transforms = self._chain.link_transforms(state)
+        pose = self._chain.tool_pose(transforms)
+        jacobian = self._chain.jacobian_at(transforms, pose)
+        twist = np.vecmat(z, self._modes.twists(mode, self._scale, pose.rotation))
         matched = WEIGHTS[:, None] * jacobian
         wanted = np.vecmat(WEIGHTS * twist, matched)
         normal = matched.mT @ matched + EFFORT * np.eye(state.shape[-1])

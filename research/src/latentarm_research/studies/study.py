@@ -85,7 +85,7 @@ class Keep(Generic[Cell, Result]):
     write: Callable[[Path, Cell, Result], None]  # writes it, whole or not at all
 
     def find(self, out: Path, cell: Cell) -> Result | None:
-        """The kept result of a cell; None where there is none."""
+        """The kept result of a cell, or None before it has run."""
         path = self.path(out, cell)
         return self.read(path, cell) if path.exists() else None
 

@@ -19,9 +19,13 @@ Design = Literal["within", "between"]
 Aligns = Literal["none", "no_priors", "all_priors"]
 PUBLIC_TITLE: Final = "Driving a robot arm"
 _LATER: Final[Mapping[str, object]] = {
-    "public_title": PUBLIC_TITLE, "in_words": (), "low": LOW, "high": HIGH, "slider": False,
+    "public_title": PUBLIC_TITLE,
+    "in_words": (),
+    "low": LOW,
+    "high": HIGH,
+    "slider": False,
     "multiple_choice": (),
-}  # fmt: skip
+}
 """Defaults of fields that older definitions do not have, whose digests must stay."""
 PREFIX: Final = "user study "  # before a study's name, in what a folder of its results says that it is
 

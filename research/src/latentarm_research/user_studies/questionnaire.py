@@ -80,17 +80,3 @@ class Question:
     """Name in records: at most 40 of a to z, 0 to 9 and _, a letter first."""
     text: str
     """The question."""
-
-
-def scale(name: str, label: str, agree: tuple[str, ...], disagree: tuple[str, ...]) -> Scale:
-    """A scale of statements for and against."""
-    return Scale(name, label, (*map(Item, agree), *(Item(text, True) for text in disagree)))
-
-
-PREFER: Final = scale(
-    "prefer",
-    "Prefer",
-    ("I would use this control again.", "I liked this control."),
-    ("I would rather not use this control.", "I disliked this control."),
-)
-"""Asked alike wherever people compare controls."""

@@ -85,10 +85,3 @@ class AxisController(Controller, ABC):
     def latent(self, u: FloatArray, context: Context, mode: int) -> FloatArray:
         """The input as it is: there is nothing to align."""
         return u
-
-    def _twists_and_jacobian(self, state: FloatArray, mode: int) -> tuple[FloatArray, FloatArray]:
-        """Twists (..., d, 6) for a full input along each axis, and the tool's Jacobian (..., 6, n)."""
-        transforms = self._chain.link_transforms(state)
-        pose = self._chain.tool_pose(transforms)
-        twists = self._modes.twists(mode, self._scale, pose.rotation)
-        return twists, self._chain.jacobian_at(transforms, pose)

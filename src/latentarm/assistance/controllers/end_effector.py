@@ -51,11 +51,13 @@ class EndEffectorController(AxisController):
         super().__init__(robot, linear_speed, angular_speed, modes)
         self._damping = damping or Damping()
         asked = np.array([np.eye(6)[list(rows)] for rows in modes.axes])  # (modes, d, 6)
-        kept = np.full((6, 6), KEPT_TURN)  # by the axis that is asked for
-        kept[:, :3] = KEPT_PLACE
+        weights = np.full(
+            (6, 6), KEPT_TURN
+        )  # of all motions of the tool, in rows by the one that is asked for
+        weights[:, :3] = KEPT_PLACE
         if not _keeps_turns(robot):
-            kept[:3, 3:] = LOOSE_TURN
-        self._weights = np.where(asked > 0.0, 1.0, asked @ kept) * (angular_speed / self._scale)
+            weights[:3, 3:] = LOOSE_TURN
+        self._weights = np.where(asked > 0.0, 1.0, asked @ weights) * (angular_speed / self._scale)
         self._asked = angular_speed * asked
 
     def action(self, z: FloatArray, context: Context, mode: int) -> FloatArray:

@@ -48,7 +48,7 @@ export class Scanner extends EventTarget {
     /** Ids of the choices that were opened, the outermost first. @type {string[]} */
     this._path = [];
     this._movedUntil = -Infinity;
-    /** What brought the task on when the light began there last. @type {string | undefined} */
+    /** The choice that brought the task on when the light began there last. @type {string | undefined} */
     this._led = undefined;
     /** When something was last lit by itself, and what was lit before. */
     this._litAt = -Infinity;
@@ -169,7 +169,7 @@ export class Scanner extends EventTarget {
     if (this.moving === null && this._lateMs <= 0) this.next();
   }
 
-  /** How long a press is still meant for a motion that has ended by itself, ms. */
+  /** The time for which a press still belongs to a motion that has ended by itself, ms. */
   get _lateMs() {
     return this._movedUntil + LATE_PRESS_MS - performance.now();
   }
@@ -245,12 +245,12 @@ export class Scanner extends EventTarget {
     if (ids !== before) this._restart();
   }
 
-  /** Where what brings the task on stands; -1 where nothing does. */
+  /** Index of the choice that brings the task on, or -1. */
   get _best() {
     return this.choices.findIndex(({ first }) => first);
   }
 
-  /** The light begins where the task goes on; where that is nowhere, it stays. */
+  /** Light the choice that brings the task on, if there is one. */
   _begin(best = this._best) {
     if (best >= 0) {
       this._litByItself();

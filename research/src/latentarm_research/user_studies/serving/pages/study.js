@@ -62,7 +62,7 @@ for (const form of document.querySelectorAll("form")) {
   });
 }
 
-/** A slider that was set is an answer; one that was only looked at is none. @param {HTMLInputElement} slider */
+/** Count a slider as answered. @param {HTMLInputElement} slider */
 function answered(slider) {
   slider.name = slider.dataset.name ?? "";
   slider.removeAttribute("aria-valuetext");
