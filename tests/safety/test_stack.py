@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from latentarm.assistance.controllers.end_effector import EndEffectorController
+from latentarm.core.types import Context
 from latentarm.robots.kinematics.obstacles import HalfSpace
 from latentarm.safety.config import SafetyConfig
 from latentarm.safety.stack import SafetyStack
@@ -40,6 +42,21 @@ def test_sliding_along_a_thing_takes_no_joint_past_its_speed(arm, seed):
     sent = np.array([stack.command(wanted, arm.home, 0.0).velocity for _ in range(60)])
     assert np.abs(sent[-1]).max() > 0.05
     assert np.abs(sent).max() <= 0.1 + 1e-9
+
+
+def test_at_the_limit_of_a_joint_the_tool_keeps_its_way(arm):
+    """Down for 6 s, past where one joint of seven can go no farther."""
+    control, stack, states = EndEffectorController(arm), SafetyStack(SafetyConfig(), arm, DT), [arm.home]
+    limited = 0
+    for _ in range(600):
+        q = states[-1]
+        passed = stack.command(control.action(np.array([-1.0, 0.0]), Context(q, np.zeros(0)), 1), q, 0.0)
+        limited += "joint position" in passed.limited_by
+        states.append(q + DT * passed.velocity)
+    moved = arm.chain.forward(np.array(states)).position - arm.chain.forward(arm.home).position
+    assert limited > 100
+    assert moved[-1, 2] < -0.75
+    assert np.linalg.norm(moved[:, :2], axis=1).max() < 0.015  # 31 mm where only that joint is slowed
 
 
 @pytest.mark.parametrize("seed", [1, 5])

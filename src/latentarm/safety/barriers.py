@@ -13,9 +13,8 @@ from latentarm.safety.small import any_nonzero, largest, smallest
 if TYPE_CHECKING:
     from latentarm.safety.filter import Situation
 
-_HELD = (
-    1000.0  # weighs the squared twist of what is held, in m/s and rad/s, against that of the joints, rad/s
-)
+_TURN_M = 0.3  # a turn of the tool by 1 rad counts as much as a way of this length, m
+_TWIST = 1000.0  # weighs the squared twist of the tool, in rad/s, against the squared speeds of the joints
 
 
 @final
@@ -65,14 +64,12 @@ def past_barriers(velocity: FloatArray, situation: "Situation", limited_by: list
 def _metric(situation: "Situation") -> FloatArray:
     """(n, n), how the size of a change of a velocity counts.
 
-    The joints' nearest velocity along a table turns the hand: a cup would tilt, not come down. So what
-    is held is kept on its way rather than the joints.
+    The nearest velocity of the joints would turn the hand along a table, and at one joint's limit lead the
+    tool far off its way. So the tool is kept on its way rather than the joints.
     """
-    body, still = situation.surroundings.body, np.eye(situation.bounds.dof)
-    if not body.held.any():
-        return still
-    tool = situation.placement.jacobian[:, :, 2 * body.count]
-    metric = still + _HELD * tool @ tool.T
+    tool = situation.placement.jacobian[:, :, 2 * situation.surroundings.body.count]
+    way, turn = tool[:, :3] / _TURN_M, tool[:, 3:]
+    metric = np.eye(situation.bounds.dof) + _TWIST * (way @ way.T + turn @ turn.T)
     return metric / metric.trace()
 
 

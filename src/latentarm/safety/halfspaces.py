@@ -26,10 +26,11 @@ def slide(
     """The nearest velocity that approaches nothing too fast.
 
     Rest is within the half-spaces ``rows @ v >= floor`` and the ``limits``, so there is a nearest velocity P:
-    an arm that is pushed obliquely at a table slides along it. P is rest only where every velocity d within
-    them leads backwards, ``d @ metric @ velocity <= 0``. Where a distance is too small already, the result
-    leans away if it can, because a path along a curved surface would come nearer. The result is never longer
-    than ``velocity`` nor turned against it.
+    an arm that is pushed obliquely at a table slides along it, and where a joint is at its limit the others
+    do its part. P is rest only where every velocity d within them leads backwards,
+    ``d @ metric @ velocity <= 0``. Where a distance is too small already, the result leans away if it can,
+    because a path along a curved surface would come nearer. The result is never longer than ``velocity``
+    nor turned against it, both by the metric.
 
     Args:
         velocity: (n,), rad/s.
@@ -43,12 +44,13 @@ def slide(
         (n,), rad/s, ``velocity`` itself where nothing is too fast; which of n + C limits changed it.
     """
     clipped = np.clip(velocity, *limits)
-    acting = np.concatenate([clipped != velocity, passed & False])
-    if not any_nonzero(passed | (rows @ clipped < floor)):
-        return (clipped if any_nonzero(acting) else velocity), acting
+    too_fast = np.concatenate([clipped != velocity, passed & False])
+    if not any_nonzero(too_fast) and not any_nonzero(passed | (rows @ clipped < floor)):
+        return velocity, too_fast
     norm = np.maximum(np.sqrt(np.vecdot(rows, rows)), _UNFELT)
     rows, floor = rows / norm[:, None], floor / norm
     slid, acting = _nearest(velocity, limits, rows, floor, metric)
+    acting |= too_fast
     wish = metric @ velocity
     if slid @ metric @ slid <= _ROUNDING**2 * (velocity @ wish):
         return np.zeros_like(velocity), acting
