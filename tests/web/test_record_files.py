@@ -1,5 +1,6 @@
 """Names in any script, drives logged from reports, and files of records that are broken or a stranger's."""
 
+import asyncio
 import io
 import json
 import shutil
@@ -7,6 +8,7 @@ import zipfile
 from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -26,6 +28,7 @@ from latentarm.web.records.people import People
 from latentarm.web.records.poses import read_poses, with_pose, write_poses
 from latentarm.web.records.record_files import parse_record
 from latentarm.web.records.records import FOLDER, Records
+from latentarm.web.server.history import History
 
 HOURLY = [HealthCheck.function_scoped_fixture]
 LETTERS = st.characters(categories=("L", "N", "M", "S", "P", "Zs"))
@@ -186,6 +189,27 @@ def test_nothing_is_counted_after_the_task_has_ended_but_all_of_it_is_shown_agai
     assert (record.time_s, record.moving_s, record.way_m) == pytest.approx((1.0, 1.0, 0.1), abs=0.02)
     assert (record.outcome, record.stops, record.presses) == ("success", 0, 1)
     assert done.trace().t[-1] == pytest.approx(3.0, abs=0.02)
+
+
+def test_a_task_that_is_done_is_on_disk_before_its_drive_ends(about, records, tmp_path):
+    """So a server that is killed a moment later loses none of it."""
+    loaded = SimpleNamespace(
+        spec=SimpleNamespace(shadow=False), setup=about.setup, name=about.run, scene=about.scene
+    )
+    states = SimpleNamespace(heard=[], loaded=loaded)
+
+    async def heard():
+        history = History(states, SimpleNamespace(driver=None), records)
+        (hear,) = states.heard
+        for one in [report(0, "ready", 0.0), report(1, "moving", 0.0), done]:
+            hear(one)
+        await history.settled()
+
+    end = BEGUN.model_copy(update={"done": 2, "outcome": "success", "time_s": 1.0})
+    done = report(2, "moving", 0.1).model_copy(update={"task": end})
+    asyncio.run(heard())
+    (kept,) = Records(tmp_path, dict, lambda: None).drives.wanted(Wanted())
+    assert (kept.outcome, kept.steps_done, kept.ended) == ("success", 2, "broken_off")
 
 
 def test_a_trace_is_thin_and_comes_back(about):

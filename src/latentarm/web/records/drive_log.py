@@ -136,11 +136,11 @@ class DriveLog:
         self._note_things(self._open, self._standing, 0.0)
         self.take(report)
 
-    def take(self, report: Report) -> None:
-        """Take a report; ignored while no drive is under way."""
+    def take(self, report: Report) -> bool:
+        """Take a report; ignored while no drive is under way. True if the task has ended with it."""
         drive = self._open
         if drive is None:
-            return
+            return False
         t = round(report.time_s - drive.first.time_s, 2)
         before = drive.last
         enabled, was = report.phase in _ENABLED, before is not None and before.phase in _ENABLED
@@ -166,6 +166,7 @@ class DriveLog:
         if report.things is not None:
             self._note_things(drive, report.things, t)
         self._trace(drive, report, t)
+        return going and drive.over
 
     def given(self, u: tuple[float, ...], source: str, *, gripper: bool) -> None:
         """Note an input with a kind of device; ``gripper``: whether it is a request to the gripper."""

@@ -227,7 +227,7 @@ def _sources(setup: DriveSetup, say: Callable[[str], None]) -> SourceProcess | N
             f"Nobody sees where things are ({shown}): bring the tool to each, and say so on the page (Poses)."
         )
         return None
-    say(f"Where things are ({shown}) is told by {', '.join(texts)}, and by the tool on the page (Poses).")
+    say(f"Positions of {shown} come from {', '.join(texts)}, and from the tool on the page (Poses).")
     return SourceProcess(texts, names)
 
 

@@ -28,6 +28,7 @@ class History:
         self._records = records
         self.log = DriveLog()  # of the drive under way
         self._keeping: set[asyncio.Task[None]] = set()
+        self._in_order = asyncio.Lock()  # a drive that has ended is written after what was known before
         self._written_s = 0.0
         self.problem: Notice | None = None  # why the last drive was not kept; None if it was
         states.heard.append(self._hear)
@@ -72,8 +73,7 @@ class History:
         if about is not None and about.scene is not loaded.scene:
             self.end("run_changed")
         if not self.log.begins(report):
-            self.log.take(report)
-            if report.time_s - self._written_s > SO_FAR_S:
+            if self.log.take(report) or report.time_s - self._written_s > SO_FAR_S:
                 self._keep_so_far(report)
             return
         driver = self._connected.driver
@@ -97,7 +97,8 @@ class History:
 
     async def _keep(self, work: Callable[[], object]) -> None:
         try:
-            await asyncio.to_thread(work)
+            async with self._in_order:
+                await asyncio.to_thread(work)
             self.problem = None
         except UserError as error:
             self.problem = notice_of(error)
