@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from latentarm.safety.filter import Situation
 
 _TURN_M = 0.3  # a turn of the tool by 1 rad counts as much as a way of this length, m
-_TWIST = 1000.0  # weighs the squared twist of the tool, in rad/s, against the squared speeds of the joints
+_TWIST = 1000.0  # weighs the squared twists of tools, in rad/s, against the squared speeds of the joints
 
 
 @final
@@ -65,11 +65,12 @@ def _metric(situation: "Situation") -> FloatArray:
     """(n, n), how the size of a change of a velocity counts.
 
     The nearest velocity of the joints would turn the hand along a table, and at one joint's limit lead the
-    tool far off its way. So the tool is kept on its way rather than the joints.
+    tool far off its way. So tools are kept on their way rather than joints.
     """
-    tool = situation.placement.jacobian[:, :, 2 * situation.surroundings.body.count]
-    way, turn = tool[:, :3] / _TURN_M, tool[:, 3:]
-    metric = np.eye(situation.bounds.dof) + _TWIST * (way @ way.T + turn @ turn.T)
+    dof, ends = situation.bounds.dof, 2 * situation.surroundings.body.count
+    tools = situation.placement.jacobian[:, :, ends:]
+    way, turn = tools[:, :3].reshape(dof, -1) / _TURN_M, tools[:, 3:].reshape(dof, -1)
+    metric = np.eye(dof) + _TWIST * (way @ way.T + turn @ turn.T)
     return metric / metric.trace()
 
 
