@@ -6,15 +6,17 @@ from typing import TYPE_CHECKING, final
 import numpy as np
 
 from latentarm.core.types import FloatArray
-from latentarm.safety.halfspaces import slide, unbent
+from latentarm.safety.halfspaces import slide, unbent, within
 from latentarm.safety.limits import BUFFER_M, BUFFER_RAD, MAY_BEND_M
 from latentarm.safety.small import any_nonzero, largest, smallest
 
 if TYPE_CHECKING:
     from latentarm.safety.filter import Situation
 
-_TURN_M = 0.3  # a turn of the tool by 1 rad counts as much as a way of this length, m
-_TWIST = 1000.0  # weighs the squared twists of tools, in rad/s, against the squared speeds of the joints
+_HELD = (
+    1000.0  # weighs the squared twist of what is held, in m/s and rad/s, against that of the joints, rad/s
+)
+_TURN_M = 0.3  # at a joint's limit a turn of the tool by 1 rad counts as much as a way of this length, m
 
 
 @final
@@ -47,8 +49,9 @@ def past_barriers(velocity: FloatArray, situation: "Situation", limited_by: list
     rows = np.concatenate([np.zeros((0, bounds.dof)), *(kind.rows for kind in near)])
     room = np.concatenate([np.zeros(0), *(kind.room for kind in near)])
     floor = -bounds.damping_per_s * np.maximum(room - BUFFER_M, 0.0)
-    slid, acting = slide(velocity, (down, up), rows, floor, room <= 0.0, _metric(situation))
-    if any_nonzero(acting[: bounds.dof]):
+    others = velocity if free else within(velocity, (down, up), _way(situation))
+    slid, acting = slide(others, (down, up), rows, floor, room <= 0.0, _metric(situation))
+    if others is not velocity or any_nonzero(acting[: bounds.dof]):
         limited_by.append("joint position")
     size, share, first = np.abs(slid), 1.0, bounds.dof
     for kind in near:
@@ -61,16 +64,29 @@ def past_barriers(velocity: FloatArray, situation: "Situation", limited_by: list
     return slid if share == 1.0 else share * slid
 
 
-def _metric(situation: "Situation") -> FloatArray:
-    """(n, n), how the size of a change of a velocity counts.
+def _way(situation: "Situation") -> FloatArray:
+    """(n, n), how the size of a change of a velocity counts at the limit of a joint.
 
-    The nearest velocity of the joints would turn the hand along a table, and at one joint's limit lead the
-    tool far off its way. So tools are kept on their way rather than joints.
+    Were that joint alone slowed, the tool would leave its way. So the others keep tools on their way.
     """
     dof, ends = situation.bounds.dof, 2 * situation.surroundings.body.count
     tools = situation.placement.jacobian[:, :, ends:]
     way, turn = tools[:, :3].reshape(dof, -1) / _TURN_M, tools[:, 3:].reshape(dof, -1)
-    metric = np.eye(dof) + _TWIST * (way @ way.T + turn @ turn.T)
+    metric = np.eye(dof) + _HELD * (way @ way.T + turn @ turn.T)
+    return metric / metric.trace()
+
+
+def _metric(situation: "Situation") -> FloatArray:
+    """(n, n), how the size of a change of a velocity counts.
+
+    The joints' nearest velocity along a table turns the hand: a cup would tilt, not come down. So what
+    is held is kept on its way rather than the joints.
+    """
+    body, still = situation.surroundings.body, np.eye(situation.bounds.dof)
+    if not body.held.any():
+        return still
+    tool = situation.placement.jacobian[:, :, 2 * body.count]
+    metric = still + _HELD * tool @ tool.T
     return metric / metric.trace()
 
 

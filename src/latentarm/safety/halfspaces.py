@@ -26,11 +26,10 @@ def slide(
     """The nearest velocity that approaches nothing too fast.
 
     Rest is within the half-spaces ``rows @ v >= floor`` and the ``limits``, so there is a nearest velocity P:
-    an arm that is pushed obliquely at a table slides along it, and where a joint is at its limit the others
-    do its part. P is rest only where every velocity d within them leads backwards,
-    ``d @ metric @ velocity <= 0``. Where a distance is too small already, the result leans away if it can,
-    because a path along a curved surface would come nearer. The result is never longer than ``velocity``
-    nor turned against it, both by the metric.
+    an arm that is pushed obliquely at a table slides along it. P is rest only where every velocity d within
+    them leads backwards, ``d @ metric @ velocity <= 0``. Where a distance is too small already, the result
+    leans away if it can, because a path along a curved surface would come nearer. The result is never longer
+    than ``velocity`` nor turned against it.
 
     Args:
         velocity: (n,), rad/s.
@@ -44,13 +43,12 @@ def slide(
         (n,), rad/s, ``velocity`` itself where nothing is too fast; which of n + C limits changed it.
     """
     clipped = np.clip(velocity, *limits)
-    too_fast = np.concatenate([clipped != velocity, passed & False])
-    if not any_nonzero(too_fast) and not any_nonzero(passed | (rows @ clipped < floor)):
-        return velocity, too_fast
+    acting = np.concatenate([clipped != velocity, passed & False])
+    if not any_nonzero(passed | (rows @ clipped < floor)):
+        return (clipped if any_nonzero(acting) else velocity), acting
     norm = np.maximum(np.sqrt(np.vecdot(rows, rows)), _UNFELT)
     rows, floor = rows / norm[:, None], floor / norm
     slid, acting = _nearest(velocity, limits, rows, floor, metric)
-    acting |= too_fast
     wish = metric @ velocity
     if slid @ metric @ slid <= _ROUNDING**2 * (velocity @ wish):
         return np.zeros_like(velocity), acting
@@ -60,6 +58,16 @@ def slide(
         longer = float(np.sqrt((leaning @ metric @ leaning) / (velocity @ wish)))
         slid, acting = leaning / max(1.0, longer), acting | leant
     return (slid if any_nonzero(acting) else velocity), acting
+
+
+def within(velocity: FloatArray, limits: tuple[FloatArray, FloatArray], metric: FloatArray) -> FloatArray:
+    """The velocity (n,) between two limits, (n,) each, whose change is the least by a metric (n, n).
+
+    It is ``velocity`` itself if that is between them.
+    """
+    if not any_nonzero(np.clip(velocity, *limits) != velocity):
+        return velocity
+    return _nearest(velocity, limits, np.zeros((0, len(velocity))), np.zeros(0), metric)[0]
 
 
 def _nearest(
