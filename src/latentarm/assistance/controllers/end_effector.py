@@ -51,9 +51,8 @@ class EndEffectorController(AxisController):
         super().__init__(robot, linear_speed, angular_speed, modes)
         self._damping = damping or Damping()
         asked = np.array([np.eye(6)[list(rows)] for rows in modes.axes])  # (modes, d, 6)
-        weights = np.full(
-            (6, 6), KEPT_TURN
-        )  # of all motions of the tool, in rows by the one that is asked for
+        # Row: the axis that the input drives. Column: the axis whose motion is weighted.
+        weights = np.full((6, 6), KEPT_TURN)
         weights[:, :3] = KEPT_PLACE
         if not _keeps_turns(robot):
             weights[:3, 3:] = LOOSE_TURN
