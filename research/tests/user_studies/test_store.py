@@ -149,6 +149,12 @@ def test_people_who_come_at_once_get_different_places(tmp_path: Path) -> None:
     assert sorted(given, key=str) == [0, 1, 2, 3, 4, 5, 6, 7, None]
 
 
+def test_codes_are_arguments_of_a_command_and_cells_of_a_spreadsheet(tmp_path: Path) -> None:
+    codes = Store(tmp_path / "study.sqlite", AWAY_S).open_places(300)
+    assert len({*codes}) == 300
+    assert all(code.isalnum() for code in codes)
+
+
 def test_another_file_is_refused(tmp_path: Path) -> None:
     (path := tmp_path / "study.sqlite").write_text("no database, " * 100)
     with pytest.raises(UserError, match="not the database of a study"):

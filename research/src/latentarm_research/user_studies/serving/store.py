@@ -245,7 +245,8 @@ class Store:
 
 
 def _random() -> str:
-    return secrets.token_urlsafe(KEY_BYTES)
+    # No dash: at the beginning it would make the code an option of a command, or a formula.
+    return secrets.token_hex(KEY_BYTES)
 
 
 def _standing(session: Session, person: Person) -> Standing:
