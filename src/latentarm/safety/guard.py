@@ -75,10 +75,9 @@ class Guard:
       bound times the time of the path, in which the brake counts half.
 
     Where the arm is already past a limit (it was put there by hand), a path is accepted that does
-    not make that violation worse, so the operator can back out. A distance that is too small may lose
-    `MAY_BEND_M` with each command, which at 1 kHz adds up to 1 mm per s: there it takes the shaping filters,
-    which lean away, to keep it. In a zone every path that is slow
-    enough is accepted, wherever it leads.
+    not make that violation worse, so the operator can back out. A distance that is too small may shrink by
+    `MAY_BEND_M` in the course of a path, stop included. In a zone every path that is slow enough is accepted,
+    wherever it leads.
     """
 
     def objection(self, velocity: FloatArray, brake: Brake, situation: Situation) -> str | None:

@@ -14,6 +14,10 @@ from latentarm.control.step import Step
 from latentarm.core.types import Context, FloatArray, Input
 from latentarm.robots.kinematics.obstacles import Box, Capsule, HalfSpace, Obstacle, Sphere
 from latentarm.robots.robot import Robot
+from latentarm.safety.body import Body
+from latentarm.safety.config import SafetyConfig
+from latentarm.safety.filter import GuardedArm, Situation
+from latentarm.safety.limits import Bounds
 from latentarm_research.measurements.geom_distances import Judge
 
 HARMS: Final = ("wall", "box", "ball", "rod", "itself")
@@ -79,7 +83,10 @@ class Push:
 def scene(
     robot: Robot, harm: str, rng: np.random.Generator
 ) -> tuple[tuple[Obstacle, ...], Judge, FloatArray, Push]:
-    """Obstacles, their judge, a start and a push, with all distances above `START_M`."""
+    """Obstacles, their judge, a start and a push, with all distances above `START_M`.
+
+    By the filters' capsules, too, no distance is too small: they promise nothing where one begins so.
+    """
     limits, capsules, chain = robot.limits, robot.capsules, robot.chain
     outer = np.flatnonzero(capsules.link >= max(1, robot.dof // 3))[-robot.held :]  # what is held, if any
     while True:
@@ -116,8 +123,16 @@ def scene(
         target = None if harm == "itself" else middle
         push = Push(robot, int(capsules.link[k]), local, target, int(rng.choice(far)))
         judge = Judge(robot, obstacles)
-        if judge.distances(q).min() > START_M:
+        if judge.distances(q).min() > START_M and _allowed(robot, obstacles, q):
             return obstacles, judge, q, push
+
+
+def _allowed(robot: Robot, obstacles: tuple[Obstacle, ...], q: FloatArray) -> bool:
+    """Whether the filters find nothing too near at q (n,), rad."""
+    config, still = SafetyConfig(obstacles=obstacles), np.zeros(robot.dof)
+    arm = GuardedArm(Bounds(config, robot, PERIOD_S), Body(robot))
+    height = Situation(arm, q, still, still).contacts_now().height
+    return bool((height >= config.clearance).all())
 
 
 PERIOD_S: Final = 0.01
