@@ -4,7 +4,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from latentarm.assistance.controllers.end_effector import EndEffectorController
+from latentarm.assistance.controllers.end_effector import HOMEWARD_RAD_S, EndEffectorController
 from latentarm.core.errors import UserError
 from latentarm.core.types import Context
 from latentarm.robots.catalogue import load_robot
@@ -104,6 +104,41 @@ def test_a_held_cup_that_is_tilted_over_a_bowl_does_not_dive_into_it():
     end = PANDA.chain.forward(state)
     assert np.linalg.norm(end.position - begin.position) < 0.003
     assert np.arccos((np.trace(end.rotation.T @ begin.rotation) - 1) / 2) > 0.25
+
+
+@given(state=anywhere, z=inputs)
+def test_the_way_home_never_moves_the_tool(state, z):
+    there = Context(state, NO_BELIEF)
+    both = CONTROLLER.action(z, there, 0) + CONTROLLER.action(-z, there, 0)  # what is linear cancels
+    assert PANDA.chain.jacobian(state) @ both == pytest.approx(np.zeros(6), abs=1e-9)
+    assert np.linalg.norm(both) <= 2 * np.abs(z).max() * HOMEWARD_RAD_S + 1e-9
+
+
+def test_an_elbow_that_was_turned_aside_comes_home_while_the_tool_goes_to_and_fro():
+    state = PANDA.home.copy()
+    for _ in range(600):
+        spare = np.linalg.svd(PANDA.chain.jacobian(state))[2][-1]
+        state = state + 0.002 * spare * np.sign(spare[2])
+    aside = np.linalg.norm(state - PANDA.home)
+    for tick in range(400):
+        there = Context(state, NO_BELIEF)
+        state = state + 0.01 * CONTROLLER.action(np.array([(-1.0) ** (tick // 50), 0.0]), there, 0)
+    assert aside > 0.5
+    assert np.linalg.norm(state - PANDA.home) < 0.5 * aside
+
+
+def test_a_joint_that_does_not_move_the_tool_stays_where_it_is(tmp_path):
+    inner = '<site name="tool" pos=".1 0 0"/>'
+    for number, axis in enumerate(("1 0 0", "0 1 0", "0 0 1", "0 1 0", "1 0 0", "0 1 0", "0 0 1")):
+        joint = f'<joint name="j{number}" axis="{axis}" range="-2 2"/>'
+        inner = f'<body pos=".1 0 .1">{joint}<geom size=".02"/>{inner}</body>'
+    lamp = '<body pos="2 0 0"><joint name="lamp" axis="0 1 0" range="-2 2"/><geom size=".02"/></body>'
+    path = tmp_path / "arm_and_lamp.xml"
+    path.write_text(f"<mujoco><worldbody>{inner}{lamp}</worldbody></mujoco>")
+    robot = load_robot(str(path), end_effector="tool")
+    state = robot.home + np.linspace(0.2, 0.5, robot.dof)
+    action = EndEffectorController(robot, SPEED, TURN).action(np.ones(2), Context(state, NO_BELIEF), 0)
+    assert (action != 0.0).tolist() == [name != "lamp" for name in robot.joint_names]
 
 
 FIVE_JOINTS = """
