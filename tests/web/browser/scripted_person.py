@@ -34,6 +34,12 @@ LEVELS: Final = ({"cm": 1.0, "째": 10.0}, {"cm": 0.5, "째": 5.0}, {"cm": 0.3, "�
 SPEED: Final = {"cm": 15.0, "째": 28.0}
 """Expected speed of the tool, per second."""
 
+TURNS: Final = 30.0
+"""They turn no farther than this at a push, in degrees."""
+POURS: Final = "Pour into"
+TIPS: Final = 10.0
+"""The same where the page says `POURS`: grains fall while they look."""
+
 READS_S: Final = 0.3
 SHORTEST_S: Final = 0.04
 GRIPS_S: Final = 2.0
@@ -95,14 +101,14 @@ class Person:
                     self.hand.gripper(seen["gripper"])
             elif left and (wanted := choose(left, seen["pair"])):
                 if wanted.pair == seen["pair"]:
-                    self._push(wanted)
+                    self._push(wanted, TIPS if POURS in seen["said"] else TURNS)
                 else:
                     self.hand.pair(wanted.pair)
             time.sleep(READS_S)
         return seen["said"]
 
-    def _push(self, wanted: Left) -> None:
-        aim = min(wanted.amount, 30.0) if wanted.unit == "째" else wanted.amount
+    def _push(self, wanted: Left, turn: float) -> None:
+        aim = min(wanted.amount, turn) if wanted.unit == "째" else wanted.amount
         speed = self.hand.speed * SPEED[wanted.unit]
         hold_s = max(aim / speed - self._more_s[wanted.unit], SHORTEST_S)
         self.hand.push(wanted.direction.lower())
