@@ -139,8 +139,9 @@ class Walk:
         if set(before["open"]) != set(after["open"]) and takes and before["path"] == after["path"]:
             toggled = set(before["open"]) ^ set(after["open"])
             details = [one for one in toggled if one.startswith("details")]
-            # A link to this page loads it anew.
-            if (details and lit["tag"] not in ("summary", "a")) or lit["pressed"] is None:
+            # A link to this page loads it anew, and so does another language.
+            anew = lit["tag"] == "a" or before["language"] != after["language"]
+            if (details and lit["tag"] != "summary" and not anew) or lit["pressed"] is None:
                 faults.append({"toggled": sorted(toggled)})
         if before["path"] != after["path"] and takes:
             leads = lit["tag"] in ("a", "button") or lit["pressed"].startswith(("page-", "link-", "button-"))
@@ -153,11 +154,10 @@ class Walk:
         self.log(f"{did} {now['path']} lit {now['seen']} open {now['open']} focus {now['focus'][:60]}")
         if not now["on"]:
             return
-        if now["lit"] != 1 or len(now["seen"]) != 1 or now["lights"] > 1 or now["stop"] == 0:
+        if not _one_is_lit(now):
             self.page.wait_for_timeout(SETTLE_MS)
             again = self._snap()
-            good = again["lit"] == len(again["seen"]) == 1 and again["lights"] <= 1 and again["stop"]
-            if again["on"] and not good:
+            if again["on"] and not _one_is_lit(again):
                 self._blame(did, {"law": "one is lit", "now": again})
 
     def _snap(self) -> dict[str, Any]:
@@ -166,6 +166,11 @@ class Walk:
     def _blame(self, did: str, why: dict[str, Any]) -> None:
         self.faults.append(f"{did} with {self.values}: {json.dumps(why)[:1500]}")
         self.log(self.faults[-1])
+
+
+def _one_is_lit(now: dict[str, Any]) -> bool:
+    """Whether one choice, or one row of them, is lit and in sight, and Stop is among the choices."""
+    return now["lit"] == len(now["seen"]) == 1 and (now["row"] or now["lights"] <= 1) and now["stop"] > 0
 
 
 def main() -> int:

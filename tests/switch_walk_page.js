@@ -48,6 +48,7 @@ window.snap = () => {
   const focus = document.activeElement;
   return {
     on, lit: lit.length, seen: seen.map((one) => one.textContent), lights: document.getElementsByClassName("lit").length, told,
+    row: lit.some((one) => one.dataset.choice?.startsWith("row-")), language: document.documentElement.lang,
     path: location.pathname, open: open.map((one) => `${one.localName} ${one.id || one.textContent.trim().slice(0, 30)}`),
     focus: focus?.outerHTML.slice(0, 120) ?? "", stop: document.querySelectorAll("#scan [data-choice=stop]").length,
     choices: [...document.querySelectorAll("#scan li")].map((one) => one.dataset.choice).join(" "),

@@ -18,7 +18,8 @@ export function isForeign(wanted, known) {
 export function attachLanguage(select, offer) {
   select.addEventListener("change", () => {
     choose(select.value);
-    location.reload();
+    // A switch can choose what is chosen already.
+    if (select.value !== document.documentElement.lang) location.reload();
   });
   const buttons = [...offer.querySelectorAll("button")];
   const known = buttons.map((button) => button.dataset.language ?? "");
