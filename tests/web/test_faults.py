@@ -111,7 +111,7 @@ if __name__ == "__main__":
         sequence += 1
         pushed = report is not None and report.phase in ("ready", "moving")
         u = (1.0, 0.0) if moving or pushed else (0.0, 0.0)
-        control.give(Given(driver=1, seq=sequence, nonce=nonce, u=u, latched=False))
+        control.give(Given(driver=1, seq=sequence, nonce=nonce, u=u, source="pointer", latched=False))
         time.sleep(0.01)
 """
 
