@@ -8,6 +8,7 @@ from typing import Final, final
 import mujoco
 import numpy as np
 
+from latentarm.arms.contact_torque import ContactTorque
 from latentarm.arms.contract import SceneArm
 from latentarm.arms.finger_servo import FingerServo, add_finger_servos
 from latentarm.arms.scene_model import add_scene
@@ -89,6 +90,7 @@ class MujocoArm(SimulatedArm, SceneArm):
         reference = reference_positions(robot.model())
         self.data.qpos[: len(reference)] = reference
         self.data.qpos[self.model.jnt_qposadr[found.link_joints]] = found.model_positions(state)
+        self._touch = ContactTorque(self.model, self.data, found)
         self._servo = Servo(self.model, self.data, found.joints, robot.limits.acceleration * STEP_S)
         self._fingers = None
         if robot.gripper is not None:
@@ -113,7 +115,7 @@ class MujocoArm(SimulatedArm, SceneArm):
         self._steps = 0
         self._behind_s = 0.0
         self._rng = np.random.default_rng(self._imperfections.seed)
-        self._measured: deque[tuple[float, FloatArray, FloatArray]] = deque()
+        self._measured: deque[tuple[float, FloatArray, FloatArray, FloatArray]] = deque()
         self._note()
 
     def truth(self) -> tuple[FloatArray, FloatArray]:
@@ -169,18 +171,21 @@ class MujocoArm(SimulatedArm, SceneArm):
         """Store the present measurement until its delay has passed."""
         time_s = float(self.data.time)
         q, dq = self.data.qpos[self._positions].copy(), self.data.qvel[self._speeds].copy()
-        self._measured.append((time_s, q, dq))
+        self._measured.append((time_s, q, dq, self._touch.now()))
         while len(self._measured) > 1 and time_s - self._measured[1][0] >= self._imperfections.delay_s - 1e-9:
             self._measured.popleft()
         if self._fingers is not None:
             self._fingers.note()
 
     def _measure(self) -> tuple[FloatArray, FloatArray, float]:
-        time_s, q, dq = self._measured[0]
+        time_s, q, dq, _ = self._measured[0]
         noise = self._imperfections
         q = q + self._rng.normal(0.0, noise.position_noise_rad, q.shape)
         dq = dq + self._rng.normal(0.0, noise.velocity_noise_rad_s, dq.shape)
         return q, dq, float(self.data.time) - time_s + max(self._behind_s, 0.0)
+
+    def _external_torque(self) -> FloatArray:
+        return self._measured[0][3]
 
     def _halt(self) -> None:
         """Nothing: without a command the servo slows down from the next step on."""

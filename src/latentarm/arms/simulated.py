@@ -75,6 +75,10 @@ class SimulatedArm(Arm):
     def _measure(self) -> tuple[FloatArray, FloatArray, float]:
         """Positions (n,), rad, velocities (n,), rad/s, and their age, s; the caller owns the arrays."""
 
+    def _external_torque(self) -> FloatArray | None:
+        """See `Reading.external_torque`, of what `_measure` measured."""
+        return None
+
     @abstractmethod
     def _halt(self) -> None:
         """Stop as fast as the arm can, after the command was taken back."""
@@ -177,7 +181,7 @@ class SimulatedArm(Arm):
         q, dq, age_s = self._measure()
         sequence = 0 if self._newest is None else self._newest.sequence + 1
         gripper = None if self._gripper is None else self._gripper.measure()
-        self._newest = Reading(q, dq, self._at_s - age_s, sequence, gripper)
+        self._newest = Reading(q, dq, self._at_s - age_s, sequence, gripper, self._external_torque())
         self._read_at_s = self._at_s
         return self._newest
 

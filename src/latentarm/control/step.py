@@ -35,6 +35,7 @@ from latentarm.safety.newest_reading import NewestReading
 from latentarm.safety.plausibility import FOLLOWING_ERRORS, Plausibility
 from latentarm.safety.stack import Passed, SafetyStack
 from latentarm.safety.timekeeping import Timekeeping
+from latentarm.safety.tool_force import ToolForce
 from latentarm.safety.yielding import YIELDING, Yielding
 
 _ABSURD = 2.0
@@ -138,6 +139,7 @@ class Step:
         self._config = safety
         self._plausibility = Plausibility(self._stack.bounds, robot)
         self._yielding = Yielding(self._stack.bounds, self._stack.body)
+        self._force = ToolForce(robot, safety.tool_force)
         self._hold_s = self._stack.bounds.hold_s
         self._timekeeping = Timekeeping(self._hold_s)
         self._newest_reading = NewestReading(self._stack.bounds.reading_timeout_s, self._hold_s)
@@ -236,6 +238,7 @@ class Step:
         self._stack.reset()
         self._plausibility.reset()
         self._yielding.end()
+        self._force.reset()
         self._timekeeping.reset()
         self._newest_reading.reset()
         self._gripper.reset()
@@ -256,6 +259,7 @@ class Step:
         refused = self._engagement.enable()
         if refused is None:
             self._yielding.end()
+            self._force.reset()
         return refused
 
     @logged
@@ -355,6 +359,11 @@ class Step:
         self._yielding.saw(q, self._stack.velocity)
         if self._doubts(q, time_s, new=self._newest_reading.new):
             return self._record(time_s, q, Passed(self._stack.stop()))
+        if self._follows and self._engagement.stopped is None:
+            pressed = self._force.refusal(q, self._stack.velocity)
+            if pressed is not None:
+                self._yielding.felt()
+                return self._record(time_s, q, self._refused(pressed))
         if self._falters(input_age_s):
             self._faltering = True
             return self._record(time_s, q, Passed(self._stack.stop(), _FALTERING))
@@ -449,9 +458,12 @@ class Step:
         return passed
 
     def _stopping(self, q: FloatArray) -> Passed:
-        """The stop that is under way; after a following error the arm then yields."""
+        """The stop that is under way; after a following error or a force the arm then yields."""
         back = self._yielding.wanted(q)
         if back is None:
+            return Passed(self._stack.stop())
+        if self._force.refusal(q, back) is not None:
+            self._yielding.end()
             return Passed(self._stack.stop())
         passed = self._stack.command(back, self._plausibility.estimate(q), 0.0)
         if passed.stop is not None:
@@ -490,7 +502,11 @@ class Step:
     def _positions_now(self, reading: Reading, time_s: float) -> FloatArray | Stop:
         """The joint positions of a reading that is new enough, or why they cannot be used."""
         try:
-            refused = self._newest_reading.refusal(reading, time_s) or self._gripper.saw(reading.gripper)
+            refused = (
+                self._newest_reading.refusal(reading, time_s)
+                or self._gripper.saw(reading.gripper)
+                or self._force.saw(reading.external_torque)
+            )
         except Exception as error:  # noqa: BLE001 - whatever a driver gives
             reason = f"The arm's reading cannot be used ({_message_of(error)})."
             refused = Stop(reason, untrusted=True, code="reading_invalid")

@@ -256,6 +256,8 @@ class Reading:
         time_s: of the measurement, on the control loop's clock, s.
         sequence: grows with every new reading, across reconnections too.
         gripper: None where the arm has none.
+        external_torque: (n,), the arm's own estimate of what everything outside exerts on its joints, N m
+            (N where a joint slides); None where the arm has none.
     """
 
     q: FloatArray
@@ -263,6 +265,7 @@ class Reading:
     time_s: float
     sequence: int
     gripper: GripperReading | None = None
+    external_torque: FloatArray | None = None
 
 
 StopCode = Literal[
@@ -274,6 +277,7 @@ StopCode = Literal[
     "controller_failed",
     "controller_invalid",
     "emergency_stop_released",
+    "force_high",
     "gripper_invalid",
     "input_invalid",
     "input_late",

@@ -89,6 +89,8 @@ class SafetyConfig:
     following_window_s: float = 1.0
     gripper_speed: float = 0.05  # fastest change of a gripper's opening, m/s
     gripper_force: float = 20.0  # largest force with which a gripper's fingers press together, N
+    # Force of the tool against which the arm does not go on, N; of arms that estimate external torques
+    tool_force: float = 15.0
     workspace: Workspace | None = None  # where the arm may be, or None for anywhere
     obstacles: tuple[Obstacle, ...] = ()  # what the arm must keep clear of
     # Where the arm is slower than link_speed; that begins where a part of it is nearer to a zone than
@@ -133,6 +135,7 @@ _RANGES: dict[str, tuple[float, float, str]] = {
     "following_window_s": (0.0, 10.0, "s"),
     "gripper_speed": (0.0, 1.0, "m/s"),
     "gripper_force": (0.0, 500.0, "N"),
+    "tool_force": (0.0, 500.0, "N"),
 }
 _MAY_TOUCH = ("input_grace_s", "dead_zone", "command_periods", "reading_periods")
 

@@ -26,13 +26,13 @@ _REMEMBERED_S: Final = LOOK_S + 1.0
 
 @final
 class Yielding:
-    """After a following error that looks like contact, leads the arm back over the last second.
+    """After a force, or a following error that looks like contact, leads the arm back over the last second.
 
     A command to stand still does not relieve what the arm presses on: its servo goes on towards the position
     that was commanded, inside the thing. So the arm is commanded to where it is measured, then back along its
     last commands, until a point of it has gone back by `FARTHEST_M`, for at most `LONGEST_S`.
 
-    Contact is not measured but inferred: the arm stands still, a joint is still off, in readings
+    Without a measured force contact is inferred: the arm stands still, a joint is still off, in readings
     that change, and it or the farthest point is behind where it was commanded to go. A frozen encoder repeats
     itself, late readings catch up, and an arm that is pushed along is not behind.
     """
@@ -41,11 +41,13 @@ class Yielding:
         self._body = body
         self._dt_s = bounds.dt_s
         self._margin_rad = bounds.config.following_error
+        self._most = round(LONGEST_S / bounds.dt_s)
         self._looks = math.ceil(max(bounds.lag_s, bounds.stop_s) / bounds.dt_s)
         # Each reading with the command since the one before, the newest last.
         self._past: deque[tuple[FloatArray, FloatArray]] = deque(maxlen=round(_REMEMBERED_S / bounds.dt_s))
         self._fastest = PACE * bounds.speed
         self._looked: int | None = None
+        self._felt = False
         self._way_back: list[FloatArray] | None = None
         self._start_m: FloatArray = np.zeros((0, 3))
 
@@ -66,7 +68,11 @@ class Yielding:
 
     def begin(self) -> None:
         """A following error has just stopped the arm."""
-        self._looked = 0
+        self._looked, self._felt = 0, False
+
+    def felt(self) -> None:
+        """A measured force has just stopped the arm, which draws back once it stands still."""
+        self._looked, self._felt = 0, True
 
     def wanted(self, q: FloatArray) -> FloatArray | None:
         """The velocity (n,), rad/s, to ask of the filters now; None where the arm is to stand still.
@@ -77,7 +83,10 @@ class Yielding:
             return None
         if self._way_back is None:
             self._looked += 1
-            self._way_back = self._decided(self._looked)
+            if not self._felt:
+                self._way_back = self._decided(self._looked)
+            elif not self._past[-1][1].any():
+                self._way_back = self._taken_back()
             self._start_m = self._points(q)
             if self._way_back is None:
                 if self._looked * self._dt_s >= LOOK_S:
@@ -109,9 +118,13 @@ class Yielding:
         if not (behind and alive and abs(ahead[joint]) > self._margin_rad):
             return None
         to_measured = math.ceil(largest(np.abs(ahead) / self._fastest) / self._dt_s)
-        taken_back = np.repeat(-PACE * velocity[velocity.any(axis=1)], round(1.0 / PACE), axis=0)
-        back = [*taken_back, *([-ahead / (to_measured * self._dt_s)] * to_measured)]
-        return back[-round(LONGEST_S / self._dt_s) :]
+        back = [*self._taken_back(), *([-ahead / (to_measured * self._dt_s)] * to_measured)]
+        return back[-self._most :]
+
+    def _taken_back(self) -> list[FloatArray]:
+        """The last commands backwards at the share `PACE` of their speed, the last first, rad/s."""
+        back = [-PACE * velocity for _, velocity in self._past if velocity.any()]
+        return [velocity for velocity in back for _ in range(round(1.0 / PACE))][-self._most :]
 
     def _points(self, q: FloatArray) -> FloatArray:
         """(P, 3), m."""

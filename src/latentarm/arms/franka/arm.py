@@ -109,7 +109,9 @@ class FrankaArm(GuidableArm):
         if last is None or measured.time_s > last.time_s:
             sequence = 0 if last is None else last.sequence + 1
             fingers = None if self._hand is None else self._hand.reading
-            last = Reading(measured.q, measured.dq, measured.time_s, sequence, fingers)
+            last = Reading(
+                measured.q, measured.dq, measured.time_s, sequence, fingers, measured.external_torque
+            )
             self._last = last
         return last
 

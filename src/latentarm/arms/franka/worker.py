@@ -56,6 +56,7 @@ class Measured:
     dq: FloatArray  # (7,), rad/s
     time_s: float  # of arrival, on our clock, s
     arm_s: float  # on the arm's clock, s
+    external_torque: FloatArray  # (7,), what everything outside exerts on the joints, N m
 
 
 @final
@@ -246,8 +247,10 @@ class Worker:
         mode = str(state.robot_mode.name)
         self._see(mode, state)
         q, dq = np.array(state.q, dtype=np.float64), np.array(state.dq, dtype=np.float64)
-        q.flags.writeable = dq.flags.writeable = False
-        return Measured(q, dq, now_s, float(state.time.to_sec()))
+        # The arm reports what it exerts itself: libfranka counts its forces on other things as positive.
+        torque = -np.array(state.tau_ext_hat_filtered, dtype=np.float64).ravel()
+        q.flags.writeable = dq.flags.writeable = torque.flags.writeable = False
+        return Measured(q, dq, now_s, float(state.time.to_sec()), torque)
 
     def _see(self, mode: str, state: "franky.RobotState") -> None:
         if mode == "Reflex":

@@ -1,0 +1,41 @@
+"""Torques that a simulated arm's surroundings exert on its joints."""
+
+from typing import Final, final
+
+import mujoco
+import numpy as np
+
+from latentarm.core.types import FloatArray
+from latentarm.robots.kinematics.reader import ModelChain
+
+_EQUALITY: Final = int(mujoco.mjtConstraint.mjCNSTR_EQUALITY)
+_CONTACT: Final = int(mujoco.mjtConstraint.mjCNSTR_CONTACT_FRICTIONLESS)  # the first of the contacts' kinds
+_WELD: Final = int(mujoco.mjtEq.mjEQ_WELD)
+
+
+@final
+class ContactTorque:
+    """Reads them out of a simulation, as a real arm's own estimate has them.
+
+    All contacts of the arm count, and the welds that hold food on tines: so what is held, its weight and what
+    it touches count too. Limits of joints, their friction and their servos do not.
+    """
+
+    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, arm: ModelChain) -> None:
+        self._model, self._data = model, data
+        self._joints, self._ratio = model.jnt_dofadr[arm.link_joints], arm.chain.ratio
+        self._welds = model.eq_type == _WELD
+        self._torque = np.zeros(model.nv)
+
+    def now(self) -> FloatArray:
+        """(n,), N m (N where a joint slides), in the last time step."""
+        kind, index = self._data.efc_type, self._data.efc_id
+        counts = kind >= _CONTACT
+        held = kind == _EQUALITY
+        counts[held] = self._welds[index[held]]
+        if not counts.any():
+            return np.zeros(self._ratio.shape[1])
+        mujoco.mj_mulJacTVec(
+            self._model, self._data, self._torque, np.where(counts, self._data.efc_force, 0.0)
+        )
+        return self._torque[self._joints] @ self._ratio
