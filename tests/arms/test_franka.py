@@ -191,6 +191,18 @@ def test_a_clock_that_is_not_ours_is_refused_and_stops_the_arm(new_arm, stand_in
         new_arm.connect()
 
 
+def test_it_says_what_pushes_it_with_the_sign_of_the_push(arm, stand_in):
+    by = np.array([0.0, 0.3, 0.0, 0.3, 0.0, 0.0, 0.0])
+    assert np.abs(arm.read().external_torque).max() == 0.0
+    stand_in.begin_push(by)
+    stand_in.wait(0.3)
+    felt = arm.read().external_torque
+    stand_in.push(np.zeros(7))
+    assert felt.shape == (7,)
+    assert (felt[[1, 3]] > 2.0).all()
+    assert np.abs(felt[[0, 2, 4, 5, 6]]).max() < 1.0
+
+
 class Served(StandIn):
     """The stand-in as the contract knows it."""
 

@@ -2,8 +2,9 @@
 
 franky-sim 1.0.4 speaks the arm's protocol over MuJoCo, gripper included. Added here, in its own terms: a stop
 button, reflexes and how they are recovered from, the arm's stop after cycles without a message (only while a
-test cuts the network, because a busy machine is late), and the hand's answer to a move that it was told to
-stop. Left out are contacts that the real arm does not have. No limits are enforced.
+test cuts the network, because a busy machine is late), the hand's answer to a move that it was told to
+stop, and external torques, which franky-sim mistakes for those of the motors: here a person's push alone. Left
+out are contacts that the real arm does not have. No limits are enforced.
 
 As a program (``python franka_server.py HOST``) it takes orders by line on standard
 input and answers in JSON; `FrankaStandIn` is its other end.
@@ -117,9 +118,11 @@ class FrankaStandIn:
         """Every command to arm or hand since it was switched on, by its name in the arm's protocol."""
         return self.ask("told")["told"]
 
+    def begin_push(self, by: np.ndarray) -> None:
+        self.ask("push " + " ".join(map(str, self.positions() + by)))
+
     def push(self, by: np.ndarray) -> None:
-        goal = self.positions() + by
-        self.ask("push " + " ".join(map(str, goal)))
+        self.begin_push(by)
         self.wait(1.5)
         self.ask("push")
         self.wait(0.5)  # an arm that holds its position springs back
@@ -198,7 +201,9 @@ def _servers():
 
         @property
         def robot_state(self):
-            state = super().robot_state
+            # A real arm says what it exerts on its surroundings.
+            pushes = tuple(-self.robot.external_torque)
+            state = super().robot_state.replace(tau_ext_hat_filtered=pushes)
             if self.pressed:
                 return state.replace(robot_mode=RobotMode.kUserStopped)
             if self.errors:
@@ -278,14 +283,17 @@ class _Hand:
         self.goal: np.ndarray | None = None
         self._robot, self._drive = robot, robot._torque_control
         robot._torque_control = self._torque_control
+        robot.external_torque = np.zeros(7)
 
     def _torque_control(self, torques) -> None:
         self._drive(torques)
+        pull = np.zeros(7)
         if self.goal is not None and self._robot._data is not None:
             state = self._robot.inner_state
             pull = _PULL * (self.goal - np.array(state.q)) - _HELD_BACK * np.array(state.dq)
             pull = np.clip(pull, -_STRENGTH, _STRENGTH)
             self._robot._data.qfrc_applied[self._robot._dof_addrs] += pull
+        self._robot.external_torque = pull
 
 
 def _obey(order, server, robot, hand, cycle) -> dict:

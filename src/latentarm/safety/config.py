@@ -90,7 +90,7 @@ class SafetyConfig:
     gripper_speed: float = 0.05  # fastest change of a gripper's opening, m/s
     gripper_force: float = 20.0  # largest force with which a gripper's fingers press together, N
     # Force of the tool against which the arm does not go on, N; of arms that estimate external torques
-    tool_force: float = 15.0
+    tool_force: float = 30.0
     workspace: Workspace | None = None  # where the arm may be, or None for anywhere
     obstacles: tuple[Obstacle, ...] = ()  # what the arm must keep clear of
     # Where the arm is slower than link_speed; that begins where a part of it is nearer to a zone than
