@@ -12,6 +12,7 @@ from latentarm.safety.config import SafetyConfig
 from latentarm.safety.limits import Bounds
 from latentarm.safety.newest_reading import NewestReading
 from latentarm.safety.plausibility import Plausibility
+from latentarm.safety.tool_force import ToolForce
 from latentarm.web.protocol.notice import Notice, notice_of_stop
 from latentarm.web.words.catalogue import languages
 
@@ -33,6 +34,9 @@ def stops(panda, gantry):
     """One stop of each kind that names anything."""
     third, first = np.eye(7)[2], np.eye(4)[0]
     late = NewestReading(0.05, 0.03).refusal(Reading(panda.home, panda.home, 0.0, 0), 0.06)
+    feels, down = ToolForce(panda, 15.0), -panda.chain.jacobian(panda.home)[2]
+    feels.saw(-40.0 * down)
+    pressed = feels.refusal(panda.home, down)
     return {
         "joint_jumped": followed(panda, lambda q: q + 0.3 * third, np.zeros(7)),
         "slide_jumped": followed(gantry, lambda q: q + 0.4 * first, np.zeros(4), joint_speed=0.5),
@@ -40,6 +44,7 @@ def stops(panda, gantry):
         "joint_astray": followed(panda, lambda q: q + 0.005 * third, np.zeros(7)),
         "slide_astray": followed(gantry, lambda q: q + 0.005 * first, np.zeros(4), joint_speed=0.5),
         "reading_old": late,
+        "force_high": pressed,
         "controller_failed": Stop("It failed (no).", code="controller_failed", parameters={"text": "no"}),
         "arm_fault": stop_of(ArmStatus("fault", "A motor is hot.")),
         "arm_emergency_stop": stop_of(ArmStatus("emergency_stop", "Pressed.")),

@@ -3,7 +3,7 @@
 franky-sim 1.0.4 speaks the arm's protocol over MuJoCo, gripper included. Added here, in its own terms: a stop
 button, reflexes and how they are recovered from, the arm's stop after cycles without a message (only while a
 test cuts the network, because a busy machine is late), the hand's answer to a move that it was told to
-stop, and external torques, which franky-sim mistakes for those of the motors: here a person's push alone. Left
+stop, and external torques, for which franky-sim gives those of the motors: here a person's push alone. Left
 out are contacts that the real arm does not have. No limits are enforced.
 
 As a program (``python franka_server.py HOST``) it takes orders by line on standard

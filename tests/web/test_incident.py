@@ -27,6 +27,7 @@ from latentarm.demonstrations.dataset import write_dataset
 from latentarm.robots.kinematics.obstacles import Box, Sphere
 from latentarm.runs.options import TrainOptions
 from latentarm.runs.training import train_run
+from latentarm.safety.yielding import YIELDING
 from latentarm.safety.zones import Zone
 from latentarm.tasks.table_top import TableTop
 from latentarm.web.arm_process import incident
@@ -356,6 +357,25 @@ def test_zones_obstacles_held_things_and_limits_come_along(tmp_path, desk_of, mo
     assert found["agreed"] == found["ticks"] > 0
 
 
+def test_a_stop_by_a_force_and_the_way_back_come_again(tmp_path, desk_of, setup):
+    with desk_of(setup) as desk:
+        read = desk.arm.read
+
+        def pressing():
+            reading = read()
+            if not desk.records or desk.records[-1].command.stop is not None or reading.time_s < 0.5:
+                return reading
+            return replace(reading, external_torque=-1e3 * desk.records[-1].command.velocity)
+
+        desk.arm.read = pressing
+        with recorded(desk, tmp_path / "out"):
+            drive_straight(desk)
+    assert "force_high" in {one.command.stop.code for one in desk.records if one.command.stop is not None}
+    assert any(YIELDING in one.command.limited_by for one in desk.records)
+    found = replay(newest(tmp_path / "out"))
+    assert found["agreed"] == found["ticks"] > 0
+
+
 def test_it_can_be_switched_off(setup, tmp_path):
     assert begin_incident(replace(setup, spec=replace(setup.spec, out=tmp_path, incidents=False))) is None
     assert not list(tmp_path.iterdir())
@@ -420,8 +440,9 @@ def test_arrays_come_back_to_the_bit(values):
 
 
 def test_records_come_back():
-    told = Reading(np.array([math.nan, -0.0]), np.zeros(2), math.inf, 3)
+    told = Reading(np.array([math.nan, -0.0]), np.zeros(2), math.inf, 3, None, np.array([0.1, -3.0]))
     again = of_json(json.loads(json.dumps(to_json(told))), Reading)
+    assert again.external_torque.tobytes() == told.external_torque.tobytes()
     assert again.q.tobytes() == told.q.tobytes()
     assert (again.time_s, again.sequence, again.gripper) == (math.inf, 3, None)
     stop = Stop("Why.", code="arm_off", parameters={"text": "off"})

@@ -48,7 +48,8 @@ class ArmLaws:
 
     def test_what_it_measures_has_the_robots_joints_and_gripper(self, arm: Arm, robot: Robot) -> None:
         reading = arm.read()
-        for figures in (reading.q, reading.dq):
+        felt = () if reading.external_torque is None else (reading.external_torque,)
+        for figures in (reading.q, reading.dq, *felt):
             assert figures.shape == (robot.dof,)
             assert np.isfinite(figures).all()
         assert (reading.gripper is None) == (robot.gripper is None)

@@ -47,6 +47,7 @@ class Force:
     drives: Annotated[int, arg(help="At each thing.")] = 8
     zone: Annotated[float | None, arg(metavar="M_PER_S", help="Speed of a zone about the thing.")] = None
     stiffness_n_mm: Annotated[Numbers, arg(help="Of springs, N/mm.")] = (150.0, 75.0, 25.0, 10.0)
+    feels: Annotated[bool, arg(help="Whether the arm estimates external torques.")] = False
 
 
 @dataclass(frozen=True)

@@ -3,11 +3,13 @@
 A Panda in MuJoCo with 1 kg at its tool, noise on its readings, and readings that are 0 to 3 ticks late, is
 pushed down at 100 Hz with full input, from places over the whole table. Most of the time the stick points
 straight down; the rest of the time anywhere. The thing is the table, or a spring without mass and friction
-that begins above it. The filters do not limit force. The following error ends the pushing: the joints
-move less far than they are commanded to. Where that has not happened after 4 s, the person presses Stop.
+that begins above it. With ``--feels`` the arm estimates external torques, and a force ends the pushing.
+Otherwise the following error does: the joints move less far than they are commanded to. Where that has not
+happened after 4 s, the person presses Stop.
 """
 
 import itertools
+from dataclasses import replace
 from functools import partial
 from typing import Final, final
 
@@ -18,7 +20,7 @@ from latentarm.arms.mujoco import MujocoArm
 from latentarm.assistance.controllers.end_effector import EndEffectorController
 from latentarm.control.clock import SimulatedClock
 from latentarm.control.step import Step
-from latentarm.core.types import FloatArray, Input, Pose
+from latentarm.core.types import FloatArray, Input, Pose, Reading
 from latentarm.robots.kinematics.obstacles import HalfSpace
 from latentarm.robots.panda import panda
 from latentarm.robots.robot import Robot
@@ -54,7 +56,11 @@ def measure(options: Force, work: Work) -> Outcome:
             zones=(Zone(thing, options.zone),) if options.zone else (),
         )
         cells = [(work.seed, number) for number in range(options.drives)]
-        touched = [one for one in work.each(partial(drive, stiffness, config), cells) if one is not None]
+        touched = [
+            one
+            for one in work.each(partial(drive, stiffness, config, options.feels), cells)
+            if one is not None
+        ]
         found = {"touched_drives": len(touched)}
         if touched:
             forces = np.array(touched)
@@ -78,12 +84,13 @@ class Thing:
         self._arm = arm
         self._stiffness = stiffness_n_mm
         self._tool = arm.model.site(panda().chain.tools[0].name).id
-        self._peak_n = 0.0
+        self._peak_n = self._now_n = 0.0
         mujoco.set_mjcb_passive(None if stiffness_n_mm is None else self._push)
 
     def _push(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
         at = data.site_xpos[self._tool]
         force_n = 1e3 * (self._stiffness or 0.0) * max(0.0, SPRING_M - at[2])
+        self._now_n = force_n
         self._peak_n = max(self._peak_n, force_n)
         up, body = np.array([0.0, 0.0, force_n]), model.site_bodyid[self._tool]
         mujoco.mj_applyFT(model, data, up, np.zeros(3), at, body, data.qfrc_passive)
@@ -93,6 +100,12 @@ class Thing:
         table_n = self._arm.scene_state().force_n.get(BOTH, 0.0)
         peak_n, self._peak_n = self._peak_n, 0.0
         return table_n if self._stiffness is None else peak_n
+
+    def felt(self, reading: Reading) -> FloatArray | None:
+        """The external torque of a reading, (n,), N m, with that of the spring, which the arm omits."""
+        if reading.external_torque is None:
+            return None
+        return reading.external_torque + self._now_n * panda().chain.jacobian(reading.q)[2]
 
 
 def start(robot: Robot, rng: np.random.Generator) -> FloatArray:
@@ -105,6 +118,7 @@ def start(robot: Robot, rng: np.random.Generator) -> FloatArray:
 def drive(
     stiffness_n_mm: float | None,  # of the spring, N/mm; None for the table
     config: SafetyConfig,
+    feels: bool,  # whether the arm estimates external torques
     cell: tuple[int, int],
 ) -> FloatArray | None:
     """Push down once.
@@ -125,7 +139,9 @@ def drive(
         if stop is None and touch is not None and tick == touch + PRESSED_TICKS:
             step.stop("Stop was pressed.")
         u = np.array([-1.0, 0.0]) if rng.uniform() < 0.8 else rng.uniform(-1.0, 1.0, 2)
-        record = step(Input(u), 0.0, arm.read(), clock.now_s())
+        reading = arm.read()
+        felt = thing.felt(reading) if feels else None
+        record = step(Input(u), 0.0, replace(reading, external_torque=felt), clock.now_s())
         arm.send(record.command)
         forces.append(thing.force_n())
         touch = tick if touch is None and forces[-1] > 0.0 else touch
