@@ -146,6 +146,11 @@ def test_real_and_simulated_arms_are_told_apart(words, capsys):
     assert "real arm" in capsys.readouterr().err
 
 
+def test_an_address_without_a_driver_leads_to_the_list_of_addresses(capsys):
+    assert main(["arms", "check", "172.16.0.2", "--robot", "fr3"]) == 2
+    assert "`latentarm arms list`" in capsys.readouterr().err
+
+
 def test_no_robot_is_taken_for_an_arm_that_nobody_named(server, capsys, tmp_path):
     for words in (
         ["arms", "check", server.address],

@@ -51,7 +51,9 @@ def check_arm_at(
     from latentarm.web.arm_process.initial_state import begin_real
 
     if not is_address(address):
-        raise UserError(f"{address} is not the address of a real arm: write SCHEME://HOST.")
+        raise UserError(
+            f"{address} is not the address of a real arm: `latentarm arms list` shows their form."
+        )
     stated = zones_for(zones, speeds)
     trained = None if run is None else read_run(run)
     driven = begin_real(trained, None if trained is None else trained.task, 0, robot).place.robot
