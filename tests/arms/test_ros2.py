@@ -278,7 +278,7 @@ def test_what_is_not_rosbridge_is_named(the_panda: Robot, monkeypatch: pytest.Mo
         (WHOLE + "&states=joint states", "states of --arm ros2 must be a name"),
         (WHOLE + "&gripper_open=wide", "gripper_open of --arm ros2 must be a number"),
         (WHOLE + "&gripper_open=0", "must be different"),
-        ("ros2://arm?controller=c", "name its joint"),
+        ("ros2://arm?controller=c", "gripper_joint=NAME, as `ros2 topic echo --once /joint_states` shows"),
     ],
 )
 def test_options_are_checked(the_panda: Robot, address: str, said: str) -> None:

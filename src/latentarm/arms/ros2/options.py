@@ -64,7 +64,8 @@ def read_options(address: ArmAddress, robot: Robot) -> Ros2Options:
         raise UserError(f"--arm ros2 names a gripper, and {robot.name} has none.")
     if robot.gripper is not None and not _JOINT.fullmatch(finger):
         raise UserError(
-            f"{robot.name} has a gripper: name its joint in the joint states with gripper_joint=NAME."
+            f"{robot.name} has a gripper: name its joint with gripper_joint=NAME, as `ros2 topic echo --once"
+            " /joint_states` shows it on the arm's computer."
         )
     opened = _figure("gripper_open", given, 0.0 if robot.gripper is None else robot.gripper.width_m)
     closed = _figure("gripper_closed", given, 0.0)
