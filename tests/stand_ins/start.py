@@ -33,7 +33,8 @@ def lerobot(until: ExitStack) -> str:
     ranges = {"drive_mode": 0, "homing_offset": 0, "range_min": 1000, "range_max": 3000}
     calibration.write_text(json.dumps({name: {"id": 1 + n, **ranges} for n, name in enumerate(MOTORS)}))
     address = f"lerobot://so101_follower?port={bus.port}&calibration={calibration}"
-    return f"'{address}' --robot so101_new_calib.xml --limits docs/your-arm/so101_limits.toml"
+    limits = TESTS.parent / "docs" / "your-arm" / "so101_limits.toml"
+    return f"'{address}' --robot so101_new_calib.xml --limits {limits}"
 
 
 def ros2(until: ExitStack) -> str:
