@@ -7,7 +7,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from latentarm.arms.catalogue import ARMS, DEFAULT_ARM, PHYSICAL_ARM, make_arm, make_simulated_arm
+from latentarm.arms.catalogue import (
+    ARMS,
+    DEFAULT_ARM,
+    PHYSICAL_ARM,
+    check_named,
+    make_arm,
+    make_simulated_arm,
+)
 from latentarm.arms.contract import INPUT_BUDGET_S, SIMULATED_INPUT_BUDGET_S, ArmSpec, arm_refusals, check_arm
 from latentarm.arms.kinematic import KinematicArm
 from latentarm.core.errors import UserError
@@ -38,6 +45,11 @@ def test_the_default_is_in_the_catalogue():
 def test_an_unknown_arm_is_refused(the_panda):
     with pytest.raises(UserError, match="--arm names the arm 'wooden', which is not one of kinematic"):
         make_arm("wooden", the_panda, the_panda.home, now_s)
+
+
+def test_an_address_without_its_scheme_leads_to_the_list_of_addresses():
+    with pytest.raises(UserError, match=r"--arm 10.0.0.2:30002 is no address.*`latentarm arms list`"):
+        check_named("10.0.0.2:30002")
 
 
 @pytest.mark.usefixtures("registered")

@@ -109,6 +109,11 @@ def check_named(name: str) -> None:
     """Check the name or address in ``--arm``, without making the arm."""
     if is_address(name):
         _driver(name, parse_address(name))
+    elif ":" in name:
+        raise UserError(
+            f"--arm {name} is no address of an arm: `latentarm arms list` shows their form, such as"
+            f" {address_form('xarm')}."
+        )
     else:
         ARMS.find(name, "--arm")
 
