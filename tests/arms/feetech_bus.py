@@ -12,6 +12,7 @@ import json
 import math
 import os
 import select
+import signal
 import subprocess
 import sys
 import time
@@ -218,6 +219,12 @@ class FeetechBus:
     def silence(self, silent: bool) -> None:
         """Let the bus answer nothing any more, or answer again."""
         self._do("silent", silent=silent)
+
+    def stand_still(self, for_s: float) -> None:
+        """Let the bus do nothing for some time, and then answer all that it was asked meanwhile."""
+        self._process.send_signal(signal.SIGSTOP)
+        time.sleep(for_s)
+        self._process.send_signal(signal.SIGCONT)
 
     def answer_late(self, times: int) -> None:
         """Before the next positions come answers to an earlier question, of one byte each, so many times."""

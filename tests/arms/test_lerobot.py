@@ -369,6 +369,23 @@ def test_a_bus_that_falls_silent_is_a_fault_that_can_be_recovered_from(
 
 
 @needs_lerobot
+def test_readings_are_new_after_the_bus_has_stood_still(arm: LerobotArm, bus: FeetechBus) -> None:
+    _enabled(arm)
+    bus.stand_still(2.0)
+    assert arm.status().phase == "fault"
+    ended_s = arm.read().time_s
+    _wait(lambda: arm.read().time_s > ended_s)
+    arm.recover()
+    _wait(lambda: arm.status().phase == "disabled")
+    arm.guide()
+    _wait(lambda: not any(bus.powered()[:5]))
+    before, begun_s = arm.read().q, time.monotonic()
+    bus.push([100.0] * 6)
+    _wait(lambda: np.abs(arm.read().q - before).max() > 0.1)
+    assert time.monotonic() - begun_s < 0.1
+
+
+@needs_lerobot
 def test_a_motor_that_lets_go_is_a_fault_by_name(arm: LerobotArm, bus: FeetechBus) -> None:
     _enabled(arm)
     bus.put(2, TORQUE, 0)

@@ -45,6 +45,7 @@ class MotorsBus:
         self._robot = _robot(options)
         self._bus: Any = self._robot.bus
         _sleep_until_answers_come(self._bus.port_handler)
+        _discard_late_answers(self._bus.port_handler)
         self.motors: tuple[str, ...] = tuple(self._bus.motors)
         self.joints = tuple(name for name in self.motors if name != GRIPPER)
         degrees = import_module("lerobot.motors").MotorNormMode.DEGREES
@@ -253,6 +254,15 @@ def _sleep_until_answers_come(port: Any) -> None:
         return read_at_once(length)
 
     port.readPort = read
+
+
+def _discard_late_answers(port: Any) -> None:
+    """Let the port of a servos' SDK discard before each question what came too late for earlier ones.
+
+    The SDK means to, but its own method waits for what was written. Answers to questions that a bus had kept
+    while it stood still would be read in place of newer ones from then on.
+    """
+    port.clearPort = lambda: port.ser.reset_input_buffer()
 
 
 def _robot(options: Options) -> Any:
