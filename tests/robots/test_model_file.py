@@ -134,6 +134,10 @@ def test_the_end_effector_may_be_left_out_where_there_is_one(written):
         (arm('range="57.3 0"'), "Joint 1 may move from 57.3 to 0: its lower limit must be below"),
         (arm('type="ball"'), "no hinge or slide joint: j can turn or move freely"),
         (arm(more='<geom type="mesh" mesh="gone"/>'), "cannot be used as a robot: .*mesh"),
+        (
+            '<mujoco><asset><mesh file="gone.stl"/></asset><worldbody/></mujoco>',
+            r"robot: Error opening file .*gone\.stl'\. Leave the model in its folder, with its meshes\.$",
+        ),
     ],
 )
 def test_a_file_that_is_no_robot_is_refused_in_one_sentence(written, text, sentence):

@@ -72,7 +72,8 @@ def _loaded(path: Path, urdf: Urdf | None, end_effector: str | None) -> Robot:
         mjcf = _as_mjcf(spec, path)
         model = mujoco.MjModel.from_xml_string(mjcf)
     except (ValueError, RuntimeError) as error:  # MuJoCo's for what is wrong, and for what it did not foresee
-        raise UserError(f"{path} cannot be used as a robot: {_one_line(error)}") from error
+        hint = " Leave the model in its folder, with its meshes." if "opening file" in str(error) else ""
+        raise UserError(f"{path} cannot be used as a robot: {_one_line(error)}{hint}") from error
     try:
         tool = choose_end_effector(model) if end_effector is None else end_effector
         reading = read(model, [tool])
@@ -190,4 +191,4 @@ def _least_singular_value(chain: Chain, q: FloatArray) -> FloatArray:
 
 
 def _one_line(error: Exception) -> str:
-    return " ".join(str(error).split()).rstrip(".") + "."
+    return " ".join(str(error).split()).removeprefix("Error: ").rstrip(".") + "."
