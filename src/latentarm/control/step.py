@@ -61,14 +61,16 @@ class Step:
 
     The arm starts disengaged. After a neutral input, `enable` engages it. Every stop (by the operator, an
     input that is too old, a number that is not one, a reading of the joints that is too old or
-    cannot be true, a controller that fails) disengages it again: a ramped stop, then neutral, then `enable`::
+    cannot be true, a force at the tool, a controller that fails) disengages it again: a ramped stop, then
+    neutral, then `enable`::
 
         step.reset(arm.read().q)
         step(neutral, 0.0, arm.read(), now)
         step.enable()
 
-    After a stop by a following error that looks like contact the arm draws back a little before it rests: the
-    one motion without a fresh input, see `Yielding`. `stop`, `enable` and any other reason to stop end it.
+    After a stop by a force, or by a following error that looks like contact, the arm draws back a little
+    before it rests: the one motion without a fresh input, see `ToolForce` and `Yielding`. `stop`, `enable`
+    and any other reason to stop end it.
 
     Requests to the gripper pass a filter of their own (see `GripperFilter`), whether they come from the
     person who drives, one who guides the arm by hand, or one who holds down the opening button. An arm that
