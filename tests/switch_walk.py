@@ -169,7 +169,7 @@ class Walk:
 
 
 def _one_is_lit(now: dict[str, Any]) -> bool:
-    """Whether one choice, or one row of them, is lit and in sight, and Stop is among the choices."""
+    """True if exactly one choice or row is lit and visible, and Stop can be chosen."""
     return now["lit"] == len(now["seen"]) == 1 and (now["row"] or now["lights"] <= 1) and now["stop"] > 0
 
 

@@ -115,16 +115,16 @@ def test_what_a_step_needs_to_be_held_was_taken_in_an_earlier_one(name):
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["dessert", "apple_pie"])
 def test_nothing_is_called_lost_or_short_in_a_run_that_succeeds(name, monkeypatch):
-    task, look = make_scene_task(name), MujocoArm.scene_state
+    task, scene_state = make_scene_task(name), MujocoArm.scene_state
     for choice in range(len(task.choices)):
         # Steps measure what happens in them, so they must see it as often as the person who drives.
         states = []
 
-        def seen(arm, states=states):
-            states.append(look(arm))
+        def recorded_state(arm, states=states):
+            states.append(scene_state(arm))
             return states[-1]
 
-        monkeypatch.setattr(MujocoArm, "scene_state", seen)
+        monkeypatch.setattr(MujocoArm, "scene_state", recorded_state)
         shown = demonstrate_once(task, choice, np.random.default_rng(0))
         begun = task.begin(choice, np.random.default_rng(0))
         progress, fills = Progress(begun.steps, begun.failures), FillLevels(vessels(begun))

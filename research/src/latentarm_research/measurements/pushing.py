@@ -85,7 +85,7 @@ def scene(
 ) -> tuple[tuple[Obstacle, ...], Judge, FloatArray, Push]:
     """Obstacles, their judge, a start and a push, with all distances above `START_M`.
 
-    By the filters' capsules, too, no distance is too small: they promise nothing where one begins so.
+    Nor is a distance too small by the filters' own capsules: from such a start they promise nothing.
     """
     limits, capsules, chain = robot.limits, robot.capsules, robot.chain
     outer = np.flatnonzero(capsules.link >= max(1, robot.dof // 3))[-robot.held :]  # what is held, if any
@@ -128,7 +128,7 @@ def scene(
 
 
 def _allowed(robot: Robot, obstacles: tuple[Obstacle, ...], q: FloatArray) -> bool:
-    """Whether the filters find nothing too near at q (n,), rad."""
+    """True if the filters count no distance as too small at q (n,), rad."""
     config, still = SafetyConfig(obstacles=obstacles), np.zeros(robot.dof)
     arm = GuardedArm(Bounds(config, robot, PERIOD_S), Body(robot))
     height = Situation(arm, q, still, still).contacts_now().height
