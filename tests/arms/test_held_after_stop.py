@@ -88,6 +88,18 @@ def test_stop_never_presses_harder(soft, after_s, speed):
         assert min(afterwards) > 0.99 * before
 
 
+def test_fingers_that_shake_when_stop_comes_keep_what_they_hold():
+    caught, joints = Caught(), load_robot("panda").gripper.joints
+    before, _ = caught.stopped_after(0.5)
+    assert caught.step.enable() is None
+    caught.tick()
+    caught.arm.data.qvel[[caught.arm.model.joint(name).dofadr[0] for name in joints]] = 0.03
+    caught.step.stop("Stop.")
+    caught.tick()
+    assert caught.arm.read().gripper.holding
+    assert min(caught.tick() for _ in range(A_SECOND)) > 0.99 * before
+
+
 def test_what_is_caught_comes_free_by_holding_open_and_stays_held_when_the_arm_is_enabled():
     caught = Caught()
     before, _ = caught.stopped_after(0.5)

@@ -29,8 +29,8 @@ class FingerServo(SimulatedGripper):
     stay held when commands end, when the arm stops, and when it is disabled.
 
     A gripper reports that it holds something once it has stood still before the commanded width for 50 ms
-    while both servos press. Fingers that meet have nothing between them. Measurements are ``delay_s`` old.
-    Servos of further fingers follow ``first_actuator``.
+    while both servos press, and as long as they press. Fingers that meet have nothing between them.
+    Measurements are ``delay_s`` old. Servos of further fingers follow ``first_actuator``.
     """
 
     def __init__(
@@ -54,6 +54,7 @@ class FingerServo(SimulatedGripper):
         data.qpos[self._positions] = self._closed + self._per_m * self._target
         data.ctrl[self._servos] = data.qpos[self._positions]
         self._lead = self._moved_s = 0.0
+        self._holding = False
         self._press(gripper.force_n)
         self._measured: deque[tuple[float, GripperReading]] = deque()
         self.note()
@@ -62,8 +63,11 @@ class FingerServo(SimulatedGripper):
         """Set the servos for the next time step; returns whether the step after needs that again."""
         # Plain numbers: NumPy takes several times as long for so few, and this runs in every time step.
         where = self._shares()
-        if not self._stalled(where):
+        pressing = self._pressing(where)
+        if not (pressing and self._still()):
             self._moved_s = self._data.time
+        # What is held may shake.
+        self._holding = pressing and (self._holding or self._data.time - self._moved_s >= _STALLED_S)
         if self._target == self._goal:
             return False
         way = min(max(self._goal - self._target, -self._per_step), self._per_step)
@@ -75,7 +79,7 @@ class FingerServo(SimulatedGripper):
     def note(self) -> None:
         """Store the present measurement until its delay has passed."""
         time_s, where = float(self._data.time), self._shares()
-        self._measured.append((time_s, GripperReading(sum(where), self._holds(where))))
+        self._measured.append((time_s, GripperReading(sum(where), self._holding)))
         while len(self._measured) > 1 and time_s - self._measured[1][0] >= self._delay_s - 1e-9:
             self._measured.popleft()
 
@@ -85,7 +89,7 @@ class FingerServo(SimulatedGripper):
     def halt(self) -> None:
         """Stay at the present opening. Fingers that do not hold anything yet press no more."""
         where = self._shares()
-        if self._per_step > 0.0 and not self._holds(where):
+        if self._per_step > 0.0 and not self._holding:
             self._target = sum(where) / len(where)
             self._data.ctrl[self._servos] = self._closed + self._per_m * self._target
         # Once: where fingers give way later, they press back.
@@ -106,16 +110,13 @@ class FingerServo(SimulatedGripper):
         """Opening of each finger, m."""
         return ((self._data.qpos[self._positions] - self._closed) / self._per_m).tolist()
 
-    def _holds(self, where: list[float]) -> bool:
-        """Whether fingers at these positions, m, have stalled for long enough."""
-        return self._stalled(where) and self._data.time - self._moved_s >= _STALLED_S
-
-    def _stalled(self, where: list[float]) -> bool:
-        """Whether fingers at these positions, m, stand still although their servos press."""
-        pulled = min(where) - self._target
-        speed = abs(sum(self._data.qvel[self._speeds].tolist()) / self._per_m)
+    def _pressing(self, where: list[float]) -> bool:
+        """Whether fingers at these positions, m, are so far from where their servos want them."""
         enough = max(min(_STALLED_M, 0.5 * self._lead), 0.5 * _LEAST_N / self._stiffness)
-        return pulled > enough and speed < _STILL_M_S
+        return min(where) - self._target > enough
+
+    def _still(self) -> bool:
+        return abs(sum(self._data.qvel[self._speeds].tolist()) / self._per_m) < _STILL_M_S
 
 
 def add_finger_servos(spec: mujoco.MjSpec, gripper: Gripper, moved_kg: FloatArray) -> None:
