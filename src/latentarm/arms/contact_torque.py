@@ -1,5 +1,6 @@
 """Torques that a simulated arm's surroundings exert on its joints."""
 
+from collections import deque
 from typing import Final, final
 
 import mujoco
@@ -11,6 +12,9 @@ from latentarm.robots.kinematics.reader import ModelChain
 _EQUALITY: Final = int(mujoco.mjtConstraint.mjCNSTR_EQUALITY)
 _CONTACT: Final = int(mujoco.mjtConstraint.mjCNSTR_CONTACT_FRICTIONLESS)  # the first of the contacts' kinds
 _WELD: Final = int(mujoco.mjtEq.mjEQ_WELD)
+
+LOOKS: Final = 3
+"""The estimate is the median of so many looks: a finger may lose a stiff cup for a time step."""
 
 
 @final
@@ -25,17 +29,22 @@ class ContactTorque:
         self._model, self._data = model, data
         self._joints, self._ratio = model.jnt_dofadr[arm.link_joints], arm.chain.ratio
         self._welds = model.eq_type == _WELD
-        self._torque = np.zeros(model.nv)
+        self._generalized = np.zeros(model.nv)
+        self._looks: deque[FloatArray] = deque(maxlen=LOOKS)
+        self.torque = np.zeros(self._ratio.shape[1])  # (n,), N m (N where a joint slides); do not change it
 
-    def now(self) -> FloatArray:
-        """(n,), N m (N where a joint slides), in the last time step."""
+    def look(self) -> None:
+        """Take in the last time step."""
+        self._looks.append(self._now())
+        self.torque = np.median(self._looks, axis=0)
+
+    def _now(self) -> FloatArray:
         kind, index = self._data.efc_type, self._data.efc_id
         counts = kind >= _CONTACT
         held = kind == _EQUALITY
         counts[held] = self._welds[index[held]]
         if not counts.any():
             return np.zeros(self._ratio.shape[1])
-        mujoco.mj_mulJacTVec(
-            self._model, self._data, self._torque, np.where(counts, self._data.efc_force, 0.0)
-        )
-        return self._torque[self._joints] @ self._ratio
+        forces = np.where(counts, self._data.efc_force, 0.0)
+        mujoco.mj_mulJacTVec(self._model, self._data, self._generalized, forces)
+        return self._generalized[self._joints] @ self._ratio

@@ -25,7 +25,7 @@ from latentarm.robots.scene.scene import Scene, SceneState
 STEP_S: Final = 0.001  # time step of the physics and of the servo, s
 _HARD_STOP: Final = (2.0 * STEP_S, 1.0)  # stops of metal: as stiff as the time step allows
 RATE_HZ: Final = 1000.0  # of the servo
-LOOK_STEPS: Final = 4  # time steps between checks of contacts, stabs and cuts
+LOOK_STEPS: Final = 4  # time steps between checks of contacts, forces, stabs and cuts
 SCENE_SETTLED_S: Final = 10.0  # without a command, things about an arm are at rest by then
 
 
@@ -164,6 +164,7 @@ class MujocoArm(SimulatedArm, SceneArm):
             steps -= taken
             if watch is not None and self._steps % LOOK_STEPS == 0:
                 watch.look()
+                self._touch.look()
                 if self._tines is not None:
                     self._tines.look()
 
@@ -171,7 +172,7 @@ class MujocoArm(SimulatedArm, SceneArm):
         """Store the present measurement until its delay has passed."""
         time_s = float(self.data.time)
         q, dq = self.data.qpos[self._positions].copy(), self.data.qvel[self._speeds].copy()
-        self._measured.append((time_s, q, dq, self._touch.now()))
+        self._measured.append((time_s, q, dq, self._touch.torque))
         while len(self._measured) > 1 and time_s - self._measured[1][0] >= self._imperfections.delay_s - 1e-9:
             self._measured.popleft()
         if self._fingers is not None:
