@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import final
 
 import numpy as np
@@ -35,7 +36,7 @@ from latentarm.safety.newest_reading import NewestReading
 from latentarm.safety.plausibility import FOLLOWING_ERRORS, Plausibility
 from latentarm.safety.stack import Passed, SafetyStack
 from latentarm.safety.timekeeping import Timekeeping
-from latentarm.safety.tool_force import ToolForce
+from latentarm.safety.tool_force import FORCE, ToolForce
 from latentarm.safety.yielding import YIELDING, Yielding
 
 _ABSURD = 2.0
@@ -426,13 +427,16 @@ class Step:
                 help_ = shared.help(u, a_h, context)
                 bound_rad = shared.bound(help_, context, self._mode)
                 wanted = help_.with_person(a_h)
+                eased = self._force.eased(q, wanted)
         except Exception as error:  # noqa: BLE001 - whatever a controller does wrong, the arm stops
             text = _message_of(error)
             stop = Stop(
                 f"The controller failed ({text}).", code="controller_failed", parameters={"text": text}
             )
             return self._record(time_s, q, self._refused(stop), u)
-        passed = self._passed(wanted, q, input_age_s)
+        passed = self._passed(eased, q, input_age_s)
+        if eased is not wanted:
+            passed = replace(passed, limited_by=(FORCE, *passed.limited_by))
         command = self._command(passed)
         return StepRecord(
             time_s=time_s,

@@ -14,10 +14,14 @@ if TYPE_CHECKING:
 DAMPING_M: Final = 0.05
 """Near a singular configuration a small torque would count as a large force without it."""
 
+FORCE: Final = "force"  # stands among the limits of each command that was eased
+EASED: Final = (0.5, 0.8)
+"""Shares of the largest force: from the first on, a motion against the force slows; at the second it ends."""
+
 
 @final
 class ToolForce:
-    """Refuses motions against a force that is above ``most_n``, N.
+    """Eases motions against a force, and refuses them where it is above ``most_n``, N.
 
     The force F is estimated by damped least squares from ``J^T F = torque``, J (3, n) of the tool's position:
     all that acts counts as a force at the tool. Contact of a link nearer to the base counts as less. A motion
@@ -62,7 +66,7 @@ class ToolForce:
         torque = self._torque
         if torque is None or torque @ torque <= self._least**2 or torque @ self._going >= 0.0:
             return None
-        force_n = largest(self.forces(q, torque))
+        force_n = largest(np.linalg.norm(self.forces(q, torque)[0], axis=1))
         if force_n <= self._most_n:
             return None
         return Stop(
@@ -71,13 +75,43 @@ class ToolForce:
             parameters={"force_n": round(force_n)},
         )
 
-    def forces(self, q: FloatArray, torque: FloatArray) -> FloatArray:
-        """(K,), estimated force at each tool, N, of an external torque (n,), N m, at q (n,), rad."""
+    def eased(self, q: FloatArray, velocity: FloatArray) -> FloatArray:
+        """A velocity (n,), rad/s, at q (n,), rad, whose tools go less against the force; itself without one.
+
+        The tools keep their turns and their ways across the force, as far as the arm can move so.
+        """
+        torque, begins = self._torque, EASED[0]
+        if torque is None or torque @ torque <= (begins * self._least) ** 2:
+            return velocity
+        for force, jacobian in zip(*self.forces(q, torque), strict=True):
+            size_n = float(np.linalg.norm(force))
+            share = min((size_n / self._most_n - begins) / (EASED[1] - begins), 1.0)
+            if share <= 0.0:
+                continue
+            back = np.concatenate([force / size_n, np.zeros(3)])
+            against_m_s = -float(back @ (jacobian @ velocity))
+            if against_m_s > 0.0:
+                way = jacobian.T @ _damped(jacobian, back)
+                # Damping shortens it, and what is left of a push would build up force.
+                velocity = velocity + share * against_m_s / max(back @ jacobian @ way, 0.5) * way
+        return velocity
+
+    def forces(self, q: FloatArray, torque: FloatArray) -> tuple[FloatArray, list[FloatArray]]:
+        """(K, 3), estimated force at each tool, N, of an external torque (n,), N m, at q (n,), rad.
+
+        And the tools' Jacobians (6, n).
+        """
         transforms = self._chain.link_transforms(q)
-        forces = np.zeros(len(self._chain.tools))
+        forces, jacobians = np.zeros((len(self._chain.tools), 3)), list[FloatArray]()
         for tool in range(len(forces)):
             pose = self._chain.tool_pose(transforms, tool)
-            jacobian = self._chain.jacobian_at(transforms, pose, tool)[:3]
-            damped = jacobian @ jacobian.T + DAMPING_M**2 * np.eye(3)
-            forces[tool] = np.linalg.norm(np.linalg.solve(damped, jacobian @ torque))
-        return forces
+            jacobian = self._chain.jacobian_at(transforms, pose, tool)
+            jacobians.append(jacobian)
+            forces[tool] = _damped(jacobian[:3], jacobian[:3] @ torque)
+        return forces, jacobians
+
+
+def _damped(jacobian: FloatArray, x: FloatArray) -> FloatArray:
+    """``(J J^T + DAMPING_M^2 I)^-1 x``."""
+    damped = jacobian @ jacobian.T + DAMPING_M**2 * np.eye(len(jacobian))
+    return np.linalg.solve(damped, x).astype(np.float64, copy=False)

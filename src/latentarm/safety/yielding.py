@@ -19,6 +19,10 @@ LONGEST_S: Final = 1.0
 PACE: Final = 0.5
 """Commands are taken back at this share of their speed, and joints go to where they are at this share."""
 
+SLOW: Final = 0.01
+"""A command in which all joints are slower than this share of their limits is not taken back: an arm that is
+eased against a force (`ToolForce`) creeps on, and what led to the force came before."""
+
 LOOK_S: Final = 0.5  # an arm that does not stand still so long after its stop does not draw back, s
 _STILL_RAD: Final = 2e-3
 _REMEMBERED_S: Final = LOOK_S + 1.0
@@ -26,7 +30,7 @@ _REMEMBERED_S: Final = LOOK_S + 1.0
 
 @final
 class Yielding:
-    """After a force, or a following error that looks like contact, leads the arm back over the last second.
+    """After a force, or a following error that looks like contact, leads the arm back over its last motion.
 
     A command to stand still does not relieve what the arm presses on: its servo goes on towards the position
     that was commanded, inside the thing. So the arm is commanded to where it is measured, then back along its
@@ -45,7 +49,10 @@ class Yielding:
         self._looks = math.ceil(max(bounds.lag_s, bounds.stop_s) / bounds.dt_s)
         # Each reading with the command since the one before, the newest last.
         self._past: deque[tuple[FloatArray, FloatArray]] = deque(maxlen=round(_REMEMBERED_S / bounds.dt_s))
+        # The last commands to move, the newest last, rad/s.
+        self._moves: deque[FloatArray] = deque(maxlen=round(PACE * LONGEST_S / bounds.dt_s))
         self._fastest = PACE * bounds.speed
+        self._slow = SLOW * bounds.speed
         self._looked: int | None = None
         self._felt = False
         self._way_back: list[FloatArray] | None = None
@@ -60,11 +67,14 @@ class Yielding:
         """Rest, and forget the past."""
         self._looked = self._way_back = None
         self._past.clear()
+        self._moves.clear()
 
     def saw(self, q: FloatArray, velocity: FloatArray) -> None:
         """Remember a reading (n,), rad, and the command since the one before, (n,), rad/s."""
         if self._way_back is None:
             self._past.append((q, velocity))
+            if (np.abs(velocity) > self._slow).any():
+                self._moves.append(velocity)
 
     def begin(self) -> None:
         """A following error has just stopped the arm."""
@@ -123,8 +133,7 @@ class Yielding:
 
     def _taken_back(self) -> list[FloatArray]:
         """The last commands backwards at the share `PACE` of their speed, the last first, rad/s."""
-        back = [-PACE * velocity for _, velocity in self._past if velocity.any()]
-        return [velocity for velocity in back for _ in range(round(1.0 / PACE))][-self._most :]
+        return [-PACE * velocity for velocity in self._moves for _ in range(round(1.0 / PACE))]
 
     def _points(self, q: FloatArray) -> FloatArray:
         """(P, 3), m."""

@@ -14,6 +14,7 @@ from latentarm.control.stick_ring import STRETCHES
 from latentarm.core.call_log import CallLog
 from latentarm.core.types import StepRecord, Stop
 from latentarm.safety.straight_way import StraightWay
+from latentarm.safety.tool_force import FORCE
 from latentarm.safety.zones import zone_of_filter
 from latentarm.tasks.step_goals import StepGoals
 from latentarm.web.arm_process.disengaged import Disengaged
@@ -46,6 +47,7 @@ _HELD_BACK: Final[dict[str, HeldBack]] = {
     "freshness": "freshness",
     "workspace": "workspace",
     "joint position": "joint_position",
+    FORCE: "force",
 }
 """Filters whose effect is shown to people; the others are always active."""
 

@@ -7,7 +7,7 @@ from latentarm.tasks.mishap import MishapKind
 from latentarm.web.protocol.notice import Message, Notice
 from latentarm.web.protocol.orders import HelpLevel, ModeName
 
-HeldBack = Literal["clearance", "freshness", "workspace", "joint_position", "zone"]
+HeldBack = Literal["clearance", "freshness", "workspace", "joint_position", "force", "zone"]
 Phase = Literal["disengaged", "neutral_needed", "ready", "moving", "stopping"]
 Guiding = Literal["offered", "on", "own"]
 """*own*: guiding by hand is a mode of the arm's own, which is switched on at the arm."""

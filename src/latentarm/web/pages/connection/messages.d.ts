@@ -335,7 +335,7 @@ export interface State {
   phase: "disengaged" | "neutral_needed" | "ready" | "moving" | "stopping";
   note: Notice | null;
   reason: Notice | null;
-  held_back: "clearance" | "freshness" | "workspace" | "joint_position" | "zone" | null;
+  held_back: "clearance" | "freshness" | "workspace" | "joint_position" | "force" | "zone" | null;
   zone: string | null;
   returning: boolean;
   bound_for: string | null;
