@@ -359,7 +359,7 @@ class Step:
             self._engagement.stop(q)
             self._yielding.end()
             return self._record(time_s, self._unreadable, Passed(self._stack.stop()))
-        self._yielding.saw(q, self._stack.velocity)
+        self._yielding.saw(q, self._stack.velocity, pressing=self._force.pressing)
         if self._doubts(q, time_s, new=self._newest_reading.new):
             return self._record(time_s, q, Passed(self._stack.stop()))
         if self._follows and self._engagement.stopped is None:

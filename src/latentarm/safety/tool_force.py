@@ -35,10 +35,12 @@ class ToolForce:
         self._torque: FloatArray | None = None
         self._rest = np.zeros(robot.dof)
         self._going = self._rest
+        # Whether motions against the force were slowed when one was last asked for.
+        self.pressing = False
 
     def reset(self) -> None:
         """Begin anew, with an arm that has not moved yet."""
-        self._going = self._rest
+        self._going, self.pressing = self._rest, False
 
     def saw(self, torque: FloatArray | None) -> Stop | None:
         """Take the external torque of a reading, (n,), N m; why it cannot be used, or None.
@@ -81,6 +83,7 @@ class ToolForce:
         The tools keep their turns and their ways across the force, as far as the arm can move so.
         """
         torque, begins = self._torque, EASED[0]
+        self.pressing = False
         if torque is None or torque @ torque <= (begins * self._least) ** 2:
             return velocity
         for force, jacobian in zip(*self.forces(q, torque), strict=True):
@@ -88,6 +91,7 @@ class ToolForce:
             share = min((size_n / self._most_n - begins) / (EASED[1] - begins), 1.0)
             if share <= 0.0:
                 continue
+            self.pressing = True
             back = np.concatenate([force / size_n, np.zeros(3)])
             against_m_s = -float(back @ (jacobian @ velocity))
             if against_m_s > 0.0:

@@ -19,10 +19,6 @@ LONGEST_S: Final = 1.0
 PACE: Final = 0.5
 """Commands are taken back at this share of their speed, and joints go to where they are at this share."""
 
-SLOW: Final = 0.01
-"""A command in which all joints are slower than this share of their limits is not taken back: an arm that is
-eased against a force (`ToolForce`) creeps on, and what led to the force came before."""
-
 LOOK_S: Final = 0.5  # an arm that does not stand still so long after its stop does not draw back, s
 _STILL_RAD: Final = 2e-3
 _REMEMBERED_S: Final = LOOK_S + 1.0
@@ -30,11 +26,12 @@ _REMEMBERED_S: Final = LOOK_S + 1.0
 
 @final
 class Yielding:
-    """After a force, or a following error that looks like contact, leads the arm back over its last motion.
+    """After a force, or a following error that looks like contact, leads the arm back the way it came.
 
     A command to stand still does not relieve what the arm presses on: its servo goes on towards the position
     that was commanded, inside the thing. So the arm is commanded to where it is measured, then back along its
-    last commands, until a point of it has gone back by `FARTHEST_M`, for at most `LONGEST_S`.
+    last commands before it pressed, until a point of it has gone back by `FARTHEST_M`, for at most
+    `LONGEST_S`.
 
     Without a measured force contact is inferred: the arm stands still, a joint is still off, in readings
     that change, and it or the farthest point is behind where it was commanded to go. A frozen encoder repeats
@@ -49,10 +46,9 @@ class Yielding:
         self._looks = math.ceil(max(bounds.lag_s, bounds.stop_s) / bounds.dt_s)
         # Each reading with the command since the one before, the newest last.
         self._past: deque[tuple[FloatArray, FloatArray]] = deque(maxlen=round(_REMEMBERED_S / bounds.dt_s))
-        # The last commands to move, the newest last, rad/s.
+        # The last commands to move before something was pressed on, the newest last, rad/s.
         self._moves: deque[FloatArray] = deque(maxlen=round(PACE * LONGEST_S / bounds.dt_s))
         self._fastest = PACE * bounds.speed
-        self._slow = SLOW * bounds.speed
         self._looked: int | None = None
         self._felt = False
         self._way_back: list[FloatArray] | None = None
@@ -69,11 +65,14 @@ class Yielding:
         self._past.clear()
         self._moves.clear()
 
-    def saw(self, q: FloatArray, velocity: FloatArray) -> None:
-        """Remember a reading (n,), rad, and the command since the one before, (n,), rad/s."""
+    def saw(self, q: FloatArray, velocity: FloatArray, *, pressing: bool) -> None:
+        """Remember a reading (n,), rad, and the command since the one before, (n,), rad/s.
+
+        ``pressing``: whether a force was felt meanwhile against which motions slow.
+        """
         if self._way_back is None:
             self._past.append((q, velocity))
-            if (np.abs(velocity) > self._slow).any():
+            if velocity.any() and not pressing:
                 self._moves.append(velocity)
 
     def begin(self) -> None:
