@@ -1,10 +1,9 @@
 """A simulated person at the page's own `Drive`, in simulated time, with sources of where things are.
 
-The `Drive` gets messages like those of `--objects`. The person drives learned motions while the picture shows
+The `Drive`'s tracker gets what the sources see. The person drives learned motions while the picture shows
 everything where it is, and straight lines from `REACTION_S` after it does not.
 """
 
-import time
 from collections.abc import Mapping
 from dataclasses import replace
 from multiprocessing import Pipe
@@ -19,7 +18,6 @@ from latentarm.control.clock import SimulatedClock
 from latentarm.core.types import NO_GRIPPER, NO_OBJECTS, Context, Input, Pose, StepRecord
 from latentarm.robots.kinematics.pose_rows import object_rows
 from latentarm.robots.scene.scene import SceneState
-from latentarm.surroundings.process import as_message
 from latentarm.surroundings.surroundings import Surroundings
 from latentarm.tasks.scene_task import Beginning
 from latentarm.web.arm_process.drive import Drive
@@ -67,12 +65,11 @@ class SimulatedPage:
         self._arm = make_scene_arm("mujoco", robot, setup.start, clock.now_s, begun.scene)
         self._arm.connect()
         reading, self._orders = Pipe(duplex=False)
-        seen, self._seen = Pipe(duplex=False)
-        self._channel = Channel(reading, seen)
-        self._steering = Steering("end_effector")
+        self._channel = Channel(reading)
+        self._followed = Surroundings(setup.tracked, stand=True, sightings=None)
+        self._steering = Steering("end_effector", things=self._followed)
         if source == TOUCH:
-            self._steering.things = Surroundings(setup.tracked, stand=True, sightings=None)
-            touched(self._steering.things, begun, self._rng)
+            touched(self._followed, begun, self._rng)
         self._source = Detections(source, begun, self._rng)
         self._follow = Following(begun)
         step = setup.step()
@@ -96,8 +93,8 @@ class SimulatedPage:
         """Drive until the task is done, has failed, or the time is over."""
         with self._arm:
             self._drive.run(round(limit_s / PERIOD_S))
-        for end in (self._seen, self._orders, self._channel.orders):
-            end.close()
+        self._orders.close()
+        self._channel.orders.close()
 
     def figures(self, choice: int) -> dict[str, float]:
         """Measures of the drive, by name."""
@@ -124,8 +121,8 @@ class SimulatedPage:
         self._follow.records.append(record)
         self._ticks += 1
         for one in self._source.look(record.time_s, state.poses, state.tool):
-            taken = replace(one, time_s=time.monotonic() - PERIOD_S * AGE_TICKS)
-            self._seen.send_bytes(as_message(taken, "detector", HOLD_S))
+            taken = replace(one, time_s=record.time_s - PERIOD_S * AGE_TICKS)
+            self._followed.tracker.saw(taken, "detector", HOLD_S, record.time_s)
         found = self._channel.report.read()
         report = None if found is None else Report.parse(found[1])
         if report is None:
