@@ -92,7 +92,7 @@ def test_a_switch_adapter_that_repeats_while_it_is_held_stops_the_arm_and_is_sai
     times = []
     for _ in range(TRIES):
         press_enable(page, arm)
-        page.locator("#scan li[aria-current=true][data-choice=up]").wait_for()
+        page.locator("#scan li[aria-current=true]").first.wait_for()
         page.wait_for_timeout(500)
         times.append(page.evaluate(f"fails(() => {{ {ADAPTER} }})"))
         arm.comes_to_rest()
