@@ -20,7 +20,7 @@ TRIES = 3
         "tab hidden",
         "page closed",
         "network cut",
-        "server blocked for 300 ms",
+        "server blocked for 1 s",
         "browser killed",
     ],
 )

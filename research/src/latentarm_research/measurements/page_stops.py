@@ -34,11 +34,11 @@ FAULTS: Final = (
     "tab hidden",
     "page closed",
     "network cut",
-    "server blocked for 300 ms",
+    "server blocked for 1 s",
     "browser killed",
 )
 WITHIN_MS: Final = {"zero_command": 150.0, "rest": 400.0}
-BLOCKED_S: Final = 0.3
+BLOCKED_S: Final = 1.0  # longer than `SIMULATED_INPUT_BUDGET_S`: a shorter pause ends in motion again
 WATCHED_S: Final = 0.7
 MOVING_S: Final = 0.4
 START_S: Final = 60.0
@@ -102,7 +102,7 @@ class Scene:
                 self.tab.close()
             case "network cut":
                 self.proxy.cut()
-            case "server blocked for 300 ms":
+            case "server blocked for 1 s":
                 self.server.send_signal(signal.SIGSTOP)
                 time.sleep(BLOCKED_S)
                 self.server.send_signal(signal.SIGCONT)
