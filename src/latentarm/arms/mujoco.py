@@ -172,7 +172,7 @@ class MujocoArm(SimulatedArm, SceneArm):
         """Store the present measurement until its delay has passed."""
         time_s = float(self.data.time)
         q, dq = self.data.qpos[self._positions].copy(), self.data.qvel[self._speeds].copy()
-        self._measured.append((time_s, q, dq, self._touch.torque))
+        self._measured.append((time_s, q, dq, self._touch.estimate()))
         while len(self._measured) > 1 and time_s - self._measured[1][0] >= self._imperfections.delay_s - 1e-9:
             self._measured.popleft()
         if self._fingers is not None:
