@@ -127,7 +127,7 @@ def test_an_arm_that_presses_stops_at_the_limit_and_draws_back(arm):
     assert world.until_stopped(u) == "force_high"
     stopped = len(world.records)
     world.tick(u, count=200)
-    assert max(world.force_n) < LIMIT_N + 50.0
+    assert max(world.force_n) < LIMIT_N + 40.0
     assert max(world.force_n[stopped + 30 :]) == 0.0
     assert any(YIELDING in one.command.limited_by for one in world.records[stopped:])
     assert world.step.at_rest
@@ -264,4 +264,4 @@ def test_a_force_takes_from_a_motion_at_most_what_goes_against_it(seed, force_n)
     if force_n > 0.9 * LIMIT_N:
         assert abs(left) < 1e-9
     across = np.concatenate([toward * (left - along), np.zeros(3)])
-    assert np.linalg.norm(after - before - across) <= 0.2 * abs(along)
+    assert np.linalg.norm(after - before - across) <= 0.15 * abs(along)

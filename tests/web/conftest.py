@@ -30,7 +30,7 @@ from latentarm.web.arm_process.process import ControlProcess
 from latentarm.web.arm_process.steering import Steering
 from latentarm.web.protocol.channel import Channel
 from latentarm.web.protocol.notice import Notice
-from latentarm.web.protocol.orders import AskedGripper, Given, Order, Paced
+from latentarm.web.protocol.orders import AskedGripper, Enable, Given, Order, Paced
 from latentarm.web.protocol.report import Report
 from latentarm.web.server.app import build_app, gated, serve_on, server_config
 from latentarm.web.server.config import TeleopConfig, listen
@@ -161,6 +161,17 @@ class Desk:
             paced=paced,
         )
         self.channel.given.write(given.model_dump_json().encode())
+
+    def push(self, for_s: float) -> None:
+        """Enable the arm after 0.1 s, and push both axes fully from 0.3 s on."""
+
+        def tick(now_s: float) -> None:
+            if abs(now_s - 0.1) < 0.005:
+                self.order(Enable(driver=1, stops=self.channel.stop.version))
+            self.give(*((1.0, 1.0) if now_s > 0.3 else (0.0, 0.0)))
+
+        self.each_tick = tick
+        self.run(for_s)
 
     def order(self, order: Order) -> None:
         self.orders.send_bytes(order.model_dump_json().encode())

@@ -1,26 +1,18 @@
-"""An arm that presses on something goes on less, and the page says why; in simulated time."""
+"""An arm that presses on something slows down, and the page says why; in simulated time."""
 
 import numpy as np
 
 from latentarm.arms.kinematic import KinematicArm
 from latentarm.safety.config import SafetyConfig
-from latentarm.web.protocol.orders import Enable
 
 
 def way(desk):
     """From the start to where full pushes lead the tool, (3,), m."""
-
-    def tick(now_s):
-        if abs(now_s - 0.1) < 0.005:
-            desk.order(Enable(driver=1, stops=desk.channel.stop.version))
-        desk.give(*((1.0, 1.0) if now_s > 0.3 else (0.0, 0.0)))
-
-    desk.each_tick = tick
-    desk.run(0.8)
+    desk.push(0.8)
     return np.subtract(desk.reports[-1].tool, desk.reports[0].tool)
 
 
-def test_an_arm_that_presses_on_something_says_so_and_goes_on_less(setup, desk_of, monkeypatch):
+def test_an_arm_that_presses_on_something_says_so_and_slows_down(setup, desk_of, monkeypatch):
     with desk_of(setup) as desk:
         free = way(desk)
         assert {report.held_back for report in desk.reports} == {None}

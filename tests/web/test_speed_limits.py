@@ -12,7 +12,6 @@ from latentarm.web.arm_process.drive_setup import Spec, load_setup
 from latentarm.web.arm_process.ghosts import GhostPaths
 from latentarm.web.arm_process.initial_state import RobotOptions
 from latentarm.web.arm_process.speed_limits import Speeds
-from latentarm.web.protocol.orders import Enable
 
 
 def with_speeds(setup, **speeds):
@@ -21,14 +20,7 @@ def with_speeds(setup, **speeds):
 
 def driven(desk):
     """The fastest joint, rad/s, and the fastest tool, m/s, of a drive."""
-
-    def tick(now_s):
-        if abs(now_s - 0.1) < 0.005:
-            desk.order(Enable(driver=1, stops=desk.channel.stop.version))
-        desk.give(*((1.0, 1.0) if now_s > 0.3 else (0.0, 0.0)))
-
-    desk.each_tick = tick
-    desk.run(2.0)
+    desk.push(2.0)
     joints = np.array([report.q for report in desk.reports])
     tools = np.array([report.tool for report in desk.reports])
     return np.abs(np.diff(joints, axis=0)).max() / 0.01, np.linalg.norm(

@@ -9,7 +9,6 @@ from latentarm.core.errors import UserError
 from latentarm.robots.kinematics.obstacles import HalfSpace, Sphere
 from latentarm.safety.zones import Zone
 from latentarm.web.arm_process.drive_setup import Spec, load_setup
-from latentarm.web.protocol.orders import Enable
 from latentarm.web.server.loaded_run import LoadedRun
 
 SPEED = 0.03
@@ -20,13 +19,7 @@ def slow(setup, shape):
 
 
 def driven(desk, seconds=2.0):
-    def tick(now_s):
-        if abs(now_s - 0.1) < 0.005:
-            desk.order(Enable(driver=1, stops=desk.channel.stop.version))
-        desk.give(*((1.0, 1.0) if now_s > 0.3 else (0.0, 0.0)))
-
-    desk.each_tick = tick
-    desk.run(seconds)
+    desk.push(seconds)
     tools = np.array([report.tool for report in desk.reports])
     return np.linalg.norm(np.diff(tools, axis=0), axis=1).max() / 0.01
 

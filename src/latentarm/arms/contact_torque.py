@@ -14,7 +14,7 @@ _CONTACT: Final = int(mujoco.mjtConstraint.mjCNSTR_CONTACT_FRICTIONLESS)  # the 
 _WELD: Final = int(mujoco.mjtEq.mjEQ_WELD)
 
 LOOKS: Final = 3
-"""The estimate is the median of so many looks: a finger may lose a stiff cup for a time step."""
+"""Samples whose median is the estimate: a finger may lose contact with a stiff cup for one time step."""
 
 
 @final
@@ -40,7 +40,7 @@ class ContactTorque:
         return np.sort(self._looks, axis=0)[LOOKS // 2]
 
     def look(self) -> None:
-        """Take in the last time step."""
+        """Sample the last time step."""
         self._looks.extend([self._now()] * (1 if self._looks else LOOKS))
 
     def _now(self) -> FloatArray:

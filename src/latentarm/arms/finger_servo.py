@@ -66,7 +66,7 @@ class FingerServo(SimulatedGripper):
         pressing = self._pressing(where)
         if not (pressing and self._still()):
             self._moved_s = self._data.time
-        # What is held may shake.
+        # Shaking does not end a hold; fingers that no longer press do.
         self._holding = pressing and (self._holding or self._data.time - self._moved_s >= _STALLED_S)
         if self._target == self._goal:
             return False
@@ -111,7 +111,7 @@ class FingerServo(SimulatedGripper):
         return ((self._data.qpos[self._positions] - self._closed) / self._per_m).tolist()
 
     def _pressing(self, where: list[float]) -> bool:
-        """Whether fingers at these positions, m, are so far from where their servos want them."""
+        """True if something keeps fingers at these positions, m, from their servos' target."""
         enough = max(min(_STALLED_M, 0.5 * self._lead), 0.5 * _LEAST_N / self._stiffness)
         return min(where) - self._target > enough
 

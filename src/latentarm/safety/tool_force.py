@@ -14,9 +14,9 @@ if TYPE_CHECKING:
 DAMPING_M: Final = 0.05
 """Near a singular configuration a small torque would count as a large force without it."""
 
-FORCE: Final = "force"  # stands among the limits of each command that was eased
+FORCE: Final = "force"  # in `limited_by` of each command that was eased
 EASED: Final = (0.5, 0.8)
-"""Shares of the largest force: from the first on, a motion against the force slows; at the second it ends."""
+"""Shares of the largest force: motion against the force slows from the first, and ends at the second."""
 
 
 @final
@@ -35,7 +35,7 @@ class ToolForce:
         self._torque: FloatArray | None = None
         self._rest = np.zeros(robot.dof)
         self._going = self._rest
-        # Whether motions against the force were slowed when one was last asked for.
+        # True while the estimated force is large enough to slow motions against it.
         self.pressing = False
 
     def reset(self) -> None:
@@ -78,9 +78,10 @@ class ToolForce:
         )
 
     def eased(self, q: FloatArray, velocity: FloatArray) -> FloatArray:
-        """A velocity (n,), rad/s, at q (n,), rad, whose tools go less against the force; itself without one.
+        """A velocity (n,), rad/s, at q (n,), rad, with less motion of the tools against the force.
 
-        The tools keep their turns and their ways across the force, as far as the arm can move so.
+        Their rotation, and translation across the force, stay the same as far as damping allows. Where there
+        is nothing to ease this is ``velocity`` itself.
         """
         torque, begins = self._torque, EASED[0]
         self.pressing = False
@@ -96,7 +97,7 @@ class ToolForce:
             against_m_s = -float(back @ (jacobian @ velocity))
             if against_m_s > 0.0:
                 way = jacobian.T @ _damped(jacobian, back)
-                # Damping shortens it, and what is left of a push would build up force.
+                # Undo the damping: the rest of the push would slowly build up force.
                 velocity = velocity + share * against_m_s / max(back @ jacobian @ way, 0.5) * way
         return velocity
 

@@ -46,7 +46,7 @@ class Yielding:
         self._looks = math.ceil(max(bounds.lag_s, bounds.stop_s) / bounds.dt_s)
         # Each reading with the command since the one before, the newest last.
         self._past: deque[tuple[FloatArray, FloatArray]] = deque(maxlen=round(_REMEMBERED_S / bounds.dt_s))
-        # The last commands to move before something was pressed on, the newest last, rad/s.
+        # The last moving commands before the arm pressed on something, the newest last, rad/s.
         self._moves: deque[FloatArray] = deque(maxlen=round(PACE * LONGEST_S / bounds.dt_s))
         self._fastest = PACE * bounds.speed
         self._looked: int | None = None
@@ -68,7 +68,7 @@ class Yielding:
     def saw(self, q: FloatArray, velocity: FloatArray, *, pressing: bool) -> None:
         """Remember a reading (n,), rad, and the command since the one before, (n,), rad/s.
 
-        ``pressing``: whether a force was felt meanwhile against which motions slow.
+        ``pressing``: see `ToolForce.pressing`.
         """
         if self._way_back is None:
             self._past.append((q, velocity))
