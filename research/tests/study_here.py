@@ -32,7 +32,7 @@ INFORMATION = "All that you need to know."
 class Study:
     """A study in this process, with somebody at each part of it but the drives."""
 
-    def __init__(self, folder: Path, **changes: Any) -> None:
+    def __init__(self, folder: Path, *, language: str = "en", **changes: Any) -> None:
         self.folder = folder
         (folder / "two_ways.json").write_text(
             json.dumps({**definition(MODES, TWIST), "people": 5, **changes})
@@ -40,7 +40,8 @@ class Study:
         serving = Serving(
             read_definition(folder / "two_ways.json"),
             KeptOptions(
-                contact=CONTACT, information=digest_of(INFORMATION), prolific=PROLIFIC, preset="smoke"
+                contact=CONTACT, information=digest_of(INFORMATION), prolific=PROLIFIC, preset="smoke",
+                language=language,
             ),
             TeleopConfig(Spec(out=folder)), INFORMATION, 1, folder / "study.sqlite",
         )  # fmt: skip

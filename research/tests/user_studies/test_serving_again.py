@@ -67,6 +67,7 @@ def test_a_folder_of_an_earlier_version_takes_a_contact(start: Starts) -> None:
         ("--away-hours", "3", "with --away-hours 2.3, and this start is with --away-hours 3.0"),
         ("--database", "postgresql://me:secret@127.0.0.1/other", "began without --database"),
         ("--preset", "paper", "with --preset smoke, and this start is with --preset paper"),
+        ("--language", "de", "with --language en, and this start is with --language de"),
         ("--seed", "1", "with --seed 0, and this start is with --seed 1"),
         ("--information", "other.md", "began with --information of SHA-256"),
     ],

@@ -16,6 +16,7 @@ from latentarm_research.user_studies.serving import request_limit
 from latentarm_research.user_studies.serving.app import COOKIE, Answered, Consented
 from latentarm_research.user_studies.serving.options import general_information
 from latentarm_research.user_studies.serving.page_drive import ToDrive
+from latentarm_research.user_studies.serving.words.catalogue import study_languages
 from study_here import ORIGIN, PROLIFIC, Study, driven
 from study_participant import CONTACT, definition
 
@@ -108,7 +109,7 @@ def test_nobody_reads_their_condition_or_the_question_before_they_have_finished(
 
     told = read_definition(study.folder / "two_ways.json")
     telling = [told.title, told.about, *(text for one in told.conditions for text in (one.name, one.about))]
-    assert not [text for text in telling if text in general_information(told, 2.0)]
+    assert not [text for text in telling if text in general_information(told, 2.0, study_languages()["en"])]
     key = study.comes("consent")
     for part in ("consent", "practice", "trial", "questions"):
         page = study.key("questions") if part == "questions" else key

@@ -36,6 +36,13 @@ def serve_study(
         str | None,
         arg(metavar="TEXT", help="Whom participants can ask; every page says it. The first start needs it."),
     ] = None,
+    language: Annotated[
+        str | None,
+        arg(
+            metavar="{de,en,es,zh}",
+            help="Language of the pages; its definition's texts stay as they are. By default en.",
+        ),
+    ] = None,
     information: Annotated[
         Path | None,
         arg(metavar="FILE", help="Markdown that people read and consent to; without it, a general text."),
@@ -70,9 +77,9 @@ def serve_study(
     """Take real people through a study on the page: consent, practice, trials, questions, completion code.
 
     Prints the links for participants; Ctrl-C ends it, and the same command goes on with it. The folder keeps
-    --contact, --information, --prolific, --completion-code, --away-hours, --database, --preset and --seed of
-    the first start. A later start may leave them out, except for the database's password; one that names
-    others is refused.
+    --contact, --language, --information, --prolific, --completion-code, --away-hours, --database, --preset
+    and --seed of the first start. A later start may leave them out, except for the database's password; one
+    that names others is refused.
 
     For example: latentarm study serve eating --contact "Ann Lee, ann@uni.example"
     """
@@ -82,6 +89,7 @@ def serve_study(
     from latentarm_research.user_studies.serving.database import database_of, postgresql, shown
     from latentarm_research.user_studies.serving.kept_options import (
         AWAY_HOURS,
+        LANGUAGE,
         digest_of,
         go_on,
         information_path,
@@ -90,6 +98,7 @@ def serve_study(
     )
     from latentarm_research.user_studies.serving.options import Serving, general_information
     from latentarm_research.user_studies.serving.serve import serve
+    from latentarm_research.user_studies.serving.words.catalogue import study_languages
 
     definition = find_definition(name)
     if preset is not None and preset not in PRESETS:
@@ -98,6 +107,8 @@ def serve_study(
         raise UserError(f"--away-hours must be above 0 and at most a year, not {away_hours:g}.")
     if at_once is not None and at_once < 1:
         raise UserError(f"--at-once must be 1 or more, not {at_once}.")
+    if language is not None and language not in study_languages():
+        raise UserError(f"There is no language {language!r}: choose from {', '.join(study_languages())}.")
     folder = Path("studies", f"{definition.name}-people") if out is None else out
     earlier = read_kept(folder)
     if information is not None:
@@ -105,9 +116,11 @@ def serve_study(
     elif earlier is not None:
         text = read_information(information_path(folder, earlier.information))
     else:
-        text = general_information(definition, AWAY_HOURS if away_hours is None else away_hours)
+        words = study_languages()[LANGUAGE if language is None else language]
+        text = general_information(definition, AWAY_HOURS if away_hours is None else away_hours, words)
     given = {
         "contact": contact,
+        "language": language,
         "information": digest_of(text),
         "prolific": prolific,
         "completion_code": completion_code,

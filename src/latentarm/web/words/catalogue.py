@@ -49,11 +49,11 @@ class Words:
 
 
 @cache
-def languages() -> dict[str, Words]:
-    """Every language by its code, sorted; English fills the gaps."""
+def languages(package: str = "latentarm.web.words") -> dict[str, Words]:
+    """Every language that a package has a file of, by its code, sorted; English fills the gaps."""
     texts = {
         file.name.removesuffix(".json"): json.loads(file.read_text(encoding="utf-8"))
-        for file in files("latentarm.web.words").iterdir()
+        for file in files(package).iterdir()
         if file.name.endswith(".json")
     }
     return {code: Words(code, {**texts[DEFAULT], **own}) for code, own in sorted(texts.items())}

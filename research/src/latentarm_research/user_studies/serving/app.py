@@ -22,6 +22,7 @@ from latentarm.core.errors import UserError
 from latentarm.web.protocol.notice import Message, Notice
 from latentarm.web.server.answers import NO_STORE, body_of, json_answer
 from latentarm.web.server.assets import Assets
+from latentarm.web.words.catalogue import COOKIE as LANGUAGE_COOKIE
 from latentarm_research.user_studies.answers.items import wrong_answer
 from latentarm_research.user_studies.drive_record import DriveRecord
 from latentarm_research.user_studies.serving.links import link_of
@@ -105,7 +106,7 @@ class StudyServer:
         connection = HTTPConnection(scope)
         key = connection.cookies.get(COOKIE, "")
         if scope["type"] == "http" and not self._limit.allows(connection, key if key in self._met else ""):
-            await _refused("Too many requests: wait a minute, and try again.", 429)(scope, receive, send)
+            await self._refused("study.refused.often", 429)(scope, receive, send)
             return
         if scope["path"].startswith((HOME, "/static/")):
             await self._app(scope, receive, send)
@@ -143,12 +144,12 @@ class StudyServer:
         async def answer(request: Request) -> Response:
             key = request.cookies.get(COOKIE, "")
             if self._store.standing(key) is None:
-                return _refused("Open the link that you were given.", 403)
+                return self._refused("study.link", 403)
             self._met.add(key)
             try:
                 return await do(request, key)
             except UserError as error:
-                return _refused(str(error), 400)
+                return _problem(str(error), 400)
 
         return answer
 
@@ -156,7 +157,7 @@ class StudyServer:
         if "left" in request.query_params:
             return self._pages.page("left")
         try:
-            link, visit = link_of(request.query_params, self._serving.kept.prolific)
+            link, visit = link_of(request.query_params, self._serving.kept.prolific, self._serving.words)
         except UserError as error:
             return self._pages.page("unknown", status=404, problem=str(error))
         if link:
@@ -174,8 +175,12 @@ class StudyServer:
         self._met.add(key)
         answer = RedirectResponse(HOME, 303, headers=NO_STORE)
         secure = self._serving.config.encrypted
+        life_s = 90 * 86400
         # Lax: people come from the page of another site.
-        answer.set_cookie(COOKIE, key, max_age=90 * 86400, secure=secure, httponly=True, samesite="lax")
+        answer.set_cookie(COOKIE, key, max_age=life_s, secure=secure, httponly=True, samesite="lax")
+        # The Drive page begins in the study's language, whatever the browser prefers.
+        language = self._serving.words.language
+        answer.set_cookie(LANGUAGE_COOKIE, language, max_age=life_s, secure=secure, samesite="strict")
         return answer
 
     async def _next_page(self, standing: Standing) -> Response:
@@ -254,10 +259,10 @@ class StudyServer:
         given = await body_of(request, Answered)
         due, _ = self._due(key)
         if not isinstance(due, ToAnswer) or given.order != due.order:
-            return _refused("These questions are not asked now: your answers may be saved already.", 409)
+            return self._refused("study.refused.questions", 409)
         definition = self._serving.definition
         if any(wrong_answer(definition, item, answer) for item, answer in given.answers.items()):
-            return _refused("These are not answers to the questions of this study.", 400)
+            return self._refused("study.refused.answers", 400)
         await asyncio.to_thread(self._store.keep_answers, key, due.order, due.condition.name, given.answers)
         return _onward(HOME)
 
@@ -273,7 +278,7 @@ class StudyServer:
         """The steps of one of their drives."""
         named = {path.name: path for path in steps_of(self._serving.out, key)}
         path = named.get(request.path_params["name"])
-        return _refused("There is no such drive.", 404) if path is None else FileResponse(path)
+        return self._refused("study.refused.drive", 404) if path is None else FileResponse(path)
 
     async def withdraw(self, _: Request, key: str) -> Response:
         """Delete everything about them."""
@@ -288,13 +293,16 @@ class StudyServer:
     def _due(self, key: str) -> tuple[Next, Standing]:
         standing = self._store.standing(key)
         if standing is None:
-            raise UserError("Open the link that you were given.")
+            raise UserError(self._serving.words.say("study.link"))
         return self._way.after(standing), standing
+
+    def _refused(self, key: str, status: int) -> Response:
+        return _problem(self._serving.words.say(key), status)
 
 
 def _onward(to: str) -> Response:
     return json_answer({"to": to})
 
 
-def _refused(why: str, status: int) -> Response:
+def _problem(why: str, status: int) -> Response:
     return json_answer({"problem": why}, status)

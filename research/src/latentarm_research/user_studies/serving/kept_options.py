@@ -14,9 +14,11 @@ from latentarm.core.untrusted.opening import read_bytes
 from latentarm.demonstrations.bounds import MAX_TEXT_BYTES
 from latentarm_research.studies.results_folder import CONFIG
 from latentarm_research.user_studies.recorded import SERVED
+from latentarm_research.user_studies.serving.words.catalogue import study_languages
 from latentarm_research.user_studies.sizes import PRESETS
 
 AWAY_HOURS: Final = 2.0
+LANGUAGE: Final = "en"
 LONGEST_CONTACT: Final = 200  # characters
 
 
@@ -28,6 +30,7 @@ class KeptOptions(BaseModel):
 
     key: str = Field(default_factory=lambda: secrets.token_hex(16))  # the study's; its database has it too
     contact: str | None = None  # whom participants can ask; None in folders of earlier versions
+    language: Annotated[str, Field(pattern=f"^({'|'.join(study_languages())})$")] = LANGUAGE  # of its pages
     information: str  # SHA-256 of the text that people consent to, in hexadecimal
     prolific: str | None = None  # the study at Prolific whose links count; None for none
     completion_code: str | None = None  # that everybody gets; None for one of their own

@@ -4,12 +4,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, final
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from sqlalchemy import URL
 
 from latentarm.web.server.config import TeleopConfig
+from latentarm.web.words.catalogue import Words
 from latentarm_research.user_studies.definition import Definition
 from latentarm_research.user_studies.serving.kept_options import KeptOptions
+from latentarm_research.user_studies.serving.words.catalogue import study_languages
 from latentarm_research.user_studies.sizes import PRESETS, Sizes
 
 PAGES: Final = Path(__file__).parent / "pages"
@@ -37,11 +38,20 @@ class Serving:
         """The sizes of its preset."""
         return PRESETS[self.kept.preset]
 
+    @property
+    def words(self) -> Words:
+        """The texts of its pages."""
+        return study_languages()[self.kept.language]
 
-def general_information(definition: Definition, away_hours: float) -> str:
-    """The text that people consent to where the experimenter has written none."""
-    # Markdown, not HTML: its own renderer escapes what is no Markdown.
-    texts = Environment(loader=FileSystemLoader(PAGES), undefined=StrictUndefined, trim_blocks=True)  # noqa: S701
+
+def general_information(definition: Definition, away_hours: float, words: Words) -> str:
+    """The text that people consent to where the experimenter has written none, Markdown."""
     met = 1 if definition.design == "between" else len(definition.conditions)
-    template = texts.get_template("information.md")
-    return template.render(conditions=met, hours=f"{away_hours:g}")
+    return words.say(
+        "study.information",
+        {
+            "ways": words.say("study.ways", {"count": met}),
+            "leave": words.say("study.leave.title"),
+            "hours": f"{away_hours:g}",
+        },
+    )

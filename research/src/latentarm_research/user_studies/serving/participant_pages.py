@@ -11,7 +11,6 @@ from starlette.responses import FileResponse, HTMLResponse, Response
 from latentarm.core.untrusted.documents import parse_object
 from latentarm.web.server.answers import NO_STORE
 from latentarm.web.server.assets import FOLDER, Assets
-from latentarm.web.words.catalogue import languages
 from latentarm_research.user_studies.answers.items import items_of
 from latentarm_research.user_studies.questionnaire import LONGEST_TEXT
 from latentarm_research.user_studies.serving.options import PAGES, Serving
@@ -36,15 +35,15 @@ class ParticipantPages:
             undefined=StrictUndefined,
             trim_blocks=True,
         )
-        english = languages()["en"]
         always = {
             "definition": serving.definition,
             "contact": serving.kept.contact,
             "home": HOME,
             "asset": assets.path,
             "modules": assets.path("layout/words.js").removesuffix("/layout/words.js"),
-            "words": english.texts,
-            "say": english.say,
+            "words": serving.words.texts,
+            "language": serving.words.language,
+            "say": serving.words.say,
         }
         self._template = templates.get_template("study.html", globals=always)
 

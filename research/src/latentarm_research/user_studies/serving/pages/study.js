@@ -1,6 +1,11 @@
 /** A participant's page: what is filled in goes to the server, which answers where to go on, or why not. */
 
 const HOME = "/study";
+/** The words of the page. */
+const words = import(`${document.body.dataset.modules}/layout/words.js`).then((module) => {
+  module.readWords();
+  return module;
+});
 /** How often somebody who waits for an arm asks again, ms. */
 const ASK_AGAIN_MS = 3000;
 
@@ -23,14 +28,13 @@ async function send(form) {
     const answer = await fetch(`${HOME}/${form.dataset.to}`, { method: "POST", headers, body: JSON.stringify(content(form)) });
     return await answer.json();
   } catch {
-    return { problem: "The server cannot be reached. Try again." };
+    return { problem: (await words).say("study.unreachable") };
   }
 }
 
 /** Says how long it takes until an arm is free. @param {number} seconds */
-function waiting(seconds) {
-  const minutes = Math.ceil(seconds / 60);
-  const text = `All arms are in use. Yours is free in about ${minutes} ${minutes === 1 ? "minute" : "minutes"}. Stay on this page: it goes on by itself.`;
+async function waiting(seconds) {
+  const text = (await words).say("study.waits", { count: Math.ceil(seconds / 60) });
   // A screen reader says what has changed.
   if (busy && busy.textContent !== text) busy.textContent = text;
 }
@@ -46,7 +50,7 @@ for (const form of document.querySelectorAll("form")) {
     busy?.toggleAttribute("hidden", form.dataset.to !== "begin");
     let answer = await send(form);
     while (answer.waits_s !== undefined) {
-      waiting(answer.waits_s);
+      await waiting(answer.waits_s);
       await new Promise((done) => setTimeout(done, ASK_AGAIN_MS));
       answer = await send(form);
     }

@@ -1,0 +1,1 @@
+"""The texts of a study's own pages: one JSON file per language."""
