@@ -69,7 +69,7 @@ def test_answers_of_every_kind_go_from_the_page_to_the_dataset_and_the_report(st
     assert page.count('type="checkbox" name="used"') == 3
     assert page.count('type="radio" name="again"') == 2
     assert page.count('type="range"') == 1
-    assert page.count("not answered yet") == 2  # to see, and for screen readers
+    assert page.count('aria-valuetext="not answered yet"') == page.count(">not answered yet<") == 1
     for wrong in ({"effort_1": 6}, {"effort_1": "5"}, {"wish": 5}, {"wish": " "}, {"wish": "\x1b[2J"},
                   {"wish": "a" * 2001}, {"other": 1}, {"pain_1": 0}, {"pain_1": 101}, {"pain_1": "50"},
                   {"pain_1": 50.5}, {"used": 1}, {"used": ""}, {"used": "4"}, {"used": "2;1"},
@@ -117,6 +117,12 @@ def test_answers_of_every_kind_go_from_the_page_to_the_dataset_and_the_report(st
     assert f"| Once more? | no (attention check) | {' | '.join(cells)} |" in said
     assert "| Pain | 1: not at all; 100: as much as can be; slider | How much did it hurt? |" in said
     assert (report / "ratings.png").exists()
+
+
+def test_questions_with_options_alone_are_asked(tmp_path: Path) -> None:
+    study = Study(tmp_path, questionnaire=[], multiple_choice=[AGAIN])
+    assert 'data-part="questions"' in study.ask(study.comes("questions"), "GET").text
+    study.close()
 
 
 def test_a_sheet_asks_them_too_and_is_read_again(study: Study, capsys: pytest.CaptureFixture[str]) -> None:
@@ -170,6 +176,10 @@ def test_a_study_without_scales_is_reported() -> None:
         ({"multiple_choice": [{**AGAIN, "options": ["yes"]}]}, "needs two options or more"),
         ({"multiple_choice": [{**AGAIN, "options": ["yes", "yes"]}]}, "each another"),
         ({"questionnaire": [{**EFFORT, "items": []}]}, "needs one item or more"),
+        (
+            {"comprehension": [{**AGAIN, "attention": 0}]},
+            "must be the number of its right option",
+        ),
     ],
 )
 def test_questions_that_cannot_be_asked_are_refused(

@@ -113,8 +113,8 @@ def test_the_dataset_has_everybody_who_consented_and_only_drives_of_people_who_f
         for name in ("people", "drives")
     )
     assert [list(one.values()) for one in people] == [
-        ["0", "Retargeting;Modes", LATER, "2026-01-03", "2", DEVICES, "1"],
-        ["", "Modes", CONSENT, "2026-01-02", "1", DEVICES, "0"],
+        ["0", "Retargeting;Modes", LATER, "2026-01-03", "0", "2", DEVICES, "1"],
+        ["", "Modes", CONSENT, "2026-01-02", "0", "1", DEVICES, "0"],
     ]
     # The place of the person who was away is that of the one who finished: their drives do not mix.
     assert [(one["person"], one["condition"]) for one in drives] == [("0", "Retargeting"), ("0", "Modes")]

@@ -13,7 +13,7 @@ from schemathesis import GenerationMode
 
 from latentarm_research.user_studies.own.definition_file import read_definition
 from latentarm_research.user_studies.serving import request_limit
-from latentarm_research.user_studies.serving.app import COOKIE, Answered, Consented
+from latentarm_research.user_studies.serving.app import COOKIE, Answered, Consented, Understood
 from latentarm_research.user_studies.serving.options import general_information
 from latentarm_research.user_studies.serving.page_drive import ToDrive
 from latentarm_research.user_studies.serving.words.catalogue import study_languages
@@ -41,7 +41,8 @@ def described() -> dict[str, Any]:
         for name in ("code", "PROLIFIC_PID", "STUDY_ID", "SESSION_ID", "left")
     ]
     refused = {str(status): SENTENCE for status in (400, 403, 409, 413)}
-    posts = {"begin": None, "ready": None, "withdraw": None, "consent": Consented, "answers": Answered}
+    posts = {"begin": None, "ready": None, "withdraw": None, "consent": Consented, "answers": Answered,
+             "comprehension": Understood}  # fmt: skip
     pages = {"200": HTML, "303": {"description": "onward"}, "404": HTML}
     paths: dict[str, Any] = {
         "/study": {"get": {"parameters": links, "responses": pages}},

@@ -25,6 +25,7 @@ _LATER: Final[Mapping[str, object]] = {
     "high": HIGH,
     "slider": False,
     "multiple_choice": (),
+    "comprehension": (),
 }
 """Defaults of fields that older definitions do not have, whose digests must stay."""
 PREFIX: Final = "user study "  # before a study's name, in what a folder of its results says that it is
@@ -165,6 +166,9 @@ class Definition:
     """Questions after each condition that people answer in their own words, after all others."""
     multiple_choice: tuple[MultipleChoice, ...] = ()
     """Questions with options after each condition, after the scales."""
+    comprehension: tuple[MultipleChoice, ...] = ()
+    """Questions about the information that people consent to, before the first practice; `attention` is the
+    right option of each. Who is wrong reads the information and answers again; how often is recorded."""
 
     def __post_init__(self) -> None:
         in_order = [condition.name for condition in self.conditions]

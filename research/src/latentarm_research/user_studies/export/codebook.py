@@ -53,6 +53,8 @@ VARIABLES: Final = (
     Variable("consent", "SHA-256 of the text that the person consented to; the study's folder has the text as"
              " information-HASH.md, named by the first 12 digits"),
     Variable("consented", "day of the consent, UTC"),
+    Variable("comprehension", "number of times that the person answered the questions about the information,"
+             " until all answers were right"),
     Variable("practised", "number of conditions that the person practised"),
     Variable("devices", "input devices that were pushed, the longest first, separated by ;: pointer (the"
              " stick on the page) or dpad (its buttons) with mouse, touch or pen; keyboard; gamepad with its"

@@ -37,7 +37,16 @@ def write_dataset(folder: Path, recorded: Recorded, drives: Sequence[tuple[Drive
             _trials(definition, recorded.trials),
         ),
         "people": (
-            ("person", "conditions", "consent", "consented", "practised", "devices", "finished"),
+            (
+                "person",
+                "conditions",
+                "consent",
+                "consented",
+                "comprehension",
+                "practised",
+                "devices",
+                "finished",
+            ),
             _people(recorded),
         ),
         "answers": (
@@ -114,6 +123,7 @@ def _people(recorded: Recorded) -> Iterable[Sequence[Cell]]:
             conditions,
             one.consent,
             day,
+            len(one.comprehension),
             one.practised,
             ";".join(devices_of(one.drives)),
             int(one.finished),
@@ -122,7 +132,7 @@ def _people(recorded: Recorded) -> Iterable[Sequence[Cell]]:
         in_order = sorted(recorded.trials, key=lambda trial: trial.order)
         for person in sorted(recorded.met):
             theirs = dict.fromkeys(trial.condition for trial in in_order if trial.person == person)
-            yield person, ";".join(theirs), None, None, None, None, None
+            yield person, ";".join(theirs), None, None, None, None, None, None
 
 
 def _answers(definition: Definition, answers: Sequence[Answer]) -> Iterable[Sequence[Cell]]:

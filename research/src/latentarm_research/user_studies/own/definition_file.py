@@ -96,6 +96,7 @@ def _check_labels(definition: Definition) -> None:
         *(("tasks: name", task.name) for task in definition.tasks),
         *(("in_words: name", one.name) for one in definition.in_words),
         *(("multiple_choice: name", one.name) for one in definition.multiple_choice),
+        *(("comprehension: name", one.name) for one in definition.comprehension),
     ):
         if not NAME.fullmatch(name):
             raise UserError(
@@ -119,8 +120,12 @@ def _check_labels(definition: Definition) -> None:
         ("hypotheses", [one.name for one in definition.hypotheses]),
         ("measures and questionnaire", [*definition.measures, *definition.scales]),
         ("questionnaire, multiple_choice and in_words", names_of(definition)),
+        ("comprehension", [one.name for one in definition.comprehension]),
     ):
         _each_once(field, names)
+    for one in definition.comprehension:
+        if not one.attention:
+            raise UserError(f"comprehension: attention of {one.name} must be the number of its right option.")
 
 
 def _check_conditions(definition: Definition) -> None:

@@ -45,7 +45,10 @@ def consent_words(recorded: Recorded) -> str:
     texts = ", ".join(sorted({one.consent[:12] for one in people}))
     when = days[0] if days[0] == days[-1] else f"{days[0]} to {days[-1]}"
     finished = sum(one.finished for one in people)
+    at_once = sum(one.comprehension[:1] == (True,) for one in people)
+    understood = f"{at_once} answered all questions about it right at the first try. "
     return (
-        f"{len(people)} consented ({when}; text {texts}), and {finished} of them finished. People who were"
-        " deleted do not count. Nothing else about the people was recorded."
+        f"{len(people)} consented ({when}; text {texts}), and {finished} of them finished."
+        f" {understood if recorded.definition.comprehension else ''}People who were deleted do not count."
+        " Nothing else about the people was recorded."
     )

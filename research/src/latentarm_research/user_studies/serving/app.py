@@ -55,6 +55,13 @@ class Consented(Message):
 
 
 @final
+class Understood(Message):
+    """Somebody has answered the questions about the information."""
+
+    answers: dict[str, str]  # number of an option by question
+
+
+@final
 class Answered(Message):
     """Somebody has answered the questions after a condition."""
 
@@ -79,7 +86,7 @@ class StudyServer:
         self._queue = Queue(serving.at_once)
         self._following: set[asyncio.Task[None]] = set()
         self._changing = asyncio.Lock()
-        posts = (self.consent, self.begin, self.ready, self.answers, self.withdraw)
+        posts = (self.consent, self.comprehension, self.begin, self.ready, self.answers, self.withdraw)
         self._app = Starlette(
             routes=[
                 Route(HOME, self._home),
@@ -195,6 +202,8 @@ class StudyServer:
             return self._pages.page("finished", code=code)
         if due == "consent":
             return self._pages.consent()
+        if due == "comprehension":
+            return self._pages.comprehension(again=bool(standing.comprehension))
         return self._pages.due(due, standing, running=key in self._drives)
 
     async def consent(self, request: Request, key: str) -> Response:
@@ -203,6 +212,19 @@ class StudyServer:
         if given.digest == self._serving.kept.information:
             when = datetime.now(UTC).isoformat(timespec="seconds")
             await asyncio.to_thread(self._store.consent, key, given.digest, when)
+        return _onward(HOME)
+
+    async def comprehension(self, request: Request, key: str) -> Response:
+        """Check what they have understood of the information."""
+        given = (await body_of(request, Understood)).answers
+        asked = {one.name: one for one in self._serving.definition.comprehension}
+        options = {name: [str(one) for one in range(1, len(asked[name].options) + 1)] for name in asked}
+        if any(option not in options.get(name, ()) for name, option in given.items()):
+            return self._refused("study.refused.answers", 400)
+        due, _ = self._due(key)
+        if due == "comprehension":
+            right = given == {name: str(one.attention) for name, one in asked.items()}
+            await asyncio.to_thread(self._store.keep_comprehension, key, given, right=right)
         return _onward(HOME)
 
     async def begin(self, _: Request, key: str) -> Response:

@@ -45,6 +45,7 @@ class ParticipantPages:
             "language": serving.words.language,
             "say": serving.words.say,
         }
+        self._information = MarkdownIt("commonmark", {"html": False}).render(serving.information)
         self._template = templates.get_template("study.html", globals=always)
 
     def page(self, name: str, *, status: int = 200, **shown: Any) -> Response:
@@ -53,8 +54,11 @@ class ParticipantPages:
 
     def consent(self) -> Response:
         """The information that people consent to."""
-        text = MarkdownIt("commonmark", {"html": False}).render(self._serving.information)
-        return self.page("consent", information=text, digest=self._serving.kept.information)
+        return self.page("consent", information=self._information, digest=self._serving.kept.information)
+
+    def comprehension(self, *, again: bool) -> Response:
+        """The questions about the information; ``again`` says that some answers were wrong."""
+        return self.page("comprehension", information=self._information, again=again)
 
     def due(self, due: ToDrive | ToAnswer, standing: Standing, *, running: bool) -> Response:
         """The page of the next step for a person with a place; ``running``: they have a drive in progress."""

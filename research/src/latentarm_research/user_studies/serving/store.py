@@ -19,7 +19,7 @@ from latentarm_research.user_studies.answers.items import Answer
 from latentarm_research.user_studies.drive_record import DriveRecord
 from latentarm_research.user_studies.serving.database import open_database, shown
 from latentarm_research.user_studies.serving.owner import Owner
-from latentarm_research.user_studies.serving.tables import Answers, Drive, Person, Place
+from latentarm_research.user_studies.serving.tables import Answers, Comprehension, Drive, Person, Place
 
 KEY_BYTES: Final = 16  # of random keys
 
@@ -34,6 +34,9 @@ class Standing:
     lapsed: bool  # whether their place went to somebody else, because they were away for too long
     consent: str  # SHA-256 of the text that they consented to; "" before
     consented: str  # when, ISO 8601; "" before
+    comprehension: tuple[
+        bool, ...
+    ]  # whether they answered all questions about the information right, each time
     practised: int  # conditions that they have practised
     drives: tuple[DriveRecord, ...]  # in their order
     answered: frozenset[int]  # places in the order of the conditions after which they have answered
@@ -115,6 +118,13 @@ class Store:
         with self._change() as session:
             if (person := session.get(Person, key)) is not None and person.consent is None:
                 person.consent, person.consented = digest, when
+
+    def keep_comprehension(self, key: str, options: Mapping[str, str], *, right: bool) -> None:
+        """Keep the answers to the questions about the information, unless all were right before."""
+        with self._change() as session:
+            if session.get(Person, key) is None or True in (before := _comprehension(session, key)):
+                return
+            session.add(Comprehension(person=key, attempt=len(before), right=right, options=dict(options)))
 
     def place(self, key: str, now_s: float) -> int | None:
         """Give a person the first free place, unless they have one; None where none is left.
@@ -223,7 +233,13 @@ class Store:
     def everything(self, key: str) -> dict[str, list[dict[str, Any]]]:
         """All rows about a person, as JSON, by table."""
         with self._change() as session:
-            of = {Person: Person.key, Place: Place.person, Drive: Drive.person, Answers: Answers.person}
+            of = {
+                Person: Person.key,
+                Place: Place.person,
+                Comprehension: Comprehension.person,
+                Drive: Drive.person,
+                Answers: Answers.person,
+            }
             return {
                 table.__tablename__: [
                     {column.name: getattr(row, column.name) for column in table.__table__.columns}
@@ -249,6 +265,11 @@ def _random() -> str:
     return secrets.token_hex(KEY_BYTES)
 
 
+def _comprehension(session: Session, key: str) -> tuple[bool, ...]:
+    theirs = select(Comprehension.right).where(Comprehension.person == key)
+    return tuple(session.scalars(theirs.order_by(Comprehension.attempt)))
+
+
 def _standing(session: Session, person: Person) -> Standing:
     held = session.scalar(select(Place.number).where(Place.person == person.key))
     kept = session.scalars(select(Drive.record).where(Drive.person == person.key).order_by(Drive.number))
@@ -265,6 +286,7 @@ def _standing(session: Session, person: Person) -> Standing:
         lapsed=person.number is not None and held is None,
         consent=person.consent or "",
         consented=person.consented or "",
+        comprehension=_comprehension(session, person.key),
         practised=person.practised,
         drives=drives,
         answered=frozenset(one.order for one in answers),

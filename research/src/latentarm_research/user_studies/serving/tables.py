@@ -62,6 +62,17 @@ class Drive(Table):
     record: Mapped[str]  # a `DriveRecord`, JSON
 
 
+class Comprehension(Table):
+    """The answers to the questions about the information, each time."""
+
+    __tablename__ = "comprehension"
+
+    person: Mapped[str] = mapped_column(ForeignKey("people.key", ondelete="CASCADE"), primary_key=True)
+    attempt: Mapped[int] = mapped_column(primary_key=True)
+    right: Mapped[bool]  # all of them
+    options: Mapped[dict[str, str]] = mapped_column(JSON)  # number of an option by question
+
+
 class Answers(Table):
     """The answers to the questionnaire after one condition."""
 

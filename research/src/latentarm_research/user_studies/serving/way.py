@@ -6,7 +6,7 @@ from typing import Final, Literal, final
 
 from latentarm.tasks.scene_task import SceneTask
 from latentarm_research.studies.streams import generator, integer, sequence
-from latentarm_research.user_studies.answers.items import sheet
+from latentarm_research.user_studies.answers.items import names_of, sheet
 from latentarm_research.user_studies.definition import Condition, Definition
 from latentarm_research.user_studies.designs import design_of
 from latentarm_research.user_studies.drive_record import DriveRecord
@@ -31,7 +31,7 @@ class ToAnswer:
     items: tuple[str, ...]
 
 
-Next = ToDrive | ToAnswer | Literal["consent", "finished"]
+Next = ToDrive | ToAnswer | Literal["consent", "comprehension", "finished"]
 
 
 @final
@@ -52,6 +52,8 @@ class Way:
         """The next thing for a person who has a place, or has not consented yet."""
         if not standing.consented or standing.number is None:
             return "consent"
+        if self.definition.comprehension and True not in standing.comprehension:
+            return "comprehension"
         for place, name in enumerate(self.order(standing.number)):
             condition = self.definition.condition(name)
             if place >= standing.practised and (
@@ -61,8 +63,7 @@ class Way:
             theirs = [one for one in standing.drives if one.order == place]
             if (trial := self._trial(condition, place, standing.number, theirs)) is not None:
                 return trial
-            asks = self.definition.questionnaire or self.definition.in_words
-            if asks and place not in standing.answered:
+            if names_of(self.definition) and place not in standing.answered:
                 asked = sheet(self.definition, standing.number + 1, self.seed)
                 theirs = [one for one in asked if one.person == standing.number]
                 items = tuple(one.item for one in theirs if one.condition == name)

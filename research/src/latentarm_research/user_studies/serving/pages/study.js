@@ -13,12 +13,13 @@ const ASK_AGAIN_MS = 3000;
 function content(form) {
   const { to, digest, order } = form.dataset;
   if (to === "consent") return { digest };
-  if (to !== "answers") return {};
+  if (to !== "answers" && to !== "comprehension") return {};
   const asText = new Set([...form.querySelectorAll("textarea, [data-options] input")].map((field) => field.getAttribute("name")));
   const data = new FormData(form);
   const given = [...new Set(data.keys())].map((name) => /** @type {const} */ ([name, data.getAll(name).join(";")]));
   const filled = given.filter(([, value]) => value.trim());
-  return { order: Number(order), answers: Object.fromEntries(filled.map(([name, value]) => [name, asText.has(name) ? value : Number(value)])) };
+  const answers = Object.fromEntries(filled.map(([name, value]) => [name, asText.has(name) ? value : Number(value)]));
+  return order === undefined ? { answers } : { order: Number(order), answers };
 }
 
 /** @param {HTMLFormElement} form @returns {Promise<{to?: string, problem?: string, waits_s?: number}>} */
