@@ -52,7 +52,7 @@ def test_a_gripper_that_has_missed_is_asked_to_open_before_the_step_begins_again
     guide, step = WaypointGuide(), step_of(away, about)
     guide.look(step, state_at(THERE + np.array([0.0, 0.0, 0.1])))
     asked = [
-        guide.look(step, state_at(THERE, time_s=time_s), shut=time_s > 2.0)
+        guide.look(step, state_at(THERE, time_s=time_s), 0.03 if time_s > 2.0 else None)
         for time_s in (1.0, 2.0, 2.1, 4.0, 5.2)
     ]
     # While it closes it is asked to; later it has closed on nothing.
@@ -65,10 +65,26 @@ def test_a_gripper_that_has_missed_is_asked_to_open_before_the_step_begins_again
 def test_a_gripper_that_is_shut_on_the_way_to_a_thing_is_asked_to_open():
     about = Waypoint(lambda state: Pose(THERE, np.eye(3)), gripper="close")
     guide, step = WaypointGuide(), step_of(about)
-    on_the_way = [guide.look(step, state_at([0.0, 0.0, 0.0], time_s=t), shut=True) for t in (0.0, 2.0, 3.5)]
+    on_the_way = [guide.look(step, state_at([0.0, 0.0, 0.0], time_s=t), 0.03) for t in (0.0, 2.0, 3.5)]
     assert [left.gripper for left in on_the_way] == [None, None, "open"]
     held = state_at([0.0, 0.0, 0.0], time_s=4.0, gripped=frozenset({"spoon"}))
-    assert guide.look(step, held, shut=True).gripper is None
+    assert guide.look(step, held, 0.03).gripper is None
+
+
+def test_a_gripper_that_has_closed_on_nothing_is_asked_to_open_at_once():
+    about = Waypoint(lambda state: Pose(THERE, np.eye(3)), gripper="close")
+    guide, step = WaypointGuide(), step_of(about)
+    looks = [(0.0, None), (0.1, 0.08), (1.7, 0.004), (1.8, 0.0)]
+    asked = [guide.look(step, state_at(THERE, time_s=t), closing_m).gripper for t, closing_m in looks]
+    assert asked == ["close", "close", "close", "open"]
+
+
+def test_a_tool_that_has_drawn_back_is_led_to_the_thing_before_the_gripper_is_asked_to_close():
+    about = Waypoint(lambda state: Pose(THERE, np.eye(3)), within_m=0.007, gripper="close")
+    guide, step = WaypointGuide(), step_of(about)
+    for above_m, asked in ((0.0, "close"), (0.01, "close"), (0.03, None), (0.0, "close")):
+        left = guide.look(step, state_at(THERE + np.array([0.0, 0.0, above_m])))
+        assert (left.gripper, left.shift_m[2]) == (asked, -above_m)
 
 
 def test_a_waypoint_at_which_nothing_comes_true_and_nothing_is_left_to_drive_begins_the_step_again():

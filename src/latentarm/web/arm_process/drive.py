@@ -134,8 +134,9 @@ class Drive:
         self._steering.tick += 1
         self._readings.see(record)
         enabled, steered = self._step.stopped is None, not self._way_back.on
-        shut = self._readings.gripper is not None and self._readings.gripper.closing is True
-        self._run.see(record.time_s, self._readings.q, enabled=enabled, steered=steered, shut=shut)
+        gripper = self._readings.gripper
+        closing_m = gripper.width_m if gripper is not None and gripper.closing else None
+        self._run.see(record.time_s, self._readings.q, enabled=enabled, steered=steered, closing_m=closing_m)
         # Only a recording is worth the look: some 0.1 ms.
         kept = self._things.recorded(record) if self._writer.on else record
         self._episodes.follow(kept, at_rest=self._step.at_rest)

@@ -104,8 +104,10 @@ class TaskRun:
         seen = replace(self._seen, poses={**self._seen.poses, **believed})
         return goals.look(self._progress.done, self._step, self._guide.waypoint, seen, q)
 
-    def see(self, time_s: float, q: FloatArray, *, enabled: bool, steered: bool, shut: bool = False) -> None:
-        """Update, in every tick; ``q``: (n,), joint positions, rad; ``shut`` as in `WaypointGuide.look`.
+    def see(
+        self, time_s: float, q: FloatArray, *, enabled: bool, steered: bool, closing_m: float | None = None
+    ) -> None:
+        """Update, in every tick; ``q``: (n,), joint positions, rad; ``closing_m`` as in `WaypointGuide.look`.
 
         A goal that the arm passes while no person steers, on its way to a saved pose, is not reached; the
         state of things counts always.
@@ -124,7 +126,7 @@ class TaskRun:
                 self._progress.update(state)
         if looks or self._over:
             self._looked_s, self._seen = time_s, state
-            self._to_go = self._guide.look(self._step, state, shut=shut)
+            self._to_go = self._guide.look(self._step, state, closing_m)
             self._fills.see(state, time_s)
 
     @property

@@ -14,6 +14,8 @@ _METRES: Final = 4
 _RADIANS: Final = 3  # digits that pages receive
 _LEAST_M: Final = 0.003
 _LEAST_RAD: Final = 0.05  # pages list no smaller way
+_LEFT: Final = 3.0  # a tool that is so many tolerances off has left the waypoint
+_CLOSED_M: Final = 0.002  # fingers that are no farther apart hold nothing
 _SPILLS_RAD: Final = 0.5  # a vessel that is tilted by more may lose what is in it
 
 
@@ -31,8 +33,8 @@ class WaypointGuide:
         self._step: TaskStep | None = None
         self._index = 0
         self._arrived_s: float | None = None
-        self._shut_s: float | None = None  # since when the gripper has been shut with nothing in it, s
-        self._empty = False  # whether that is so long ago that it has missed
+        self._closes_s: float | None = None  # since when the gripper has closed with nothing in it, s
+        self._empty = False  # whether it has missed
         self._still_s: float | None = None  # since when nothing is left to be driven to the waypoint, s
 
     @property
@@ -40,19 +42,20 @@ class WaypointGuide:
         """The tool's present target; None where nothing is left, or before the first look."""
         return None if self._step is None else self._step.waypoints[self._index]
 
-    def look(self, step: TaskStep | None, state: SceneState, *, shut: bool = False) -> ToGo | None:
+    def look(self, step: TaskStep | None, state: SceneState, closing_m: float | None = None) -> ToGo | None:
         """The remaining way in the step; None where nothing is left to do.
 
-        ``state`` has a running clock; ``shut``: the last command to the gripper was to close.
+        ``state`` has a running clock. ``closing_m`` is the distance of the gripper's fingers, m, if its last
+        command was to close.
         """
         if step is not self._step:
             self._step = step
             self._index, self._arrived_s = 0, None
-        if not shut or state.gripped:
-            self._shut_s = None
-        elif self._shut_s is None:
-            self._shut_s = state.time_s
-        self._empty = self._shut_s is not None and state.time_s - self._shut_s >= PATIENCE_S
+        if closing_m is None or state.gripped:
+            self._closes_s, self._empty = None, False
+        else:
+            self._closes_s = state.time_s if self._closes_s is None else self._closes_s
+            self._empty = closing_m <= _CLOSED_M or state.time_s - self._closes_s >= PATIENCE_S
         if step is None:
             return None
         self._go_on(step.waypoints, state)
@@ -69,6 +72,9 @@ class WaypointGuide:
         waypoint = waypoints[self._index]
         if self._arrived_s is None and waypoint.reached(state):
             self._arrived_s = state.time_s
+        elif self._asked(waypoint, state) == "close" and waypoint.missed_by(state) > _LEFT:
+            # The arm has drawn back from a force, or was driven on: there is nothing to close on.
+            self._arrived_s = None
         true = waypoint.until is None or waypoint.until(state)
         if self._in_vain(waypoint, state, true=true):
             self._index, self._arrived_s, self._still_s = 0, None, None
