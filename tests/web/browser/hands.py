@@ -227,9 +227,13 @@ class OneSwitch(Hand):
         self._choose("mode")
 
     def _choose(self, choice: str) -> None:
+        wanted, back = f"#scan li[data-choice={choice}]", "#scan li[data-choice$=-back]"
+        # A press that came late may have opened another list.
+        if not self.page.locator(wanted).count() and self.page.locator(back).count():
+            wanted = back
         # The choices change when the arm stops by itself: then there is nothing to wait for.
         with suppress(Error):
-            self._light(f"#scan li[data-choice={choice}][aria-current=true]")
+            self._light(f"{wanted}[aria-current=true]")
             self._press("Enter")
 
     def _light(self, lit: str) -> None:
