@@ -121,3 +121,24 @@ def test_the_dataset_has_everybody_who_consented_and_only_drives_of_people_who_f
     assert [one["devices"] for one in drives] == [DEVICES] * 2
     codebook = (data.parent / "documentation" / "codebook.csv").read_text()
     assert '\ndevices,"input devices that were pushed' in codebook
+
+
+def test_progress_says_where_everybody_is_and_how_their_drives_went(
+    served: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    store = Store(served / "study.sqlite")
+    key = store.arrive("new", "visit", 200.0)
+    assert key is not None
+    store.consent(key, CONSENT, "2026-01-04T10:00:00+00:00")
+    store.place(key, 200.0)
+    store.close()
+    assert main(["study", "progress", str(served), "--json"]) == 0
+    people = json.loads(capsys.readouterr().out)
+    assert [(one["due"], one["place"], one["way_of_driving"], one["drives"]) for one in people] == [
+        ("practice", 1, 1, 0),
+        ("finished", 0, None, 2),
+        ("lapsed", None, None, 1),
+    ]
+    assert people[0]["last_there"] == "1970-01-01T00:03+00:00"
+    assert main(["study", "progress", str(served)]) == 0
+    assert "4 places; finished: 1, lapsed: 1, practice: 1." in capsys.readouterr().out

@@ -63,6 +63,10 @@ COMMANDS: Final = CommandSet(
             "Take real people through a study on the page: consent, practice, trials, questions, completion"
             " code.",
         ),
+        "study progress": _ours(
+            "study_progress:progress_of_study",
+            "Show how far the people of a served study have come, also while it is served.",
+        ),
         "study export": _ours(
             "study_data:export_study",
             "Write a study as a Psych-DS dataset, with scripts in Python and R for the tables of its report.",

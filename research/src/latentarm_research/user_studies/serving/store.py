@@ -31,6 +31,7 @@ class Standing:
 
     key: str  # random; their steps are kept under it
     number: int | None  # of their place; None where they have none, any more or yet
+    seen_s: float  # when they last opened a page of the study, s since 1970
     lapsed: bool  # whether their place went to somebody else, because they were away for too long
     consent: str  # SHA-256 of the text that they consented to; "" before
     consented: str  # when, ISO 8601; "" before
@@ -283,6 +284,7 @@ def _standing(session: Session, person: Person) -> Standing:
     return Standing(
         key=person.key,
         number=held,
+        seen_s=person.seen_s,
         lapsed=person.number is not None and held is None,
         consent=person.consent or "",
         consented=person.consented or "",
