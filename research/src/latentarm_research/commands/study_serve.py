@@ -38,10 +38,7 @@ def serve_study(
     ] = None,
     language: Annotated[
         str | None,
-        arg(
-            metavar="{de,en,es,zh}",
-            help="Language of the pages; its definition's texts stay as they are. By default en.",
-        ),
+        arg(metavar="CODE", help="Language of the study's own pages: de, es, zh or, by default, en."),
     ] = None,
     information: Annotated[
         Path | None,
