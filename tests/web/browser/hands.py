@@ -227,8 +227,9 @@ class OneSwitch(Hand):
         self._choose("mode")
 
     def _choose(self, choice: str) -> None:
-        wanted, back = f"#scan li[data-choice={choice}]", "#scan li[data-choice$=-back]"
-        # A press that came late may have opened another list.
+        wanted = f"#scan li[data-choice={choice}]"
+        # A press that came late may have opened another list. The arm's way back is something else.
+        back = "#scan li[data-choice$=-back]:not([data-choice=way-back])"
         if not self.page.locator(wanted).count() and self.page.locator(back).count():
             wanted = back
         # The choices change when the arm stops by itself: then there is nothing to wait for.
