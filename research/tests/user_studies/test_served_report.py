@@ -134,11 +134,11 @@ def test_progress_says_where_everybody_is_and_how_their_drives_went(
     store.close()
     assert main(["study", "progress", str(served), "--json"]) == 0
     people = json.loads(capsys.readouterr().out)
-    assert [(one["due"], one["place"], one["way_of_driving"], one["drives"]) for one in people] == [
+    assert [(one["due"], one["place"], one["way"], one["drives"]) for one in people] == [
         ("practice", 1, 1, 0),
         ("finished", 0, None, 2),
         ("lapsed", None, None, 1),
     ]
-    assert people[0]["last_there"] == "1970-01-01T00:03+00:00"
+    assert people[0]["last_there"] == "1970-01-01 00:03"
     assert main(["study", "progress", str(served)]) == 0
     assert "4 places; finished: 1, lapsed: 1, practice: 1." in capsys.readouterr().out

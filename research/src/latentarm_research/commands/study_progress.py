@@ -21,10 +21,11 @@ if TYPE_CHECKING:
 def progress_of_study(folder: Positional[ServedFolder], database: Database = None, json: Json = False) -> int:
     """Show how far the people of a served study have come, also while it is served.
 
-    It lists each person's place, what is due, their drives so far, and when they were last there.
+    It lists each person's place, what is due, their drives so far, and when they were last there (UTC).
 
     For example: latentarm study progress studies/eating-people
     """
+    from rich.box import SIMPLE
     from rich.table import Table
 
     from latentarm_research.user_studies.recorded import read_definition_of
@@ -46,7 +47,7 @@ def progress_of_study(folder: Positional[ServedFolder], database: Database = Non
     found = ", ".join(f"{due}: {count}" for due, count in sorted(counts.items())) or "nobody has come yet"
     say(f"{definition.people} places; {found}.", json)
     if rows:
-        table = Table(*(name.replace("_", " ") for name in rows[0]))
+        table = Table(*(name.replace("_", " ") for name in rows[0]), box=SIMPLE)
         for row in rows:
             table.add_row(*("–" if value is None else str(value) for value in row.values()))
         print_renderables(table)
@@ -59,12 +60,12 @@ def _row(way: "Way", person: "Standing") -> dict[str, Any]:
     return {
         "place": person.number,
         "due": due,
-        "way_of_driving": None if order is None else order + 1,
+        "way": None if order is None else order + 1,
         "drives": len(person.drives),
-        "succeeded": sum(one.ending == "done" for one in person.drives),
+        "done": sum(one.ending == "done" for one in person.drives),
         "stops": round(sum(one.measures.get("stops", 0.0) for one in person.drives)),
         "delay_ms": round(1e3 * fmean(delays_s)) if delays_s else None,
-        "last_there": datetime.fromtimestamp(person.seen_s, UTC).isoformat(timespec="minutes"),
+        "last_there": datetime.fromtimestamp(person.seen_s, UTC).strftime("%Y-%m-%d %H:%M"),
     }
 
 
