@@ -9,9 +9,9 @@ from .hands import Keyboard, OneSwitch
 from .scripted_person import Person
 
 
-@pytest.fixture(scope="module")
-def address(start_server, tmp_path_factory):
-    with start_server(tmp_path_factory.mktemp("eat"), "--task", "marshmallows", "--seed", "1") as address:
+@pytest.fixture
+def address(start_server, tmp_path):
+    with start_server(tmp_path, "--task", "marshmallows", "--seed", "1") as address:
         yield address
 
 
