@@ -5,6 +5,10 @@ from pathlib import Path
 
 import pytest
 
+from latentarm_research.user_studies.own.definition_file import read_definition
+from latentarm_research.user_studies.recorded import Recorded
+from latentarm_research.user_studies.report.people import consent_words
+from latentarm_research.user_studies.sizes import PRESETS
 from study_here import INFORMATION, Study
 
 ASKED = [
@@ -43,6 +47,9 @@ def test_who_answers_wrong_reads_the_information_again_and_answers_again(study: 
     standing = study.store.standing(key)
     assert standing is not None
     assert standing.comprehension == (False, False, True)
+    definition = read_definition(study.folder / "two_ways.json")
+    recorded = Recorded(definition, "real", (), (), (), PRESETS["smoke"], participants=(standing,))
+    assert "0 answered all questions about it right at the first try." in consent_words(recorded)
     kept = study.ask(key, "GET", "/data").json()["comprehension"]
     assert [one["options"] for one in kept] == [{"stop": "1", "arm": "1"}, {"stop": "2"}, RIGHT]
     study.ask(key, "POST", "/withdraw")

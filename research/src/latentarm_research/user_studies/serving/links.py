@@ -35,7 +35,7 @@ def link_of(given: QueryParams, prolific: str | None, words: Words) -> tuple[str
 def _wrong(name: str, value: str, prolific: str | None) -> str:
     """The code of the fault of an id in a link, "" for none."""
     if prolific is None:
-        return "none"
+        return "not_taken"
     if not value:
         return "lacks"
     if not (value.isascii() and value.isalnum() and len(value) <= _MOST):

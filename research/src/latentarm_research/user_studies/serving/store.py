@@ -35,9 +35,7 @@ class Standing:
     lapsed: bool  # whether their place went to somebody else, because they were away for too long
     consent: str  # SHA-256 of the text that they consented to; "" before
     consented: str  # when, ISO 8601; "" before
-    comprehension: tuple[
-        bool, ...
-    ]  # whether they answered all questions about the information right, each time
+    comprehension: tuple[bool, ...]  # of each try at its questions, whether all answers were right
     practised: int  # conditions that they have practised
     drives: tuple[DriveRecord, ...]  # in their order
     answered: frozenset[int]  # places in the order of the conditions after which they have answered
