@@ -8,12 +8,15 @@ window.print = () => {};
 let pressing = false;
 /** @type {Element | null} */
 let wasLit = null;
+/** @type {Map<HTMLDetailsElement, boolean>} Whether each was open before the press. */
+let wereOpen = new Map();
 const switched = () => !document.getElementById("panel-switch").hidden;
 const textOf = (one) => one instanceof HTMLInputElement && !one.readOnly && one.selectionStart !== null;
 addEventListener("keydown", (event) => {
   // Somebody with other settings may have been chosen.
   if (!isSwitch(event.code) || event.repeat || !switched()) return;
   pressing = true;
+  wereOpen = new Map([...document.querySelectorAll("details")].map((one) => [one, one.open]));
   const choice = document.querySelector("#scan [aria-current=true]");
   const lit = wasLit = document.querySelector(".lit");
   const kept = textOf(event.target) || "asking" in event.target.dataset;
@@ -46,11 +49,14 @@ window.snap = () => {
   const told = JSON.parse(sessionStorage.told ?? "[]");
   sessionStorage.told = "[]";
   const focus = document.activeElement;
+  // One that has come or gone with its part of the page was not toggled.
+  const toggled = [...wereOpen].filter(([one, open]) => one.isConnected && one.open !== open);
   return {
     on, lit: lit.length, seen: seen.map((one) => one.textContent), lights: document.getElementsByClassName("lit").length, told,
-    row: lit.some((one) => one.dataset.choice?.startsWith("row-")), language: document.documentElement.lang,
+    row: lit.some((one) => one.dataset.choice?.startsWith("row-")),
     path: location.pathname, open: open.map((one) => `${one.localName} ${one.id || one.textContent.trim().slice(0, 30)}`),
     focus: focus?.outerHTML.slice(0, 120) ?? "", stop: document.querySelectorAll("#scan [data-choice=stop]").length,
+    toggled: toggled.map(([one]) => one.textContent.trim().slice(0, 30)), asking: "asking" in (focus?.dataset ?? {}),
     choices: [...document.querySelectorAll("#scan li")].map((one) => one.dataset.choice).join(" "),
   };
 };
