@@ -21,7 +21,7 @@ from latentarm_research.user_studies.serving.page_drive import ToDrive
 from latentarm_research.user_studies.serving.store import Store
 from latentarm_research.user_studies.serving.way import ToAnswer, Way
 from latentarm_research.user_studies.trace import BINS, Trace
-from study_participant import CONTACT, MODES, TWIST, definition
+from study_participant import CONTACT, DEVICE, MODES, TWIST, definition
 
 ORIGIN = "http://study.example"
 PROLIFIC = "5" * 24
@@ -47,10 +47,15 @@ class Study:
         )  # fmt: skip
         self.way = Way(serving.definition, serving.sizes, serving.kept.seed)
         self.store = Store(folder / "study.sqlite", 7200.0)
-        server = StudyServer(serving, self.store, Models(serving.definition, folder))
-        gate = Gate(server, frozenset({"study.example"}), frozenset({ORIGIN}), stop=server.stop)
+        server = StudyServer(
+            serving,
+            self.store,
+            Models(serving.definition, folder),
+            self.store.servers("here", f"{ORIGIN}/study", 1),
+        )
+        self.gate = Gate(server, frozenset({"study.example"}), frozenset({ORIGIN}), stop=server.stop)
         self.loop = asyncio.new_event_loop()
-        self.client = httpx.AsyncClient(transport=httpx.ASGITransport(gate), base_url=ORIGIN)
+        self.client = httpx.AsyncClient(transport=httpx.ASGITransport(self.gate), base_url=ORIGIN)
         self.keys: dict[str, str] = {}
         self._used: set[str] = set()
 
@@ -83,6 +88,7 @@ class Study:
             return key
         self.store.consent(key, "0" * 64, "2026-01-01T00:00:00+00:00")
         self.store.place(key, time.time())
+        self.store.keep_device(key, DEVICE, passed=True)
         self.store.practised(key, 2)
         if part == "trial":
             return key

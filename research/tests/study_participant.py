@@ -52,6 +52,16 @@ def definition(*conditions: dict[str, Any]) -> dict[str, Any]:
     }
 
 
+DEVICE = {
+    "browser": "Firefox 140",
+    "webgl": True,
+    "width_px": 1280,
+    "height_px": 720,
+    "inputs": ["mouse"],
+    "round_trip_ms": 40.0,
+    "jitter_ms": 8.0,
+}
+"""What the check of a good device finds."""
 MODES = {"name": "Modes", "about": "two axes at a time", "controls": "modes"}
 TWIST = {"name": "Retargeting", "about": "the tool's twist", "controls": "retargeting"}
 LATENT = {
@@ -102,6 +112,8 @@ class Participant:
     def consent(self) -> None:
         digest = re.search(r'data-digest="(\w+)"', self.page)[1]  # type: ignore[index]
         self.post("consent", digest=digest)
+        assert self.part == "device"
+        self.post("device", **DEVICE)
         assert self.part == "practice"
 
     def ready(self) -> None:

@@ -10,6 +10,7 @@ from latentarm_research.user_studies.recorded import Recorded
 from latentarm_research.user_studies.report.people import consent_words
 from latentarm_research.user_studies.sizes import PRESETS
 from study_here import INFORMATION, Study
+from study_participant import DEVICE
 
 ASKED = [
     {"name": "stop", "text": "When may you stop?", "options": ["at the end", "at any time"], "attention": 2},
@@ -28,6 +29,7 @@ def study(tmp_path: Path) -> Iterator[Study]:
 def test_who_answers_wrong_reads_the_information_again_and_answers_again(study: Study) -> None:
     key = study.comes("consent")
     study.store.consent(key, "0" * 64, "2026-01-01T00:00:00+00:00")
+    study.store.keep_device(key, DEVICE, passed=True)
     page = study.ask(key, "GET").text
     assert 'data-part="comprehension"' in page
     assert page.count(" required") == 4
@@ -60,5 +62,6 @@ def test_a_study_without_such_questions_goes_on_to_practice(tmp_path: Path) -> N
     study = Study(tmp_path)
     key = study.comes("consent")
     study.store.consent(key, "0" * 64, "2026-01-01T00:00:00+00:00")
+    study.store.keep_device(key, DEVICE, passed=True)
     assert 'data-part="practice"' in study.ask(key, "GET").text
     study.close()

@@ -21,6 +21,8 @@ from latentarm_research.user_studies.trace import BINS, Trace
 from study_participant import MODES, TWIST, definition
 
 CONSENT, LATER = "ab" * 32, "cd" * 32  # texts
+NO_DEVICE = [""] * 6
+"""Columns of a check of the device, which was not made yet."""
 DEVICES = "gamepad Pad (a: 1);pointer touch;keyboard"
 
 
@@ -113,8 +115,8 @@ def test_the_dataset_has_everybody_who_consented_and_only_drives_of_people_who_f
         for name in ("people", "drives")
     )
     assert [list(one.values()) for one in people] == [
-        ["0", "Retargeting;Modes", LATER, "2026-01-03", "0", "2", DEVICES, "1"],
-        ["", "Modes", CONSENT, "2026-01-02", "0", "1", DEVICES, "0"],
+        ["0", "Retargeting;Modes", LATER, "2026-01-03", *NO_DEVICE, "0", "2", DEVICES, "1"],
+        ["", "Modes", CONSENT, "2026-01-02", *NO_DEVICE, "0", "1", DEVICES, "0"],
     ]
     # The place of the person who was away is that of the one who finished: their drives do not mix.
     assert [(one["person"], one["condition"]) for one in drives] == [("0", "Retargeting"), ("0", "Modes")]
@@ -135,10 +137,10 @@ def test_progress_says_where_everybody_is_and_how_their_drives_went(
     assert main(["study", "progress", str(served), "--json"]) == 0
     people = json.loads(capsys.readouterr().out)
     assert [(one["due"], one["place"], one["way"], one["drives"]) for one in people] == [
-        ("practice", 1, 1, 0),
+        ("device", 1, None, 0),
         ("finished", 0, None, 2),
         ("lapsed", None, None, 1),
     ]
     assert people[0]["last_there"] == "1970-01-01 00:03"
     assert main(["study", "progress", str(served)]) == 0
-    assert "4 places; finished: 1, lapsed: 1, practice: 1." in capsys.readouterr().out
+    assert "4 places; device: 1, finished: 1, lapsed: 1." in capsys.readouterr().out

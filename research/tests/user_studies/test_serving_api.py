@@ -14,11 +14,12 @@ from schemathesis import GenerationMode
 from latentarm_research.user_studies.own.definition_file import read_definition
 from latentarm_research.user_studies.serving import request_limit
 from latentarm_research.user_studies.serving.app import COOKIE, Answered, Consented, Understood
+from latentarm_research.user_studies.serving.device import Device
 from latentarm_research.user_studies.serving.options import general_information
 from latentarm_research.user_studies.serving.page_drive import ToDrive
 from latentarm_research.user_studies.serving.words.catalogue import study_languages
 from study_here import ORIGIN, PROLIFIC, Study, driven
-from study_participant import CONTACT, definition
+from study_participant import CONTACT, DEVICE, definition
 
 CASES = int(os.environ.get("LATENTARM_STUDY_CASES", "20"))
 """For each request."""
@@ -42,7 +43,7 @@ def described() -> dict[str, Any]:
     ]
     refused = {str(status): SENTENCE for status in (400, 403, 409, 413)}
     posts = {"begin": None, "ready": None, "withdraw": None, "consent": Consented, "answers": Answered,
-             "comprehension": Understood}  # fmt: skip
+             "device": Device, "comprehension": Understood}  # fmt: skip
     pages = {"200": HTML, "303": {"description": "onward"}, "404": HTML}
     paths: dict[str, Any] = {
         "/study": {"get": {"parameters": links, "responses": pages}},
@@ -112,12 +113,14 @@ def test_nobody_reads_their_condition_or_the_question_before_they_have_finished(
     telling = [told.title, told.about, *(text for one in told.conditions for text in (one.name, one.about))]
     assert not [text for text in telling if text in general_information(told, 2.0, study_languages()["en"])]
     key = study.comes("consent")
-    for part in ("consent", "practice", "trial", "questions"):
+    for part in ("consent", "device", "practice", "trial", "questions"):
         page = study.key("questions") if part == "questions" else key
         assert f'data-part="{part}"' in reads(page)
         assert not [text for text in telling if text in reads(page)]
         if part == "consent":
             study.store.consent(key, "0" * 64, "2026-01-01T00:00:00+00:00")
+        if part == "device":
+            study.store.keep_device(key, DEVICE, passed=True)
         study.store.practised(key, 2 if part == "practice" else 0)
     finished = reads(study.key("finished"))
     assert all(text in finished for text in (told.title, told.about, '"condition":"Modes"'))

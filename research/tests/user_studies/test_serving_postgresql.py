@@ -1,4 +1,4 @@
-"""A study in PostgreSQL: one server at a time, one study in a database, and refusals that say why."""
+"""A study in PostgreSQL: one study in a database, and refusals that say why."""
 
 import sys
 from collections.abc import Iterator
@@ -75,16 +75,6 @@ def test_a_database_serves_one_folder(start: Starts, url: str) -> None:
     assert start() == 0
     assert main(["study", "delete", str(start.out), "--code", "x", "--database", url]) == 2
     assert "of another folder" in start.output
-
-
-def test_one_server_at_a_time_serves_a_database(start: Starts, url: str) -> None:
-    store = Store(postgresql(url))
-    with store.owner.alone():
-        assert start("--database", url) == 2
-        assert "is being served by another program" in start.output
-        assert not (start.out / "config.json").exists()
-    store.close()
-    assert start("--database", url) == 0
 
 
 def test_a_database_that_cannot_be_opened_says_why_before_models_are_trained(

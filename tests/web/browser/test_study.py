@@ -1,6 +1,7 @@
 """A participant takes a study on the page, from the link to the completion code, with simulated arms."""
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -49,6 +50,8 @@ def test_a_participant_takes_a_study_on_the_page(
         press(page, "Take part")
         page.get_by_role("checkbox").check()
         press(page, "Take part")
+        looked_at(page, "Your device")
+        press(page, "Check")
         looked_at(page, "Practice")
         press(page, "Practise")
         # The input is set up by now. The Drive page offers only what belongs to the study.
@@ -82,7 +85,33 @@ def test_a_participant_takes_a_study_on_the_page(
         assert faults == []
     recorded = read_recorded(out)
     assert recorded.who == "1 real person"
+    (device,) = (one.device for one in recorded.participants)
+    assert (device["width_px"], device["height_px"], device["inputs"]) == (width, height, ["mouse"])
+    assert re.fullmatch(r"Chrome \d+", device["browser"])
+    assert 0.0 < device["round_trip_ms"] < 400.0
     assert {one.condition for one in recorded.trials} == {"Modes", "Retargeting"}
     assert all(one.measures["path_length"] > 0.0 for one in recorded.trials)
     assert [one.answer for one in recorded.answers if one.item != "pain_1"] == [6] * 8
     assert [one.answer for one in recorded.answers if one.item == "pain_1"] == [51] * 2
+
+
+def test_a_browser_that_cannot_drive_says_why_and_checks_again(chromium: Browser, tmp_path: Path) -> None:
+    study = tmp_path / "study.json"
+    study.write_text(json.dumps(definition(MODES, TWIST)))
+    with serving(str(study), "--out", str(tmp_path / "people")) as (link, _):
+        context = chromium.new_context(viewport={"width": 390, "height": 300})
+        page = context.new_page()
+        page.goto(link)
+        page.get_by_role("checkbox").check()
+        press(page, "Take part")
+        looked_at(page, "Your device")
+        page.evaluate("() => { HTMLCanvasElement.prototype.getContext = () => null; }")
+        page.evaluate("() => { WebSocket = class extends EventTarget { close() {} }; }")
+        press(page, "Check")
+        for sentence in ("it has no WebGL 2", "The window is too small", "A firewall may block WebSockets"):
+            page.get_by_text(sentence).wait_for(timeout=WITHIN_MS)
+        looked_at(page, "Your device")
+        page.set_viewport_size({"width": 390, "height": 844})
+        press(page, "Check again")
+        looked_at(page, "Practice")
+        context.close()

@@ -103,6 +103,8 @@ def test_a_study_is_done_by_keyboard_alone(
         looked_at(page, PUBLIC_TITLE)
         press(page, "checkbox", "I have read this", "Space")
         press(page, "button", "Take part")
+        looked_at(page, "Your device")
+        press(page, "button", "Check")
         looked_at(page, "Practice")
         press(page, "button", "Practise")
         page.locator("#status[data-phase=disengaged]").wait_for(timeout=WITHIN_MS)
@@ -151,6 +153,8 @@ def test_a_study_is_done_by_one_switch_alone(
         looked_at(page, PUBLIC_TITLE)
         choose(page, "I have read this")
         choose(page, "Take part")
+        looked_at(page, "Your device")
+        choose(page, "^Check$")
         looked_at(page, "Practice")
         choose(page, "Practise")
         page.locator("#status[data-phase=disengaged]").wait_for(timeout=WITHIN_MS)
@@ -189,6 +193,7 @@ def test_a_page_waits_in_the_queue_and_goes_on_by_itself(
         page.goto(next_link(tmp_path / "people"))
         page.get_by_role("checkbox").check()
         page.get_by_role("button", name="Take part").click()
+        page.get_by_role("button", name="Check").click()
         page.get_by_role("button", name="Practise").click()
         page.get_by_role("status").get_by_text("Yours is free in about").wait_for()
         looked_at(page, "Practice")
@@ -208,7 +213,7 @@ def test_people_who_cannot_go_on_can_leave(
         for page in (first, late):
             page.get_by_role("checkbox").check()
         first.get_by_role("button", name="Take part").click()
-        first.get_by_role("heading", name="Practice").wait_for()
+        first.get_by_role("heading", name="Your device").wait_for()
         # Two others come when the first person has been away for too long, and have both places.
         store, later_s = Store(out / DATABASE, away_s=0.0), time.time() + 60.0
         for name in ("one", "other"):

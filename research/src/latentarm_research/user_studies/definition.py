@@ -3,12 +3,13 @@
 import hashlib
 import json
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from typing import Any, ClassVar, Final, Literal, final
 
 from latentarm.core.errors import UserError
 from latentarm.evaluation.measures import label_of
 from latentarm_research.studies.claims import Claim, Hypothesis
+from latentarm_research.user_studies.device_limits import DeviceLimits
 from latentarm_research.user_studies.exclusion import Exclusion
 from latentarm_research.user_studies.hypothesis import Printed
 from latentarm_research.user_studies.questionnaire import HIGH, LOW, MultipleChoice, Question, Scale
@@ -26,6 +27,7 @@ _LATER: Final[Mapping[str, object]] = {
     "slider": False,
     "multiple_choice": (),
     "comprehension": (),
+    "device": asdict(DeviceLimits()),
 }
 """Defaults of fields that older definitions do not have, whose digests must stay."""
 PREFIX: Final = "user study "  # before a study's name, in what a folder of its results says that it is
@@ -169,6 +171,9 @@ class Definition:
     comprehension: tuple[MultipleChoice, ...] = ()
     """Questions about the information that people consent to, before the first practice; `attention` is the
     right option of each. Who is wrong reads the information and answers again; how often is recorded."""
+    device: DeviceLimits = field(default_factory=DeviceLimits)
+    """What a person's device must reach before they drive. One that falls short is not turned away for good:
+    the page says why, and checks again."""
 
     def __post_init__(self) -> None:
         in_order = [condition.name for condition in self.conditions]

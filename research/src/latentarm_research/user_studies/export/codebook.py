@@ -53,6 +53,12 @@ VARIABLES: Final = (
     Variable("consent", "SHA-256 of the text that the person consented to; the study's folder has the text as"
              " information-HASH.md, named by the first 12 digits"),
     Variable("consented", "day of the consent, UTC"),
+    Variable("browser", "name and version of the browser in the latest check of the device"),
+    Variable("width_px", "width of its window", "CSS pixels"),
+    Variable("height_px", "height of its window", "CSS pixels"),
+    Variable("round_trip_ms", "median time of a message to the server and back in that check", "ms"),
+    Variable("jitter_ms", "time by which the 95th percentile of these is above their median", "ms"),
+    Variable("device_passed", "1 where the device was good enough for the study, else 0"),
     Variable("comprehension", "number of times that the person answered the questions about the information,"
              " until all answers were right"),
     Variable("practised", "number of conditions that the person practised"),

@@ -21,6 +21,7 @@ from latentarm_research.user_studies.recorded import Recorded
 # Formulas begin with these, also in their full width; an apostrophe says that none follows.
 _GUARDED: Final = tuple("=+-@\uff1d\uff0b\uff0d\uff20'\t\r\n")
 SCRIPTS: Final = ("tables.py", "tables.R")
+_DEVICE: Final = ("browser", "width_px", "height_px", "round_trip_ms", "jitter_ms")
 
 Cell = str | float | None
 
@@ -42,6 +43,8 @@ def write_dataset(folder: Path, recorded: Recorded, drives: Sequence[tuple[Drive
                 "conditions",
                 "consent",
                 "consented",
+                *_DEVICE,
+                "device_passed",
                 "comprehension",
                 "practised",
                 "devices",
@@ -123,6 +126,8 @@ def _people(recorded: Recorded) -> Iterable[Sequence[Cell]]:
             conditions,
             one.consent,
             day,
+            *(one.device.get(name) for name in _DEVICE),
+            int(one.device_passed) if one.device else None,
             len(one.comprehension),
             one.practised,
             ";".join(devices_of(one.drives)),
@@ -132,7 +137,7 @@ def _people(recorded: Recorded) -> Iterable[Sequence[Cell]]:
         in_order = sorted(recorded.trials, key=lambda trial: trial.order)
         for person in sorted(recorded.met):
             theirs = dict.fromkeys(trial.condition for trial in in_order if trial.person == person)
-            yield person, ";".join(theirs), None, None, None, None, None, None
+            yield person, ";".join(theirs), *(None for _ in range(7 + len(_DEVICE)))
 
 
 def _answers(definition: Definition, answers: Sequence[Answer]) -> Iterable[Sequence[Cell]]:

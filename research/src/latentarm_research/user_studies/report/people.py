@@ -46,9 +46,12 @@ def consent_words(recorded: Recorded) -> str:
     when = days[0] if days[0] == days[-1] else f"{days[0]} to {days[-1]}"
     finished = sum(one.finished for one in people)
     at_once = sum(one.comprehension[:1] == (True,) for one in people)
+    short = sum(not one.device_passed for one in people if one.device)
     understood = f"{at_once} answered all questions about it right at the first try. "
     return (
         f"{len(people)} consented ({when}; text {texts}), and {finished} of them finished."
+        f"{f' The device of {short} fell short.' if short else ''}"
         f" {understood if recorded.definition.comprehension else ''}People who were deleted do not count."
-        " Nothing else about the people was recorded."
+        " Besides browser, window, inputs and the delay of the connection, nothing else about the people was"
+        " recorded."
     )

@@ -1,6 +1,7 @@
 """The server of a study: the participants' pages, and the Drive page of each who drives."""
 
 import asyncio
+import logging
 import secrets
 import shutil
 import time
@@ -11,6 +12,7 @@ from pathlib import Path
 from typing import Annotated, Final, final
 
 from pydantic import Field
+from sqlalchemy.exc import DBAPIError
 from starlette.applications import Starlette
 from starlette.datastructures import Headers
 from starlette.requests import HTTPConnection, Request
@@ -25,6 +27,7 @@ from latentarm.web.server.assets import Assets
 from latentarm.web.words.catalogue import COOKIE as LANGUAGE_COOKIE
 from latentarm_research.user_studies.answers.items import wrong_answer
 from latentarm_research.user_studies.drive_record import DriveRecord
+from latentarm_research.user_studies.serving.device import Device, echo, shortfalls
 from latentarm_research.user_studies.serving.links import link_of
 from latentarm_research.user_studies.serving.models import Models
 from latentarm_research.user_studies.serving.options import Serving
@@ -39,12 +42,21 @@ from latentarm_research.user_studies.serving.participant_pages import (
 from latentarm_research.user_studies.serving.queue import Queue
 from latentarm_research.user_studies.serving.request_limit import RequestLimit
 from latentarm_research.user_studies.serving.running import RunningDrive, recovered, refuse_socket
+from latentarm_research.user_studies.serving.servers import BEAT_S, Servers
 from latentarm_research.user_studies.serving.store import Standing, Store
-from latentarm_research.user_studies.serving.study_files import DRIVES, STEPS, forget, keep_steps, steps_of
+from latentarm_research.user_studies.serving.study_files import (
+    DRIVES,
+    forget,
+    forget_strangers,
+    keep_steps,
+    steps_of,
+    write_links,
+)
 from latentarm_research.user_studies.serving.way import Next, ToAnswer, Way
 
 COOKIE: Final = "latentarm_study"
 _READING: Final = ("GET", "HEAD")
+_LOG: Final = logging.getLogger(__name__)
 
 
 @final
@@ -73,10 +85,11 @@ class Answered(Message):
 class StudyServer:
     """The application of a study. Each participant who drives has an arm of their own."""
 
-    def __init__(self, serving: Serving, store: Store, models: Models) -> None:
+    def __init__(self, serving: Serving, store: Store, models: Models, servers: Servers) -> None:
         self._serving = serving
         self._store = store
         self._models = models
+        self._servers = servers
         self._way = Way(serving.definition, serving.sizes, serving.kept.seed)
         assets = Assets()
         self._pages = ParticipantPages(serving, self._way, assets)
@@ -86,7 +99,15 @@ class StudyServer:
         self._queue = Queue(serving.at_once)
         self._following: set[asyncio.Task[None]] = set()
         self._changing = asyncio.Lock()
-        posts = (self.consent, self.comprehension, self.begin, self.ready, self.answers, self.withdraw)
+        posts = (
+            self.consent,
+            self.device,
+            self.comprehension,
+            self.begin,
+            self.ready,
+            self.answers,
+            self.withdraw,
+        )
         self._app = Starlette(
             routes=[
                 Route(HOME, self._home),
@@ -118,15 +139,23 @@ class StudyServer:
         if scope["path"].startswith((HOME, "/static/")):
             await self._app(scope, receive, send)
             return
-        drive = self._drives.get(key)
         if scope["type"] == "websocket":
-            await (refuse_socket(receive, send) if drive is None else drive(scope, receive, send))
-        elif drive is not None and scope["method"] in _READING:
+            await self._socket(key, scope, receive, send)
+        elif (drive := self._drives.get(key)) is not None and scope["method"] in _READING:
             await drive(scope, receive, send)
         else:
             home = scope["path"] == "/" and scope["method"] in _READING
             answer = RedirectResponse(HOME, 303) if home else PlainTextResponse("There is no such page.", 404)
             await answer(scope, receive, send)
+
+    async def _socket(self, key: str, scope: Scope, receive: Receive, send: Send) -> None:
+        """Serve the socket of a drive, or that of the check of a device."""
+        if (drive := self._drives.get(key)) is not None:
+            await drive(scope, receive, send)
+        elif (standing := self._store.standing(key)) is not None and self._way.after(standing) == "device":
+            await echo(scope, receive, send)
+        else:
+            await refuse_socket(receive, send)
 
     @asynccontextmanager
     async def _life(self, _: Starlette) -> AsyncGenerator[None]:
@@ -135,15 +164,30 @@ class StudyServer:
         for key, record, steps in recovered(out):
             self._keep(key, record, steps)
         shutil.rmtree(out / DRIVES, ignore_errors=True)
-        for folder in (out / STEPS).glob("*"):
-            if self._store.standing(folder.name) is None:
-                shutil.rmtree(folder, ignore_errors=True)
+        beating = asyncio.create_task(self._beat())
         try:
             yield
         finally:
+            beating.cancel()
+            await asyncio.to_thread(self._servers.leave)
             async with self._changing:
                 for key in list(self._drives):
                     await self._end_drive(key)
+
+    async def _beat(self) -> None:
+        """Tell the other servers that this one runs, and follow what they have deleted."""
+        out, listed = self._serving.out, list[str]()
+        while True:
+            try:
+                await asyncio.to_thread(self._servers.announce, time.time())
+                known, codes = await asyncio.to_thread(self._store.present)
+                await asyncio.to_thread(forget_strangers, out, known)
+                if listed and codes != listed:
+                    write_links(out, self._servers.address, codes)
+                listed = codes
+            except DBAPIError as error:
+                _LOG.warning("The study's database does not answer: %s", error.orig)
+            await asyncio.sleep(BEAT_S)
 
     def _known(self, do: Callable[[Request, str], Awaitable[Response]]) -> Callable[..., Awaitable[Response]]:
         """A request of a participant; one that cannot be met is answered by a sentence."""
@@ -168,17 +212,19 @@ class StudyServer:
         except UserError as error:
             return self._pages.page("unknown", status=404, problem=str(error))
         if link:
-            return self._arrive(link, visit)
+            return await self._arrive(request, link, visit)
         standing = self._store.standing(request.cookies.get(COOKIE, ""))
         if standing is None:
             return self._pages.page("unknown", status=404)
         self._met.add(standing.key)
         return await self._next_page(standing)
 
-    def _arrive(self, link: str, visit: str) -> Response:
+    async def _arrive(self, request: Request, link: str, visit: str) -> Response:
         key = self._store.arrive(link, visit, time.time())
         if key is None:
             return self._pages.page("unknown", status=404)
+        if (other := await asyncio.to_thread(self._servers.elsewhere, key, time.time())) is not None:
+            return RedirectResponse(f"{other}?{request.url.query}", 303, headers=NO_STORE)
         self._met.add(key)
         answer = RedirectResponse(HOME, 303, headers=NO_STORE)
         secure = self._serving.config.encrypted
@@ -202,6 +248,8 @@ class StudyServer:
             return self._pages.page("finished", code=code)
         if due == "consent":
             return self._pages.consent()
+        if due == "device":
+            return self._pages.device(standing.device)
         if due == "comprehension":
             return self._pages.comprehension(again=bool(standing.comprehension))
         return self._pages.due(due, standing, running=key in self._drives)
@@ -212,6 +260,17 @@ class StudyServer:
         if given.digest == self._serving.kept.information:
             when = datetime.now(UTC).isoformat(timespec="seconds")
             await asyncio.to_thread(self._store.consent, key, given.digest, when)
+        return _onward(HOME)
+
+    async def device(self, request: Request, key: str) -> Response:
+        """Judge and keep what the check of their device has found."""
+        found = await body_of(request, Device)
+        due, _ = self._due(key)
+        if due == "device":
+            short = list(shortfalls(self._serving.definition.device, found, self._serving.words))
+            await asyncio.to_thread(
+                self._store.keep_device, key, found.model_dump(mode="json"), passed=not short
+            )
         return _onward(HOME)
 
     async def comprehension(self, request: Request, key: str) -> Response:

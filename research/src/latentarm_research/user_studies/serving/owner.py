@@ -1,16 +1,12 @@
-"""The study that a database belongs to, and the one server that may use it."""
+"""The study that a database belongs to."""
 
-from collections.abc import Generator
-from contextlib import contextmanager
-from typing import Final, final
+from typing import final
 
-from sqlalchemy import Engine, func, select
+from sqlalchemy import Engine, select
 from sqlalchemy.orm import Session
 
 from latentarm.core.errors import UserError
 from latentarm_research.user_studies.serving.tables import Study
-
-_LOCK: Final = 44  # number of the lock in PostgreSQL that a server holds as long as it runs
 
 
 @final
@@ -20,26 +16,6 @@ class Owner:
     def __init__(self, engine: Engine, named: str) -> None:
         self._engine = engine
         self._named = named
-
-    @contextmanager
-    def alone(self) -> Generator[None]:
-        """Keep other servers off the database; the lock of its folder does so for a file."""
-        if self._engine.dialect.name == "sqlite":
-            yield
-            return
-        with self._engine.connect() as connection:
-            # A machine that is cut off keeps the lock for half a minute, not for two hours.
-            connection.exec_driver_sql(
-                "SET tcp_keepalives_idle = 15; SET tcp_keepalives_interval = 5; SET tcp_keepalives_count = 3"
-            )
-            free = connection.scalar(select(func.pg_try_advisory_lock(_LOCK)))
-            connection.commit()  # the lock lasts as long as the connection
-            if not free:
-                raise UserError(
-                    f"{self._named} is being served by another program: end that with Ctrl-C, or name"
-                    " another database with --database."
-                )
-            yield
 
     def check(self, key: str) -> None:
         """Raise a `UserError` where the database belongs to another study than the one with this key."""

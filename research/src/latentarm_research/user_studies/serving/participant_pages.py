@@ -1,5 +1,6 @@
 """The pages of a study itself: information, practice, trials, questions, and the code."""
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Final, final
 
@@ -13,13 +14,14 @@ from latentarm.web.server.answers import NO_STORE
 from latentarm.web.server.assets import FOLDER, Assets
 from latentarm_research.user_studies.answers.items import items_of
 from latentarm_research.user_studies.questionnaire import LONGEST_TEXT
+from latentarm_research.user_studies.serving.device import Device, shortfalls
 from latentarm_research.user_studies.serving.options import PAGES, Serving
 from latentarm_research.user_studies.serving.page_drive import ToDrive
 from latentarm_research.user_studies.serving.store import Standing
 from latentarm_research.user_studies.serving.way import ToAnswer, Way
 
 HOME: Final = "/study"
-FILES: Final = ("study.js", "study_switch.js", "study.css")  # beside the template
+FILES: Final = ("study.js", "study_device.js", "study_switch.js", "study.css")  # beside the template
 
 
 @final
@@ -55,6 +57,14 @@ class ParticipantPages:
     def consent(self) -> Response:
         """The information that people consent to."""
         return self.page("consent", information=self._information, digest=self._serving.kept.information)
+
+    def device(self, found: Mapping[str, Any]) -> Response:
+        """The check of their device; ``found`` is what the last one found, empty before."""
+        serving = self._serving
+        if not found:
+            return self.page("device", short=())
+        device = Device.model_validate(found, strict=False)
+        return self.page("device", short=tuple(shortfalls(serving.definition.device, device, serving.words)))
 
     def comprehension(self, *, again: bool) -> Response:
         """The questions about the information; ``again`` says that some answers were wrong."""

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from contextlib import ExitStack
+from socket import gethostname
 from typing import Final
 
 from latentarm.core.errors import UserError
@@ -21,7 +22,7 @@ from latentarm_research.user_studies.serving.options import Serving
 from latentarm_research.user_studies.serving.page_drive import check_served
 from latentarm_research.user_studies.serving.participant_pages import HOME
 from latentarm_research.user_studies.serving.store import Store
-from latentarm_research.user_studies.serving.study_files import LINKS, write_links
+from latentarm_research.user_studies.serving.study_files import LINKS, check_links, write_links
 
 _LOCK: Final = ".serve.lock"
 
@@ -59,7 +60,6 @@ def serve(serving: Serving, say: Callable[[str], None], ready: Callable[[str], N
         )
         store = Store(serving.database, 3600.0 * kept.away_hours)
         at_end.callback(store.close)
-        at_end.enter_context(store.owner.alone())
         store.owner.check(kept.key)
         write_text(information_path(out, kept.information), serving.information)
         write_json(out / DEFINITION, {"digest": definition.digest, **definition.as_json()})
@@ -68,12 +68,14 @@ def serve(serving: Serving, say: Callable[[str], None], ready: Callable[[str], N
         origins = config.origins(int(listening.getsockname()[1]))
         address = f"{origins[0]}{HOME}"
         codes = store.open_places(definition.people)
+        check_links(out, codes)
         write_links(out, address, codes)
         models = Models(definition, out)
         for task in models.missing():
             say(f"Models for {task.label} are being trained; this takes minutes, once.")
             models.train(task, serving.sizes, kept.seed)
-        app = StudyServer(serving, store, models)
+        servers = store.servers(f"{gethostname()}:{out.resolve()}", address, serving.at_once)
+        app = StudyServer(serving, store, models, servers)
         hosts = frozenset(origin.split("//")[1] for origin in origins)
         gate = Gate(app, hosts, frozenset(origins), secure=config.encrypted, stop=app.stop)
 

@@ -19,7 +19,16 @@ from latentarm_research.user_studies.answers.items import Answer
 from latentarm_research.user_studies.drive_record import DriveRecord
 from latentarm_research.user_studies.serving.database import open_database, shown
 from latentarm_research.user_studies.serving.owner import Owner
-from latentarm_research.user_studies.serving.tables import Answers, Comprehension, Drive, Person, Place
+from latentarm_research.user_studies.serving.servers import Servers
+from latentarm_research.user_studies.serving.tables import (
+    Answers,
+    Comprehension,
+    DeviceCheck,
+    Drive,
+    Person,
+    Place,
+    Stay,
+)
 
 KEY_BYTES: Final = 16  # of random keys
 
@@ -35,6 +44,8 @@ class Standing:
     lapsed: bool  # whether their place went to somebody else, because they were away for too long
     consent: str  # SHA-256 of the text that they consented to; "" before
     consented: str  # when, ISO 8601; "" before
+    device: Mapping[str, Any]  # what the latest check of it found, a `Device`; empty before
+    device_passed: bool  # that check
     comprehension: tuple[bool, ...]  # of each try at its questions, whether all answers were right
     practised: int  # conditions that they have practised
     drives: tuple[DriveRecord, ...]  # in their order
@@ -77,6 +88,16 @@ class Store:
         self._engine = open_database(database)
         self.owner = Owner(self._engine, shown(database))
 
+    def servers(self, place: str, address: str, arms: int) -> Servers:
+        """The servers of the study, of which this is one; see `Servers`."""
+        return Servers(self._engine, place, address, arms)
+
+    def present(self) -> tuple[set[str], list[str]]:
+        """The keys of everybody, and the codes of the links to the places, in order."""
+        with self._change() as session:
+            codes = session.scalars(select(Place.code).order_by(Place.number))
+            return set(session.scalars(select(Person.key))), list(codes)
+
     def open_places(self, count: int) -> list[str]:
         """Have so many places, with the numbers from 0, and codes for links to them, which it returns."""
         with self._change() as session:
@@ -117,6 +138,14 @@ class Store:
         with self._change() as session:
             if (person := session.get(Person, key)) is not None and person.consent is None:
                 person.consent, person.consented = digest, when
+
+    def keep_device(self, key: str, found: Mapping[str, Any], *, passed: bool) -> None:
+        """Keep a check of a person's device."""
+        with self._change() as session:
+            if session.get(Person, key) is not None:
+                count = select(func.count()).select_from(DeviceCheck).where(DeviceCheck.person == key)
+                attempt = session.scalar(count) or 0
+                session.add(DeviceCheck(person=key, attempt=attempt, passed=passed, found=dict(found)))
 
     def keep_comprehension(self, key: str, options: Mapping[str, str], *, right: bool) -> None:
         """Keep the answers to the questions about the information, unless all were right before."""
@@ -235,6 +264,8 @@ class Store:
             of = {
                 Person: Person.key,
                 Place: Place.person,
+                Stay: Stay.person,
+                DeviceCheck: DeviceCheck.person,
                 Comprehension: Comprehension.person,
                 Drive: Drive.person,
                 Answers: Answers.person,
@@ -272,6 +303,8 @@ def _comprehension(session: Session, key: str) -> tuple[bool, ...]:
 def _standing(session: Session, person: Person) -> Standing:
     held = session.scalar(select(Place.number).where(Place.person == person.key))
     kept = session.scalars(select(Drive.record).where(Drive.person == person.key).order_by(Drive.number))
+    checks = select(DeviceCheck).where(DeviceCheck.person == person.key)
+    device = session.scalar(checks.order_by(DeviceCheck.attempt.desc()).limit(1))
     answers = session.scalars(
         select(Answers).where(Answers.person == person.key).order_by(Answers.order)
     ).all()
@@ -286,6 +319,8 @@ def _standing(session: Session, person: Person) -> Standing:
         lapsed=person.number is not None and held is None,
         consent=person.consent or "",
         consented=person.consented or "",
+        device={} if device is None else device.found,
+        device_passed=device is not None and device.passed,
         comprehension=_comprehension(session, person.key),
         practised=person.practised,
         drives=drives,

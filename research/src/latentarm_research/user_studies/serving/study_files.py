@@ -1,7 +1,7 @@
 """The files of a study beside its database: the list of links, and the steps of drives."""
 
 import shutil
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from pathlib import Path
 from typing import Final
 
@@ -17,11 +17,8 @@ DRIVES: Final = "drives"  # of the drives under way; in it a folder for each per
 STEPS: Final = "steps"  # a folder for each person, and in it a file for each of their drives
 
 
-def write_links(out: Path, address: str, codes: Sequence[str]) -> None:
-    """Write the list of the links to an address into the folder of the study.
-
-    Raises a `UserError` where the list there has other codes, which people may have.
-    """
+def check_links(out: Path, codes: Sequence[str]) -> None:
+    """Raise a `UserError` where the list of links in the folder has other codes, which people may have."""
     path = out / LINKS
     if path.exists():
         _, *there = read_bytes(path, MAX_TEXT_BYTES).decode("utf-8", "replace").splitlines()
@@ -30,7 +27,11 @@ def write_links(out: Path, address: str, codes: Sequence[str]) -> None:
                 f"{path} has links that the study's database does not know: restore the database, or move the"
                 " file away if nobody has them."
             )
-    write_text(path, "\n".join(["link", *(f"{address}?code={code}" for code in codes), ""]))
+
+
+def write_links(out: Path, address: str, codes: Sequence[str]) -> None:
+    """Write the list of the links to an address into the folder of the study."""
+    write_text(out / LINKS, "\n".join(["link", *(f"{address}?code={code}" for code in codes), ""]))
 
 
 def steps_path(out: Path, key: str, drive: DriveRecord) -> Path:
@@ -50,6 +51,13 @@ def keep_steps(out: Path, key: str, drive: DriveRecord, written: Path) -> None:
         path = steps_path(out, key, drive)
         path.parent.mkdir(parents=True, exist_ok=True)
         written.replace(path)
+
+
+def forget_strangers(out: Path, known: Collection[str]) -> None:
+    """Remove the steps of everybody but those with these keys: people may be deleted at another server."""
+    for folder in (out / STEPS).glob("*"):
+        if folder.name not in known:
+            shutil.rmtree(folder, ignore_errors=True)
 
 
 def forget(out: Path, people: Sequence[Deleted]) -> None:

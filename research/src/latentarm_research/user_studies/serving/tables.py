@@ -4,6 +4,8 @@ Neither addresses nor names of people are in it: a person is a random key, and a
 recruiting site gives them.
 """
 
+from typing import Any
+
 from sqlalchemy import JSON, ForeignKey
 from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
 
@@ -37,6 +39,26 @@ class Person(Table):
     completion: Mapped[str | None]  # code that they get once everything is saved; None before
 
 
+class Server(Table):
+    """A server of the study that runs."""
+
+    __tablename__ = "servers"
+
+    place: Mapped[str] = mapped_column(primary_key=True)  # its machine and folder
+    address: Mapped[str]  # that people's browsers open
+    seen_s: Mapped[float]  # when it last said that it runs, s since 1970
+    arms: Mapped[int]  # how many people may drive there at the same time
+
+
+class Stay(Table):
+    """The server at which a person takes part."""
+
+    __tablename__ = "stays"
+
+    person: Mapped[str] = mapped_column(ForeignKey("people.key", ondelete="CASCADE"), primary_key=True)
+    place: Mapped[str]  # of the server
+
+
 class Place(Table):
     """A place in the study's design; its number decides the order of conditions."""
 
@@ -45,6 +67,17 @@ class Place(Table):
     number: Mapped[int] = mapped_column(primary_key=True)
     code: Mapped[str] = mapped_column(unique=True)  # of a link of ours; it opens whichever place is free
     person: Mapped[str | None] = mapped_column(ForeignKey("people.key", ondelete="SET NULL"), unique=True)
+
+
+class DeviceCheck(Table):
+    """A check of a person's device, each time."""
+
+    __tablename__ = "device_checks"
+
+    person: Mapped[str] = mapped_column(ForeignKey("people.key", ondelete="CASCADE"), primary_key=True)
+    attempt: Mapped[int] = mapped_column(primary_key=True)
+    passed: Mapped[bool]
+    found: Mapped[dict[str, Any]] = mapped_column(JSON)  # a `Device`
 
 
 class Drive(Table):

@@ -31,7 +31,7 @@ class ToAnswer:
     items: tuple[str, ...]
 
 
-Next = ToDrive | ToAnswer | Literal["consent", "comprehension", "finished"]
+Next = ToDrive | ToAnswer | Literal["consent", "device", "comprehension", "finished"]
 
 
 @final
@@ -52,6 +52,9 @@ class Way:
         """The next thing for a person who has a place, or has not consented yet."""
         if not standing.consented or standing.number is None:
             return "consent"
+        # Who has driven already began when devices were not checked yet.
+        if not (standing.device_passed or standing.practised or standing.drives):
+            return "device"
         if self.definition.comprehension and True not in standing.comprehension:
             return "comprehension"
         for place, name in enumerate(self.order(standing.number)):

@@ -6,12 +6,23 @@ const words = import(`${document.body.dataset.modules}/layout/words.js`).then((m
   module.readWords();
   return module;
 });
+/** The check of the device, which notes from now on what is used. */
+const device = import("./study_device.js");
 /** How often somebody who waits for an arm asks again, ms. */
 const ASK_AGAIN_MS = 3000;
 
+/** Shows how much of the check of the device is over. @param {number} part */
+function checked(part) {
+  const bar = /** @type {HTMLProgressElement | null} */ (document.getElementById("checking"));
+  if (!bar) return;
+  bar.parentElement?.toggleAttribute("hidden", false);
+  bar.value = part;
+}
+
 /** The content of a form. @param {HTMLFormElement} form */
-function content(form) {
+async function content(form) {
   const { to, digest, order } = form.dataset;
+  if (to === "device") return (await device).checkDevice(checked);
   if (to === "consent") return { digest };
   if (to !== "answers" && to !== "comprehension") return {};
   const asText = new Set([...form.querySelectorAll("textarea, [data-options] input")].map((field) => field.getAttribute("name")));
@@ -26,7 +37,7 @@ function content(form) {
 async function send(form) {
   const headers = { "content-type": "application/json" };
   try {
-    const answer = await fetch(`${HOME}/${form.dataset.to}`, { method: "POST", headers, body: JSON.stringify(content(form)) });
+    const answer = await fetch(`${HOME}/${form.dataset.to}`, { method: "POST", headers, body: JSON.stringify(await content(form)) });
     return await answer.json();
   } catch {
     return { problem: (await words).say("study.unreachable") };

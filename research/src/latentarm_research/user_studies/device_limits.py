@@ -1,0 +1,37 @@
+"""What a participant's browser and connection must be good enough for, before they drive."""
+
+from dataclasses import dataclass
+from typing import Final, Literal, final
+
+from latentarm.core.errors import UserError
+
+InputKind = Literal["mouse", "touch", "pen", "keyboard", "gamepad"]
+MOST_MS: Final = 500.0  # a simulated arm waits 600 ms for an input, and the page and the arm take some of it
+MOST_PX: Final = 4000
+
+
+@final
+@dataclass(frozen=True)
+class DeviceLimits:
+    """What a device needs, besides a browser that can draw the arm (WebGL 2)."""
+
+    round_trip_ms: float = 400.0
+    """Longest median time of a message to the server and back, 1 to 500."""
+    jitter_ms: float = 150.0
+    """Longest time by which the 95th percentile of these is above their median, 1 to 500."""
+    width_px: int = 320
+    """Least width of the window in CSS pixels, 1 to 4000."""
+    height_px: int = 320
+    """Least height of the window in CSS pixels, 1 to 4000."""
+    needs: tuple[InputKind, ...] = ()
+    """Kinds of input devices of which the person must use one in the check; empty for any."""
+
+    def __post_init__(self) -> None:
+        for name, value, most in (
+            ("round_trip_ms", self.round_trip_ms, MOST_MS),
+            ("jitter_ms", self.jitter_ms, MOST_MS),
+            ("width_px", self.width_px, MOST_PX),
+            ("height_px", self.height_px, MOST_PX),
+        ):
+            if not 1 <= value <= most:
+                raise UserError(f"{name} of a device must be from 1 to {most:g}, not {value:g}.")
