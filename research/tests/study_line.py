@@ -5,7 +5,8 @@ import socket
 import threading
 import time
 from collections import deque
-from contextlib import suppress
+from collections.abc import Generator
+from contextlib import ExitStack, contextmanager, suppress
 from typing import Self, final
 
 
@@ -16,11 +17,12 @@ class Line:
     Args:
         origin: of the server, ``http://HOST:PORT``.
         delay_s: how long each way takes, s.
+        theirs: the server's end of a connection that a participant has made; None makes one, with `end`.
     """
 
-    def __init__(self, origin: str, delay_s: float = 0.0) -> None:
+    def __init__(self, origin: str, delay_s: float = 0.0, theirs: socket.socket | None = None) -> None:
         host, port = origin.removeprefix("http://").split(":")
-        self.end, self._theirs = socket.socketpair()
+        self.end, self._theirs = socket.socketpair() if theirs is None else (theirs, theirs)
         self._server = socket.create_connection((host, int(port)))
         self._server.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self._delay_s = delay_s
@@ -63,3 +65,22 @@ class Line:
                 if not content:
                     target.shutdown(socket.SHUT_WR)
                 target.sendall(content)
+
+
+@contextmanager
+def far_away(origin: str, delay_s: float) -> Generator[int]:
+    """A port at which the server at this origin answers, with so long a way there and back, s."""
+    with ExitStack() as lines, socket.create_server(("127.0.0.1", 0)) as listening:
+
+        def accept() -> None:
+            with suppress(OSError):
+                while True:
+                    lines.enter_context(Line(origin, delay_s, listening.accept()[0]))
+
+        accepting = threading.Thread(target=accept, daemon=True)
+        accepting.start()
+        try:
+            yield listening.getsockname()[1]
+        finally:
+            listening.shutdown(socket.SHUT_RDWR)
+            accepting.join()
