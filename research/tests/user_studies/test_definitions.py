@@ -45,7 +45,7 @@ def leaves(value: Any, path: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
 def test_the_digest_is_that_of_every_field_of_every_record() -> None:
     definition = DEFINITIONS["eating"]
     document = definition.as_json()
-    later = {"public_title", "in_words", "multiple_choice", "comprehension", "device"}
+    later = {"public_title", "in_words", "multiple_choice", "comprehension", "comparison", "device"}
     assert set(document) == {field.name for field in dataclasses.fields(Definition)} - later
     canonical = json.dumps(document, sort_keys=True)
     for path in leaves(document):
@@ -71,6 +71,7 @@ def test_the_digest_changes_with_any_field(field: str) -> None:
         "in_words": (Question("wish", "What do you wish for?"),),
         "multiple_choice": (MultipleChoice("again", "Once more?", ("yes", "no")),),
         "comprehension": (MultipleChoice("arm", "The arm is", ("real", "simulated"), attention=2),),
+        "comparison": (Question("again", "Which one would you use again?"),),
         "device": DeviceLimits(jitter_ms=100.0),
     }
     value = getattr(definition, field)

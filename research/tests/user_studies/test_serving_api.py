@@ -13,7 +13,7 @@ from schemathesis import GenerationMode
 
 from latentarm_research.user_studies.own.definition_file import read_definition
 from latentarm_research.user_studies.serving import request_limit
-from latentarm_research.user_studies.serving.app import COOKIE, Answered, Consented, Understood
+from latentarm_research.user_studies.serving.app import COOKIE, Answered, Compared, Consented, Understood
 from latentarm_research.user_studies.serving.device import Device
 from latentarm_research.user_studies.serving.options import general_information
 from latentarm_research.user_studies.serving.page_drive import ToDrive
@@ -43,7 +43,7 @@ def described() -> dict[str, Any]:
     ]
     refused = {str(status): SENTENCE for status in (400, 403, 409, 413)}
     posts = {"begin": None, "ready": None, "withdraw": None, "consent": Consented, "answers": Answered,
-             "device": Device, "comprehension": Understood}  # fmt: skip
+             "device": Device, "comprehension": Understood, "compare": Compared}  # fmt: skip
     pages = {"200": HTML, "303": {"description": "onward"}, "404": HTML}
     paths: dict[str, Any] = {
         "/study": {"get": {"parameters": links, "responses": pages}},

@@ -22,10 +22,12 @@ def drive_trial(page: Page) -> None:
 
 
 def assert_recorded(folder: Path, answers: Mapping[str, int | str]) -> None:
-    """Check a study in which each question was answered alike after each of two conditions."""
+    """Check a study in which each question was answered alike after each of two conditions, and compared."""
     recorded = read_recorded(folder)
     conditions = sorted({one.condition for one in recorded.trials})
     found = {(one.condition, one.item): one.answer for one in recorded.answers}
+    compared = [found.pop((one, "better")) for one in conditions]
+    assert sorted(compared) == ["1", "2"]
     assert len(conditions) == 2
     assert found == {(one, item): answer for one in conditions for item, answer in answers.items()}
     assert all(one.measures["path_length"] > 0.0 for one in recorded.trials)

@@ -28,6 +28,7 @@ GIVEN = {
         {"name": "used", "text": "What do you use?", "options": ["cane", "chair", "lift"], "several": True},
         {"name": "again", "text": "Once more?", "options": ["yes", "no"]},
     ],
+    "comparison": [{"name": "better", "text": "Which one is better?"}],
 }
 ANSWERS: dict[str, int | str] = {
     **{f"ease_{number}": 6 for number in range(1, 5)}, "used": "1;3", "again": "2"
@@ -132,6 +133,9 @@ def test_a_study_is_done_by_keyboard_alone(
             press(page, "radio", "yes", "Space")
             page.keyboard.press("ArrowDown")
             press(page, "button", "Send my answers")
+        looked_at(page, "All ways of driving")
+        press(page, "radio", "Way of driving 1 of 2", "Space")
+        press(page, "button", "Send my answers")
         looked_at(page, "Thank you")
         context.close()
     assert faults == []
@@ -177,6 +181,9 @@ def test_a_study_is_done_by_one_switch_alone(
             for name in ("It hurt", "More", "Back", "What do you use", "cane", "lift", "Back", "^no$"):
                 choose(page, name)
             choose(page, "Send my answers")
+        looked_at(page, "All ways of driving")
+        for name in ("Which one is better", "Way of driving 2 of 2", "Send my answers"):
+            choose(page, name)
         looked_at(page, "Thank you")
         page.context.close()
     assert faults == []

@@ -27,9 +27,11 @@ _LATER: Final[Mapping[str, object]] = {
     "slider": False,
     "multiple_choice": (),
     "comprehension": (),
+    "comparison": (),
     "device": asdict(DeviceLimits()),
 }
 """Defaults of fields that older definitions do not have, whose digests must stay."""
+COMPARED: Final = ("this way of driving", "another one")
 PREFIX: Final = "user study "  # before a study's name, in what a folder of its results says that it is
 
 
@@ -171,6 +173,9 @@ class Definition:
     comprehension: tuple[MultipleChoice, ...] = ()
     """Questions about the information that people consent to, before the first practice; `attention` is the
     right option of each. Who is wrong reads the information and answers again; how often is recorded."""
+    comparison: tuple[Question, ...] = ()
+    """Questions after the last condition that people answer by one of the ways of driving that they have met,
+    such as which they would use again."""
     device: DeviceLimits = field(default_factory=DeviceLimits)
     """What a person's device must reach before they drive. One that falls short is not turned away for good:
     the page says why, and checks again."""
@@ -208,6 +213,10 @@ class Definition:
                     f"An order of the study {self.name} is {', '.join(order) or 'empty'}: it must have each"
                     f" of {', '.join(in_order)} once."
                 )
+        if self.design == "between" and self.comparison:
+            raise UserError(
+                f"The study {self.name} has a comparison, and each person meets one condition: leave it out."
+            )
         if self.people < 2:
             raise UserError(f"The study {self.name} needs two people or more, not {self.people}.")
 
@@ -220,6 +229,16 @@ class Definition:
     def claims(self) -> tuple[Claim, ...]:
         """Of all hypotheses, in order."""
         return tuple(claim for hypothesis in self.hypotheses for claim in hypothesis.claims)
+
+    @property
+    def compared(self) -> tuple[MultipleChoice, ...]:
+        """The questions of the comparison, as what was answered for each condition."""
+        return tuple(MultipleChoice(one.name, one.text, COMPARED) for one in self.comparison)
+
+    @property
+    def with_options(self) -> tuple[MultipleChoice, ...]:
+        """All questions whose answers are numbers of options in a condition."""
+        return (*self.multiple_choice, *self.compared)
 
     @property
     def scales(self) -> tuple[str, ...]:

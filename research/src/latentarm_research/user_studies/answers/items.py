@@ -1,7 +1,6 @@
 """Items of a questionnaire in each person's order: sheets to fill in or print, and answers, read strictly."""
 
 import csv
-from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from io import StringIO
@@ -44,20 +43,24 @@ def items_of(definition: Definition) -> dict[str, tuple[Scale, Item]]:
 
 def names_of(definition: Definition) -> list[str]:
     """Names of everything that is asked, in the order of the definition."""
-    others = (*definition.multiple_choice, *definition.in_words)
+    others = (*definition.with_options, *definition.in_words)
     return [*items_of(definition), *(one.name for one in others)]
 
 
 def sheet(definition: Definition, people: int, seed: int) -> list[Asked]:
-    """Everybody's questions: after each condition all items in an order of their own, then all others."""
+    """Everybody's questions: after each condition all items in an order of their own, then all others.
+
+    Comparisons come after the last condition, for each of them.
+    """
     items = items_of(definition)
     others = {
         **{one.name: _with_options(one) for one in definition.multiple_choice},
         **{one.name: one.text for one in definition.in_words},
     }
-    if not (items or others):
+    compared = {one.name: _with_options(one) for one in definition.compared}
+    if not (items or others or compared):
         raise UserError(f"The study {definition.name} has no questionnaire.")
-    texts = {**{name: item.text for name, (_, item) in items.items()}, **others}
+    texts = {**{name: item.text for name, (_, item) in items.items()}, **others, **compared}
     rng = generator(seed, definition.name, Stream.ORDER)
     met = design_of(definition).orders(definition, people, rng)
     rng = generator(seed, f"{definition.name} items", Stream.QUESTIONS)
@@ -65,8 +68,11 @@ def sheet(definition: Definition, people: int, seed: int) -> list[Asked]:
         Asked(person, condition, name, texts[name])
         for person, order in enumerate(met)
         for names in [_shuffled(list(items), rng)]
-        for condition in order
-        for name in (*names, *others)
+        for condition, asked in (
+            *((one, (*names, *others)) for one in order),
+            *((one, tuple(compared)) for one in order),
+        )
+        for name in asked
     ]
 
 
@@ -111,10 +117,12 @@ def _markdown(definition: Definition, asked: Sequence[Asked]) -> str:
     most = max((scale.points for scale in definition.questionnaire if not scale.slider), default=0)
     head = ["statement", "1 means", *map(str, range(1, most + 1)), "the highest means", "item"]
     parts = [f"# {definition.public_title}\n"]
-    places: Counter[int] = Counter()
-    for (person, _), lines in groupby(asked, lambda one: (one.person, one.condition)):
-        places[person] += 1
-        parts.append(f"## Person {person}, way of driving {places[person]}\n")
+    places: dict[int, list[str]] = {}
+    for (person, condition), lines in groupby(asked, lambda one: (one.person, one.condition)):
+        theirs = places.setdefault(person, [])
+        if condition not in theirs:
+            theirs.append(condition)
+        parts.append(f"## Person {person}, way of driving {theirs.index(condition) + 1}\n")
         asked_now = list(lines)
         rows: list[list[str]] = []
         for one in asked_now:
@@ -212,7 +220,7 @@ def wrong_answer(definition: Definition, item: str, answer: int | str) -> str:
     if scale is not None:
         right = isinstance(answer, int) and 1 <= answer <= scale.points
         return "" if right else f"a whole number from 1 to {scale.points}"
-    for one in definition.multiple_choice:
+    for one in definition.with_options:
         if one.name == item:
             numbers = [str(number) for number in range(1, len(one.options) + 1)]
             given = answer.split(";") if isinstance(answer, str) else []

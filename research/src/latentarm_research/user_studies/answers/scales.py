@@ -106,7 +106,7 @@ def rate(definition: Definition, answers: Sequence[Answer], trials: Sequence[Tri
 
 def _chosen(definition: Definition, answers: Sequence[Answer]) -> Iterator[Chosen]:
     """Count the options of every question in every condition."""
-    for question in definition.multiple_choice:
+    for question in definition.with_options:
         for condition in definition.conditions:
             given = [
                 str(one.answer).split(";")

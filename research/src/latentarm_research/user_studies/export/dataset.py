@@ -150,7 +150,7 @@ def _answers(definition: Definition, answers: Sequence[Answer]) -> Iterable[Sequ
 
 
 def _options(definition: Definition, answers: Sequence[Answer]) -> Iterable[Sequence[Cell]]:
-    asked = {one.name: one for one in definition.multiple_choice}
+    asked = {one.name: one for one in definition.with_options}
     for one in (one for one in answers if one.item in asked):
         question, chosen = asked[one.item], str(one.answer).split(";")
         for number, label in enumerate(question.options, start=1):

@@ -96,6 +96,7 @@ def _check_labels(definition: Definition) -> None:
         *(("tasks: name", task.name) for task in definition.tasks),
         *(("in_words: name", one.name) for one in definition.in_words),
         *(("multiple_choice: name", one.name) for one in definition.multiple_choice),
+        *(("comparison: name", one.name) for one in definition.comparison),
         *(("comprehension: name", one.name) for one in definition.comprehension),
     ):
         if not NAME.fullmatch(name):
@@ -119,7 +120,7 @@ def _check_labels(definition: Definition) -> None:
         ("tasks", [one.name for one in definition.tasks]),
         ("hypotheses", [one.name for one in definition.hypotheses]),
         ("measures and questionnaire", [*definition.measures, *definition.scales]),
-        ("questionnaire, multiple_choice and in_words", names_of(definition)),
+        ("questionnaire, multiple_choice, comparison and in_words", names_of(definition)),
         ("comprehension", [one.name for one in definition.comprehension]),
     ):
         _each_once(field, names)

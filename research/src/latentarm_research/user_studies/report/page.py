@@ -179,7 +179,7 @@ def _rated_lines(definition: Definition, ratings: Ratings | None) -> list[tuple[
 def _chosen_lines(definition: Definition, ratings: Ratings | None) -> list[list[str]]:
     found = {(one.question, one.condition): one for one in (() if ratings is None else ratings.chosen)}
     lines: list[list[str]] = []
-    for question in definition.multiple_choice:
+    for question in definition.with_options:
         shown = [found.get((question.name, one.name)) for one in definition.conditions]
         for number, option in enumerate(question.options, start=1):
             cells = [

@@ -74,6 +74,15 @@ class Understood(Message):
 
 
 @final
+class Compared(Message):
+    """Somebody compares the ways of driving that they have met."""
+
+    answers: dict[
+        str, int
+    ]  # number of a way of driving, from 1, by question; one that is absent was left out
+
+
+@final
 class Answered(Message):
     """Somebody has answered the questions after a condition."""
 
@@ -106,6 +115,7 @@ class StudyServer:
             self.begin,
             self.ready,
             self.answers,
+            self.compare,
             self.withdraw,
         )
         self._app = Starlette(
@@ -250,6 +260,8 @@ class StudyServer:
             return self._pages.consent()
         if due == "device":
             return self._pages.device(standing.device)
+        if due == "compare":
+            return self._pages.compare(standing.number or 0)
         if due == "comprehension":
             return self._pages.comprehension(again=bool(standing.comprehension))
         return self._pages.due(due, standing, running=key in self._drives)
@@ -342,9 +354,26 @@ class StudyServer:
         if not isinstance(due, ToAnswer) or given.order != due.order:
             return self._refused("study.refused.questions", 409)
         definition = self._serving.definition
-        if any(wrong_answer(definition, item, answer) for item, answer in given.answers.items()):
+        if any(
+            item not in due.items or wrong_answer(definition, item, answer)
+            for item, answer in given.answers.items()
+        ):
             return self._refused("study.refused.answers", 400)
         await asyncio.to_thread(self._store.keep_answers, key, due.order, due.condition.name, given.answers)
+        return _onward(HOME)
+
+    async def compare(self, request: Request, key: str) -> Response:
+        """Keep which ways of driving they have chosen, as the conditions that these were."""
+        given = (await body_of(request, Compared)).answers
+        due, standing = self._due(key)
+        if due != "compare" or standing.number is None:
+            return self._refused("study.refused.questions", 409)
+        met = self._way.order(standing.number)
+        asked = {one.name for one in self._serving.definition.comparison}
+        if not (given.keys() <= asked and all(1 <= way <= len(met) for way in given.values())):
+            return self._refused("study.refused.answers", 400)
+        chosen = {name: met[way - 1] for name, way in given.items()}
+        await asyncio.to_thread(self._store.keep_answers, key, len(met), "", chosen)
         return _onward(HOME)
 
     async def data(self, _: Request, key: str) -> Response:

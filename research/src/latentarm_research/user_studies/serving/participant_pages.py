@@ -70,6 +70,10 @@ class ParticipantPages:
         """The questions about the information; ``again`` says that some answers were wrong."""
         return self.page("comprehension", information=self._information, again=again)
 
+    def compare(self, number: int) -> Response:
+        """The comparison of all conditions, for the person with this number."""
+        return self.page("compare", ways=len(self._way.order(number)))
+
     def due(self, due: ToDrive | ToAnswer, standing: Standing, *, running: bool) -> Response:
         """The page of the next step for a person with a place; ``running``: they have a drive in progress."""
         shown: dict[str, Any] = {"place": due.order + 1, "of": len(self._way.order(standing.number or 0))}

@@ -4,7 +4,7 @@ Every change is one transaction.
 """
 
 import secrets
-from collections.abc import Generator, Mapping
+from collections.abc import Generator, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -300,6 +300,16 @@ def _comprehension(session: Session, key: str) -> tuple[bool, ...]:
     return tuple(session.scalars(theirs.order_by(Comprehension.attempt)))
 
 
+def _given(kept: Answers, drives: Sequence[DriveRecord]) -> Iterator[tuple[str, str, int | str]]:
+    """Condition, item and answer; a comparison has one for each condition that they met."""
+    for item, answer in kept.points.items():
+        if kept.condition:
+            yield kept.condition, item, answer
+            continue
+        for condition in dict.fromkeys(one.condition for one in drives):
+            yield condition, item, "1" if condition == answer else "2"
+
+
 def _standing(session: Session, person: Person) -> Standing:
     held = session.scalar(select(Place.number).where(Place.person == person.key))
     kept = session.scalars(select(Drive.record).where(Drive.person == person.key).order_by(Drive.number))
@@ -326,9 +336,7 @@ def _standing(session: Session, person: Person) -> Standing:
         drives=drives,
         answered=frozenset(one.order for one in answers),
         answers=tuple(
-            Answer(-1 if held is None else held, one.condition, item, answer)
-            for one in answers
-            for item, answer in one.points.items()
+            Answer(-1 if held is None else held, *given) for one in answers for given in _given(one, drives)
         ),
         completion=person.completion,
     )

@@ -107,11 +107,13 @@ class Comprehension(Table):
 
 
 class Answers(Table):
-    """The answers to the questionnaire after one condition."""
+    """The answers to the questionnaire after one condition, or to the comparison of all."""
 
     __tablename__ = "answers"
 
     person: Mapped[str] = mapped_column(ForeignKey("people.key", ondelete="CASCADE"), primary_key=True)
     order: Mapped[int] = mapped_column(primary_key=True)
-    condition: Mapped[str]
-    points: Mapped[dict[str, int | str]] = mapped_column(JSON)  # by item; words where it asks for them
+    condition: Mapped[str]  # "" for a comparison
+    points: Mapped[dict[str, int | str]] = mapped_column(
+        JSON
+    )  # by item; words, or a condition, where it asks so

@@ -31,7 +31,7 @@ class ToAnswer:
     items: tuple[str, ...]
 
 
-Next = ToDrive | ToAnswer | Literal["consent", "device", "comprehension", "finished"]
+Next = ToDrive | ToAnswer | Literal["consent", "device", "comprehension", "compare", "finished"]
 
 
 @final
@@ -66,12 +66,22 @@ class Way:
             theirs = [one for one in standing.drives if one.order == place]
             if (trial := self._trial(condition, place, standing.number, theirs)) is not None:
                 return trial
-            if names_of(self.definition) and place not in standing.answered:
+            if self._asks and place not in standing.answered:
                 asked = sheet(self.definition, standing.number + 1, self.seed)
                 theirs = [one for one in asked if one.person == standing.number]
-                items = tuple(one.item for one in theirs if one.condition == name)
+                compared = {one.name for one in self.definition.comparison}
+                items = tuple(
+                    one.item for one in theirs if one.condition == name and one.item not in compared
+                )
                 return ToAnswer(condition, place, items)
+        if self.definition.comparison and len(self.order(standing.number)) not in standing.answered:
+            return "compare"
         return "finished"
+
+    @property
+    def _asks(self) -> bool:
+        """True if there are questions after each condition."""
+        return len(names_of(self.definition)) > len(self.definition.comparison)
 
     def _trial(
         self, condition: Condition, place: int, person: int, done: list[DriveRecord]

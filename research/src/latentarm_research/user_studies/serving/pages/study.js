@@ -24,7 +24,7 @@ async function content(form) {
   const { to, digest, order } = form.dataset;
   if (to === "device") return (await device).checkDevice(checked);
   if (to === "consent") return { digest };
-  if (to !== "answers" && to !== "comprehension") return {};
+  if (!["answers", "comprehension", "compare"].includes(to ?? "")) return {};
   const asText = new Set([...form.querySelectorAll("textarea, [data-options] input")].map((field) => field.getAttribute("name")));
   const data = new FormData(form);
   const given = [...new Set(data.keys())].map((name) => /** @type {const} */ ([name, data.getAll(name).join(";")]));
