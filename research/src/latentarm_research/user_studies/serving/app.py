@@ -77,9 +77,7 @@ class Understood(Message):
 class Compared(Message):
     """Somebody compares the ways of driving that they have met."""
 
-    answers: dict[
-        str, int
-    ]  # number of a way of driving, from 1, by question; one that is absent was left out
+    answers: dict[str, int]  # place of the chosen one in their order, from 1, by question
 
 
 @final
@@ -195,8 +193,9 @@ class StudyServer:
                 if listed and codes != listed:
                     write_links(out, self._servers.address, codes)
                 listed = codes
-            except DBAPIError as error:
-                _LOG.warning("The study's database does not answer: %s", error.orig)
+            except (DBAPIError, UserError) as error:
+                why = error.orig if isinstance(error, DBAPIError) else error
+                _LOG.warning("The study's database or its list of links cannot be used: %s", why)
             await asyncio.sleep(BEAT_S)
 
     def _known(self, do: Callable[[Request, str], Awaitable[Response]]) -> Callable[..., Awaitable[Response]]:
