@@ -48,11 +48,12 @@ class Line:
             for one in (self._theirs, self._server):
                 with suppress(OSError):
                     one.shutdown(socket.SHUT_RDWR)
+                one.close()
 
     def _carry_until_cut(self) -> None:
         under_way: deque[tuple[float, socket.socket, bytes]] = deque()
         ends = [self._theirs, self._server]
-        while not self._closed.is_set() and not self.cut.is_set():
+        while (ends or under_way) and not self._closed.is_set() and not self.cut.is_set():
             waits_s = 0.05 if not under_way else min(max(under_way[0][0] - time.monotonic(), 0.0), 0.05)
             for source in select.select(ends, [], [], waits_s)[0]:
                 content = source.recv(1 << 16)
@@ -65,6 +66,10 @@ class Line:
                 if not content:
                     target.shutdown(socket.SHUT_WR)
                 target.sendall(content)
+        if not ends:
+            # Both have ended: browsers make a thousand connections.
+            self._theirs.close()
+            self._server.close()
 
 
 @contextmanager
