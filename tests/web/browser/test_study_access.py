@@ -204,6 +204,10 @@ def test_a_page_waits_in_the_queue_and_goes_on_by_itself(
         page.get_by_role("button", name="Practise").click()
         page.get_by_role("status").get_by_text("Yours is free in about").wait_for()
         looked_at(page, "Practice")
+        # A request that is lost on the way does not end the waiting.
+        with page.expect_event("requestfailed"):
+            page.route("**/study/begin", lambda route: route.abort(), times=1)
+        assert not page.locator(".problem").is_visible()
         first.ready()
         page.locator("#stick").wait_for(timeout=WITHIN_MS)
         page.context.close()

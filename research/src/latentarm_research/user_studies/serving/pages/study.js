@@ -33,14 +33,14 @@ async function content(form) {
   return order === undefined ? { answers } : { order: Number(order), answers };
 }
 
-/** @param {HTMLFormElement} form @returns {Promise<{to?: string, problem?: string, waits_s?: number}>} */
+/** @param {HTMLFormElement} form @returns {Promise<{to?: string, problem?: string, waits_s?: number, lost?: boolean}>} */
 async function send(form) {
   const headers = { "content-type": "application/json" };
   try {
     const answer = await fetch(`${HOME}/${form.dataset.to}`, { method: "POST", headers, body: JSON.stringify(await content(form)) });
     return await answer.json();
   } catch {
-    return { problem: (await words).say("study.unreachable") };
+    return { problem: (await words).say("study.unreachable"), lost: true };
   }
 }
 
@@ -61,8 +61,9 @@ for (const form of document.querySelectorAll("form")) {
     problem?.parentElement?.toggleAttribute("hidden", true);
     busy?.toggleAttribute("hidden", form.dataset.to !== "begin");
     let answer = await send(form);
-    while (answer.waits_s !== undefined) {
-      await waiting(answer.waits_s);
+    // Who waits for an arm is told that it goes on by itself: a request that is lost on the way does not end that.
+    for (let waits = false; answer.waits_s !== undefined || (waits && answer.lost); waits = true) {
+      if (answer.waits_s !== undefined) await waiting(answer.waits_s);
       await new Promise((done) => setTimeout(done, ASK_AGAIN_MS));
       answer = await send(form);
     }
