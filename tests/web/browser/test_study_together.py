@@ -81,7 +81,8 @@ class Person:
         await page.evaluate("document.body.dataset.sends = 'yes'")
         while state != "gone":
             if state == "lost":
-                await page.locator(f"form[data-to={to}] button").click()
+                # A click by the mouse would wait for the next page, however long that takes.
+                await page.locator(f"form[data-to={to}] button").evaluate("one => one.click()")
             await page.wait_for_timeout(100)
             with suppress(Error):  # the next page is coming
                 state = await page.evaluate(STATE)
