@@ -27,6 +27,10 @@ PEOPLE = int(os.environ.get("LATENTARM_STUDY_PEOPLE", "3"))
 """Number of participants; two drive at once."""
 EACH_WAY_S = 0.075
 SIZES = ((1280, 720), (844, 390), (390, 844))
+ARRIVES_S = 5.0
+"""Each comes so much later than the one before, at most."""
+SHARED = {"round_trip_ms": 500.0, "jitter_ms": 500.0}
+"""Limits of the check of a device: all browsers and the server share the processors here."""
 WITHIN_MS = 900_000
 """The last one waits for the drives of all others."""
 RIGHT, WRONG = 2, 1
@@ -52,6 +56,7 @@ class Person:
         self.faults: list[str] = []
 
     async def takes_part(self) -> None:
+        await asyncio.sleep(self.rng.uniform(0.0, ARRIVES_S * PEOPLE))
         width, height = self.rng.choice(SIZES)
         context = await self.browser.new_context(viewport={"width": width, "height": height})
         page = await self._arrives(await context.new_page())
@@ -132,7 +137,11 @@ def test_people_far_away_take_part_in_browsers_at_once(
 ) -> None:
     study, out = tmp_path / "bites.json", tmp_path / "people"
     given = load_definition("eating").as_json()
-    study.write_text(json.dumps({**given, "name": "bites", "people": PEOPLE, "comprehension": [UNDERSTOOD]}))
+    study.write_text(
+        json.dumps(
+            {**given, "name": "bites", "people": PEOPLE, "comprehension": [UNDERSTOOD], "device": SHARED}
+        )
+    )
 
     async def everybody(link: str) -> list[Person]:
         sandbox = ("--no-sandbox",) if os.getuid() == 0 else ()
