@@ -76,7 +76,7 @@ def serve_study(
     Prints the links for participants; Ctrl-C ends it, and the same command goes on with it. The folder keeps
     --contact, --language, --information, --prolific, --completion-code, --away-hours, --database, --preset
     and --seed of the first start. A later start may leave them out, except for the database's password; one
-    that names others is refused.
+    that names others is refused. Servers with one PostgreSQL database share the people.
 
     For example: latentarm study serve eating --contact "Ann Lee, ann@uni.example"
     """
