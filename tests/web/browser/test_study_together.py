@@ -88,6 +88,7 @@ class Person:
             if state == "lost":
                 # A click by the mouse would wait for the next page, however long that takes.
                 await page.locator(f"form[data-to={to}] button").evaluate("one => one.click()")
+                state = "sends"
             await page.wait_for_timeout(100)
             with suppress(Error):  # the next page is coming
                 state = await page.evaluate(STATE)
