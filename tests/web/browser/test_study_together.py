@@ -83,6 +83,8 @@ class Person:
     async def _send(self, page: Page, to: str) -> None:
         """Press the button of a form, again where the page says that the server cannot be reached."""
         state = "lost"
+        # Before its script is there a form does nothing.
+        await page.wait_for_load_state("domcontentloaded", timeout=WITHIN_MS)
         await page.evaluate("document.body.dataset.sends = 'yes'")
         while state != "gone":
             if state == "lost":
