@@ -61,7 +61,7 @@ DEVICE = {
     "round_trip_ms": 40.0,
     "jitter_ms": 8.0,
 }
-"""What the check of a good device finds."""
+"""Results of a check that passes."""
 MODES = {"name": "Modes", "about": "two axes at a time", "controls": "modes"}
 TWIST = {"name": "Retargeting", "about": "the tool's twist", "controls": "retargeting"}
 LATENT = {

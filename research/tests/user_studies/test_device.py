@@ -93,7 +93,7 @@ def test_the_report_counts_devices_that_fell_short(study: Study) -> None:
 
 
 def socket(study: Study, key: str, *texts: str) -> list[str]:
-    """What the server answers to these messages on the socket of a drive, until it closes."""
+    """Send these messages over the drive's socket; the server's answers, until it closes."""
     events = [{"type": "websocket.connect"}, *({"type": "websocket.receive", "text": one} for one in texts)]
     answers: list[str] = []
 

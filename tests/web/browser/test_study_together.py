@@ -36,7 +36,7 @@ WITHIN_MS = 900_000
 RIGHT, WRONG = 2, 1
 STATE = """document.readyState === "loading" ? "sends" : !document.body.dataset.sends ? "gone"
   : document.querySelector(".problem").hidden ? "sends" : "lost\""""
-"""Whether the page on which a button was pressed is still there, and says that something went wrong."""
+"""`gone` once the next page is there, `lost` if the page shows a problem, `sends` otherwise."""
 UNDERSTOOD = {
     "name": "stop",
     "text": "When may you stop?",

@@ -177,8 +177,8 @@ class Definition:
     """Questions after the last condition that people answer by one of the ways of driving that they have met,
     such as which they would use again."""
     device: DeviceLimits = field(default_factory=DeviceLimits)
-    """What a person's device must reach before they drive. One that falls short is not turned away for good:
-    the page says why, and checks again."""
+    """Limits of the check before the first practice. The page says which one a device does not meet, and can
+    check it again."""
 
     def __post_init__(self) -> None:
         in_order = [condition.name for condition in self.conditions]
@@ -232,12 +232,12 @@ class Definition:
 
     @property
     def compared(self) -> tuple[MultipleChoice, ...]:
-        """The questions of the comparison, as what was answered for each condition."""
+        """The comparison as a question about each condition: chosen or not."""
         return tuple(MultipleChoice(one.name, one.text, COMPARED) for one in self.comparison)
 
     @property
     def with_options(self) -> tuple[MultipleChoice, ...]:
-        """All questions whose answers are numbers of options in a condition."""
+        """All questions that are answered by options, the comparison included."""
         return (*self.multiple_choice, *self.compared)
 
     @property

@@ -1,4 +1,4 @@
-"""What a participant's browser and connection must be good enough for, before they drive."""
+"""Limits that a participant's device must meet before they drive."""
 
 from dataclasses import dataclass
 from typing import Final, Literal, final
@@ -13,7 +13,7 @@ MOST_PX: Final = 4000
 @final
 @dataclass(frozen=True)
 class DeviceLimits:
-    """What a device needs, besides a browser that can draw the arm (WebGL 2)."""
+    """Limits of a study. WebGL 2, which draws the arm, is always required."""
 
     round_trip_ms: float = 400.0
     """Longest median time of a message to the server and back, 1 to 500."""
@@ -24,7 +24,7 @@ class DeviceLimits:
     height_px: int = 320
     """Least height of the window in CSS pixels, 1 to 4000."""
     needs: tuple[InputKind, ...] = ()
-    """Kinds of input devices of which the person must use one in the check; empty for any."""
+    """Input devices, one of which the person must use during the check; empty for any."""
 
     def __post_init__(self) -> None:
         for name, value, most in (

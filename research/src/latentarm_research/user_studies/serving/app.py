@@ -183,7 +183,7 @@ class StudyServer:
                     await self._end_drive(key)
 
     async def _beat(self) -> None:
-        """Tell the other servers that this one runs, and follow what they have deleted."""
+        """Tell the other servers that this one is up, and remove what they have deleted."""
         out, listed = self._serving.out, list[str]()
         while True:
             try:
@@ -274,7 +274,7 @@ class StudyServer:
         return _onward(HOME)
 
     async def device(self, request: Request, key: str) -> Response:
-        """Judge and keep what the check of their device has found."""
+        """Judge and keep the results of the check of their device."""
         found = await body_of(request, Device)
         due, _ = self._due(key)
         if due == "device":
@@ -362,7 +362,7 @@ class StudyServer:
         return _onward(HOME)
 
     async def compare(self, request: Request, key: str) -> Response:
-        """Keep which ways of driving they have chosen, as the conditions that these were."""
+        """Keep the conditions that they chose in the comparison."""
         given = (await body_of(request, Compared)).answers
         due, standing = self._due(key)
         if due != "compare" or standing.number is None:

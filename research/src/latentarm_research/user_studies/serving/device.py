@@ -1,4 +1,4 @@
-"""The check of a participant's device: what their page has found, and what of it falls short."""
+"""The check of a participant's device: its results, and the sentences where it falls short."""
 
 import asyncio
 from collections.abc import Iterator, Mapping
@@ -41,7 +41,7 @@ class Device(Message):
 
 
 def shortfalls(limits: DeviceLimits, found: Device, words: Words) -> Iterator[str]:
-    """Sentences on what the device falls short of, and what may help."""
+    """A sentence for each limit that the device does not meet, with what may help."""
     if not found.webgl:
         yield words.say("study.device.webgl")
     if found.width_px < limits.width_px or found.height_px < limits.height_px:

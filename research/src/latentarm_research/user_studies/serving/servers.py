@@ -1,4 +1,4 @@
-"""The servers that share a study's database: which of them run, and at which each person takes part."""
+"""The servers that share a study's database, and the server of each person."""
 
 from typing import Final, final
 
@@ -9,7 +9,7 @@ from latentarm_research.user_studies.serving.tables import Person, Server, Stay
 
 BEAT_S: Final = 2.0  # how often a server says that it runs, s
 GONE_S: Final = 7.0  # one that has not said so for so long has gone, s
-THERE_S: Final = 900.0  # people who have opened a page within this time count as there, s
+THERE_S: Final = 900.0  # people who have opened a page within this time count as present, s
 
 
 @final
@@ -29,20 +29,20 @@ class Servers:
         self._place, self._arms = place, arms
 
     def announce(self, now_s: float) -> None:
-        """Say that this server runs; those that have gone are forgotten."""
+        """Record that this server is up, and remove those that are not."""
         with Session(self._engine) as session, session.begin():
             session.execute(delete(Server).where(Server.seen_s < now_s - GONE_S))
             session.merge(Server(place=self._place, address=self.address, seen_s=now_s, arms=self._arms))
 
     def leave(self) -> None:
-        """Say that this server ends: its people go on elsewhere."""
+        """Remove this server: its people go on at others."""
         with Session(self._engine) as session, session.begin():
             session.execute(delete(Server).where(Server.place == self._place))
 
     def elsewhere(self, key: str, now_s: float) -> str | None:
-        """The address of the server at which a person takes part; None for this one.
+        """The address of a person's server; None for this one.
 
-        They stay where they were as long as it runs; else they go where the most arms are free for them.
+        A person stays at their server while it is up; otherwise they get the one with the most free arms.
         """
         with Session(self._engine) as session, session.begin():
             alive = select(Server).where(Server.seen_s >= now_s - GONE_S, Server.place != self._place)

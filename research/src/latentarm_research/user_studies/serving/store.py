@@ -301,7 +301,7 @@ def _comprehension(session: Session, key: str) -> tuple[bool, ...]:
 
 
 def _given(kept: Answers, drives: Sequence[DriveRecord]) -> Iterator[tuple[str, str, int | str]]:
-    """Condition, item and answer; a comparison has one for each condition that they met."""
+    """Condition, item and answer; a comparison gives one for each condition that the person met."""
     for item, answer in kept.points.items():
         if kept.condition:
             yield kept.condition, item, answer

@@ -54,7 +54,7 @@ def keep_steps(out: Path, key: str, drive: DriveRecord, written: Path) -> None:
 
 
 def forget_strangers(out: Path, known: Collection[str]) -> None:
-    """Remove the steps of everybody but those with these keys: people may be deleted at another server."""
+    """Remove the steps of people without one of these keys: another server may have deleted them."""
     for folder in (out / STEPS).glob("*"):
         if folder.name not in known:
             shutil.rmtree(folder, ignore_errors=True)
