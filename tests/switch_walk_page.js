@@ -57,6 +57,7 @@ window.snap = () => {
     path: location.pathname, open: open.map((one) => `${one.localName} ${one.id || one.textContent.trim().slice(0, 30)}`),
     focus: focus?.outerHTML.slice(0, 120) ?? "", stop: document.querySelectorAll("#scan [data-choice=stop]").length,
     toggled: toggled.map(([one]) => one.textContent.trim().slice(0, 30)), asking: "asking" in (focus?.dataset ?? {}),
+    switches: JSON.parse(localStorage["latentarm.settings."] ?? "{}").switches,
     choices: [...document.querySelectorAll("#scan li")].map((one) => one.dataset.choice).join(" "),
   };
 };
