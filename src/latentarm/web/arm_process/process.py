@@ -52,10 +52,11 @@ def run_control(spec: Spec, channel: Channel, server: int, logs: LogSettings) ->
         return os.getppid() != server
 
     signal.signal(signal.SIGTERM, end)
-    privileged = ask_for_priority()
     with threadpool_limits(1), logging_as(logs):
-        _LOG.info("The arm's process begins %s real-time priority.", "with" if privileged else "without")
+        # Loading takes seconds, which may not come before the steps of another arm on this machine.
         setup = load_setup(spec)
+        privileged = ask_for_priority()
+        _LOG.info("The arm's process begins %s real-time priority.", "with" if privileged else "without")
         clock = MonotonicClock()
         writer = EpisodeWriter(spec.out, spec.journal)
         steering = Steering(setup.first_mode(USUAL_HELP))
