@@ -33,7 +33,7 @@ def required(name: str, tmp_path: Path) -> list[object]:
     return []
 
 
-SLOW = {"clearance", "zones", "help", "way-back", "calibration", "surroundings"}
+SLOW = {"clearance", "zones", "help", "way-back", "calibration", "surroundings", "study-load"}
 # Two need a trained run and a Chromium (tests/web/browser/test_fault_times.py), one a log that is not ours,
 # one OpenGL.
 ELSEWHERE = {"page-stops", "page-latency", "people", "tags"}

@@ -16,6 +16,7 @@ from latentarm_research.measurements.measurement import Measurement, Outcome, Wo
 
 Names = tuple[str, ...]
 Numbers = tuple[float, ...]
+Counts = tuple[int, ...]
 
 
 @dataclass(frozen=True)
@@ -73,6 +74,14 @@ class PageLatency:
 
     run: Annotated[Path, arg(help="A trained run, which `latentarm teleop` serves.")]
     presses: Annotated[int, arg(help="Of arrow keys.")] = 500
+
+
+@dataclass(frozen=True)
+class StudyLoad:
+    """Measure how many people can drive at the same time in a study on this machine."""
+
+    people: Annotated[Counts, arg(help="How many at once, one number after another.")] = (1, 2, 3, 4, 6, 8)
+    seconds: Annotated[float, arg(help="That each drive lasts; each person does two.")] = 30.0
 
 
 @dataclass(frozen=True)
@@ -152,6 +161,7 @@ MEASUREMENTS: Final[Mapping[str, Measurement]] = {
     "stops": Measurement(Stops, {"tries": 1, "arms": ("kinematic",)}),
     "page-stops": Measurement(PageStops, {"tries": 1, "faults": ("page closed",)}),
     "page-latency": Measurement(PageLatency, {"presses": 4}),
+    "study-load": Measurement(StudyLoad, {"people": (1,), "seconds": 1.0}),
     "help": Measurement(Help, {"drives": 1, "episodes": 2, "epochs": 1, "limit_s": 1.0}),
     "way-back": Measurement(WayBack, {"kinds": ("pca",), "starts": 2, "steps": 50}),
     "calibration": Measurement(Calibrating, {"people": 2, "tasks": ("avoid",), "distances_m": (0.03,)}),
