@@ -80,7 +80,12 @@ def far_away(origin: str, delay_s: float) -> Generator[int]:
         def accept() -> None:
             with suppress(OSError):
                 while True:
-                    lines.enter_context(Line(origin, delay_s, listening.accept()[0]))
+                    theirs, _ = listening.accept()
+                    try:
+                        lines.enter_context(Line(origin, delay_s, theirs))
+                    except OSError:
+                        # The server has refused one, which the browser hears; others go on.
+                        theirs.close()
 
         accepting = threading.Thread(target=accept, daemon=True)
         accepting.start()

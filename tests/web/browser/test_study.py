@@ -115,3 +115,24 @@ def test_a_browser_that_cannot_drive_says_why_and_checks_again(chromium: Browser
         press(page, "Check again")
         looked_at(page, "Practice")
         context.close()
+
+
+def test_what_is_lost_on_the_way_can_be_sent_again(chromium: Browser, tmp_path: Path) -> None:
+    study = tmp_path / "study.json"
+    study.write_text(json.dumps(definition(MODES, TWIST)))
+    with serving(str(study), "--out", str(tmp_path / "people")) as (link, _):
+        context = chromium.new_context()
+        context.route("**/layout/words.js", lambda route: route.abort())
+        context.route("**/study/consent", lambda route: route.abort(), times=1)
+        context.route("**/study_device.js", lambda route: route.abort(), times=1)
+        page = context.new_page()
+        page.goto(link)
+        page.get_by_role("checkbox").check()
+        press(page, "Take part")
+        page.get_by_text("The server cannot be reached. Try again.").wait_for(timeout=WITHIN_MS)
+        assert page.get_by_role("checkbox").is_checked()
+        with page.expect_request_finished(lambda one: one.url.endswith("/study_device.js")):
+            press(page, "Take part")
+        press(page, "Check")
+        looked_at(page, "Practice")
+        context.close()

@@ -1,15 +1,14 @@
 /** A participant's page: what is filled in goes to the server, which answers where to go on, or why not. */
 
 const HOME = "/study";
-/** The words of the page. */
-const words = import(`${document.body.dataset.modules}/layout/words.js`).then((module) => {
-  module.readWords();
-  return module;
-});
-/** The check of the device, which notes from now on what is used. */
-const device = import("./study_device.js");
+/** What is said of a server that does not answer. It needs no module, which may be what was lost on the way. */
+const UNREACHABLE = JSON.parse(document.getElementById("words")?.textContent ?? "{}")["study.unreachable"];
+/** The check of the device, which notes from now on what is used. Nothing is filled in there that a reload would lose. */
+const device = document.querySelector("form[data-to=device]") && import("./study_device.js").catch(() => location.reload());
 /** How often somebody who waits for an arm asks again, ms. */
 const ASK_AGAIN_MS = 3000;
+/** For how long an answer is waited for, ms. A network can go without a word. */
+const ANSWER_MS = 60_000;
 
 /** Shows how much of the check of the device is over. @param {number} part */
 function checked(part) {
@@ -22,7 +21,7 @@ function checked(part) {
 /** The content of a form. @param {HTMLFormElement} form */
 async function content(form) {
   const { to, digest, order } = form.dataset;
-  if (to === "device") return (await device).checkDevice(checked);
+  if (to === "device") return (await device)?.checkDevice(checked);
   if (to === "consent") return { digest };
   if (!["answers", "comprehension", "compare"].includes(to ?? "")) return {};
   const asText = new Set([...form.querySelectorAll("textarea, [data-options] input")].map((field) => field.getAttribute("name")));
@@ -37,18 +36,23 @@ async function content(form) {
 async function send(form) {
   const headers = { "content-type": "application/json" };
   try {
-    const answer = await fetch(`${HOME}/${form.dataset.to}`, { method: "POST", headers, body: JSON.stringify(await content(form)) });
-    return await answer.json();
+    const body = JSON.stringify(await content(form));
+    const signal = AbortSignal.timeout(ANSWER_MS);
+    return await (await fetch(`${HOME}/${form.dataset.to}`, { method: "POST", headers, body, signal })).json();
   } catch {
-    return { problem: (await words).say("study.unreachable"), lost: true };
+    return { problem: UNREACHABLE, lost: true };
   }
 }
 
 /** Says how long it takes until an arm is free. @param {number} seconds */
 async function waiting(seconds) {
-  const text = (await words).say("study.waits", { count: Math.ceil(seconds / 60) });
+  const words = await import(`${document.body.dataset.modules}/layout/words.js`).catch(() => null);
+  // Without them the page waits all the same.
+  if (!words || !busy) return;
+  words.readWords();
+  const text = words.say("study.waits", { count: Math.ceil(seconds / 60) });
   // A screen reader says what has changed.
-  if (busy && busy.textContent !== text) busy.textContent = text;
+  if (busy.textContent !== text) busy.textContent = text;
 }
 
 const problem = document.getElementById("problem");
