@@ -96,6 +96,14 @@ def test_a_broken_limit_is_an_exit_code(run: Run, workplace: Path, monkeypatch: 
     assert "`latentarm measure zones --drives 7 --seed 0`" in page
 
 
+@pytest.mark.parametrize(
+    "given", [("--people", 0), ("--people", 2, -1), ("--seconds", "nan"), ("--seconds", 1e9)]
+)
+def test_nobody_can_drive_by_impossible_numbers(run: Run, workplace: Path, given: tuple[object, ...]) -> None:
+    code, _, err = run("measure", "study-load", *given)
+    assert (code, err.strip()) == (2, "latentarm: --people must be 1 or more, and --seconds from 1 to 240.")
+
+
 def test_the_catalogue_has_every_module_with_a_measurement() -> None:
     folder = Path(catalogue.__file__).parent
     modules = {path.stem for path in folder.glob("*.py") if "\ndef measure(" in path.read_text("utf-8")}

@@ -32,6 +32,7 @@ from latentarm_research.user_studies.catalogue import load_definition
 
 MOST_MISSED_PERCENT: Final = 1.0
 MOST_BROKEN_OFF: Final = 3
+MOST_S: Final = 240.0  # the study's own longest trial
 STUDY: Final = "eating"
 NO_MODEL: Final = "retargeting"  # conditions that are driven so need no training
 DEVICE: Final = {
@@ -49,6 +50,8 @@ TURN_S: Final = 4.0  # in which the stick goes round once
 
 def measure(options: StudyLoad, work: Work) -> Outcome:
     """Share of missed deadlines of the arms' loops, by the number of people."""
+    if min(options.people, default=0) < 1 or not 1.0 <= options.seconds <= MOST_S:
+        raise UserError(f"--people must be 1 or more, and --seconds from 1 to {MOST_S:g}.")
     rows, broken = [], list[str]()
     for people in options.people:
         figures = load(people, options.seconds, np.random.default_rng(work.seed))
