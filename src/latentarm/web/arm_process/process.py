@@ -53,7 +53,7 @@ def run_control(spec: Spec, channel: Channel, server: int, logs: LogSettings) ->
 
     signal.signal(signal.SIGTERM, end)
     with threadpool_limits(1), logging_as(logs):
-        # Loading takes seconds, which may not come before the steps of another arm on this machine.
+        # Loading takes half a second, which must not come before the steps of other arms.
         setup = load_setup(spec)
         privileged = ask_for_priority()
         _LOG.info("The arm's process begins %s real-time priority.", "with" if privileged else "without")

@@ -3,8 +3,8 @@
 const HOME = "/study";
 /** What is said of a server that does not answer. It needs no module, which may be what was lost on the way. */
 const UNREACHABLE = JSON.parse(document.getElementById("words")?.textContent ?? "{}")["study.unreachable"];
-/** The check of the device, which notes from now on what is used. Nothing is filled in there that a reload would lose. */
-const device = document.querySelector("form[data-to=device]") && import("./study_device.js").catch(() => location.reload());
+/** The check of the device, which notes from now on what is used; null if it was lost on the way. */
+const device = import("./study_device.js").catch(() => null);
 /** How often somebody who waits for an arm asks again, ms. */
 const ASK_AGAIN_MS = 3000;
 /** For how long an answer is waited for, ms. A network can go without a word. */
@@ -21,7 +21,12 @@ function checked(part) {
 /** The content of a form. @param {HTMLFormElement} form */
 async function content(form) {
   const { to, digest, order } = form.dataset;
-  if (to === "device") return (await device)?.checkDevice(checked);
+  if (to === "device") {
+    const check = await device;
+    // Nothing is filled in on that page.
+    if (!check) location.reload();
+    return check?.checkDevice(checked);
+  }
   if (to === "consent") return { digest };
   if (!["answers", "comprehension", "compare"].includes(to ?? "")) return {};
   const asText = new Set([...form.querySelectorAll("textarea, [data-options] input")].map((field) => field.getAttribute("name")));
