@@ -5,10 +5,10 @@ import re
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Browser, Page
+from playwright.sync_api import Browser, Page, Route
 
 from latentarm_research.user_studies.recorded import read_recorded
-from study_participant import MODES, SCALE, TWIST, definition, serving
+from study_participant import MODES, SCALE, TWIST, definition, participant, serving
 
 from .conftest import STICKS_OUT
 from .study_pages import drive_trial
@@ -139,3 +139,40 @@ def test_what_is_lost_on_the_way_can_be_sent_again(chromium: Browser, tmp_path: 
         press(page, "Check")
         looked_at(page, "Practice")
         context.close()
+
+
+def test_the_end_of_a_drive_reloads_the_page_once_however_slow_it_is(
+    chromium: Browser, tmp_path: Path
+) -> None:
+    study = tmp_path / "study.json"
+    study.write_text(json.dumps(definition(MODES, TWIST)))
+    with (
+        serving(str(study), "--out", str(tmp_path / "people")) as (link, _),
+        participant(link, link) as person,
+    ):
+        person.consent()
+        person.ready()
+        context = chromium.new_context()
+        context.add_cookies(
+            [
+                {"name": name, "value": value, "url": person.origin}
+                for name, value in person.client.cookies.items()
+            ]
+        )
+        page = context.new_page()
+        page.goto(f"{person.origin}/study")
+        press(page, "Begin")
+        page.locator("#status[data-phase=disengaged]").wait_for(timeout=WITHIN_MS)
+        loads: list[str] = []
+
+        def slowly(route: Route) -> None:
+            loads.append(route.request.url)
+            page.wait_for_timeout(4000)
+            route.continue_()
+
+        context.route(f"{person.origin}/", slowly)
+        page.locator("#stick").focus()
+        drive_trial(page)
+        looked_at(page, "How was this way of driving?")
+        context.close()
+    assert len(loads) == 1

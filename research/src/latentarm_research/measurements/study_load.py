@@ -32,7 +32,6 @@ from latentarm_research.user_studies.catalogue import load_definition
 
 MOST_MISSED_PERCENT: Final = 1.0
 MOST_BROKEN_OFF: Final = 3
-MOST_S: Final = 240.0  # the study's own longest trial
 STUDY: Final = "eating"
 NO_MODEL: Final = "retargeting"  # conditions that are driven so need no training
 DEVICE: Final = {
@@ -44,20 +43,23 @@ DEVICE: Final = {
     "round_trip_ms": 1.0,
     "jitter_ms": 0.0,
 }
+TRIAL: Final = 'data-part="trial"'
 INPUT_S: Final = 0.02  # between two inputs, as on the page
 TURN_S: Final = 4.0  # in which the stick goes round once
 
 
 def measure(options: StudyLoad, work: Work) -> Outcome:
     """Share of missed deadlines of the arms' loops, by the number of people."""
-    if min(options.people, default=0) < 1 or not 1.0 <= options.seconds <= MOST_S:
-        raise UserError(f"--people must be 1 or more, and --seconds from 1 to {MOST_S:g}.")
+    longest_s = min(one.trial_s for one in load_definition(STUDY).tasks)
+    if min(options.people, default=0) < 1 or not 1.0 <= options.seconds <= longest_s:
+        raise UserError(f"--people must be 1 or more, and --seconds from 1 to {longest_s:g}.")
     rows, broken = [], list[str]()
     for people in options.people:
         figures = load(people, options.seconds, np.random.default_rng(work.seed))
         rows += line("study-load", f"{people} at once", people, figures)
         if figures["missed_worst_percent"] > MOST_MISSED_PERCENT or figures["broken_off"]:
-            broken.append(f"{people} at once: a drive missed over 1 % of its deadlines, or was broken off")
+            what = f"a drive missed over {MOST_MISSED_PERCENT:g} % of its deadlines, or was broken off"
+            broken.append(f"{people} at once: {what}")
     return Outcome(rows, broken)
 
 
@@ -71,7 +73,7 @@ def load(people: int, drive_s: float, rng: np.random.Generator) -> dict[str, flo
         with ThreadPoolExecutor(people) as pool:
             list(pool.map(Person.take_part, drivers, rng.uniform(0.0, drive_s, people).tolist()))
         used_percent = 100.0 * (time.process_time() - used_s) / (time.monotonic() - began_s)
-    missed = [share for one in drivers for share in one.missed] or [math.nan]
+    missed = [share for one in drivers for share in one.missed] or [1.0]
     return {
         "missed_percent": 100.0 * sum(missed) / len(missed),
         "missed_worst_percent": 100.0 * max(missed),
@@ -137,6 +139,8 @@ class Person:
         self._page()  # it gives them their place
         self.post("device", **DEVICE)
         self.post("ready")
+        if TRIAL not in self._page():
+            raise RuntimeError("no drive is due after the practice")
 
     def post(self, to: str, **content: Any) -> dict[str, Any]:
         """Send something; the server's answer, which may be a refusal."""
@@ -145,7 +149,7 @@ class Person:
     def take_part(self, begin_s: float) -> None:
         """Wait, s, then do all tasks in one condition, or give up where drives are broken off."""
         time.sleep(begin_s)
-        while 'data-part="trial"' in self._page() and self.broken_off < MOST_BROKEN_OFF:
+        while TRIAL in self._page() and self.broken_off < MOST_BROKEN_OFF:
             asked_s = time.monotonic()
             self.post("begin")
             try:

@@ -63,10 +63,13 @@ export function attachPage({ drop = () => {}, repaint = () => {}, runChanged = (
   connection.addEventListener("run_changed", runChanged);
   // It may be another arm, with other limits: nothing that was drawn, confirmed or chosen before counts.
   connection.addEventListener("server_changed", () => location.reload());
-  // In a study: what comes next is at the same address.
-  connection.addEventListener("refused", (event) => {
-    if (/** @type {CustomEvent} */ (event).detail.notice.code === "drive_over") location.reload();
-  });
+  // In a study: what comes next is at the same address. A second reload would abort a slow first one.
+  const driveOver = (/** @type {Event} */ event) => {
+    if (/** @type {CustomEvent} */ (event).detail.notice.code !== "drive_over") return;
+    connection.removeEventListener("refused", driveOver);
+    location.reload();
+  };
+  connection.addEventListener("refused", driveOver);
   connection.addEventListener("learning", () => {
     const { welcome, learning } = connection;
     if (!welcome || !learning || learning.profiles.join() === welcome.profiles.join()) return;

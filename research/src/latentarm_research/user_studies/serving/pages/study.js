@@ -1,13 +1,13 @@
 /** A participant's page: what is filled in goes to the server, which answers where to go on, or why not. */
 
 const HOME = "/study";
-/** What is said of a server that does not answer. It needs no module, which may be what was lost on the way. */
+/** Shown when the server does not answer. Read here, because the module that reads the words may not load either. */
 const UNREACHABLE = JSON.parse(document.getElementById("words")?.textContent ?? "{}")["study.unreachable"];
-/** The check of the device, which notes from now on what is used; null if it was lost on the way. */
+/** The check of the device, which notes from now on what is used; null if it did not load. */
 const device = import("./study_device.js").catch(() => null);
 /** How often somebody who waits for an arm asks again, ms. */
 const ASK_AGAIN_MS = 3000;
-/** For how long an answer is waited for, ms. A network can go without a word. */
+/** Time limit of a request, ms: a connection can go silent without an error. */
 const ANSWER_MS = 60_000;
 
 /** Shows how much of the check of the device is over. @param {number} part */
@@ -23,7 +23,7 @@ async function content(form) {
   const { to, digest, order } = form.dataset;
   if (to === "device") {
     const check = await device;
-    // Nothing is filled in on that page.
+    // The page of the check has no answers that a reload would lose.
     if (!check) location.reload();
     return check?.checkDevice(checked);
   }
@@ -52,7 +52,7 @@ async function send(form) {
 /** Says how long it takes until an arm is free. @param {number} seconds */
 async function waiting(seconds) {
   const words = await import(`${document.body.dataset.modules}/layout/words.js`).catch(() => null);
-  // Without them the page waits all the same.
+  // The page keeps waiting even if it cannot say for how long.
   if (!words || !busy) return;
   words.readWords();
   const text = words.say("study.waits", { count: Math.ceil(seconds / 60) });
